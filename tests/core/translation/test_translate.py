@@ -13,6 +13,7 @@ from tangible_core.translation import language, language_of_environment, localis
 from tangible_core.translation.catalogue import Catalogue, parse
 from tangible_core.translation.chosen import set_language
 from tangible_core.translation.numerals import Numerals
+from tangible_core.translation.template import Template
 from tangible_core.translation.translate import localise_marked
 from tangible_legibility import sizes
 
@@ -191,6 +192,24 @@ msgstr ""
 )
 def test_texts_are_recognised_by_what_they_are_made_of(english: str, german: str | None) -> None:
     assert Catalogue(parse(LISTS), Numerals("de"))(english) == (english if german is None else german)
+
+
+def test_literals_of_a_template_do_not_overlap_and_values_may_be_empty() -> None:
+    lies = Template("{count} of {all} of it", "{all}: {count}")
+    assert lies.match("3 of 7 of it") == {"count": "3", "all": "7"}
+    assert lies.match("3 of  of it") == {"count": "3", "all": ""}
+    assert lies.match("3 of it") is None
+    near = Template("near{far}here", "{far}")
+    assert (near.match("nearhere"), near.match("nearer here"), near.match("neare")) == (
+        {"far": ""},
+        {"far": "er "},
+        None,
+    )
+    assert Template("a{one}{two}{three}b", "").match("aXYb") == {"one": "XY", "two": "", "three": ""}
+    assert Template("{one}. {two}", "").match("1.5. 2.5") == {"one": "1.5", "two": "2.5"}
+    assert Template("{one}.{two}", "").match("1.5.x") == {"one": "1.5", "two": "x"}
+    assert Template("{one} or {two}", "").match("a\nb or c") is None
+    assert Template("{one}\nor {two}", "").match("a\nb\nor c") == {"one": "a\nb", "two": "c"}
 
 
 def test_a_text_of_a_book_s_length_is_not_taken_apart() -> None:

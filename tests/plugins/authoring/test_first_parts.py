@@ -86,6 +86,7 @@ def test_file_and_list_say_sizes_in_their_units(stripes: Path):
     text = (stripes / "stripes.yaml").read_text()
     assert text.startswith("# stripes.png in 5 parts, 160 x 40 pixels; parts-numbered.png shows their numbers.")
     assert "width_m: 80 mm " in text and "relief_m: 6 mm " in text
+    assert not re.search("^depth:", text, re.MULTILINE), "heights that were guessed need no depth"
     rows = [line.split() for line in done.stdout.splitlines() if re.match(r"\s*[1-5]\s", line)]
     assert rows[-1][-2] == "3.8"  # 6 of 160 columns, in percent
     assert sorted(row[-1] for row in rows) == ["0.0", "1.0", "2.1", "3.1", "4.2"]

@@ -202,6 +202,18 @@ def test_window_around_a_change_ends_with_the_map(box, window):
     assert opening._grow(box, 2, (10, 12)) == window
 
 
+def test_opened_parts_are_measured_exactly_at_the_end():
+    """A disc that passes: its quick width is off by a hundredth, and the exact one is not."""
+    y, x = np.indices((240, 240)) - 119.5
+    labels = (np.hypot(x, y) < 52.3).astype(np.int32)
+    opened = opening.Opening(SimplifyChoice(), np.zeros(2, np.bool_), 0.0001, None)
+    same, wide = opened.run(labels)
+    exact, quick = (opening.measure(labels, 0.0001, 0.0032, quick=each).disc_m for each in (False, True))
+    assert np.array_equal(same, labels)
+    assert not np.array_equal(exact, quick)
+    assert np.array_equal(wide.disc_m, exact)
+
+
 def test_crumbs_go_to_the_nearest_cell_but_for_those_at_the_rim():
     """A window's rim may cut a piece. A disc of 4 cells has an area of 12.6: 13 cells are no crumb."""
     labels = np.zeros((30, 40), np.int32)

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from flights import fly, grades, level, of
-from tangible_core.preflight.checks.device import damping, friction
+from tangible_core import HapticSurface
+from tangible_core.preflight.checks.device import damping, friction, workspace
 from tangible_core.preflight.checks.jitter import lateness, tick_cost
 from tangible_core.preflight.timing import Lateness, TickCost
 from tangible_core.servo.guard.safety import Safety
@@ -24,6 +25,56 @@ class TestDevice:
         assert grades(friction(fly(level()))) == ["warn"]
         assert grades(friction(fly(level(), simulated=True))) == ["ok"]
         assert grades(friction(fly(level(), safety=Safety(friction_n=0.3)))) == ["ok"]
+
+    def test_what_is_known_of_a_device_needs_no_words(self):
+        """Value, source, note, cure and fault: of a device that is simulated, known and unknown."""
+        said = [
+            [
+                (each.value, each.source, each.note, each.cure, each.says)
+                for each in (*damping(flight), *friction(flight))
+            ]
+            for flight in (
+                fly(level(), simulated=True),
+                fly(level(), safety=Safety(friction_n=0.3)),
+                fly(level(), device={"damping_n_s_per_m": 20.0, "max_stiffness_n_per_m": 3000.0}),
+            )
+        ]
+        assert said[0] == [(2.0, "simulated", "", "", ""), (0.0, "simulated", "", "", "")]
+        assert said[1] == [(2.0, "the device's specification", "", "", ""), (0.3, "`safety.friction_n`", "", "", "")]
+        assert said[2] == [
+            (
+                1.5,
+                "the device's specification",
+                "20 N s/m stated; its stiffness at 1 kHz implies no more than this",
+                "a guess: start at half the stiffness, and raise it for as long as nothing buzzes",
+                "how well the device damps is a guess",
+            ),
+            (
+                0.0,
+                "",
+                "",
+                "unknown: measure the force at which the handle starts to move, `safety.friction_n: ...`",
+                "the friction of the device's handle is unknown",
+            ),
+        ]
+
+    @pytest.mark.parametrize(("turned", "of_"), [(False, "width"), (True, "length")])
+    def test_surface_beyond_the_reach_is_cured_by_a_width(self, turned: bool, of_: str):
+        """120 by 60 mm on a device that reaches 100 by 50 mm, or 200 by 50."""
+        surface = HapticSurface.from_heights(np.full((32, 64), 0.02, np.float32), 0.12)
+        reach_m = (0.2, 0.05, 0.1) if turned else (0.1, 0.2, 0.015)
+        found = list(workspace(fly(surface, workspace_m=reach_m, relief_m=0.03)))
+        assert [(each.of, each.verdict) for each in found] == [
+            ("width", "ok" if turned else "warn"),
+            ("length", "warn" if turned else "ok"),
+            ("height", "ok" if turned else "warn"),
+        ]
+        wrong = of(found, of_)
+        assert wrong.says == f"the surface has more {of_} than the device reaches"
+        assert [(each.key, each.value) for each in wrong.changes] == [("workspace.width_m", "0.1")]
+        if not turned:
+            assert [(each.key, each.value) for each in found[2].changes] == [("workspace.relief_m", "0.022")]
+            assert found[2].says == "the surface is higher than the device reaches"
 
 
 class TestJitter:

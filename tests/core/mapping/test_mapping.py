@@ -13,6 +13,7 @@ from tangible_core.compiled.kernels import Address
 from tangible_core.compiled.touch import CompiledLink, LinkKernels
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
 from tangible_core.mapping import MappedDevice, Placement, WorkspaceMapping, intended_path, map_device, placement_of
+from tangible_core.mapping.device import over
 from tangible_core.mapping.placement import turn
 from tangible_core.plugins.interfaces import HapticDevice, Link
 from tangible_core.testing.kinds.device import CHECKS as DEVICE_CHECKS
@@ -403,3 +404,29 @@ class TestDevice:
 def test_wrong_options_are_refused(options: dict, complaint: str):
     with pytest.raises(ValueError, match=complaint):
         WorkspaceMapping(**options)
+
+
+@pytest.mark.parametrize(
+    ("mapping", "area_m"),
+    [
+        ({}, (0.08, 0.06)),
+        ({"scale": 0.5}, (0.04, 0.03)),
+        ({"offset_m": (0.01, 0.0, 0.0)}, (0.06, 0.06)),  # centred on the device: what is as far on both sides
+        ({"offset_m": (-0.04, 0.0, 0.0)}, (0.08, 0.06)),  # nothing of the picture is on one of the sides
+        ({"offset_m": (0.0, 0.05, 0.0), "scale": 2.0}, (0.16, 0.02)),
+        ({"region_m": (0.01, -0.02, 0.02, 0.02), "scale": 1.0}, (0.06, 0.02)),
+        ({"rotation_deg": 90.0, "offset_m": (0.0, 0.01, 0.0)}, (0.06, 0.06)),
+        ({"rotation_deg": 90.0}, (0.06, 0.08)),
+        ({"rotation_deg": 180.0}, (0.08, 0.06)),
+        ({"rotation_deg": 45.0}, (0.06 / 2**0.5,) * 2),
+        ({"rotation_deg": -30.0}, (0.06 / (0.5 + 0.75**0.5),) * 2),
+    ],
+)
+def test_path_of_a_hand_is_over_the_picture_as_it_lies(mapping: dict, area_m: tuple[float, float]):
+    """A picture of 80 by 60 mm; the path has a size of its own in the hand's metres."""
+    found = over(MappedDevice(device=Mock(path="circle"), mapping=WorkspaceMapping(**mapping)), (0.08, 0.06))
+    wanted = Mock(path="circle").over(area_m)
+    assert isinstance(found, MappedDevice) and isinstance(found.device, Mock)
+    assert found.device.wanted(np.arange(500)) == pytest.approx(wanted.wanted(np.arange(500)), abs=1e-9)
+    assert found.mapping == WorkspaceMapping(**mapping)
+    assert over(Mock(path="circle"), area_m) == wanted

@@ -74,6 +74,16 @@ def test_places_tongues_and_necks_count_and_right_corners_do_not():
     assert 140 <= place.at[0] < 160
 
 
+def test_places_neck_as_wide_as_the_gap_is_none():
+    """To a millionth: a width is that of a disc, and the disc of the gap just passes."""
+    neck = np.zeros((300, 500), np.int32)
+    neck[50:250, 50:200] = neck[50:250, 320:470] = neck[140:160, 200:320] = 1
+    (place,) = (each for each in measure(neck, 1e-4, GAP_M).places if each.piece == 1)
+    assert place.width_m == pytest.approx(0.002, rel=3e-3)
+    found = [measure(neck, 1e-4, place.width_m * (1 + more)).places for more in (0.0, 5e-7, 5e-6)]
+    assert [sum(each.piece == 1 for each in places) for places in found] == [0, 0, 1]
+
+
 @pytest.mark.parametrize("pixels", [1, 2, 3, 5])
 def test_places_slit_of_any_width_counts(pixels):
     labels = np.zeros((300, 500), np.int32)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from flights import fly, grades, level, material, surface_with_materials, value_in_cure
+from tangible_core.preflight.checks.cures import FIT, soften
 from tangible_core.preflight.checks.stiffness import law_damping, law_stiffness, material_stiffness, quantisation
 from tangible_core.servo.guard.safety import Safety
 
@@ -152,3 +153,14 @@ class TestStiffness:
     def test_device_without_damping_has_its_stated_limit(self):
         flight = fly(level(), device={"damping_n_s_per_m": 0.0}, max_stiffness_n_per_m=1000.0)
         assert flight.ceilings[0].limit_n_per_m == 1000
+
+
+def test_materials_that_are_too_stiff_alone_are_softened():
+    """In a loop of 500 Hz a library does it: 500 N/m is no more than 500 N/m."""
+    made_of = material("cork", stiffness_n_per_m=500.0), material("oak", stiffness_n_per_m=900.0)
+    flight = fly(surface_with_materials(*made_of), fitted=True, period_s=0.002)
+    assert soften(flight, 500.0) == "in a file for `materials.library`, `oak: {stiffness_n_per_m: 500}`"
+    assert soften(fly(surface_with_materials(*made_of)), 500.0) == [FIT]
+    assert [each.key for each in soften(fly(surface_with_materials(*made_of), fitted=True), 500.0)] == [
+        "safety.stiffness_margin"
+    ]

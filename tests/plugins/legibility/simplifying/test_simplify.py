@@ -128,6 +128,15 @@ def test_simplify_small_part_goes_to_its_neighbour():
     assert found.labels[found.labels.shape[0] // 2, found.labels.shape[1] // 2] == 1
 
 
+def test_simplify_works_on_cells_of_an_eighth_of_a_millimetre():
+    """Pixels of a sixteenth: what fails is changed on every second one, and what passes keeps them all."""
+    parts, _ = house(400, 60)
+    labels = parts.labels[:512, :512]
+    assert simplify(PartMap(labels, (0, 1, 2)), 0.032, CHOICE).labels.shape == (256, 256)
+    halves = (np.indices((512, 512))[1] >= 256).astype(np.int32)
+    assert simplify(PartMap(halves, (0, 1)), 0.032, CHOICE).labels.shape == (512, 512)
+
+
 def test_simplify_small_named_part_is_noted_with_a_cure():
     parts, names = house(400, 40, "window")
     with collected() as notes:

@@ -4,6 +4,7 @@ import re
 from collections.abc import Mapping
 from decimal import Decimal
 from math import isfinite
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, cast, get_args, get_origin
 
 from pydantic import BaseModel, GetJsonSchemaHandler, ValidationError, ValidationInfo, field_validator
@@ -78,8 +79,8 @@ class Quantities(BaseModel, metaclass=_Blocks):
         name = info.field_name or ""
         if isinstance(value, bool):
             kinds = _kinds(cls.model_fields[name].annotation)
-            if {float, int} & kinds and bool not in kinds:
-                raise ValueError("write a number, not true or false")
+            if {float, int} & kinds and not {bool, Path} & kinds:  # what may be a file as well has a check of its own
+                raise ValueError("Input should be a valid number")
         units = units_of(name)
         if units and isinstance(value, list | tuple):
             return [_as_number(each, units) for each in cast("list[Any]", value)]

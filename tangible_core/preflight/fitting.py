@@ -28,8 +28,6 @@ def fit(material: Material, spec: DeviceSpec, safety: Safety) -> Material:
     """
     damping = effective_damping_n_s_per_m(spec)
     most = _most_n_per_m(damping, spec, safety)
-    if not most > 0:
-        return material
     stiffness = min(material.stiffness_n_per_m, most)
     per_m = 2 * math.pi / material.grain_m
     roughness_m = min(material.roughness_m, (most - stiffness) / (EXPLORING_N * per_m**2))

@@ -62,6 +62,10 @@ def _check_tag(language: str) -> str:
     return language
 
 
+UNFOLDED = 1 << 20
+"""Width of a line that no value reaches: a text that ruamel folds behind an escaped line break gets a space more."""
+
+
 @final
 class _Representer(SafeRepresenter):
     """A representer that escapes what cannot be printed; by itself, ruamel writes U+0085 as it is, a line break."""
@@ -250,6 +254,7 @@ class PipelineConfig(BaseModel):
         yaml, text = YAML(typ="safe"), StringIO()
         yaml.Representer = _Representer  # pyright: ignore[reportAttributeAccessIssue]
         yaml.default_flow_style = False
+        yaml.width = UNFOLDED  # pyright: ignore[reportAttributeAccessIssue]
         yaml.sort_base_mapping_type_on_output = False  # pyright: ignore[reportAttributeAccessIssue]
         plain = {key: value for key, value in self.as_data().items() if key not in leave_out}
         yaml.dump(plain, text)  # pyright: ignore[reportUnknownMemberType]

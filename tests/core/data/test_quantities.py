@@ -59,11 +59,11 @@ def test_quantity_out_of_bounds_or_of_another_unit_is_refused():
 
 
 def test_true_for_a_number_is_refused_with_its_place():
-    with pytest.raises(OptionError, match="max_force_n: write a number, not true or false"):
+    with pytest.raises(OptionError, match="max_force_n: Input should be a valid number, not True"):
         Safety(max_force_n=True)
     with pytest.raises(OptionError, match="delay_ticks"):
         Safety(delay_ticks=False)
-    with pytest.raises(ConfigError, match=r"^p.yaml:2:10: safety.max_force_n: write a number, not true or false"):
+    with pytest.raises(ConfigError, match=r"^p.yaml:2:10: safety.max_force_n: Input should be a valid number"):
         parse_config("scene: builtin/coins\nsafety: {max_force_n: true}\n", Path("p.yaml"), default_registry())
 
 

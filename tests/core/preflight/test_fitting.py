@@ -61,11 +61,6 @@ def test_fit_damping_is_what_stiffness_leaves():
     assert fit(damped, SPEC, Safety(delay_ticks=1)).damping_n_s_per_m == pytest.approx(0.5)
 
 
-def test_fit_device_without_limit_changes_nothing():
-    each = material(stiffness_n_per_m=500.0)
-    assert fit(each, replace(SPEC, max_stiffness_n_per_m=0.0), Safety()) is each
-
-
 def test_fit_surface_describes_each_change_once():
     hard = material("hard", stiffness_n_per_m=9000.0)
     labels = np.tile(np.array([0, 1], np.int32), (32, 16))

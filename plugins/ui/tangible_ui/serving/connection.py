@@ -136,7 +136,7 @@ class Connection(WebSocketsSansIOProtocol):
     def send_receive_event_to_app(self) -> None:
         """Hand a message on; close the connection for a text that is not UTF-8, of which uvicorn logs a traceback."""
         if self.curr_msg_data_type == "text" and not self.close_sent:
-            self.frames = [b"".join(self.frames)]
+            self.frames[:] = [b"".join(self.frames)]
             try:
                 self.frames[0].decode()
             except UnicodeDecodeError:

@@ -33,9 +33,9 @@ def figures() -> Iterator[Figure]:
         worst_s = max(_gone_s(record, FaultyTouch(), _sigterm) for _ in range(RUNS))
         yield _figure("SIGTERM to the loop's process", 0.05, worst_s)
         worst_s = max(_gone_s(record, FaultyTouch(), _sigstop) for _ in range(RUNS))
-        yield _figure("SIGSTOP to the loop's process: it is killed, and the device let go", 0.5, worst_s)
+        yield _figure("SIGSTOP to the loop's process: it is killed, and the device let go", 0.35, worst_s)
         worst_s = max(_gone_s(record, FaultyTouch("blocks"), _nothing) for _ in range(RUNS))
-        yield _figure("a law that blocks in its 100th tick", 0.5, worst_s)
+        yield _figure("a law that blocks in its 100th tick", 0.35, worst_s)
     yield from _swaps()
 
 

@@ -141,10 +141,11 @@ def test_examples_can_be_planned(name: str):
     assert set(file.study.comparisons[0].names) <= {"door", "front wheel", "seat", "tank", "engine"}
 
 
-class Still:
+class Still(np.random.Generator):
     """A source of chance without noise; its draws are given."""
 
     def __init__(self, *drawn: float) -> None:
+        super().__init__(np.random.PCG64(0))
         self.drawn = list(drawn)
 
     def standard_normal(self, size: int | None = None) -> float | np.ndarray:

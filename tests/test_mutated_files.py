@@ -9,12 +9,15 @@ many files. Some of one reader, printed by kind:
 import os
 import signal
 import sys
+from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 
 import mutated
 from file_readers import READERS
+from forks import Forks
 from mutated import Damage, Reader
 from tangible_core.errors import ConfigError
 
@@ -22,30 +25,30 @@ FILES = int(os.environ.get("TANGIBLE_MUTATED_FILES", "0"))
 """Number of files of each reader, if not the usual one."""
 PER_DAY, PER_NIGHT = 40, 5000
 
-pytestmark = [
-    pytest.mark.skipif(sys.platform == "win32", reason="a file is read in a fork of the test's process"),
-    pytest.mark.timeout(3600),
-]
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a file is read in a fork of a process")
 
 
-@pytest.fixture
-def damage(request: pytest.FixtureRequest, tmp_path: Path, own_dir: Path) -> Damage:
-    (tmp_path / "files").mkdir()
-    return Damage(request.param, READERS[request.param], tmp_path / "files")
+@pytest.fixture(scope="module")
+def forks() -> Iterator[Forks]:
+    """A process without threads, as a fork has none: a lock that another thread held would never be given back."""
+    with closing(Forks([sys.executable, "-c", "import file_readers\n"])) as forks:
+        yield forks
 
 
-@pytest.mark.parametrize("damage", READERS, indirect=True)
-def test_valid_files_are_read(damage: Damage):
-    assert damage.valid
-    for path in damage.valid:
-        damage.reader.read(path)
-
-
-@pytest.mark.parametrize("damage", READERS, indirect=True)
-@pytest.mark.parametrize("files", [PER_DAY, pytest.param(PER_NIGHT, marks=pytest.mark.nightly)])
-def test_damaged_file_is_read_or_refused_as_a_mistake_of_the_user(damage: Damage, files: int):
-    findings = list(damage.findings(range(FILES or files)))
-    assert not findings, "\n".join(f"{damage.name} {each.number}: {each.what} {each.data}" for each in findings[:10])
+@pytest.mark.parametrize(
+    "files", [PER_DAY, pytest.param(PER_NIGHT, marks=[pytest.mark.nightly, pytest.mark.timeout(3600)])]
+)
+@pytest.mark.parametrize("name", READERS)
+def test_file_is_read_and_damaged_ones_are_read_or_refused_as_a_mistake_of_the_user(
+    forks: Forks, name: str, files: int, tmp_path: Path, own_dir: Path
+):
+    homes = {key: value for key, value in os.environ.items() if value.startswith(str(own_dir))}
+    run = forks.run(
+        f"import os; os.environ.update({homes!r}); import file_readers; "
+        f"file_readers.report({name!r}, {str(tmp_path)!r}, {FILES or files})"
+    )
+    assert not run.returncode, run.stderr
+    assert not run.stdout, run.stdout
 
 
 def test_damage_is_the_same_again_and_unlike_the_file_before(tmp_path: Path):

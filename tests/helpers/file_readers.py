@@ -9,6 +9,7 @@ import zlib
 from collections.abc import Callable
 from dataclasses import asdict
 from functools import cache
+from itertools import islice
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -21,7 +22,7 @@ import onnx_models
 import phone_photos
 import standard_sets
 import studies
-from mutated import Reader
+from mutated import Damage, Reader
 from pictures import write_png
 from videos import grey, jpegs, write_video
 
@@ -738,10 +739,24 @@ READERS = {
 }  # fmt: skip
 
 
+def report(name: str, folder: str, count: int) -> None:
+    """Read the valid files, then so many damaged ones, and print the first of those that should not be."""
+    cv2.setNumThreads(1)  # the threads of its pool would not come along into the forks that read
+    seeds = Path(folder, "seeds")
+    seeds.mkdir()
+    damage = Damage(name, READERS[name], seeds)
+    assert damage.valid
+    for path in damage.valid:
+        damage.reader.read(path)
+    for each in islice(damage.findings(range(count)), 10):
+        print(f"{name} {each.number}: {each.what} {each.data}")
+
+
 if __name__ == "__main__":
     import sys
 
     from mutated import main
 
+    cv2.setNumThreads(1)
     first, last, *names = sys.argv[1:]
     main(READERS, names or list(READERS), int(first), int(last))

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+ENDS_S = 10.0
 SERVES = """
 import json, os, sys, traceback
 for line in sys.stdin:
@@ -46,5 +47,9 @@ class Forks:
         return subprocess.CompletedProcess(code, ended, out, errors)
 
     def close(self) -> None:
-        """Let the process end."""
-        self._process.communicate()
+        """Let the process end; one that waits for a fork that hangs is killed."""
+        try:
+            self._process.communicate(timeout=ENDS_S)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.communicate()

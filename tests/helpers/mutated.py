@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from tangible_core.errors import TangibleError
 
-CPU_S, STILL_S = 20, 300
+CPU_S, STILL_S = 20, 60
 """Time limits of one file: of the processor, and by the clock, for a reader that waits for ever."""
 MEMORY = 3 << 30
 """Bytes that the reading may add to a process: twice what a file may hold."""
@@ -209,7 +209,10 @@ class Damage:
         return path, self.reader.repair(data) if self.reader.repair and chance.random() < 0.5 else data
 
     def findings(self, numbers: range) -> Iterator[Finding]:
-        """Read these files in forks of this process, and yield what should not be."""
+        """Read these files in forks of this process, and yield what should not be.
+
+        The process has no threads: a fork has none of them, and waits for ever for a lock or a pool of theirs.
+        """
         at = mmap.mmap(-1, 8)
         while numbers:
             with (self.folder.parent / f"{self.folder.name}.findings").open("w+b") as report:
@@ -273,13 +276,11 @@ def _bound() -> None:
     import faulthandler
     import resource
 
-    import cv2
     import jaxtyping
 
     jaxtyping.config.update("jaxtyping_disable", True)
     warnings.simplefilter("ignore")
     faulthandler.disable()
-    cv2.setNumThreads(1)  # its threads did not come along
     signal.signal(signal.SIGPROF, signal.SIG_DFL)
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
     nothing = os.open(os.devnull, os.O_WRONLY)

@@ -91,8 +91,12 @@ def opaque(picture: np.ndarray) -> Bool[np.ndarray, "h w"]:
     """Return a mask of the opaque pixels: those with an alpha of at least one half; all if there is no alpha."""
     if picture.ndim == 2 or picture.shape[2] == 3:
         return np.ones(picture.shape[:2], np.bool_)
-    alpha = picture[..., 3]
-    if alpha.dtype.kind == "u":
+    return is_opaque(picture[..., 3])
+
+
+def is_opaque(alpha: np.ndarray) -> Bool[np.ndarray, "h w"]:
+    """Return a mask of the pixels whose opacity is at least one half."""
+    if alpha.dtype.kind in "iu":
         return alpha > np.iinfo(alpha.dtype).max // 2
     return alpha if alpha.dtype == np.bool_ else alpha >= 0.5
 

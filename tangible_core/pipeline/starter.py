@@ -17,17 +17,13 @@ from ..files.yaml.editing import on_one_line
 from ..plugins.interfaces import DepthEstimator
 from ..plugins.registry import default_registry
 from ..runtime.opencv import plain_opencv
-from ..scene.formats.decoding import PICTURES as PICTURES
-from ..scene.formats.decoding import VIDEOS as VIDEOS
 from ..scene.formats.height_maps import read_heights_metadata
+from ..scene.formats.kinds import file_kind
 from ..scene.scene import Scene
 from ..scene.scene_files import SceneFiles
 from .config.parsing import parse_config
 from .engine.cache import Cache
 from .pipeline import Pipeline
-
-MAPS = frozenset({".npy", ".npz", ".pfm"})
-"""Suffixes of files that are maps of heights."""
 
 SIDE_MM = 80
 """The longer side of the surface, mm: the reach of a small desktop device."""
@@ -55,7 +51,7 @@ Kind = Literal["photo", "pair", "heights"]
 
 def are_pictures(paths: Iterable[Path]) -> bool:
     """Return True for pictures, videos, maps and builtin scenes, which are not pipeline files."""
-    return all(_is_builtin(path) or path.suffix.lower() in PICTURES | VIDEOS or _is_map(path) for path in paths)
+    return all(_is_builtin(path) or file_kind(path) is not None or _is_map(path) for path in paths)
 
 
 def not_pictures(paths: Iterable[Path]) -> ConfigError:
@@ -116,7 +112,7 @@ def _is_builtin(path: Path) -> bool:
 
 def _is_map(path: Path) -> bool:
     """Return True for a map of heights, by its name or its metadata. Raises: PictureError for nonsense in these."""
-    return path.suffix.lower() in MAPS or read_heights_metadata(path) is not None
+    return file_kind(path) == "heights" or read_heights_metadata(path) is not None
 
 
 def _parts(pictures: Sequence[Path]) -> Mapping[str, Any]:
@@ -131,7 +127,7 @@ def _parts(pictures: Sequence[Path]) -> Mapping[str, Any]:
 
 def _part(path: Path) -> str:
     """Return the key in `scene:` of a file that is given alone."""
-    return "height" if _is_map(path) else "video" if path.suffix.lower() in VIDEOS else "photo"
+    return "height" if _is_map(path) else "video" if file_kind(path) == "video" else "photo"
 
 
 def _size(scene: Scene, kind: Kind) -> dict[str, object]:

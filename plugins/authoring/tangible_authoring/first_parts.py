@@ -19,9 +19,10 @@ from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.engine.part_heights import heights_of
 from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.pipeline.starter import MAPS, SIDE_MM, starter
+from tangible_core.pipeline.starter import SIDE_MM, starter
 from tangible_core.plugins import hooks
 from tangible_core.plugins.registry import Registry, default_registry
+from tangible_core.scene.formats.kinds import file_kind
 from tangible_core.scene.scene import Scene
 from tangible_legibility.simplifying.large import large_parts
 from tangible_report.numbered_parts import numbered_parts
@@ -151,7 +152,7 @@ def _pipeline(
         registry.find("texture", method)
     if other := next((each for each in overrides if not each.lstrip().startswith("texture.")), None):
         raise ConfigError(f"--set {other}: sets options of the texture method, such as texture.segments=8; edit {file}")
-    if maps := [picture for picture in pictures if picture.suffix.lower() in MAPS]:
+    if maps := [picture for picture in pictures if file_kind(picture) == "heights"]:
         raise ConfigError(f"{maps[0]}: is a map of heights, which are felt as they are; parts are those of a picture")
     template = starter(pictures, file)
     chosen = f"texture={{use: {on_one_line(method)}}}" if method else f"texture.segments={segments_for(most)}"

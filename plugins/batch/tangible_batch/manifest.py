@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from tangible_core.errors import BatchError, quoted, shown, what_is
 from tangible_core.files.paths import as_path
 from tangible_core.files.yaml.editing import json_in_yaml
-from tangible_core.scene.formats.decoding import PICTURES, VIDEOS
+from tangible_core.scene.formats.kinds import PICTURES, VIDEOS
 from tangible_core.scene.scene_files import SceneFiles
 
 MANIFESTS = (".csv", ".parquet")

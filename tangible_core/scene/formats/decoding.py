@@ -7,16 +7,21 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 import numpy as np
 
+from ...data.pictures import is_opaque
 from ...errors import PictureError, TangibleError, did_you_mean, shown
 from ...files import arrays
 from ...files.reading import MOST_PIXELS, TOO_MANY_PIXELS, TooLargeError, check_size, read_bytes
 from ...runtime.opencv import silent_opencv
+from .grids import GRIDS, read_grid
+from .heif import is_heif, read_heif
+from .kinds import ASC, VIDEOS
 from .multi_picture import Notify, count_pictures, ignore
-from .tiff_tags import TIFF, Shape, tiff_size
+from .netpbm import NETPBM, read_netpbm
+from .tiff import TIFF, TiffRaster, UnreadableError, tiff_picture, tiff_size
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -25,32 +30,37 @@ log: logging.Logger = logging.getLogger(__name__)
 
 T = TypeVar("T")
 
-FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "WEBP", "PPM", "JPEG2000")
+Purpose = Literal["picture", "map", "labels"]
+"""The use of a file's numbers: brightness up to white, numbers as they are stored, or numbers that name segments."""
+
+FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "WEBP", "PPM", "JPEG2000", "AVIF")
 """Formats that Pillow may read. Others that it knows run programs (EPS) or cannot be told from noise (TGA)."""
-
-PICTURES = frozenset(
-    (".png", ".jpg", ".jpeg", ".jp2", ".webp", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".pgm", ".heic", ".avif")
-)
-"""Suffixes of pictures; a file with another one, unless it is a video, is read as a pipeline file."""
-
-VIDEOS = frozenset((".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".mpeg", ".wmv", ".ogv", ".3gp", ".mts"))
-"""Suffixes of videos."""
 
 JPEG = b"\xff\xd8\xff"
 """The first bytes of a JPEG."""
 PNG = b"\x89PNG\r\n\x1a\n"
 """The first bytes of a PNG."""
+NPY, ZIP = b"\x93NUMPY", b"PK\x03\x04"
+"""The first bytes of .npy and of .npz."""
+JPEG_2000 = (b"\0\0\0\x0cjP  ", b"\xff\x4f\xff\x51")
+"""The first bytes of a JPEG 2000, with and without its boxes."""
 MOST_REDUCED = 10 * MOST_PIXELS
 """The most pixels of a picture that is reduced while it is decoded: more would take minutes."""
 
-_ORIENTATION, _BITS_PER_SAMPLE = 0x0112, 0x0102  # tags of EXIF and of TIFF
+_ORIENTATION = 0x0112  # tag of EXIF
 
 
-def values_of(path: Path, data: bytes, notify: Notify, indices: bool = False) -> np.ndarray:
-    """Return the array that a file of these bytes holds; indices: keep the palette's indices. Raises: PictureError."""
-    if path.suffix.lower() in (".npy", ".npz"):
+def values_of(path: Path, data: bytes, notify: Notify, purpose: Purpose = "picture") -> np.ndarray:
+    """Return the array that a file of these bytes holds, for labels the indices of a palette.
+
+    A map is masked where it has no data. Raises: PictureError.
+    """
+    if data[:6] == NPY or data[:4] == ZIP:
         return _array(path, data)
-    return decode(path, data, indices, notify)
+    if path.suffix.lower() in GRIDS or ASC.match(data):
+        with _picture_errors(path):
+            return read_grid(path, data)
+    return decode(path, data, purpose, notify)
 
 
 def bytes_of(path: Path) -> bytes:
@@ -87,10 +97,14 @@ def _array(path: Path, data: bytes) -> np.ndarray:
         ) from error
 
 
-def decode(path: Path, data: bytes, indices: bool = False, notify: Notify = ignore, frame: int = 0) -> np.ndarray:
-    """Decode a picture: with Pillow, which reports faults, or with OpenCV where Pillow would drop bits."""
+def decode(
+    path: Path, data: bytes, purpose: Purpose = "picture", notify: Notify = ignore, frame: int = 0
+) -> np.ndarray:
+    """Decode a picture by its first bytes, upright, with all its bits."""
     with _picture_errors(path):
-        return _decode(path, data, indices, notify, frame)
+        values = _decode_tiff(path, data, purpose, notify) if data[:4] in TIFF else None
+        values = _decode(path, data, purpose, notify, frame) if values is None else values
+        return values if np.ma.isMaskedArray(values) else np.ascontiguousarray(values)
 
 
 def decode_reduced(path: Path, data: bytes, notify: Notify = ignore) -> np.ndarray | None:
@@ -119,27 +133,30 @@ def _reduced_jpeg(path: Path, data: bytes, notify: Notify) -> np.ndarray | None:
         image.draft(image.mode, (image.width // times, image.height // times))
         check_size((image.height, image.width, len(image.getbands())), 4)
         image.load()
-        return np.ascontiguousarray(upright(_values(image, indices=False), orientation(image)))
+        return np.ascontiguousarray(upright(_values(image, "picture"), orientation(image)))
 
 
 def _reduced_bands(path: Path, data: bytes, notify: Notify) -> np.ndarray | None:
-    shape, _ = _png_size(data) if data[:8] == PNG else tiff_size(data)
-    if _times(*shape[:2]) is None:
+    shape = _png_size(data) if data[:8] == PNG else tiff_size(data)
+    times = _times(*shape)
+    if times is None:
         return None
     from .large.bands import WholePieceError, reduced
     from .large.png_bands import png_bands
-    from .large.tiff_bands import tiff_bands
 
+    _notify_reduced(path, *shape, times, notify)
     try:
-        bands = png_bands(data) if data[:8] == PNG else tiff_bands(data)
+        if data[:8] != PNG:
+            with tiff_picture(data, whole=False) as picture:
+                if picture is None:
+                    return None
+                bands = (_meaning(band, "picture", picture.nodata) for band in picture.bands)
+                return np.ascontiguousarray(upright(reduced(bands, *shape, times), picture.orientation))
+        whole = png_bands(data)
+        pictures = (_decode(path, band, "picture", ignore, 0) for band in whole.files)
+        return np.ascontiguousarray(upright(reduced(pictures, *shape, times), whole.orientation))
     except WholePieceError as error:
         raise PictureError(f"{path}: {TOO_MANY_PIXELS} and cannot be reduced while it is read; {error}") from error
-    times = _times(bands.rows, bands.columns)
-    if times is None:
-        return None
-    _notify_reduced(path, bands.rows, bands.columns, times, notify)
-    pictures = (_decode(path, band, False, ignore, 0) for band in bands.files)
-    return np.ascontiguousarray(upright(reduced(pictures, bands.rows, bands.columns, times), bands.orientation))
 
 
 def _times(rows: int, columns: int) -> int | None:
@@ -184,6 +201,8 @@ def _picture_errors(path: Path) -> Generator[None]:
         raise _too_large(path, TOO_MANY_PIXELS) from error
     except TooLargeError as error:
         raise _too_large(path, error) from error
+    except UnreadableError as error:
+        raise PictureError(f"{path}: {error}") from error
     except TangibleError:  # also a stop, which is no damage
         raise
     except Exception as error:  # a damaged file can provoke any
@@ -196,47 +215,128 @@ def _too_large(path: Path, why: object) -> PictureError:
     return PictureError(f"{path}: {why}; make it smaller first")
 
 
-def _decode(path: Path, data: bytes, indices: bool, notify: Notify, frame: int) -> np.ndarray:
-    from PIL import Image, UnidentifiedImageError
+def _decode_tiff(path: Path, data: bytes, purpose: Purpose, notify: Notify) -> np.ndarray | None:
+    """Decode a TIFF; None for colours that Pillow knows."""
+    with tiff_picture(data) as picture:
+        if picture is None:
+            return None
+        if picture.pages > 1:
+            notify(f"{path.name} holds {picture.pages} pictures, of which the first is taken")
+        (raster,) = picture.bands
+        if raster.dropped:
+            notify(f"{path.name} has {raster.dropped} more channels, such as infrared, which are left out")
+        values = _meaning(raster, purpose, picture.nodata)
+        if np.ma.isMaskedArray(values) and picture.nodata is not None:
+            missing = np.count_nonzero(_is(raster.values, picture.nodata))
+            notify(f"{100 * missing / values.size:.1f} % of {path.name} is {picture.nodata:g}, its value for no data")
+        return upright(values, picture.orientation)
 
-    if data[:4] in TIFF:
-        check_size(*tiff_size(data))  # Pillow does not check tiles, which may be larger than the picture
-    try:
-        image = Image.open(BytesIO(data), formats=FORMATS)
-    except UnidentifiedImageError:
-        if data[:4] not in TIFF[:2]:
-            raise
-        return _decode_with_opencv(path, data)
-    with image:
+
+def _meaning(raster: TiffRaster, purpose: Purpose, nodata: float | None) -> np.ndarray:
+    """Return the numbers of a TIFF as a picture's brightness or colours, as a masked map, or as labels."""
+    values, known = raster.values, raster.known
+    if purpose == "labels":
+        return values
+    if nodata is not None and values.ndim == 2 and raster.palette is None and (missing := _is(values, nodata)).any():
+        known = ~missing if known is None else known & ~missing
+    if purpose == "map":
+        if values.ndim == 3 and not np.any(values != values[..., :1]):
+            values = values[..., 0]
+        hidden = np.zeros(values.shape[:2], np.bool_) if known is None else ~known
+        hidden |= False if raster.alpha is None else ~is_opaque(raster.alpha)
+        return np.ma.masked_array(values, hidden) if hidden.any() and values.ndim == 2 else values
+    alpha = raster.alpha
+    if raster.palette is not None:
+        values = _in_full(raster.palette[values], 0xFFFF if raster.palette.max() > 255 else 255)
+        values = (values >> 8).astype(np.uint8) if values.dtype == np.uint16 else values
+    elif raster.white is not None:
+        values = _in_full(raster.white - values if raster.zero_is_white else values, raster.white)
+        alpha = None if alpha is None else _in_full(alpha, raster.white)
+    return values if known is None and alpha is None else _with_alpha(values, known, alpha)
+
+
+def _is(values: np.ndarray, nodata: float) -> np.ndarray:
+    """Return True where a value is the one for no data; of floating point, as it is written with few digits."""
+    if values.dtype.kind != "f":
+        return values == nodata
+    return np.isclose(values, np.array(nodata).astype(values.dtype), rtol=1e-5 if abs(nodata) > 1e30 else 0, atol=0)
+
+
+def _in_full(values: np.ndarray, white: int) -> np.ndarray:
+    """Return brightness up to 255 or 65535, whose white was another number."""
+    full = 255 if white < 256 else 0xFFFF
+    if white > 0xFFFF:
+        return values
+    scaled = values if white == full else (values.astype(np.uint64) * full + white // 2) // white
+    return scaled.astype(np.uint8 if full == 255 else np.uint16, copy=False)
+
+
+def _with_alpha(values: np.ndarray, known: np.ndarray | None, alpha: np.ndarray | None = None) -> np.ndarray:
+    """Return a picture with a fourth channel: its opacity, 0 where it is not known."""
+    full = np.iinfo(values.dtype).max if values.dtype.kind in "iu" else max(1.0, float(np.nanmax(values)))
+    opacity = np.full(values.shape[:2], full, values.dtype) if alpha is None else alpha
+    colours = values if values.ndim == 3 else np.repeat(values[..., None], 3, axis=2)
+    return np.dstack([colours, opacity if known is None else opacity * known])
+
+
+def _decode(path: Path, data: bytes, purpose: Purpose, notify: Notify, frame: int) -> np.ndarray:
+    """Decode a picture that is not a TIFF: with Pillow, which reports faults, or another where Pillow drops bits."""
+    from PIL import Image
+
+    if data[:2] in NETPBM:
+        values, white = read_netpbm(data)
+        return values if white is None or purpose != "picture" else _in_full(values, white)
+    if is_heif(data):
+        return read_heif(data)
+    with Image.open(BytesIO(data), formats=FORMATS) as image:
         if (count := count_pictures(image)) > 1 and not frame:
             cure = "; for both views write `stereo:`" if image.format == "MPO" else ""
             notify(f"{path.name} holds {count} pictures, of which the first is taken{cure}")
         image.seek(frame)
         check_size((image.height, image.width, len(image.getbands())), 4)
-        image.load()
-        values = _decode_with_opencv(path, data) if _is_deep_colour(image, data) else _values(image, indices)
-        return np.ascontiguousarray(upright(values, orientation(image)))
+        deep = _jpeg_2000(data, purpose) if image.format == "JPEG2000" else None
+        if deep is None:
+            image.load()
+            deep = _deep_png(image, path, data, purpose) if image.format == "PNG" and data[24] == 16 else None
+        values = _values(image, purpose) if deep is None else deep
+        if image.format == "PNG" and purpose == "map" and data[24] < 8 and image.mode in ("1", "L"):
+            values = values // (255 // ((1 << data[24]) - 1))
+        return upright(values, orientation(image))
 
 
-def _is_deep_colour(image: "Image", data: bytes) -> bool:
-    """Tell whether Pillow would cut 16 bits a channel down to 8."""
-    from PIL.TiffImagePlugin import TiffImageFile
+def _deep_png(image: "Image", path: Path, data: bytes, purpose: Purpose) -> np.ndarray:
+    """Decode a PNG of 16 bits, of which Pillow keeps 8 in colours, and drops the colour that is transparent."""
+    values = np.asarray(image).astype(np.uint16) if image.mode == "I;16" else _decode_with_opencv(path, data)
+    clear = image.info.get("transparency")
+    if clear is None or purpose == "labels" or values.shape[2:] == (4,):
+        return values
+    known = values != clear if values.ndim == 2 else (values != np.array(clear)).any(axis=2)
+    return np.ma.masked_array(values, ~known) if purpose == "map" and values.ndim == 2 else _with_alpha(values, known)
 
-    if isinstance(image, TiffImageFile):
-        return image.mode in ("RGB", "RGBA") and 16 in image.tag_v2.get(_BITS_PER_SAMPLE, ())
-    return image.format == "PNG" and data[24] == 16 and image.mode != "I;16"
+
+def _jpeg_2000(data: bytes, purpose: Purpose) -> np.ndarray | None:
+    """Decode a JPEG 2000 that is not one of 8 bits without a sign, which Pillow reads. Source: T.800, A.5.1 (SIZ)."""
+    size = data.find(JPEG_2000[1])
+    depth = data[size + 42]
+    if size < 0 or depth == 7:
+        return None
+    import imagecodecs
+
+    values: np.ndarray = imagecodecs.jpeg2k_decode(data)
+    signed = bool(depth & 0x80)
+    return values if purpose != "picture" or signed else _in_full(values, (2 << depth) - 1)
 
 
-def _values(image: "Image", indices: bool) -> np.ndarray:
-    mode = image.mode
-    if mode in ("F", "L", "RGB", "RGBA") and not (mode != "RGBA" and image.has_transparency_data):
+def _values(image: "Image", purpose: Purpose) -> np.ndarray:
+    mode, transparent = image.mode, image.has_transparency_data
+    if mode in ("F", "L", "RGB", "RGBA") and not (mode != "RGBA" and transparent):
         return np.asarray(image)
     if mode.startswith("I"):
         whole = np.asarray(image)
         return whole.astype(np.uint16) if whole.min() >= 0 and whole.max() <= 0xFFFF else whole
-    if mode == "P" and indices:
+    if mode == "P" and purpose == "labels":
         return np.asarray(image)
-    return np.asarray(image.convert("L" if mode == "1" else "RGBA" if image.has_transparency_data else "RGB"))
+    return np.asarray(image.convert("RGBA" if transparent else "L" if mode == "1" else "RGB"))
 
 
 def orientation(image: "Image") -> int:
@@ -260,11 +360,10 @@ def upright(values: np.ndarray, orientation: int) -> np.ndarray:
 
 
 def _decode_with_opencv(path: Path, data: bytes) -> np.ndarray:
-    """Decode a PNG or a TIFF. OpenCV has no limit on sizes, so the headers are checked first."""
+    """Decode a PNG; OpenCV has no limit on sizes, and another idea of which header counts than Pillow."""
     import cv2
 
-    if data.startswith(b"\x89PNG"):
-        check_size(*_png_size(data))
+    check_size((*_png_size(data), 4), 2)
     try:
         with silent_opencv():  # the error below reports the fault in one line
             values: np.ndarray | None = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
@@ -277,7 +376,7 @@ def _decode_with_opencv(path: Path, data: bytes) -> np.ndarray:
     return values
 
 
-def _png_size(data: bytes) -> tuple[Shape, int]:
-    """Return the largest shape and bytes a value that the first chunk of a PNG allows."""
+def _png_size(data: bytes) -> tuple[int, int]:
+    """Return the rows and columns that the first chunk of a PNG states."""
     width, height = struct.unpack_from(">II", data, 16)
-    return (height, width, 4), 2
+    return height, width

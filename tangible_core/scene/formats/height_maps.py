@@ -4,7 +4,6 @@ The metadata are a JSON text: a file next to a PNG of 16 bits, or tag 270 (Image
 """
 
 import json
-import mmap
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, cast
 
@@ -15,8 +14,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from ...data import Relief
 from ...data.pictures import size_in_words
 from ...errors import PictureError, quoted
-from ...files.reading import MOST_TEXT_BYTES, check_file, read_bytes
-from .tiff_tags import TIFF, stated_description
+from ...files.reading import MOST_TEXT_BYTES, read_bytes
+from .tiff import tiff_description
 
 FORMATS = "tangible heights "
 FORMAT = "tangible heights 1"
@@ -90,7 +89,7 @@ def read_heights_metadata(path: Path) -> HeightsMetadata | None:
             metadata = _parse(read_bytes(text_path, MOST_TEXT_BYTES), text_path)
             return metadata if metadata is not None and metadata.file == path.name else None
         if kind in (".tif", ".tiff"):
-            return _parse(_description(path), path)
+            return _parse(tiff_description(path), path)
     except OSError:
         return None
     return None
@@ -120,17 +119,6 @@ def in_metres(numbers: np.ndarray, metadata: HeightsMetadata, path: Path) -> Flo
             "export the heights again, or remove the metadata"
         )
     return ((numbers.astype(np.float64) * metadata.step_mm + metadata.low_mm) / MM).astype(np.float32)
-
-
-def _description(path: Path) -> bytes:
-    """Read the description of a TIFF from its tags alone. Raises: OSError."""
-    check_file(path)
-    with path.open("rb") as file:
-        try:
-            with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-                return stated_description(data) if data[:4] in TIFF else b""
-        except ValueError:  # an empty file cannot be mapped
-            return b""
 
 
 def _parse(text: bytes, path: Path) -> HeightsMetadata | None:

@@ -11,7 +11,6 @@ from ...data.pictures import check_finite, check_picture, opaque
 from ...errors import PictureError
 from .decoding import bytes_of, decode_reduced, values_of
 from .multi_picture import Notify, ignore
-from .tiff_tags import TIFF, stated_nodata
 
 TruthScale = Annotated[float, Field(gt=0, allow_inf_nan=False)] | Literal["sintel"]
 NonFinite = Literal["error", "mask"]
@@ -51,15 +50,7 @@ def read_map(path: Path, notify: Notify = ignore) -> Float32[np.ndarray, "h w"]:
     NaN stands for infinity, for transparent pixels, and for a GeoTIFF's value for no data (GDAL's tag).
     Raises: PictureError as `read_picture`, or if there is more than one number a pixel.
     """
-    data = bytes_of(path)
-    values = map_of(values_of(path, data, notify), str(path))
-    nodata = stated_nodata(data) if data[:4] in TIFF else None
-    if nodata is None:
-        return values
-    known = without(values, nodata)
-    if missing := np.count_nonzero(np.isnan(known)) - np.count_nonzero(np.isnan(values)):
-        notify(f"{100 * missing / known.size:.1f} % of {path.name} is {nodata:g}, its value for no data")
-    return known
+    return map_of(values_of(path, bytes_of(path), notify, "map"), str(path))
 
 
 def map_of(values: np.ndarray, name: str) -> Float32[np.ndarray, "h w"]:
@@ -95,7 +86,7 @@ def read_labels(path: Path, notify: Notify = ignore) -> Int32[np.ndarray, "h w"]
 
     Raises: PictureError as `read_picture`, or if it holds too many labels to be a label picture.
     """
-    return labels_of(values_of(path, bytes_of(path), notify, indices=True), str(path))
+    return labels_of(values_of(path, bytes_of(path), notify, "labels"), str(path))
 
 
 def labels_of(values: np.ndarray, name: str) -> Int32[np.ndarray, "h w"]:

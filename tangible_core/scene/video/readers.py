@@ -12,7 +12,7 @@ from jaxtyping import UInt8
 
 from ...data.pictures import opaque, to_rgb8
 from ...errors import PictureError
-from ..formats.decoding import PICTURES
+from ..formats.kinds import PICTURES
 from ..formats.pictures import read_picture
 from .capture import USUAL_FPS, Capture, grab, open_file, position_s, retrieve, stated_count, stated_fps
 from .frames import VideoFrame, VideoFrames, ViewsOf

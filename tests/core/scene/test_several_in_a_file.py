@@ -12,7 +12,7 @@ from tangible_core import Scene
 from tangible_core.errors import PictureError, Stopped
 from tangible_core.scene.formats import decoding
 from tangible_core.scene.formats.pictures import read_map, read_picture
-from tangible_core.scene.formats.tiff_tags import stated_nodata
+from tangible_core.scene.formats.tiff import tiff_picture
 
 RNG = np.random.default_rng(0)
 LEFT = np.repeat(RNG.integers(0, 255, (6, 8, 1), dtype=np.uint8), 3, axis=2)
@@ -204,8 +204,8 @@ class TestNoData:
         tags[42113] = text
         Image.fromarray(np.zeros((2, 2), np.float32)).save(tmp_path / "dem.tif", tiffinfo=tags)
         data = (tmp_path / "dem.tif").read_bytes()
-        assert stated_nodata(data) == number
-        assert all(stated_nodata(data[:end]) in (number, None) for end in range(8, len(data)))
+        with tiff_picture(data) as picture:
+            assert picture is not None and picture.nodata == number
 
     def test_geotiff_nodata_that_no_height_has_gives_no_note(self, tmp_path: Path):
         tags = TiffImagePlugin.ImageFileDirectory_v2()

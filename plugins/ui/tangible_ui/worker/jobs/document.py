@@ -14,7 +14,8 @@ from tangible_core.materials.assignment import load_library
 from tangible_core.pipeline.config.editing import REMOVE, edit_text, read_values, relocate_text, with_overrides
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.config.schema import json_schema
-from tangible_core.pipeline.starter import MAPS, PICTURES, VIDEOS, are_pictures, starter
+from tangible_core.pipeline.starter import are_pictures, starter
+from tangible_core.scene.formats.kinds import MAPS, PICTURES, VIDEOS
 from tangible_core.scene.scene_files import BUILTINS
 from tangible_core.scene.workspace import kind_of
 from tangible_core.session.recording.files import SUFFIXES

@@ -1,0 +1,60 @@
+"""What a file is, by its first bytes; by the end of its name only where these do not tell."""
+
+import re
+from contextlib import suppress
+from pathlib import Path
+from typing import Literal
+
+from .heif import HEIC
+from .netpbm import NETPBM
+from .tiff import TIFF, holds_heights
+
+FileKind = Literal["picture", "heights", "video"]
+
+PICTURES = frozenset(
+    (
+        ".png", ".jpg", ".jpeg", ".jpe", ".jfif", ".mpo", ".jps", ".jp2", ".j2k", ".webp", ".bmp", ".gif", ".tif",
+        ".tiff", ".ppm", ".pgm", ".pbm", ".pnm", ".heic", ".heif", ".avif",
+    )
+)  # fmt: skip
+"""Suffixes of pictures; a file with another one is a picture if its first bytes say so."""
+VIDEOS = frozenset((".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".mpeg", ".wmv", ".ogv", ".3gp", ".mts"))
+"""Suffixes of videos."""
+MAPS = frozenset((".npy", ".npz", ".pfm", ".asc", ".hgt", ".bil", ".flt"))
+"""Suffixes of maps of heights; a TIFF of signed numbers, of floating point or of a place on earth is one as well."""
+
+ASC = re.compile(rb"\s*ncols\s+\d", re.IGNORECASE)
+"""The start of an ESRI ASCII grid."""
+_HEAD = 64
+_PICTURES = (
+    b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"GIF8", b"BM", b"\0\0\0\x0cjP  ", b"\xff\x4f\xff\x51", b"P1", b"P4", *NETPBM
+)  # fmt: skip
+_VIDEOS = (b"\x1aE\xdf\xa3", b"\0\0\x01\xba", b"\0\0\x01\xb3", b"OggS", b"0&\xb2u")
+_STILL = (b"avif", b"avis", *HEIC)
+"""Brands of ISO's media files that are pictures."""
+
+
+def file_kind(path: Path) -> FileKind | None:
+    """Return what a file is; by its name alone if it cannot be read; None for another kind."""
+    named = _kind_by_suffix(path)
+    head = b""
+    with suppress(OSError, ValueError):
+        if path.is_file():
+            with path.open("rb") as file:
+                head = file.read(_HEAD)
+    if head[:4] in TIFF:
+        return "heights" if holds_heights(path) else "picture"
+    if head[:2] in (b"Pf", b"PF") or head[:6] == b"\x93NUMPY" or ASC.match(head):
+        return "heights"
+    if head[:4] == b"RIFF":
+        return "picture" if head[8:12] == b"WEBP" else "video"
+    if head[4:8] == b"ftyp":
+        return "picture" if head[8:12] in _STILL else "video"
+    if head.startswith(_PICTURES) and named != "video":
+        return "picture"
+    return "video" if head.startswith(_VIDEOS) else named
+
+
+def _kind_by_suffix(path: Path) -> FileKind | None:
+    suffix = path.suffix.lower()
+    return "picture" if suffix in PICTURES else "video" if suffix in VIDEOS else "heights" if suffix in MAPS else None

@@ -1,0 +1,185 @@
+"""If one of these fails, a file that people have is felt with other numbers than those it holds, or not opened."""
+
+import shutil
+import struct
+import zlib
+from io import BytesIO
+from pathlib import Path
+
+import imagecodecs
+import numpy as np
+import pillow_heif
+import pytest
+import tifffile
+from PIL import Image
+
+from tangible_core.errors import PictureError
+from tangible_core.scene.formats.kinds import file_kind
+from tangible_core.scene.formats.pictures import read_labels, read_map, read_picture
+
+CHANCE = np.random.default_rng(0)
+GREY = CHANCE.integers(0, 200, (9, 14)).astype(np.uint8)
+HEIGHTS = np.array([[1.5, -2.25, -9999], [0, 100, 7]])
+
+
+def put(path: Path, data: bytes) -> Path:
+    path.write_bytes(data)
+    return path
+
+
+def png(path: Path, bits: int, colour: int, row: bytes, columns: int, clear: bytes) -> Path:
+    """Write a PNG of one row. Source: PNG, third edition, sections 11.2 and 11.3."""
+    header = struct.pack(">IIBBBBB", columns, 1, bits, colour, 0, 0, 0)
+    chunks = [(b"IHDR", header), (b"tRNS", clear), (b"IDAT", zlib.compress(b"\0" + row)), (b"IEND", b"")]
+    packed = (
+        struct.pack(">I", len(c)) + n + c + struct.pack(">I", zlib.crc32(n + c)) for n, c in chunks if c or n != b"tRNS"
+    )
+    return put(path, b"\x89PNG\r\n\x1a\n" + b"".join(packed))
+
+
+class TestNetpbm:
+    @pytest.mark.parametrize("white", [1, 64, 255, 256, 1000, 65535])
+    @pytest.mark.parametrize("form", ["P2", "P5"])
+    def test_map_has_the_numbers_and_a_picture_reaches_white(self, tmp_path: Path, white: int, form: str):
+        values = np.array([[0, white // 2, white]])
+        digits = " ".join(map(str, values[0])).encode()
+        stored = values.astype("u1" if white < 256 else ">u2").tobytes() if form == "P5" else digits
+        path = put(tmp_path / "a.pgm", f"{form} # a remark\n3 1\n{white}\n".encode() + stored)
+        np.testing.assert_array_equal(read_map(path), values)
+        full = 255 if white < 256 else 65535
+        np.testing.assert_array_equal(read_picture(path), np.floor(values * full / white + 0.5))
+
+    @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+    @pytest.mark.parametrize("order", ["<", ">"])
+    def test_pfm_has_the_numbers_with_any_line_end(self, tmp_path: Path, end: str, order: str):
+        values = np.array([[1.5, 10.0], [-3, 0.25]], np.float32)
+        head = end.join(["Pf", "2 2", "-1.0" if order == "<" else "1.0", ""]).encode()
+        path = put(tmp_path / "a.pfm", head + values[::-1].astype(f"{order}f4").tobytes())
+        np.testing.assert_array_equal(read_map(path), values)
+
+    @pytest.mark.parametrize(
+        "data", [b"P5 3 1 9\n\0\x0a\0", b"P5 3 1 255\n\0", b"P5 3 1 0\n\0\0\0", b"Pf 1 1 nan\n\0\0\0\0"]
+    )
+    def test_damaged_file_is_refused(self, tmp_path: Path, data: bytes):
+        with pytest.raises(PictureError, match="damaged or cut short"):
+            read_map(put(tmp_path / "a.pgm", data))
+
+
+class TestPng:
+    def test_transparent_number_of_sixteen_bits_is_unknown(self, tmp_path: Path):
+        path = png(tmp_path / "a.png", 16, 0, struct.pack(">3H", 0, 500, 600), 3, struct.pack(">H", 0))
+        np.testing.assert_array_equal(read_map(path), [[np.nan, 500, 600]])
+        assert read_picture(path)[0, :, 3].tolist() == [0, 65535, 65535]
+
+    def test_transparent_colour_of_sixteen_bits_is_transparent(self, tmp_path: Path):
+        row = struct.pack(">6H", 1, 2, 3, 256, 512, 768)
+        path = png(tmp_path / "a.png", 16, 2, row, 2, struct.pack(">3H", 1, 2, 3))
+        assert read_picture(path)[0].tolist() == [[1, 2, 3, 0], [256, 512, 768, 65535]]
+
+    def test_transparent_black_of_one_bit_is_transparent(self, tmp_path: Path):
+        path = png(tmp_path / "a.png", 1, 0, bytes([0b01000000]), 2, struct.pack(">H", 0))
+        assert read_picture(path)[0, :, 3].tolist() == [0, 255]
+
+    @pytest.mark.parametrize(("bits", "row"), [(1, 0b01100000), (2, 0b00011011), (4, 0)])
+    def test_few_bits_are_numbers_in_a_map(self, tmp_path: Path, bits: int, row: int):
+        values = [row >> (8 - bits - bits * i) & ((1 << bits) - 1) for i in range(8 // bits)]
+        path = png(tmp_path / "a.png", bits, 0, bytes([row]), 8 // bits, b"")
+        assert read_map(path)[0].tolist() == values
+
+
+@pytest.mark.parametrize(("bits", "dtype"), [(8, "uint8"), (12, "uint16"), (16, "uint16")])
+def test_jpeg_2000_of_any_depth_is_a_map_of_its_numbers(tmp_path: Path, bits: int, dtype: str):
+    values = CHANCE.integers(0, 1 << bits, (40, 50)).astype(dtype)
+    path = put(tmp_path / "a.jp2", imagecodecs.jpeg2k_encode(values, level=0, bitspersample=bits))
+    np.testing.assert_array_equal(read_map(path), values)
+    white = 255 if bits == 8 else 65535
+    np.testing.assert_array_equal(read_picture(path), np.floor(values * (white / ((1 << bits) - 1)) + 0.5))
+
+
+@pytest.mark.parametrize("form", ["AVIF", "HEIF"])
+def test_pictures_of_phones_are_read(tmp_path: Path, form: str):
+    values = np.kron(CHANCE.integers(0, 256, (4, 5, 3)), np.ones((16, 16, 1))).astype(np.uint8)
+    path = tmp_path / "IMG_1"
+    if form == "AVIF":
+        Image.fromarray(values).save(path, "AVIF", quality=100)
+    else:
+        pillow_heif.from_pillow(Image.fromarray(values)).save(path, quality=100)
+    assert file_kind(path) == "picture"
+    np.testing.assert_allclose(read_picture(path)[8::16, 8::16], values[8::16, 8::16], atol=12)
+
+
+class TestGrids:
+    def test_esri_ascii_grid_is_a_map_without_its_value_for_no_data(self, tmp_path: Path):
+        head = "NCOLS 3\r\nnrows 2\r\nxllcorner 7.5\r\nyllcorner 46\r\ncellsize 25\r\nNODATA_value -9999\r\n"
+        rows = "\r\n".join(" ".join(map(str, row)) for row in HEIGHTS)
+        path = put(tmp_path / "dem", (head + rows + "\r\n").encode())
+        assert file_kind(path) == "heights"
+        np.testing.assert_array_equal(read_map(path), np.where(HEIGHTS == -9999, np.nan, HEIGHTS))
+
+    def test_srtm_tile_is_a_map_of_metres(self, tmp_path: Path):
+        values = CHANCE.integers(-100, 4000, (1201, 1201)).astype(">i2")
+        values[3, 5] = -32768
+        heights = read_map(put(tmp_path / "N46E007.hgt", values.tobytes()))
+        assert np.argwhere(np.isnan(heights)).tolist() == [[3, 5]]
+        assert heights[0, 0] == values[0, 0] and heights[-1, -1] == values[-1, -1]
+        with pytest.raises(PictureError, match="damaged or cut short"):
+            read_map(put(tmp_path / "N46E008.hgt", values.tobytes()[:-10]))
+
+    @pytest.mark.parametrize(("order", "byteorder"), [("<", "I"), (">", "M")])
+    def test_bil_and_flt_are_read_by_their_header(self, tmp_path: Path, order: str, byteorder: str):
+        head = f"BYTEORDER {byteorder}\nNROWS 2\nNCOLS 3\nNBANDS 1\nNODATA -9999\n"
+        put(tmp_path / "a.hdr", (head + "NBITS 16\nPIXELTYPE SIGNEDINT").encode())
+        integers = read_map(put(tmp_path / "a.bil", HEIGHTS.astype(f"{order}i2").tobytes()))
+        np.testing.assert_array_equal(integers, np.where(HEIGHTS == -9999, np.nan, np.trunc(HEIGHTS)))
+        shutil.copy(tmp_path / "a.hdr", tmp_path / "b.hdr")
+        floats = read_map(put(tmp_path / "b.flt", HEIGHTS.astype(f"{order}f4").tobytes()))
+        np.testing.assert_array_equal(floats, np.where(HEIGHTS == -9999, np.nan, HEIGHTS))
+
+    def test_missing_header_is_named(self, tmp_path: Path):
+        with pytest.raises(PictureError, match=r"a\.bil: its header a\.hdr is missing; put it next to the file"):
+            read_map(put(tmp_path / "a.bil", bytes(12)))
+
+
+class TestKinds:
+    @pytest.mark.parametrize("name", ["a", "a.jfif", "a.jpe", "a.JPG", "a.dat", "a.png"])
+    def test_picture_is_one_by_its_first_bytes(self, tmp_path: Path, name: str):
+        Image.fromarray(GREY).save(tmp_path / name, "JPEG")
+        assert file_kind(tmp_path / name) == "picture"
+        assert read_picture(tmp_path / name).shape == GREY.shape
+
+    @pytest.mark.parametrize(
+        ("values", "tags", "kind"),
+        [
+            (GREY, [], "picture"),
+            (GREY.astype(np.uint16), [], "picture"),
+            (GREY.astype(np.float32), [], "heights"),
+            (GREY.astype(np.int16), [], "heights"),
+            (GREY.astype(np.uint16), [(34735, "H", 4, (1, 1, 0, 0), True)], "heights"),
+            (np.dstack([GREY] * 3), [(34735, "H", 4, (1, 1, 0, 0), True)], "picture"),
+        ],
+    )
+    def test_tiff_of_heights_is_told_from_a_picture(self, tmp_path: Path, values: np.ndarray, tags: list, kind: str):
+        tifffile.imwrite(tmp_path / "a.tif", values, extratags=tags)
+        assert file_kind(tmp_path / "a.tif") == kind
+
+    @pytest.mark.parametrize(
+        ("head", "kind"),
+        [
+            (b"\0\0\0\x18ftypmp42", "video"), (b"RIFF\0\0\0\0AVI LIST", "video"), (b"\x1aE\xdf\xa3", "video"),
+            (b"RIFF\0\0\0\0WEBPVP8 ", "picture"), (b"Pf\n2 2\n", "heights"), (b"\x93NUMPY", "heights"),
+            (b"scene: {photo: a.png}\n", None), (b"", None),
+        ],
+    )  # fmt: skip
+    def test_first_bytes_tell_what_a_file_is(self, tmp_path: Path, head: bytes, kind: str | None):
+        assert file_kind(put(tmp_path / "a", head)) == kind
+
+    def test_pipeline_file_is_none_of_them(self, tmp_path: Path):
+        assert file_kind(put(tmp_path / "a.yaml", b"P: 1\n")) is None
+
+
+def test_labels_in_a_bitmap_and_a_pgm_are_ranked(tmp_path: Path):
+    values = np.repeat([[0], [7], [9]], 6, axis=1).astype(np.uint8)
+    for form in ("BMP", "PPM", "PNG", "GIF"):
+        file = BytesIO()
+        Image.fromarray(values).save(file, form)
+        assert read_labels(put(tmp_path / "a", file.getvalue()))[:, 0].tolist() == [0, 1, 2]

@@ -98,7 +98,7 @@ def holds_heights(path: Path) -> bool:
 def tiff_picture(data: bytes, whole: bool = True) -> "Generator[TiffPicture | None]":
     """Open the first page that is neither a smaller copy nor a mask. whole: as one band, which has its mask.
 
-    Yields: None for eight bits of colours that are no RGB (CMYK, L*a*b*), which another reader knows.
+    Yields: None for eight bits of other colours (CMYK, L*a*b*), which another reader knows.
     Raises: UnreadableError for numbers that this program does not read; TooLargeError;
     WholePieceError for a piece that is too large to be read in bands; any exception for a damaged file.
     """
@@ -182,7 +182,7 @@ def _nodata(page: "TiffPage") -> float | None:
 
 
 def _raster(page: "TiffPage", stored: np.ndarray, known: Bool[np.ndarray, "h w"] | None) -> TiffRaster:
-    """Sort the channels of stored numbers, (planes, 1, h, w, samples). Raises: UnreadableError if their meaning is open."""
+    """Sort the channels of stored numbers, (planes, 1, h, w, samples). Raises: UnreadableError."""
     samples = np.moveaxis(stored[:, 0], 0, 2).reshape(*stored.shape[2:4], -1)
     channels = samples.shape[2]
     grey = page.photometric in (_WHITE_IS_ZERO, _BLACK_IS_ZERO, _TRANSPARENCY, _PALETTE)

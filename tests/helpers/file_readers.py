@@ -15,7 +15,10 @@ from typing import Any
 from unittest.mock import patch
 
 import cv2
+import imagecodecs
 import numpy as np
+import pillow_heif
+import tifffile
 from PIL import Image, TiffImagePlugin
 
 import onnx_models
@@ -64,6 +67,10 @@ def _geotiff(folder: Path) -> None:
     tags = TiffImagePlugin.ImageFileDirectory_v2()
     tags[42113] = "-9999"
     Image.fromarray(MAP).save(folder / "dem.tif", tiffinfo=tags)
+
+
+def _tiff(name: str, values: np.ndarray, **options: Any) -> Callable[[Path], object]:
+    return lambda folder: tifffile.imwrite(folder / name, values, **options)
 
 
 def _npz(folder: Path) -> None:
@@ -673,11 +680,48 @@ READERS = {
         ),
         _picture,
     ),
-    "jpeg-2000": Reader(_all(_image("a.jp2", COLOURS), _image("b.jp2", GREY, irreversible=True)), _picture),
+    "jpeg-2000": Reader(
+        _all(
+            _image("a.jp2", COLOURS), _image("b.jp2", GREY, irreversible=True),
+            _bytes("c.jp2", imagecodecs.jpeg2k_encode(DEEP, level=0)),
+        ),
+        _picture,
+    ),
     "npy": Reader(_npy, _picture),
     "npz": Reader(_npz, _map),
     "pfm": Reader(_pfm, _map),
-    "map-tiff": Reader(_all(_geotiff, _image("b.tif", DEEP), _by_opencv("c.tif", MAP.astype(np.float64))), _map),
+    "map-tiff": Reader(
+        _all(
+            _geotiff, _image("b.tif", DEEP), _by_opencv("c.tif", MAP.astype(np.float64)),
+            _tiff("d.tif", MAP, byteorder=">", compression="deflate", predictor=3),
+            _tiff("e.tif", DEEP, bigtiff=True, compression="lzw", predictor=2, rowsperstrip=5),
+            _tiff("f.tif", MAP, compression="zstd", tile=(16, 16)),
+        ),
+        _map,
+    ),
+    "grid": Reader(
+        _all(
+            _bytes("a.asc", "ncols 3\nnrows 2\ncellsize 5\nNODATA_value -1\n1 2 3\n4 -1 6.5\n"),
+            _bytes("b.flt", MAP.tobytes()), _bytes("c.hgt", DEEP[:12, :12].astype(">i2").tobytes()),
+            _bytes("b.hdr", "nrows 12\nncols 16\nnodata -1\n"),
+        ),
+        _map,
+        "*.[ahf]*",
+        text=True,
+    ),
+    "grid-header": Reader(
+        _all(_bytes("b.bil", DEEP.tobytes()), _bytes("b.hdr", "nrows 12\nncols 16\nnbits 16\nbyteorder M\n")),
+        lambda path: _map(path.with_suffix(".bil")),
+        "*.hdr",
+        text=True,
+    ),
+    "heic": Reader(
+        lambda folder: pillow_heif.from_pillow(Image.fromarray(np.kron(COLOURS, np.ones((4, 4, 1), np.uint8)))).save(
+            folder / "a.heic"
+        ),
+        _picture,
+    ),
+    "avif": Reader(_all(_image("a.avif", COLOURS), _image("b.avif", GREY)), _picture),
     "labels": Reader(_all(_image("a.png", LABELS), _palette("b.png"), lambda f: np.save(f / "c.npy", LABELS)), _labels),
     "truth": Reader(_all(_image("kitti.png", DEEP), _image("sintel.png", COLOURS), _pfm), _truth),
     "large-picture": Reader(

@@ -706,7 +706,7 @@ READERS = {
             _bytes("b.hdr", "nrows 12\nncols 16\nnodata -1\n"),
         ),
         _map,
-        "*.[ahf]*",
+        "*.[ahf][sgl]*",
         text=True,
     ),
     "grid-header": Reader(

@@ -118,6 +118,7 @@ def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bo
     from ...errors import ConfigError
     from ...pipeline.pipeline import load_pipeline
     from ...pipeline.starter import are_pictures, not_pictures, pipeline_of
+    from ...scene.formats.kinds import is_binary
     from .. import show
 
     files = [config] if isinstance(config, Path) else config
@@ -126,7 +127,7 @@ def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bo
         if not is_quiet():
             command = shlex.join(["tangible", "new", *map(str, files)])
             show.note(f"without a pipeline file, values that suit the picture are used: `{command}` writes them down")
-    elif any(file.suffix.lower() in OTHER_FILES for file in files):
+    elif any(file.suffix.lower() in OTHER_FILES or is_binary(file) for file in files):
         raise not_pictures(files)
     elif len(files) > 1:
         raise ConfigError(f"{', '.join(map(str, files))}: name one pipeline file, one picture, or left and right")

@@ -36,12 +36,7 @@ _STILL = (b"avif", b"avis", *HEIC)
 
 def file_kind(path: Path) -> FileKind | None:
     """Return what a file is; by its name alone if it cannot be read; None for another kind."""
-    named = _kind_by_suffix(path)
-    head = b""
-    with suppress(OSError, ValueError):
-        if path.is_file():
-            with path.open("rb") as file:
-                head = file.read(_HEAD)
+    named, head = _kind_by_suffix(path), _first_bytes(path)
     if head[:4] in TIFF:
         return "heights" if holds_heights(path) else "picture"
     if head[:2] in (b"Pf", b"PF") or head[:6] == b"\x93NUMPY" or ASC.match(head):
@@ -53,6 +48,19 @@ def file_kind(path: Path) -> FileKind | None:
     if head.startswith(_PICTURES) and named != "video":
         return "picture"
     return "video" if head.startswith(_VIDEOS) else named
+
+
+def is_binary(path: Path) -> bool:
+    """Return True for a file that is not a text, such as a picture of a kind that is not read."""
+    return b"\0" in _first_bytes(path)
+
+
+def _first_bytes(path: Path) -> bytes:
+    with suppress(OSError, ValueError):
+        if path.is_file():
+            with path.open("rb") as file:
+                return file.read(_HEAD)
+    return b""
 
 
 def _kind_by_suffix(path: Path) -> FileKind | None:

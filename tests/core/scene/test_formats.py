@@ -13,7 +13,8 @@ import pytest
 import tifffile
 from PIL import Image
 
-from tangible_core.errors import PictureError
+from tangible_core.cli.commands.run import open_pipeline
+from tangible_core.errors import ConfigError, PictureError
 from tangible_core.scene.formats.kinds import file_kind
 from tangible_core.scene.formats.pictures import read_labels, read_map, read_picture
 
@@ -172,6 +173,11 @@ class TestKinds:
     )  # fmt: skip
     def test_first_bytes_tell_what_a_file_is(self, tmp_path: Path, head: bytes, kind: str | None):
         assert file_kind(put(tmp_path / "a", head)) == kind
+
+    def test_binary_file_of_another_kind_is_not_taken_for_a_pipeline_file(self, tmp_path: Path):
+        path = put(tmp_path / "a.exr", b"\x76\x2f\x31\x01\2\0\0\0")
+        with pytest.raises(ConfigError, match=r"a\.exr: name a picture"):
+            open_pipeline(path, [], cached=False)
 
     def test_pipeline_file_is_none_of_them(self, tmp_path: Path):
         assert file_kind(put(tmp_path / "a.yaml", b"P: 1\n")) is None

@@ -1,4 +1,4 @@
-"""If this fails, docs/pictures.md promises formats or numbers that are not read: `python FILE` writes its table anew."""
+"""If this fails, docs/pictures.md promises formats that are not read; `python FILE` writes its table anew."""
 
 import re
 import tempfile
@@ -49,6 +49,14 @@ def pfm(path: Path, values: np.ndarray) -> None:
     path.write_bytes(b"Pf\n%d %d\n-1\n" % values.shape[::-1] + values[::-1].tobytes())
 
 
+def jpeg_2000(path: Path, values: np.ndarray) -> None:
+    path.write_bytes(imagecodecs.jpeg2k_encode(values, level=0))
+
+
+def heic(path: Path, values: np.ndarray) -> None:
+    pillow_heif.from_pillow(Image.fromarray(values)).save(path)
+
+
 FORMATS: Mapping[str, tuple[str, tuple[str, ...], Write]] = {
     "TIFF, compressed or not": (
         "a.tif", TYPES, lambda path, values: tifffile.imwrite(path, values, compression="lzw")
@@ -57,12 +65,12 @@ FORMATS: Mapping[str, tuple[str, tuple[str, ...], Write]] = {
     "NPY, NPZ": ("a.npy", TYPES, lambda path, values: np.save(path, values)),
     "PGM": ("a.pgm", ("uint8", "uint16"), opencv(".pgm")),
     "PFM": ("a.pfm", ("float32",), pfm),
-    "JPEG 2000": ("a.jp2", ("uint8", "uint16"), lambda path, values: path.write_bytes(imagecodecs.jpeg2k_encode(values, level=0))),
+    "JPEG 2000": ("a.jp2", ("uint8", "uint16"), jpeg_2000),
     "BMP, GIF": ("a.bmp", ("uint8",), pillow("BMP")),
     "WebP": ("a.webp", ("uint8",), lambda path, values: Image.fromarray(values).save(path, "WEBP", lossless=True)),
     "JPEG": ("a.jpg", ("uint8",), pillow("JPEG")),
     "AVIF": ("a.avif", ("uint8",), pillow("AVIF")),
-    "HEIC, by the extra `heic`": ("a.heic", ("uint8",), lambda path, values: pillow_heif.from_pillow(Image.fromarray(values)).save(path)),
+    "HEIC, by the extra `heic`": ("a.heic", ("uint8",), heic),
     "ESRI ASCII grid": ("a.asc", ("int32", "float64"), ascii_grid),
     "SRTM": ("a.hgt", ("int16",), numbers(">i2")),
     "BIL": ("a.bil", ("uint8", "int16", "int32"), numbers("")),
@@ -97,7 +105,7 @@ def table(folder: Path) -> str:
                 maps.append(dtype)
             if as_picture(folder / file, values):
                 pictures.append(dtype)
-        rows.append(f"| {name} | {', '.join(maps) or '–'} | {', '.join(pictures) or '–'} |")
+        rows.append(f"| {name} | {', '.join(maps) or '-'} | {', '.join(pictures) or '-'} |")
     return "\n".join(rows) + "\n"
 
 

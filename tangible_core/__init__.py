@@ -34,15 +34,6 @@ if TYPE_CHECKING:
     from .scene.workspace import Workspace as Workspace
     from .session.recording import Recording as Recording
 
-_OLD = {
-    "compiled.touch": ["CompiledTouch"],
-    "plugins": [
-        "DepthEstimator", "DeviceSpec", "Exporter", "ForceRenderer", "HapticDevice", "Link", "Outcome", "PlainTouch",
-        "Plan", "Segmenter", "Skippable", "Touch", "Work", "hookimpl",
-    ],
-}  # fmt: skip
-"""Names that moved to `tangible_core.plugins`; they stay here for one release."""
-
 __getattr__: Callable[[str], Any]
 __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     __name__,
@@ -62,7 +53,6 @@ __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
         "scene.workspace": ["Workspace"],
         "session.recording": ["Recording"],
     },
-    _OLD,
 )  # fmt: skip
 
 watch_numba()

@@ -6,17 +6,13 @@ from sys import modules
 from typing import Any
 
 
-def lazily(
-    package: str, rooms: Mapping[str, Iterable[str]], old: Mapping[str, Iterable[str]] | None = None
-) -> tuple[list[str], Callable[[str], Any]]:
+def lazily(package: str, rooms: Mapping[str, Iterable[str]]) -> tuple[list[str], Callable[[str], Any]]:
     """Return `__all__` and `__getattr__` of a package whose names come from these modules in it.
-
-    old: further names that can be imported but are not in `__all__`.
 
     >>> lazily("tangible_core", {"errors": ["TangibleError"]})[1]("TangibleError").__name__
     'TangibleError'
     """
-    homes = {name: room for table in (old or {}, rooms) for room, names in table.items() for name in names}
+    homes = {name: room for room, names in rooms.items() for name in names}
 
     def __getattr__(name: str) -> Any:
         if name not in homes:
@@ -25,4 +21,4 @@ def lazily(
         setattr(modules[package], name, value)
         return value
 
-    return sorted(name for names in rooms.values() for name in names), __getattr__
+    return sorted(homes), __getattr__

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike
 from threading import Event
-from typing import TYPE_CHECKING, Any, Literal, Self, Unpack, cast, final
+from typing import Any, Literal, Self, Unpack, cast, final
 
 from ..data import DisparityMap, HapticSurface, MaterialMap, Outcomes, Plan, Relief, SegmentMap
 from ..data.arguments import named_options
@@ -272,16 +272,6 @@ class Pipeline:
         Raises: ConfigError without a device or force law; TangibleError as `make`.
         """
         return Feeling(self, device).preflight(hand, loop)
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            """Find an old name, which stays for one release."""
-            from .old_names import OLD_NAMES
-
-            if name not in OLD_NAMES or "engine" not in vars(self):
-                raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-            return OLD_NAMES[name](self)
 
     def __repr__(self) -> str:
         return f"Pipeline({self.config.in_short})"

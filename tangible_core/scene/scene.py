@@ -177,14 +177,6 @@ class Scene:
         )  # fmt: skip
 
     @classmethod
-    def of(cls, **arguments: Any) -> Self:
-        """Make a scene of any kind: an alias of `pair`, `photo`, `heights` and `video` that stays for one release.
-
-        The keywords are those of these four and the keys of `SceneFiles`.
-        """
-        return cls._load(**arguments)
-
-    @classmethod
     def _load(cls, **arguments: Any) -> Self:
         return cls(**source_of_arguments(arguments).load())
 

@@ -127,7 +127,7 @@ def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bo
         if not is_quiet():
             command = shlex.join(["tangible", "new", *map(str, files)])
             show.note(f"without a pipeline file, values that suit the picture are used: `{command}` writes them down")
-    elif any(file.suffix.lower() in OTHER_FILES or is_binary(file) for file in files):
+    elif any(file.suffix.lower() in OTHER_FILES for file in files) or (len(files) == 1 and is_binary(files[0])):
         raise not_pictures(files)
     elif len(files) > 1:
         raise ConfigError(f"{', '.join(map(str, files))}: name one pipeline file, one picture, or left and right")

@@ -13,7 +13,6 @@ from tangible_core import (
     HapticSurface,
     Material,
     Pipeline,
-    PlainTouch,
     Relief,
     Scene,
     Workspace,
@@ -21,7 +20,7 @@ from tangible_core import (
 )
 from tangible_core.data import Force, HapticState, Views
 from tangible_core.errors import OptionError, TangibleError
-from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, Touch
+from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, PlainTouch, Touch
 from tangible_core.servo import Safety
 from tangible_depth import Luminance, SemiGlobal
 from tangible_devices import Mock
@@ -53,7 +52,6 @@ def flat() -> HapticSurface:
         (lambda: Pipeline(scene(), workspace={"widht_m": 1}), "workspace.widht_m: unknown option (did you mean 'width"),
         (lambda: Scene.photo(GREY, rotat=90), "Scene.photo: rotat: unknown option (did you mean 'rotate'?)"),
         (lambda: Scene.photo(GREY, non_finite="msk"), "Input should be 'error' or 'mask', not 'msk' (did you mean"),
-        (lambda: Scene.of(phto=GREY), "scene.phto: unknown option (did you mean 'photo'?)"),
         (lambda: Pipeline(scene()).run("out", secnds=3), "Pipeline.run: secnds: unknown option (did you mean 'sec"),
         (lambda: Pipeline(scene()).run("out", sheet="pgn"), "sheet: is the str 'pgn'; it must be one of png, svg, pdf"),
         (lambda: Calibration(focal_px=1, basline_m=2), "Calibration: basline_m: unknown field (did you mean 'base"),

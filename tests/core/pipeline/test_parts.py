@@ -12,8 +12,9 @@ from tangible_core import Pipeline, Scene
 from tangible_core.data import DisparityMap, Force, HapticState, HapticSurface, Note, SegmentMap, Views
 from tangible_core.errors import ConfigError, MaterialError, PictureError
 from tangible_core.parts import HeightChoice, PartChoice
-from tangible_core.pipeline.engine import part_heights
 from tangible_core.pipeline.engine.cache import Cache
+from tangible_core.pipeline.engine.part_heights import in_words
+from tangible_core.pipeline.output.parts_text import part_heights, to_correct
 from tangible_core.pipeline.pipeline import load_pipeline
 from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, PlainTouch, Segmenter, Skippable, Touch
 from tangible_core.preflight import Hand, Loop
@@ -118,10 +119,10 @@ class TestHeights:
             workspace={"smooth_m": 0},
         )
         surface = made.surface
-        assert made.parts is not None and made.parts.segments == (0, 1, 1, 2)
-        expected = np.float32([0, 0.001, 0, 0.003])[made.parts.labels]
+        assert made.make("parts") is not None and made.make("parts").segments == (0, 1, 1, 2)
+        expected = np.float32([0, 0.001, 0, 0.003])[made.make("parts").labels]
         np.testing.assert_array_equal(surface.height_m, expected)
-        np.testing.assert_array_equal(surface.labels, made.parts.labels)
+        np.testing.assert_array_equal(surface.labels, made.make("parts").labels)
         assert surface.names == ("wall", "", "", "chest")
         assert surface.extent_m == pytest.approx((0.08, 0.08 * ROWS / COLUMNS))
         assert [each.text for each in notes(made, "relief")] == [
@@ -131,7 +132,7 @@ class TestHeights:
 
     def test_heights_by_depth_are_medians_over_the_parts(self):
         made = pipeline(heights="depth", depth=Ramp())
-        found = made.part_heights
+        found = part_heights(made.engine)
         assert found is not None
         left, wall, chest, right = (found.heights_m[number] for number in (1, 0, 3, 2))
         assert 0 == left < wall < chest < right == pytest.approx(0.0042)
@@ -141,13 +142,13 @@ class TestHeights:
     def test_given_height_wins_in_every_recipe(self):
         for by in ("given", "depth", "guess"):
             made = pipeline(heights=by, parts={2: {"height_m": 0.0007}}, depth=Ramp())
-            assert made.part_heights is not None
-            assert (made.part_heights.heights_m[2], made.part_heights.reasons[2]) == (0.0007, "given")
+            assert part_heights(made.engine) is not None
+            assert (part_heights(made.engine).heights_m[2], part_heights(made.engine).reasons[2]) == (0.0007, "given")
 
     def test_heights_by_unknown_depth_are_zero(self):
         made = pipeline(heights={"by": "depth", "detail_m": 0}, depth=Never())
-        assert made.disparity is None and made.part_heights is not None
-        assert set(made.part_heights.heights_m) == {0.0}
+        assert made.disparity is None and part_heights(made.engine) is not None
+        assert set(part_heights(made.engine).heights_m) == {0.0}
         assert float(made.relief.height_m.max()) == 0
 
     def test_guessed_heights_give_a_warning(self, caplog: pytest.LogCaptureFixture):
@@ -171,13 +172,13 @@ class TestHeights:
         for middle, is_hole in (((70, 95, 150), True), ((200, 40, 40), False)):
             picture = np.uint8([(70, 95, 150), (50, 40, 30), middle])[labels]
             made = Pipeline(Scene.photo(picture, segments=labels), heights="guess", cached=False)
-            assert made.part_heights is not None
-            ground, ring, inner = made.part_heights.heights_m
+            assert part_heights(made.engine) is not None
+            ground, ring, inner = part_heights(made.engine).heights_m
             assert ground == 0 < ring
             assert (inner < ring) == is_hole
 
     def test_computed_heights_are_rounded_to_a_hundredth_of_a_millimetre(self):
-        found = pipeline(heights="guess").part_heights
+        found = part_heights(pipeline(heights="guess").engine)
         assert found is not None and found.heights_m == tuple(round(each, 5) for each in found.heights_m)
 
     def test_transparent_ground_lies_at_zero(self):
@@ -187,8 +188,8 @@ class TestHeights:
             Scene.photo(picture, segments=LABELS), heights="guess", materials={"default": "sand"}, cached=False
         )
         surface = made.surface
-        assert made.part_heights is not None and surface.labels is not None and surface.materials is not None
-        assert made.part_heights.reasons[3] == "transparent in the picture"
+        assert part_heights(made.engine) is not None and surface.labels is not None and surface.materials is not None
+        assert part_heights(made.engine).reasons[3] == "transparent in the picture"
         assert not surface.height_m[surface.labels == 3].any()
         assert surface.materials[3].name == "sand"
 
@@ -219,10 +220,10 @@ class TestSkipped:
         made = pipeline(depth=Ramp())
         made.make("surface")
         assert "parts" not in outcome_kinds(made)
-        assert made.surface.names is None and made.part_heights is None
-        assert made.parts is not None and made.parts.count == 4
+        assert made.surface.names is None and part_heights(made.engine) is None
+        assert made.make("parts") is not None and made.make("parts").count == 4
         assert outcome_kinds(made)["parts"] == "ran"
-        assert pipeline(None, depth=Ramp()).parts is None
+        assert pipeline(None, depth=Ramp()).make("parts") is None
 
 
 class TestCached:
@@ -249,7 +250,7 @@ class TestCached:
         first.engine.cache = None
         first.make("surface")
         config = first.config.with_values(parts={**(first.config.parts or {}), 0: PartChoice(name="sky")})
-        again = first.changed(config)
+        again = Pipeline.from_config(config, like=first)
         assert again.surface.names is not None and again.surface.names[0] == "sky"
         assert again.materials is not None and "part 1 (sky)" in again.materials.reasons[0]
         assert "ran" not in outcome_kinds(again).values()
@@ -481,7 +482,7 @@ class TestComplaints:
         labels[2, 50] = labels[30, 2] = 5
         made = pipeline(labels, heights="given")
         made.make("surface")
-        assert made.parts is not None and made.parts.count == 6
+        assert made.make("parts") is not None and made.make("parts").count == 6
         (slip,) = notes(made, "parts")
         assert slip.kind == "warning"
         assert slip.text == (
@@ -506,10 +507,12 @@ class TestSizes:
             )
             for labels, picture in ((LABELS, PICTURE), (np.kron(LABELS, np.ones((2, 2), int)), double))
         )
-        assert small.parts is not None and large.parts is not None
-        np.testing.assert_array_equal(np.kron(small.parts.labels, np.ones((2, 2), int)), large.parts.labels)
-        assert small.parts.segments == large.parts.segments
-        np.testing.assert_allclose(small.part_heights[0], large.part_heights[0], atol=6e-5)  # type: ignore[index]
+        assert small.make("parts") is not None and large.make("parts") is not None
+        np.testing.assert_array_equal(
+            np.kron(small.make("parts").labels, np.ones((2, 2), int)), large.make("parts").labels
+        )
+        assert small.make("parts").segments == large.make("parts").segments
+        np.testing.assert_allclose(part_heights(small.engine)[0], part_heights(large.engine)[0], atol=6e-5)  # type: ignore[index]
         assert small.surface.names == large.surface.names
         assert within_one_pixel(small.surface.height_m, large.surface.height_m)
 
@@ -522,8 +525,8 @@ class TestSizes:
             for each in (0, 0.08 / COLUMNS)
         )
         assert coarse.surface.height_m.shape == (ROWS, COLUMNS)
-        assert coarse.parts is not None and coarse.parts.labels.shape == labels.shape
-        np.testing.assert_array_equal(coarse.surface.labels, coarse.parts.labels[2::4, 2::4])
+        assert coarse.make("parts") is not None and coarse.make("parts").labels.shape == labels.shape
+        np.testing.assert_array_equal(coarse.surface.labels, coarse.make("parts").labels[2::4, 2::4])
         assert coarse.surface.names == fine.surface.names
         for number in range(4):
             assert middle_mm(coarse.surface, number) == pytest.approx(middle_mm(fine.surface, number), abs=0.15)
@@ -533,9 +536,9 @@ class TestSizes:
         made = Pipeline(
             scene(None, picture), heights="guess", texture=Same(), workspace={"finest_m": 0.08 / COLUMNS}, cached=False
         )
-        assert made.parts is not None and made.engine.make_on_grid("parts").labels.shape == (ROWS, COLUMNS)
+        assert made.make("parts") is not None and made.engine.make_on_grid("parts").labels.shape == (ROWS, COLUMNS)
         np.testing.assert_array_equal(
-            made.parts.labels, np.kron(made.engine.make_on_grid("parts").labels, np.ones((2, 2), int))
+            made.make("parts").labels, np.kron(made.engine.make_on_grid("parts").labels, np.ones((2, 2), int))
         )
 
     def test_parts_of_twelve_megapixels_are_made(self):
@@ -583,7 +586,7 @@ class TestWritten:
         run = first.run(folder / "out")
         file = folder / "out" / "parts-guessed.yaml"
         assert file in run.files
-        assert file.read_text(encoding="utf-8") == first.parts_to_correct()
+        assert file.read_text(encoding="utf-8") == to_correct(first.engine)
         again = load_pipeline(file)
         assert again.config.heights == HeightChoice(by="given", bulge_m=0.001)
         assert again.config.part_names == {0: "Wand", 3: "Truhe"}
@@ -599,12 +602,12 @@ class TestWritten:
         made = pipeline(heights="guess")
         made.run(tmp_path / "out")
         text = (tmp_path / "out" / "parts-guessed.yaml").read_text(encoding="utf-8")
-        assert text == made.parts_to_correct()
+        assert text == to_correct(made.engine)
         made.run(tmp_path / "out", "parts")
         assert not (tmp_path / "out" / "parts-guessed.yaml").exists(), "no height was guessed for that"
         assert "scene" not in text and "parts:\n  0: {" in text and "heights: {by: given" in text
         with pytest.raises(ConfigError, match="no part has a height"):
-            pipeline(depth=Ramp()).parts_to_correct()
+            to_correct(pipeline(depth=Ramp()).engine)
 
     def test_run_lists_its_parts(self, folder: Path):
         run = load_pipeline(write_pipeline(folder, f"title: Boxes\n{SAID}heights: given\n")).run(folder / "out")
@@ -636,5 +639,5 @@ class TestWritten:
 
 def test_many_parts_are_named_up_to_eight_and_the_others_counted():
     eight = "parts 1, 2, 3, 4, 5, 6, 7"
-    said = [part_heights.in_words(list(range(count))) for count in (1, 2, 8, 9, 12)]
+    said = [in_words(list(range(count))) for count in (1, 2, 8, 9, 12)]
     assert said == ["part 1", "parts 1 and 2", f"{eight} and 8", f"{eight}, 8 and 1 more", f"{eight}, 8 and 4 more"]

@@ -21,6 +21,7 @@ from tangible_core.errors import (
 from tangible_core.pipeline.engine.stage import StageEvent
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.plugins import DepthEstimator
+from tangible_core.scene.scene_source import source_of_arguments
 from tangible_core.session import STOPPED, compare_replay
 from tangible_depth import Luminance, SemiGlobal, Zncc
 from tangible_devices import Mock
@@ -134,7 +135,7 @@ class TestScene:
     )
     def test_scene_of_impossible_parts_is_refused(self, parts: dict, said: str):
         with pytest.raises(ConfigError, match=said):
-            Scene.of(**parts)
+            source_of_arguments(parts)
 
     @pytest.mark.parametrize(
         ("photo", "said"),
@@ -335,7 +336,7 @@ class TestFeeling:
     def test_recording_is_replayed_with_another_law(self, pipeline: Pipeline):
         before = pipeline.feel(seconds=1.0, in_real_time=False)
         other = Pipeline(pipeline.scene, render=Penalty(stiffness_n_per_m=400.0), cached=False)
-        after = other.replay(before)
+        after = Feeling(other).replay(before)
         assert after.about.device == "replay of mock"
         assert compare_replay(before, after)["ticks"] == 1000
         assert 0 < after.peak_force_n < before.peak_force_n
@@ -360,7 +361,7 @@ class TestShown:
         from matplotlib import pyplot
         from matplotlib.figure import Figure
 
-        record = getattr(sample_pipeline, product)
+        record = getattr(sample_pipeline.scene if product == "views" else sample_pipeline, product)
         axes = Figure().add_subplot()
         assert show(record, axes) is axes
         assert axes.get_title()
@@ -373,7 +374,7 @@ class TestShown:
         from matplotlib import pyplot
 
         before = pyplot.get_fignums()
-        html = getattr(sample_pipeline, product)._repr_html_()
+        html = getattr(sample_pipeline.scene if product == "views" else sample_pipeline, product)._repr_html_()
         assert html.startswith("<img alt=") and "data:image/png;base64," in html
         assert pyplot.get_fignums() == before
 

@@ -93,8 +93,8 @@ def test_name_of_another_kind_is_refused(install):
         ("", "AttributeError: module 'broken' has no attribute 'Mine'"),
         ("Mine = 3", "is not a DepthEstimator"),
         ("class Mine: 'A class'", "is not a DepthEstimator"),
-        ("from tangible_core import Segmenter as Mine", "is not a DepthEstimator"),
-        ("from tangible_core import DepthEstimator as Mine", "does not implement estimate"),
+        ("from tangible_core.plugins import Segmenter as Mine", "is not a DepthEstimator"),
+        ("from tangible_core.plugins import DepthEstimator as Mine", "does not implement estimate"),
         ("raise SystemExit(3)", "SystemExit"),
     ],
 )

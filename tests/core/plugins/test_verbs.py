@@ -6,6 +6,7 @@ import pytest
 from tangible_core import DisparityMap, HapticState, HapticSurface, Recording, Views, load_method
 from tangible_core.data import Force
 from tangible_core.errors import ArgumentError, BrokenMethod, ConfigError
+from tangible_core.pipeline.feeling import Feeling
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins import DepthEstimator
 from tangible_core.plugins.interfaces import KINDS
@@ -80,4 +81,4 @@ class TestPipelines:
         path = str(tmp_path / "hand.nc")
         recording = pipeline.feel(seconds=0.01, in_real_time=False, record=path)
         assert Recording.load(path).digest() == recording.digest()
-        assert pipeline.replay(path).rows.shape == recording.rows.shape
+        assert Feeling(pipeline).replay(path).rows.shape == recording.rows.shape

@@ -6,6 +6,7 @@ import pytest
 from tangible_core import Pipeline, Scene
 from tangible_core.data import Views
 from tangible_core.errors import ConfigError
+from tangible_core.pipeline.feeling import Feeling
 from tangible_core.relief import ReliefChoice, edge_relief
 from tangible_core.scene.workspace import FeltSize
 from tangible_depth import Luminance
@@ -214,7 +215,7 @@ def test_video_by_edges_is_refused(tmp_path):
         (tmp_path / f"{number}.png").write_bytes(png(block()))
     pipeline = Pipeline(Scene.video(tmp_path, fps=10), depth=Luminance(), relief="edges")
     with pytest.raises(ConfigError, match="not of edges; leave `by: edges` out"):
-        _ = pipeline.reliefs
+        _ = Feeling(pipeline).reliefs
 
 
 def png(picture):

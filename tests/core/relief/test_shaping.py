@@ -257,7 +257,7 @@ def test_rounding_comes_last_and_is_that_of_the_workspace():
 @pytest.mark.parametrize("choice", [{}, {"spread": 0}, {"accent_m": 0}, "depth", UNDISTORTED])
 def test_outcome_tells_that_heights_are_spread_and_the_cure(choice):
     picture = np.zeros((40, 60, 3), np.uint8)
-    scene = Scene.of(photo=picture, disparity=two_levels(columns=60, rows=40))
+    scene = Scene.photo(picture, disparity=two_levels(columns=60, rows=40))
     pipeline = Pipeline(scene, relief=choice, cached=False)
     assert pipeline.relief.height_m.max() > 0.004
     [why] = [each.why for each in pipeline.outcomes if each.product == "relief"]

@@ -80,7 +80,7 @@ def test_thread_limit_of_a_pipeline_overrides_the_environment(eight, monkeypatch
     monkeypatch.setenv("TANGIBLE_THREADS", "5")
     scene = Scene.photo(np.zeros((8, 8), np.float32))
     pipeline = Pipeline(scene, texture=Asking(), cached=False, threads=3)
-    assert pipeline.threads == pipeline.changed(pipeline.config).threads == 3
+    assert pipeline.engine.threads == Pipeline.from_config(pipeline.config, like=pipeline).engine.threads == 3
     pipeline.make("segments")
     Pipeline(scene, texture=Asking(), cached=False).make("segments")
     assert SEEN == [(3, 3), (5, 5)]

@@ -9,6 +9,7 @@ from PIL import Image
 
 from tangible_core import Pipeline, Scene, Workspace
 from tangible_core.errors import ConfigError, PictureError
+from tangible_core.scene.scene_source import source_of_arguments
 from tangible_depth.luminance import Luminance
 from tangible_texture.gradient import Gradient
 
@@ -162,7 +163,7 @@ class TestTransparency:
         pipelines = [
             Pipeline(Scene.photo(each, non_finite="mask"), texture=Gradient(), cached=False) for each in photos
         ]
-        assert pipelines[0].views.digest() == pipelines[1].views.digest()
+        assert pipelines[0].scene.views.digest() == pipelines[1].scene.views.digest()
         assert pipelines[0].engine.key("segments") != pipelines[1].engine.key("segments")
 
     def test_opaque_picture_loses_its_fourth_channel_only(self):
@@ -206,7 +207,7 @@ def test_crop_beyond_the_picture_is_refused(parts, message):
 )
 def test_wrong_options_are_refused(parts, message):
     with pytest.raises(ConfigError, match=message):
-        Scene.of(**parts)
+        source_of_arguments(parts)
 
 
 def test_masked_heights_are_unknown():

@@ -14,6 +14,7 @@ from tangible_core.errors import ConfigError, GeometryError, PictureError
 from tangible_core.scene.formats.rigs import read_rig
 from tangible_core.scene.rig import Camera, StereoRig, rectify_views, undistort_points
 from tangible_core.scene.scene import Scene
+from tangible_core.scene.scene_source import source_of_arguments
 
 SHAPE = 90, 120
 BLANK = np.zeros(SHAPE, np.uint8)
@@ -307,7 +308,7 @@ class TestScene:
         from tangible_core import load_pipeline
 
         (folder / "p.yaml").write_text("scene: {left: left.npy, right: right.npy, rig: rig.yml, rig_unit_m: 0.5}\n")
-        views = load_pipeline(folder / "p.yaml").views
+        views = load_pipeline(folder / "p.yaml").scene.views
         assert views is not None and views.calibration is not None
         assert views.calibration.baseline_m == pytest.approx(np.linalg.norm((-0.05, 0.005, 0.0025)))
 
@@ -329,4 +330,4 @@ class TestScene:
 
     def test_rig_without_a_pair_raises(self, folder: Path):
         with pytest.raises(ConfigError, match="rig needs left"):
-            Scene.of(photo=BLANK, rig=folder / "rig.yml")
+            source_of_arguments({"photo": BLANK, "rig": folder / "rig.yml"})

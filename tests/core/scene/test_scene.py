@@ -10,6 +10,7 @@ from tangible_core.data import DisparityMap, Relief, SegmentMap
 from tangible_core.errors import ConfigError, GeometryError, OptionError, PictureError
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_files import BUILTINS, SceneFiles
+from tangible_core.scene.scene_source import source_of_arguments
 
 NAN = np.nan
 SIZE = {"width_m": 0.08, "relief_m": 0.02}
@@ -254,23 +255,6 @@ def test_truth_is_decoded_by_its_scale(as_file: bool, tmp_path: Path):
 # The constructors
 
 
-@pytest.mark.parametrize(
-    ("scene", "arguments"),
-    [
-        (Scene.pair(PICTURE, PICTURE[::-1], name="two"), {"left": PICTURE, "right": PICTURE[::-1], "name": "two"}),
-        (Scene.pair(PICTURE, layout="top-bottom"), {"stereo": PICTURE, "layout": "top-bottom"}),
-        (Scene.photo(PICTURE, rotate=90), {"photo": PICTURE, "rotate": 90}),
-        (Scene.heights(PICTURE[..., 0], relief_m=0.01), {"height": PICTURE[..., 0], "relief_m": 0.01}),
-    ],
-)
-def test_scene_of_a_kind_equals_its_alias(scene, arguments):
-    alias = Scene.of(**arguments)
-    assert (scene.name, scene.relief_m) == (alias.name, alias.relief_m)
-    assert {name: each.digest() for name, each in scene.brings(**SIZE).items()} == {
-        name: each.digest() for name, each in alias.brings(**SIZE).items()
-    }
-
-
 def test_scene_of_a_pair_in_one_picture_has_two_views():
     assert Scene.pair(PICTURE, layout="side-by-side").views.right.shape[:2] == (4, 3)
     assert Scene.pair(PICTURE, PICTURE).views.right.shape[:2] == (4, 6)
@@ -278,4 +262,4 @@ def test_scene_of_a_pair_in_one_picture_has_two_views():
 
 def test_scene_with_an_unknown_keyword_is_refused():
     with pytest.raises(ConfigError, match=r"scene\.colour: unknown option; known: left, right"):
-        Scene.of(photo=PICTURE, colour="red")
+        source_of_arguments({"photo": PICTURE, "colour": "red"})

@@ -15,6 +15,7 @@ from tangible_core import load_pipeline
 from tangible_core.cli.show import verdict_line
 from tangible_core.data import HapticState
 from tangible_core.errors import BrokenMethod, ConfigError
+from tangible_core.pipeline.feeling import Feeling
 from tangible_core.preflight import Hand, Loop, Verdict
 from tangible_devices.mock import Mock
 
@@ -171,7 +172,7 @@ def test_survey_law_with_nan_force_is_refused():
 
 
 def test_relief_key_is_where_the_height_is_set(folder: Path):
-    flight = load_pipeline(folder / "p.yaml").flight(loop=Loop(seconds=0.01))
+    flight = Feeling(load_pipeline(folder / "p.yaml")).flight(loop=Loop(seconds=0.01))
     assert (flight.relief_key, flight.relief_m, flight.smoothed) == ("workspace.relief_m", 0.004, False)
-    own = load_pipeline(folder / "p.yaml", ["scene.relief_m=0.003"]).flight(loop=Loop(seconds=0.01))
+    own = Feeling(load_pipeline(folder / "p.yaml", ["scene.relief_m=0.003"])).flight(loop=Loop(seconds=0.01))
     assert (own.relief_key, own.relief_m) == ("scene.relief_m", 0.003)

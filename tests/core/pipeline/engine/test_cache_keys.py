@@ -301,7 +301,7 @@ class TestCode:
     def test_keys_depend_on_the_helpers_of_a_plugin(self, folder: Path, monkeypatch: pytest.MonkeyPatch):
         (folder / "acme_depth.py").write_text(
             "from acme_helper import SLOPE\n"
-            "from tangible_core import DepthEstimator\n"
+            "from tangible_core.plugins import DepthEstimator\n"
             "class Mine(DepthEstimator):\n"
             "    def estimate(self, views): ...\n"
         )

@@ -12,6 +12,7 @@ from tangible_core.errors import BrokenMethod, ConfigError
 from tangible_core.pipeline.engine.film import PipelineFrames
 from tangible_core.pipeline.engine.stage import Context
 from tangible_core.pipeline.engine.stages.relief import ReliefStage
+from tangible_core.pipeline.feeling import Feeling
 from tangible_core.plugins.interfaces import DepthEstimator, Film
 from tangible_depth import Luminance, SemiGlobal
 from tangible_devices import Mock
@@ -45,14 +46,14 @@ def film_pipeline(walk):
 
 def test_first_frame_equals_the_relief_of_the_still(film_pipeline):
     pipeline = film_pipeline()
-    with pipeline.reliefs as reliefs:
+    with Feeling(pipeline).reliefs as reliefs:
         first = next(iter(reliefs))
     assert np.array_equal(first.relief.height_m, pipeline.relief.height_m)
 
 
 def test_first_frame_of_one_camera_equals_the_relief_of_its_photograph(walk):
     pipeline = Pipeline(Scene.video(walk, fps=20, repeat=False), depth=Luminance(), cached=False)
-    with pipeline.reliefs as reliefs:
+    with Feeling(pipeline).reliefs as reliefs:
         first = next(iter(reliefs))
     assert np.ptp(first.relief.height_m) > 0.0005
     assert np.array_equal(first.relief.height_m, pipeline.relief.height_m)
@@ -64,9 +65,9 @@ def test_each_frame_equals_the_still_of_its_disparity_and_scale(film_pipeline, w
     later = Pipeline(Scene.pair(walk / "004.png", layout="side-by-side"), depth=pipeline.config.depth.method)
     maker = PipelineFrames(pipeline.config, pipeline.scene)
     scale = maker.scale(pipeline.disparity)
-    first = maker.begin(pipeline.views)
-    assert np.array_equal(first.disparity_px, maker.disparity(pipeline.views).disparity_px)
-    disparity = maker.disparity(later.views)
+    first = maker.begin(pipeline.scene.views)
+    assert np.array_equal(first.disparity_px, maker.disparity(pipeline.scene.views).disparity_px)
+    disparity = maker.disparity(later.scene.views)
     assert np.array_equal(disparity.disparity_px, later.disparity.disparity_px)
     still = ReliefStage(Context(pipeline.config, later.scene)).from_disparity(later.disparity, scale)
     assert np.array_equal(maker.relief(disparity, scale).height_m, still.height_m)
@@ -74,7 +75,7 @@ def test_each_frame_equals_the_still_of_its_disparity_and_scale(film_pipeline, w
 
 def test_box_of_the_video_walks_in_the_reliefs(film_pipeline):
     pipeline = film_pipeline(workspace={"smooth_m": 0}, relief={"slope": 0})
-    with pipeline.reliefs as reliefs:
+    with Feeling(pipeline).reliefs as reliefs:
         film = [each.relief.height_m for each in reliefs]
     assert len(film) == COUNT
     for number in (0, COUNT - 1):
@@ -89,7 +90,7 @@ def test_exchanged_views_stay_exchanged_in_later_frames(walk, tmp_path):
         cv2.imwrite(str(tmp_path / path.name), np.hstack([right, left]))
     scene = Scene.video(tmp_path, layout="side-by-side", fps=20, repeat=False)
     pipeline = Pipeline(scene, depth=SemiGlobal(resolution="half"), workspace={"smooth_m": 0}, cached=False)
-    with pipeline.reliefs as reliefs:
+    with Feeling(pipeline).reliefs as reliefs:
         film = [each.relief.height_m for each in reliefs]
     assert all(each[5, 64] < 0.002 for each in film), "the ground is low"
     assert all(each.max() > 0.0045 for each in film)
@@ -158,16 +159,16 @@ def test_film_of_a_relief_of_parts_is_refused(film_pipeline):
 def test_film_of_a_still_scene_is_refused(walk):
     still = Pipeline(Scene.photo(walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
     with pytest.raises(ConfigError, match="does not move"):
-        _ = still.reliefs
+        _ = Feeling(still).reliefs
     with pytest.raises(ConfigError, match="does not move"):
-        still.film()
+        Feeling(still).film()
 
 
 def test_film_is_made_in_python(film_pipeline):
     pipeline = film_pipeline()
-    film = pipeline.film()
+    film = Feeling(pipeline).film()
     assert isinstance(film, Film)
-    with pipeline.reliefs as reliefs:
+    with Feeling(pipeline).reliefs as reliefs:
         for number, _, relief in reliefs:
             film.show(relief, number)
     assert film.dropped == COUNT - 1
@@ -189,7 +190,7 @@ FIRST_MEAN = 0.0
 @pytest.mark.usefixtures("loop_in_thread")
 def test_film_with_a_plugin_fault_ends_the_session(film_pipeline, monkeypatch, in_real_time):
     pipeline = film_pipeline(depth=Shrinks())
-    monkeypatch.setitem(globals(), "FIRST_MEAN", pipeline.views.left.mean())
+    monkeypatch.setitem(globals(), "FIRST_MEAN", pipeline.scene.views.left.mean())
     began = time.monotonic()
     with pytest.raises(BrokenMethod, match="made disparity of 4 x 3"):
         pipeline.feel(Mock(path="circle"), 60.0, in_real_time=in_real_time)

@@ -23,9 +23,11 @@ from tangible_core.parts import reduced_parts
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.engine.working_grid import parts_on_grid
+from tangible_core.pipeline.feeling import Feeling
 from tangible_core.pipeline.output import export_folder
 from tangible_core.pipeline.output.export_folder import move, read_list
 from tangible_core.pipeline.output.exporting import EXPORTABLE, MOST_STEM_BYTES, stem_of
+from tangible_core.pipeline.output.parts_text import part_heights
 from tangible_core.plugins import DepthEstimator, Exporter, Segmenter, Work
 from tangible_core.plugins.registry import default_registry
 
@@ -214,8 +216,8 @@ class TestWork:
         assert small.legible.sentence in small.outcome.why
         assert large.legible.readable
         assert large.outcome.notes == ()
-        assert thing.legible("swell", 0.16).readable
-        assert not thing.legible("swell", 0.01).readable
+        assert Feeling(thing).legible("swell", 0.16).readable
+        assert not Feeling(thing).legible("swell", 0.01).readable
 
     def test_exportable_products_are_the_records(self):
         assert tuple(each for each in PRODUCTS if each != "touch") == EXPORTABLE
@@ -233,8 +235,8 @@ class TestSimplify:
         assert simple.surface.names == plain.surface.names == ("ground", "", "")
         assert simple.surface.height_m[22, 62] < 0.001 < plain.surface.height_m[22, 62]
         assert simple.surface.height_m.shape == plain.surface.height_m.shape
-        assert len(simple.materials.materials) == simple.parts.count == simple.simplified.count == 3
-        assert simple.part_heights.heights_m == plain.part_heights.heights_m
+        assert len(simple.materials.materials) == simple.make("parts").count == simple.make("simplified").count == 3
+        assert part_heights(simple.engine).heights_m == part_heights(plain.engine).heights_m
 
     def test_simplified_parts_are_felt_in_their_places(self):
         """Cell by cell of the nearest, though their grid is another one; and no more of them than are there."""

@@ -11,7 +11,7 @@ from tangible_core.plugins.notes import note
 from ..dense.span import UNKNOWN, Span
 from .bands import Bands
 from .pairs import Pair
-from .range_in_bands import MARGIN, find_range, reach_px
+from .range_in_bands import MARGIN, far_reach_px, find_range, reach_px
 
 log: logging.Logger = logging.getLogger(__name__)
 Auto = Literal["auto"]
@@ -21,6 +21,8 @@ LEAST_STEP_PX = 8
 """Smallest width, in pixels, of such a step."""
 MOST_FILLED = 256
 """Disparities up to which the range of a rectified pair is extended to all lanes: a larger one shrinks the pictures."""
+
+ALL_NEGATIVE = "every disparity is negative, as of exchanged views (left is right) and of pictures that were shifted"
 
 
 class SearchRange(NamedTuple):
@@ -61,13 +63,17 @@ def _estimate_range(pair: Pair, least: int | Auto, verified_px: tuple[int, int] 
     notes: list[tuple[str, int]] = []
     low, high = (0, reach_px(pair.width)) if estimate is None else estimate.span
     if estimate is not None and estimate.swapped:
-        notes.append(("every disparity is negative: the views seem to be exchanged (left is right)", logging.WARNING))
+        notes.append((ALL_NEGATIVE, logging.WARNING))
         high = min(high, 0)
     if verified_px is not None:
         low, high = _range_around_matches(Span(*verified_px), estimate and estimate.bands)
     if least != "auto":
         low, high = least, max(high, least)
-    why = "the default range of a pair without matches" if estimate is None else "which do not occur"
+    why = (
+        "the default range of a pair without matches"
+        if estimate is None
+        else f"as none was found up to {far_reach_px(pair.width)} px; for nearer things write `max_disparity_px`"
+    )
     notes.append((f"skipped: disparities outside {low}..{high} px, {why}", logging.INFO))
     span = Span(low, high)
     if high > 0 and (verified_px is None or span.size <= MOST_FILLED):

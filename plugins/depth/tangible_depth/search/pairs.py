@@ -47,7 +47,8 @@ def grey_pair(views: Views, method: str) -> Pair:
     """Convert both views to 8 bits of grey.
 
     The same picture gives the same values in any data type (colour by ITU-R BT.601). If the views leave the upper half
-    of the range unused, as 12 bits in a 16-bit file do, both are multiplied by a power of two.
+    of the range unused, as 12 bits in a 16-bit file do, both are multiplied by a power of two; views of different data
+    types each by their own.
     Raises: PictureError if there is no right view.
     """
     if views.right is None:
@@ -57,9 +58,16 @@ def grey_pair(views: Views, method: str) -> Pair:
         return Pair.of(*(_grey8(each) for each in pictures))
     greys = [to_grey(each) for each in pictures]
     low = min(0.0, *(float(each.min()) for each in greys))
-    peak = max(float(each.max()) for each in greys) - low
-    gain = 255 * 2.0 ** floor(-log2(peak)) if peak > 0 else 0.0
-    return Pair.of(*(np.rint((each - np.float32(low)) * np.float32(gain)).astype(np.uint8) for each in greys))
+    peaks = [float(grey.max()) - low for grey in greys]
+    if views.left.dtype == views.right.dtype:
+        peaks = [max(peaks)] * 2
+    gains = (255 * 2.0 ** floor(-log2(peak)) if peak > 0 else 0.0 for peak in peaks)
+    return Pair.of(
+        *(
+            np.rint((grey - np.float32(low)) * np.float32(gain)).astype(np.uint8)
+            for grey, gain in zip(greys, gains, strict=True)
+        )
+    )
 
 
 def _grey8(picture: np.ndarray) -> UInt8[np.ndarray, "h w"]:

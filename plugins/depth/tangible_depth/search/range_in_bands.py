@@ -16,7 +16,10 @@ from .pairs import Pair
 FIRST_WIDTH = 80
 """Width of the first copy, in columns."""
 REACH = 0.36
-"""Largest disparity of either sign, as a share of the picture's width."""
+"""Largest disparity of either sign, as a share of the picture's width, unless something stands still nearer."""
+FAR_REACH, MIN_REVEALED = 0.8, 0.015
+"""Largest disparity that is tried for things still nearer, as a share of the width, and the smallest share of the
+matches that must lie beyond REACH, at places without a match within it, for such a thing to be there."""
 THIN_REACH = 1 / 8
 """Smallest range of the second copy, as a share of the picture's width: objects too thin for the first copy stand out
 from their background by less than this."""
@@ -44,10 +47,19 @@ def reach_px(width: int) -> int:
     return round(REACH * width)
 
 
+def far_reach_px(width: int) -> int:
+    """Return the largest disparity of either sign at which anything is looked for."""
+    return round(FAR_REACH * width)
+
+
 def find_range(pair: Pair) -> RangeEstimate | None:
     """Estimate the disparities that occur, of either sign; None if nothing matches."""
     width, reach = pair.width, reach_px(pair.width)
+    far = far_reach_px(width)
     first = _range_of_bands(pair, Span(-reach, reach), FIRST_WIDTH, FIRST_MARGIN)
+    wide = _range_of_bands(pair, Span(-far, far), FIRST_WIDTH, FIRST_MARGIN)
+    if wide is not None and _revealed_share(wide.bands, first and first.bands, reach) >= MIN_REVEALED:
+        first = wide
     if first is None:
         return None
     low, high = first.span
@@ -57,6 +69,14 @@ def find_range(pair: Pair) -> RangeEstimate | None:
         return fine or first
     wider = Span(min(first.span.low, fine.span.low), max(first.span.high, fine.span.high))
     return RangeEstimate(wider, fine.bands, first.swapped and fine.swapped)
+
+
+def _revealed_share(wide: Bands, near: Bands | None, reach: int) -> float:
+    """Return the share of the matches that lie beyond `reach`, where the bands of a search within it have no match."""
+    revealed = (wide.disparity != UNKNOWN) & (np.abs(wide.disparity * (wide.factor / 16)) > reach)
+    if near is not None:
+        revealed &= near.disparity == UNKNOWN
+    return float(np.count_nonzero(revealed) / max(1, wide.known))
 
 
 def _range_of_bands(pair: Pair, span: Span, width: int, margin: int) -> RangeEstimate | None:

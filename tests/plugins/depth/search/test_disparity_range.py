@@ -56,7 +56,10 @@ def test_range_of_exchanged_views_ends_at_zero(monkeypatch: pytest.MonkeyPatch):
     assert found.span == Span(-40, 0)
     (said, level), (outside, _) = found.notes
     assert said.startswith("every disparity is negative") and level == logging.WARNING
-    assert outside == "skipped: disparities outside -40..0 px, which do not occur"
+    assert outside == (
+        "skipped: disparities outside -40..0 px, as none was found up to 400 px; for nearer things write "
+        "`max_disparity_px`"
+    )
 
 
 def test_pair_without_matches_has_the_default_range_and_says_so(monkeypatch: pytest.MonkeyPatch):

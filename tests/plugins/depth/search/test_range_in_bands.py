@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from tangible_core.data import Views
+from tangible_depth import SemiGlobal
 from tangible_depth.dense.span import UNKNOWN, Span
 from tangible_depth.search import range_in_bands as module
 from tangible_depth.search.bands import FINE_WIDTH, Bands
@@ -67,7 +69,47 @@ def test_fine_copy_tries_an_eighth_of_the_width_at_least(monkeypatch: pytest.Mon
         fine = RangeEstimate(Span(0, 20), nothing, False)
         found, asked = find(RangeEstimate(Span(-10, high), nothing, False), fine, monkeypatch)
         assert found is fine
-        assert asked == [(Span(-360, 360), FIRST_WIDTH, 1), (Span(-10, tried), FINE_WIDTH, 2)]
+        coarse = [(Span(-360, 360), FIRST_WIDTH, 1), (Span(-800, 800), FIRST_WIDTH, 1)]
+        assert asked == [*coarse, (Span(-10, tried), FINE_WIDTH, 2)]
+
+
+@pytest.mark.parametrize(("revealed", "wider"), [(14, False), (15, True)])
+@pytest.mark.parametrize("side", [-1, 1])
+def test_wider_search_counts_where_it_alone_matches_enough(revealed: int, wider: bool, side: int, monkeypatch):
+    """Of 1000 matches 15 are beyond 360 px where the first search matched nothing; what it matched does not count."""
+    near, far = np.full((1, 1000), 16 * 5), np.full((1, 1000), 16 * 5)
+    far[0, :200] = 16 * 500 * side
+    near[0, :revealed] = UNKNOWN
+    estimates = {
+        360: RangeEstimate(Span(3, 7), bands(near), False),
+        800: RangeEstimate(Span(-510, 510), bands(far), False),
+    }
+    asked = []
+
+    def look(pair: Pair, span: Span, width: int, margin: int) -> RangeEstimate | None:
+        asked.append(span)
+        return estimates[span.high] if width == FIRST_WIDTH else None
+
+    monkeypatch.setattr(module, "_range_of_bands", look)
+    assert find_range(PAIR) is estimates[800 if wider else 360]
+
+
+@pytest.mark.parametrize("share", [0.4, 0.5, 0.62])
+@pytest.mark.parametrize("exchanged", [False, True])
+def test_thing_at_half_the_width_of_disparity_is_found(share: float, exchanged: bool):
+    """A tenth of a textured picture is so near that the two views show it at opposite ends."""
+    random = np.random.default_rng(0)
+    left = random.integers(0, 128, (120, 240), np.uint8)
+    right = np.roll(left, -4, axis=1)
+    away = round(share * 240)
+    left[30:90, 180:220] = right[30:90, 180 - away : 220 - away] = random.integers(128, 256, (60, 40), np.uint8)
+    views = (right, left) if exchanged else (left, right)
+    found = SemiGlobal(rectify="never").estimate(Views(*views)).disparity_px
+    if exchanged:
+        assert np.median(found[35:85, 185 - away : 215 - away]) == pytest.approx(-away, abs=0.5)
+    else:
+        assert np.median(found[35:85, 185:215]) == pytest.approx(away, abs=0.5)
+    assert abs(np.median(found[5:25])) == pytest.approx(4, abs=0.5)
 
 
 @pytest.mark.parametrize(("loss", "span", "swapped"), [(0.59, Span(0, 20), True), (0.6, Span(-10, 20), False)])
@@ -82,4 +124,4 @@ def test_first_copy_alone_counts_where_the_fine_one_matches_nothing(monkeypatch:
     first = RangeEstimate(Span(-10, 9), bands(np.zeros((1, 1))), False)
     assert find(first, None, monkeypatch)[0] is first
     found, asked = find(None, first, monkeypatch)
-    assert (found, len(asked)) == (None, 1)
+    assert (found, len(asked)) == (None, 2)

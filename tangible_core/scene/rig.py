@@ -9,6 +9,7 @@ from jaxtyping import Bool, Float32, Float64
 
 from ..data import Calibration, Record, Views
 from ..data.arguments import named_fields
+from ..data.records import as_read_only
 from ..errors import GeometryError, PictureError, quoted
 from ..runtime.opencv import plain_opencv
 
@@ -18,6 +19,8 @@ COEFFICIENTS: dict[Distortion, tuple[int, ...]] = {
     "equidistant": (0, 4),
 }
 """Numbers of distortion coefficients that each lens model may have."""
+NEARLY = 1e-3
+"""Largest deviation from a rotation that is taken for rounding, as of a matrix that is printed with 4 decimals."""
 GROWTH = 2.0
 """Largest width and height of a rectified picture, as a multiple of the raw one."""
 
@@ -53,7 +56,8 @@ class Camera(Record):
 class StereoRig(Record):
     """Two cameras: a point X_left in metres is X_right = rotation X_left + translation_m.
 
-    Raises: GeometryError if the rotation is not one, or the right camera is not to the right of the left one.
+    A rounded rotation becomes the nearest exact one.
+    Raises: GeometryError if the rotation is not one, or the right camera is neither right of the left one nor below it.
     """
 
     left: Camera
@@ -63,15 +67,17 @@ class StereoRig(Record):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.rotation.shape == (3, 3) and not _is_rotation(self.rotation, 1e-6) and _is_rotation(self.rotation):
+            object.__setattr__(self, "rotation", as_read_only(_nearest_rotation(self.rotation)))
         if self.rotation.shape != (3, 3) or not _is_rotation(self.rotation):
             raise GeometryError(f"a rotation is orthogonal, (3, 3), of determinant 1, not {quoted(self.rotation)}")
         if self.translation_m.shape != (3,) or not 0 < _length(self.translation_m) < np.inf:
             raise GeometryError(f"a translation is three metres, not all zero, not {quoted(self.translation_m)}")
         x, y, z = self.centre_m
-        if not x > max(abs(y), abs(z)):
+        if not max(x, y) > max(-x, -y, abs(z)):
             raise GeometryError(
                 f"the right camera stands at ({x:.3g}, {y:.3g}, {z:.3g}) m of the left one (right, down, ahead), and "
-                "not to its right; exchange left and right, or check the translation"
+                "neither to its right nor below it; exchange left and right, or check the translation"
             )
 
     @property
@@ -82,7 +88,7 @@ class StereoRig(Record):
 
 
 class RectifiedViews(NamedTuple):
-    """A pair whose rows correspond."""
+    """A pair whose rows correspond; its columns, if one camera stands below the other."""
 
     views: Views
     """The rectified pair, with the calibration that gives Z = f B / d."""
@@ -113,7 +119,8 @@ class Rectifier:
         size = _canvas(rig.left, axes, camera, shape)
         self._left = _places(rig.left, axes, camera, size)
         self._right = _places(rig.right, np.einsum("ij,kj->ik", axes, rig.rotation), camera, size)
-        self._calibration = Calibration(focal, _length(np.array(rig.centre_m)))
+        x, y, _ = rig.centre_m
+        self._calibration = Calibration(focal, _length(np.array(rig.centre_m)), vertical=y > x)
 
     def rectify(self, views: Views) -> RectifiedViews:
         """Rectify a pair of this size. Raises: PictureError if there is only one view."""
@@ -123,6 +130,8 @@ class Rectifier:
         columns, rows = self._left
         height, width = views.shape
         inside = (columns > -0.5) & (columns < width - 0.5) & (rows > -0.5) & (rows < height - 0.5)
+        if self._calibration.vertical:  # the canvas lies on its left side
+            left, right, inside = (np.ascontiguousarray(np.rot90(canvas, -1)) for canvas in (left, right, inside))
         return RectifiedViews(Views(left, right, self._calibration), inside)
 
 
@@ -148,7 +157,8 @@ def _canvas(lens: Camera, axes: np.ndarray, camera: np.ndarray, shape: tuple[int
         raise GeometryError("the cameras look along their baseline or apart; such a pair cannot be rectified")
     seen = np.round(seen, 6)  # so that a last bit does not add a row
     low, high = np.floor(seen.min(axis=0)), np.ceil(seen.max(axis=0))
-    middle, most = (low + high) / 2, GROWTH * np.array([columns, rows])
+    lying = abs(axes[0, 1]) > abs(axes[0, 0])
+    middle, most = (low + high) / 2, GROWTH * np.array([rows, columns] if lying else [columns, rows])
     low, high = np.maximum(low, np.floor(middle - most / 2)), np.minimum(high, np.ceil(middle + most / 2))
     camera[:2, 2] -= low
     width, height = (int(each) + 1 for each in high - low)
@@ -199,9 +209,17 @@ def _coefficients(lens: Camera) -> np.ndarray:
     return lens.distortion if lens.distortion.size else np.zeros(4)
 
 
-def _is_rotation(matrix: np.ndarray) -> bool:
-    straight = np.allclose(np.einsum("ik,jk->ij", matrix, matrix), np.eye(3), atol=1e-6)
+def _is_rotation(matrix: np.ndarray, tolerance: float = NEARLY) -> bool:
+    straight = np.allclose(np.einsum("ik,jk->ij", matrix, matrix), np.eye(3), rtol=0, atol=tolerance)
     return bool(straight and np.sum(np.cross(matrix[0], matrix[1]) * matrix[2]) > 0)
+
+
+def _nearest_rotation(matrix: np.ndarray) -> Float64[np.ndarray, "3 3"]:
+    """Return the rotation nearest to one that is nearly so. Source: Higham, SIAM J. Sci. Stat. Comput. 7(4), 1986."""
+    for _ in range(4):
+        cofactors = np.stack([np.cross(matrix[row - 2], matrix[row - 1]) for row in range(3)])
+        matrix = (matrix + cofactors / np.sum(cofactors[0] * matrix[0])) / 2
+    return matrix
 
 
 def _length(vector: np.ndarray) -> float:

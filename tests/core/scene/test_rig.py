@@ -7,14 +7,18 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from PIL import Image
 from ruamel.yaml import YAML
 
-from tangible_core.data import Views
+from tangible_core import Pipeline, Workspace, load_pipeline
+from tangible_core.data import Calibration, Views
 from tangible_core.errors import ConfigError, GeometryError, PictureError
+from tangible_core.pipeline.starter import starter
 from tangible_core.scene.formats.rigs import read_rig
 from tangible_core.scene.rig import Camera, StereoRig, rectify_views, undistort_points
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_source import source_of_arguments
+from tangible_depth import SemiGlobal
 
 SHAPE = 90, 120
 BLANK = np.zeros(SHAPE, np.uint8)
@@ -108,6 +112,64 @@ def peaks(picture: np.ndarray) -> np.ndarray:
         peaks_px.append((inner * part.ravel()).sum(axis=1) / part.sum() + [rows.start, columns.start])
         rest[rows, columns] = 0
     return np.array(peaks_px)
+
+
+@pytest.mark.parametrize("lens", LENSES)
+@given(turn=st.tuples(*[st.floats(-0.08, 0.08)] * 3), move=st.tuples(*[st.floats(-0.03, 0.03)] * 2))
+def test_points_seen_from_below_share_columns_and_give_exact_depth(lens, turn, move):
+    """The canvas lies on its side, its rows along the baseline; the pictures are turned back by a quarter."""
+    cameras = rig(turn, (move[0], -0.2, move[1]), lens)
+    calibration = rectify_views(Views(BLANK, BLANK), cameras).views.calibration
+    assert calibration is not None and calibration.vertical
+    points = np.random.default_rng(0).uniform([-0.3, -0.25, 1], [0.3, 0.25, 3], (50, 3))
+    axes, camera = axes_of(cameras), np.diag([calibration.focal_px, calibration.focal_px, 1.0])
+    left = undistort_points(seen(points, cameras.left), cameras.left, axes, camera)
+    theirs = points @ cameras.rotation.T + cameras.translation_m
+    right = undistort_points(seen(theirs, cameras.right), cameras.right, axes @ cameras.rotation.T, camera)
+    assert left[:, 1] == pytest.approx(right[:, 1], abs=1e-3)
+    disparity = (left - right)[:, 0]
+    assert calibration.focal_px * calibration.baseline_m / disparity == pytest.approx(points @ axes[2], rel=1e-3)
+
+
+@pytest.mark.parametrize("finest_m", [0, 8e-4])
+def test_vertical_pair_is_felt_upright_at_the_disparity_of_its_depths(finest_m: float):
+    """A box at 1 m stands before a wall at 4 m; the second camera stands 10 cm below the first one.
+
+    With a focal length of 160 px, they are 16 and 4 px higher in the lower camera.
+    """
+    random = np.random.default_rng(0)
+    left = random.integers(0, 100, (120, 200), np.uint8)
+    right = np.roll(left, -4, axis=0)
+    box = random.integers(120, 255, (30, 40), np.uint8)
+    left[60:90, 130:170] = right[44:74, 130:170] = box
+    camera = Camera(np.array([[160.0, 0, 100], [0, 160, 60], [0, 0, 1]]), np.zeros(0))
+    scene = Scene.pair(left, right, rig=StereoRig(camera, camera, np.eye(3), np.array([0, -0.1, 0])))
+    assert scene.views is not None and scene.views.right is not None
+    np.testing.assert_array_equal(scene.views.left, left)
+    np.testing.assert_array_equal(scene.views.right, right)
+    workspace = Workspace(width_m=0.08, finest_m=finest_m)
+    pipeline = Pipeline(scene, depth=SemiGlobal(), workspace=workspace, cached=False)
+    disparity = pipeline.disparity.disparity_px
+    assert disparity.shape == left.shape
+    assert np.median(disparity[65:85, 135:165]) == pytest.approx(16, abs=0.5)
+    assert np.median(disparity[:, :100]) == pytest.approx(4, abs=0.5)
+    assert pipeline.relief.height_m.shape == ((120, 200) if not finest_m else (60, 100))
+
+
+def test_rotation_of_four_decimals_becomes_the_nearest_rotation():
+    """The nearest rotation is U V of the singular vectors (Higham, Functions of Matrices, theorem 8.4)."""
+    exact = turn_of(0.02, -0.05, 0.3)
+    rounded = np.round(exact, 4)
+    good = rig()
+    found = StereoRig(good.left, good.right, rounded, good.translation_m).rotation
+    left, _, right = np.linalg.svd(rounded)
+    np.testing.assert_allclose(found, left @ right, atol=1e-14)
+    np.testing.assert_allclose(found, exact, atol=1e-4)
+    np.testing.assert_allclose(found @ found.T, np.eye(3), atol=1e-14)
+    assert rounded.flags.writeable
+    np.testing.assert_array_equal(StereoRig(good.left, good.right, exact, good.translation_m).rotation, exact)
+    with pytest.raises(GeometryError, match="orthogonal"):
+        StereoRig(good.left, good.right, np.round(exact, 2), good.translation_m)
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, bool, np.float32])
@@ -284,6 +346,180 @@ class TestFiles:
         with pytest.raises((ConfigError, GeometryError)) as caught:
             read_rig(tmp_path / "rig.yml")
         assert message in str(caught.value)
+
+
+MIDDLEBURY = """\
+cam0=[994.978 0 60.5; 0 994.978 44; 0 0 1]
+cam1=[994.978 0 91.5; 0 994.978 44; 0 0 1]
+doffs=31
+baseline=193.001
+width=120
+height=90
+ndisp=64
+isint=0
+"""
+KITTI = """\
+P0: 7.2e+02 0 6.0e+01 0 0 7.2e+02 4.4e+01 0 0 0 1 0
+P1: 7.2e+02 0 6.0e+01 -3.6e+02 0 7.2e+02 4.4e+01 0 0 0 1 0
+P2: 7.2e+02 0 6.0e+01 4.5e+01 0 7.2e+02 4.4e+01 2.2e-01 0 0 1 2.7e-03
+P3: 7.2e+02 0 6.0e+01 -3.4e+02 0 7.2e+02 4.4e+01 2.2e-01 0 0 1 2.7e-03
+Tr: 4.3e-04 -1 0 0 0 0 -1 0 1 0 0 -0.3
+"""
+KITTI_RAW = """\
+calib_time: 09-Jan-2012 13:57:47
+S_02: 1.392000e+03 5.120000e+02
+K_02: 9.6e+02 0 6.9e+02 0 9.5e+02 2.2e+02 0 0 1
+S_rect_02: 1.242000e+03 3.750000e+02
+P_rect_02: 7.2e+02 0 6.0e+01 4.5e+01 0 7.2e+02 4.4e+01 0 0 0 1 0
+P_rect_03: 7.2e+02 0 6.0e+01 -3.4e+02 0 7.2e+02 4.4e+01 0 0 0 1 0
+"""
+
+
+def ros(side: str, matrix: np.ndarray, turn: np.ndarray, projection: np.ndarray, short: bool = False) -> str:
+    """Return a camera as ROS's camera_calibration writes it; short: as `rostopic echo camera_info` prints it."""
+    parts = {"camera_matrix": matrix, "rectification_matrix": turn, "projection_matrix": projection}
+    if short:
+        names = {"camera_matrix": "K", "rectification_matrix": "R", "projection_matrix": "P"}
+        flat = "".join(f"{names[part]}: {values.ravel().tolist()}\n" for part, values in parts.items())
+        return f"height: 90\nwidth: 120\ndistortion_model: plumb_bob\nD: {[*RADIAL, 0.0]}\n{flat}"
+    blocks = "".join(
+        f"{part}:\n  rows: {len(values)}\n  cols: {values.shape[1]}\n  data: {values.ravel().tolist()}\n"
+        for part, values in parts.items()
+    )
+    return (
+        f"image_width: 120\nimage_height: 90\ncamera_name: {side}\ndistortion_model: plumb_bob\n"
+        f"distortion_coefficients:\n  rows: 1\n  cols: 5\n  data: {[*RADIAL, 0.0]}\n{blocks}"
+    )
+
+
+class TestMoreFormats:
+    def test_middlebury_is_in_millimetres_and_its_offset_is_taken_off(self, tmp_path: Path):
+        (tmp_path / "calib.txt").write_bytes(b"\xef\xbb\xbf" + MIDDLEBURY.replace("\n", "\r\n").encode())
+        cameras, size = read_rig(tmp_path / "calib.txt")
+        assert size == (120, 90)
+        assert cameras.centre_m == pytest.approx((0.193001, 0, 0))
+        right = np.random.default_rng(0).random(SHAPE).astype(np.float32)
+        rectified = rectify_views(Views(right, right), cameras).views
+        assert rectified.right is not None and rectified.calibration is not None
+        np.testing.assert_allclose(rectified.left, right, atol=1e-5)
+        np.testing.assert_allclose(rectified.right[:, :89], right[:, 31:], atol=1e-5)
+        assert (rectified.calibration.focal_px, rectified.calibration.offset_px) == (994.978, 0)
+        assert read_rig(tmp_path / "calib.txt", 0.01).cameras.centre_m[0] == pytest.approx(1.93001)
+
+    @pytest.mark.parametrize(
+        ("text", "size"), [(KITTI, None), (KITTI_RAW, (1242, 375)), (KITTI.replace("P2", "X").replace("P3", "Y"), None)]
+    )
+    def test_kitti_has_the_baseline_of_its_two_projections(self, tmp_path: Path, text: str, size):
+        """(45 + 340) / 720 in colour, and 360 / 720 in grey."""
+        (tmp_path / "calib.txt").write_text(text)
+        cameras, found = read_rig(tmp_path / "calib.txt")
+        assert found == size
+        assert cameras.centre_m == pytest.approx((0.5 if "X:" in text else 385 / 720, 0, 0))
+        assert cameras.left.matrix.tolist() == [[720, 0, 60], [0, 720, 44], [0, 0, 1]]
+
+    @pytest.mark.parametrize("short", [False, True])
+    def test_ros_cameras_give_the_rig_that_opencv_rectified(self, tmp_path: Path, short: bool):
+        cameras = rig(lens="radial")
+        matrices = [cameras.left.matrix, cameras.right.matrix]
+        lens = np.array([*RADIAL, 0.0])
+        turns_and_projections = cv2.stereoRectify(
+            matrices[0], lens, matrices[1], lens, SHAPE[::-1], cameras.rotation, cameras.translation_m[:, None]
+        )
+        for number, side in enumerate(("left", "right")):
+            turn, projection = turns_and_projections[number], turns_and_projections[2 + number]
+            (tmp_path / f"{side}.yaml").write_text(ros(side, matrices[number], turn, projection, short))
+        found, size = read_rig(tmp_path / "left.yaml")
+        assert size == (120, 90)
+        np.testing.assert_allclose(found.rotation, cameras.rotation, atol=1e-9)
+        np.testing.assert_allclose(found.translation_m, cameras.translation_m, atol=1e-9)
+        np.testing.assert_array_equal(found.right.matrix, matrices[1])
+        assert found.left.distortion.tolist() == lens.tolist()
+
+    @pytest.mark.parametrize("suffix", ["xml", "json", "yml"])
+    def test_every_file_storage_of_opencv_gives_the_same_rig(self, tmp_path: Path, suffix: str):
+        cameras = rig(lens="radial")
+        write_opencv(tmp_path / f"rig.{suffix}", cameras)
+        found = read_rig(tmp_path / f"rig.{suffix}").cameras
+        np.testing.assert_array_equal(found.left.matrix, cameras.left.matrix)
+        np.testing.assert_array_equal(found.right.distortion, cameras.right.distortion)
+        np.testing.assert_allclose(found.centre_m, cameras.centre_m, atol=1e-15)
+
+    def test_intrinsics_are_read_with_the_extrinsics_beside_them(self, tmp_path: Path):
+        write_opencv(tmp_path / "rig.yml", rig())
+        lines = (tmp_path / "rig.yml").read_text()
+        split = lines.index("R:")
+        (tmp_path / "intrinsics.yml").write_text(lines[:split])
+        (tmp_path / "extrinsics.yml").write_text("%YAML:1.0\n---\n" + lines[split:])
+        assert read_rig(tmp_path / "intrinsics.yml").cameras.centre_m == pytest.approx(rig().centre_m)
+
+    @pytest.mark.parametrize(
+        ("name", "text", "message"),
+        [
+            ("calib.txt", MIDDLEBURY.replace("baseline=193.001\n", ""), "baseline must be 1 finite numbers, not ''"),
+            ("calib.txt", MIDDLEBURY.replace("91.5", "x"), "cam1 must be 9 finite numbers"),
+            ("calib.txt", KITTI.replace("7.2e+02", "nan"), "P2 must be 12 finite numbers"),
+            ("calib.txt", KITTI.replace("7.2e+02", "0"), "a projection has positive focal lengths"),
+            ("calib.txt", KITTI_RAW.replace("1.242000e+03", "1e999"), "S_rect_02 must be 2 finite numbers"),
+            ("calib.txt", KITTI.replace("-3.4e+02", "9e+02"), "neither to its right nor below it"),
+            ("left.yaml", "camera_matrix: {data: [1]}\n", "the left camera lacks one of left camera matrix"),
+            ("rig.xml", "<opencv_storage><M1>", "is not XML as OpenCV writes it"),
+            ("rig.xml", "<!DOCTYPE a [<!ENTITY b 'c'>]><opencv_storage/>", "it declares a document type"),
+            ("rig.xml", "<opencv_storage><M1><rows>x</rows></M1></opencv_storage>", "is not XML as OpenCV writes it"),
+            ("rig.xml", "<opencv_storage/>", "has no left matrix"),
+        ],
+    )
+    def test_wrong_file_raises_with_its_part(self, tmp_path: Path, name: str, text: str, message: str):
+        (tmp_path / name).write_text(text)
+        (tmp_path / "right.yaml").write_text("K: [1]\n")
+        with pytest.raises((ConfigError, GeometryError)) as caught:
+            read_rig(tmp_path / name)
+        assert str(caught.value).startswith(str(tmp_path / name)) and message in str(caught.value)
+
+
+class TestFoundRig:
+    @pytest.fixture
+    def folder(self, tmp_path: Path) -> Path:
+        for name in ("left", "right"):
+            Image.fromarray(np.random.default_rng(0).integers(0, 255, SHAPE, np.uint8)).save(tmp_path / f"{name}.png")
+        (tmp_path / "calib.txt").write_text(MIDDLEBURY)
+        return tmp_path
+
+    def test_run_says_that_there_is_a_rig_and_new_writes_it(self, folder: Path):
+        (folder / "p.yaml").write_text("scene: {left: left.png, right: right.png}\n")
+        scene = load_pipeline(folder / "p.yaml").scene
+        assert scene.notes == ("calib.txt states the cameras of the pair; write `rig: calib.txt` to use it",)
+        assert scene.views is not None and scene.views.calibration is None
+        made = starter([folder / "left.png", folder / "right.png"], folder / "new.yaml")
+        assert "\nscene: {left: left.png, right: right.png, rig: calib.txt}\n" in made.text
+        assert made.scene.views is not None and made.scene.views.calibration is not None
+        assert made.scene.notes == ()
+
+    @pytest.mark.parametrize("text", ["nonsense", MIDDLEBURY.replace("width=120", "width=121")])
+    def test_file_that_is_no_rig_or_for_another_size_is_not_mentioned(self, folder: Path, text: str):
+        (folder / "calib.txt").write_text(text)
+        assert Scene.pair(folder / "left.png", folder / "right.png").notes == ()
+        assert "rig:" not in starter([folder / "left.png", folder / "right.png"], folder / "new.yaml").text
+
+    def test_rig_above_the_two_folders_of_a_sequence_is_found(self, folder: Path):
+        for name, place in (("left", "image_2"), ("right", "image_3")):
+            (folder / place).mkdir()
+            (folder / f"{name}.png").rename(folder / place / "000000.png")
+        (folder / "calib.txt").write_text(KITTI)
+        scene = Scene.pair(folder / "image_2" / "000000.png", folder / "image_3" / "000000.png")
+        assert scene.notes == (
+            f"calib.txt states the cameras of the pair; write `rig: {folder / 'calib.txt'}` to use it",
+        )
+
+    def test_baseline_of_sixty_metres_works_and_is_questioned(self, folder: Path):
+        paths = {"left": folder / "left.png", "right": folder / "right.png"}
+        write_opencv(folder / "rig.yml", rig((0, 0, 0), (-60.0, 0, 0)))
+        far = Scene.pair(**paths, rig=folder / "rig.yml")
+        assert far.views is not None and far.views.calibration is not None
+        assert far.views.calibration.baseline_m == 60
+        assert far.notes == ("the cameras stand 60 m apart; if these are millimetres, write `rig_unit_m: 0.001`",)
+        given_m = Scene.pair(**paths, calibration=Calibration(1000, 60))
+        assert given_m.notes == ("the cameras stand 60 m apart; if these are millimetres, write `baseline_m: 60 mm`",)
+        assert Scene.pair(**paths, calibration=Calibration(1000, 0.06)).notes == ()
 
 
 class TestScene:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver, QuiverKey
 
-from tangible_core.data import DisparityMap, HapticSurface, PartMap, Relief, Views
+from tangible_core.data import Calibration, DisparityMap, HapticSurface, PartMap, Relief, Views
 from tangible_core.materials.assignment import library
 from tangible_core.session import Recording
 from tangible_report import material_sheet
@@ -19,6 +19,7 @@ from tangible_report.drawing.layout import Cell
 from tangible_report.drawing.sheet import draw_sheet, scene_aspect
 from tangible_report.panels import draw_disparity, draw_force_map, draw_force_time, draw_relief, relief, segments, time
 from tangible_report.panels.force import round_number, spread
+from tangible_report.panels.views import _camera
 
 
 @pytest.fixture
@@ -218,3 +219,9 @@ class TestMaterials:
         sand = replace(library()["sand"], anisotropy=anisotropy, direction_deg=direction_deg)
         material_sheet.draw_material(Path("a.png"), sand)
         assert [(run["stroke"], run["conditions"]) for run in runs] == [(stroke_deg, said)]
+
+
+@pytest.mark.parametrize(("baseline_m", "text"), [(0.193, "B 193 mm"), (0.999, "B 999 mm"), (60.0, "B 60 m")])
+def test_baseline_is_in_the_unit_of_its_size(baseline_m: float, text: str):
+    picture = np.zeros((4, 6), np.uint8)
+    assert _camera(Views(picture, picture, Calibration(995.0, baseline_m))) == f", f 995 px, {text}"

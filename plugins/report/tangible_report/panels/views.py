@@ -26,4 +26,7 @@ def draw_views(axes: Axes, views: Views) -> str:
 
 def _camera(views: Views) -> str:
     at = views.calibration
-    return "" if at is None else f", f {at.focal_px:.4g} px, B {1000 * at.baseline_m:.4g} mm"
+    if at is None:
+        return ""
+    baseline = f"{1000 * at.baseline_m:.4g} mm" if at.baseline_m < 1 else f"{at.baseline_m:.4g} m"
+    return f", f {at.focal_px:.4g} px, B {baseline}"

@@ -101,10 +101,13 @@ def is_opaque(alpha: np.ndarray) -> Bool[np.ndarray, "h w"]:
     return alpha if alpha.dtype == np.bool_ else alpha >= 0.5
 
 
-def full_scale(picture: np.ndarray) -> float:
-    """Return the value of white: 1, 255 or 65535; of a float picture that fits none of these, its largest magnitude."""
+def full_scale(picture: np.ndarray, *others: np.ndarray) -> float:
+    """Return the value of white: 1, 255 or 65535; of a float picture that fits none of these, its largest magnitude.
+
+    others: further pictures with the same white.
+    """
     if picture.dtype.kind == "f":
-        largest = float(np.max(np.abs(picture)))
+        largest = max(float(np.max(np.abs(values))) for values in (picture, *others))
         return next((white for white in (255.0, float(MOST)) if BRIGHTEST < largest <= white), max(1.0, largest))
     return 1.0 if picture.dtype == np.bool_ else float(np.iinfo(picture.dtype).max)
 

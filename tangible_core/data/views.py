@@ -27,6 +27,8 @@ class Calibration(Record):
     baseline_m: float
     offset_px: float = 0.0
     """The difference of the principal points' columns, right minus left, px (Middlebury's `doffs`)."""
+    vertical: bool = False
+    """The right camera stands below the left one: a left pixel (row, x) matches (row - d, x)."""
 
     def __post_init__(self) -> None:
         super().__post_init__()

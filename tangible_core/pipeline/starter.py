@@ -19,6 +19,7 @@ from ..plugins.registry import default_registry
 from ..runtime.opencv import plain_opencv
 from ..scene.formats.height_maps import read_heights_metadata
 from ..scene.formats.kinds import file_kind
+from ..scene.formats.rigs import find_rig
 from ..scene.scene import Scene
 from ..scene.scene_files import SceneFiles
 from .config.parsing import parse_config
@@ -82,6 +83,9 @@ def starter(pictures: Sequence[Path], file: Path) -> Starter:
     parts = _parts(pictures)
     absolute = {part: path.absolute() for part, path in parts.items()}
     scene = Scene.read(SceneFiles.model_validate(absolute), Path()) if parts else Scene.builtin(str(pictures[0]))
+    if "right" in parts and (rig := find_rig(absolute["left"], absolute["right"], scene.shape)):
+        parts, absolute = {**parts, "rig": rig}, {**absolute, "rig": rig}
+        scene = Scene.read(SceneFiles.model_validate(absolute), Path())
     kind: Kind = "heights" if scene.views is None else "pair" if scene.views.right is not None else "photo"
     block = ", ".join(f"{part}: {_path_in_yaml(path, file.parent)}" for part, path in parts.items())
     values = {
@@ -127,6 +131,8 @@ def _parts(pictures: Sequence[Path]) -> Mapping[str, Any]:
 
 def _part(path: Path) -> str:
     """Return the key in `scene:` of a file that is given alone."""
+    if path.suffix.lower() == ".jps":
+        return "stereo"
     return "height" if _is_map(path) else "video" if file_kind(path) == "video" else "photo"
 
 

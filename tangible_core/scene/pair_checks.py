@@ -29,9 +29,11 @@ CLEARER, LEAST_EDGE = 1.5, 0.01
 """Factor by which the edge at one end of a strip must exceed the other, plus this share of white."""
 LEAST_MATCHED_TO_JUDGE = 0.2
 """Smallest matched share of the picture for a judgement on the order."""
-FEWEST, MAJORITY, MAJORITY_MIXED = 100, 1.8, 2.5
-"""Fewest strips that decide, and the ratio of votes that overrules the signs: negative throughout, and mixed, which are
-taken as in order. Real pairs reach 2.0 to 16."""
+MIN_STRIPS, MAJORITY = 20, 1.8
+"""Fewest strips that decide where disparities are negative throughout, and the ratio of their votes."""
+MIN_STRIPS_AGAINST, MAJORITY_MIXED, MAJORITY_POSITIVE = 50, 2.0, 3.0
+"""The same for what overrules an order that the signs allow: signs of both kinds, as of cameras that look towards each
+other, and positive ones throughout, as of parallel cameras. Real pairs reach 2 to 40."""
 LEAST_MATCHED = 0.25
 """Share of the picture below which hardly anything was matched: good pairs reach 0.5 to 0.9, noise 0.02 to 0.12."""
 
@@ -42,6 +44,8 @@ class ViewOrder(NamedTuple):
     exchanged: bool
     message: str
     """A remark for the user; empty if there is none."""
+    open: bool = False
+    """True if the disparities are odd for this order, and the contours do not decide."""
 
 
 IN_ORDER = ViewOrder(False, "")
@@ -54,10 +58,11 @@ class _Votes(NamedTuple):
     exchanged: int
 
 
-def view_order(disparity: DisparityMap, left: np.ndarray, offset_px: float = 0.0) -> ViewOrder:
+def view_order(disparity: DisparityMap, left: np.ndarray, offset_px: float | None = None) -> ViewOrder:
     """Judge from a disparity map whether its views were exchanged.
 
-    left: the picture that the map belongs to. offset_px: added to a disparity before it is converted to a distance.
+    left: the picture that the map belongs to. offset_px: added to a disparity before it is converted to a distance;
+    None if the cameras are unknown.
     """
     if disparity.unit != "px":
         return IN_ORDER
@@ -68,24 +73,33 @@ def view_order(disparity: DisparityMap, left: np.ndarray, offset_px: float = 0.0
     if matched.mean() < LEAST_MATCHED_TO_JUDGE:
         return IN_ORDER
     low, high = np.percentile(values[matched], [5, 95])
-    if low > NEGATIVE_PX:
+    if offset_px is not None and low > NEGATIVE_PX:
         return IN_ORDER
     votes = _votes(np.where(matched, values, np.float32(np.nan)), to_grey(left[rows]))
     if high < NEGATIVE_PX:
-        return _of_negative(votes, explained=bool(low + offset_px > 0))
-    if sum(votes) < FEWEST or votes.exchanged < MAJORITY_MIXED * votes.in_order:
+        return IN_ORDER if low + (offset_px or 0.0) > 0 else _of_negative(votes)
+    majority = MAJORITY_MIXED if low <= NEGATIVE_PX else MAJORITY_POSITIVE
+    if sum(votes) < MIN_STRIPS_AGAINST or votes.exchanged < majority * votes.in_order:
         return IN_ORDER
     return _as_exchanged(f"{votes.exchanged} of {sum(votes)} contours occlude as in exchanged views")
 
 
-def _of_negative(votes: _Votes, explained: bool) -> ViewOrder:
-    """Judge a map whose disparities are all negative. explained: the known cameras cause negative disparities."""
-    if explained:
-        return IN_ORDER
-    if sum(votes) >= FEWEST and votes.in_order >= MAJORITY * votes.exchanged:
-        reason = f"{votes.in_order} of {sum(votes)} contours occlude as in this order"
+def _of_negative(votes: _Votes) -> ViewOrder:
+    """Judge a map whose disparities are all negative: of exchanged views, or of pictures that were shifted."""
+    count, decided = sum(votes), sum(votes) >= MIN_STRIPS
+    if decided and votes.in_order >= MAJORITY * votes.exchanged:
+        reason = f"{votes.in_order} of {count} contours occlude as in this order"
         return ViewOrder(False, f"every disparity is negative, and yet left and right are in order: {reason}")
-    return _as_exchanged("every disparity is negative")
+    if decided and votes.exchanged >= MAJORITY * votes.in_order:
+        reason = f"{votes.exchanged} of {count} contours occlude as in exchanged views"
+        return _as_exchanged(f"every disparity is negative, and {reason}")
+    return ViewOrder(
+        False,
+        f"it is open whether left and right are exchanged: every disparity is negative, and {votes.in_order} contours "
+        f"occlude as in this order, {votes.exchanged} as in exchanged views. The order was left as it is. If near "
+        "things feel far, exchange the two names; or, if they are in order, write `order: as-named` under `scene:`",
+        open=True,
+    )
 
 
 def _as_exchanged(reason: str) -> ViewOrder:

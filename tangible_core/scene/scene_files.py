@@ -17,7 +17,7 @@ Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Start = Annotated[int, Field(ge=0)]
 Count = Annotated[int, Field(ge=1)]
 Percent = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
-VideoLayout = Literal["mono", "side-by-side", "cross-eyed", "top-bottom"]
+VideoLayout = Literal["mono", "side-by-side", "cross-eyed", "top-bottom", "bottom-top"]
 Fps = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)]
 Number = Annotated[float, Field(allow_inf_nan=False)]
 
@@ -69,8 +69,9 @@ class SceneFiles(Quantities):
     """Start the video again at its end."""
     layout: VideoLayout | None = None
     """Arrangement of the halves of `stereo`, or of each frame of `video`: `side-by-side`, the left view on the left;
-    `cross-eyed`, the left view on the right; `top-bottom`, the left view on top; `mono`, for a video of one view. When
-    left out, the one that the file states, and otherwise side-by-side (.jps: cross-eyed; a video: mono)."""
+    `cross-eyed`, the left view on the right; `top-bottom`, the left view on top; `bottom-top`, the left view below;
+    `mono`, for a video of one view. When left out, the one that the file states, and otherwise side-by-side (.jps:
+    cross-eyed; a video: mono)."""
     photo: Path | None = None
     """A single picture."""
     photo_depth: bool = True
@@ -95,10 +96,12 @@ class SceneFiles(Quantities):
     offset_px: Annotated[float, Field(allow_inf_nan=False)] | None = None
     """Column of the right camera's principal point minus that of the left (Middlebury's `doffs`); 0 if left out."""
     rig: Path | None = None
-    """Calibration of the two cameras that took left and right (K, lens distortion, rotation, translation), in OpenCV's
-    YAML (M1, D1, M2, D2, R, T) or Kalibr's (cam0, cam1): the raw pair is rectified by it, and depth is metric."""
+    """Calibration of the two cameras that took left and right (K, lens distortion, rotation, translation): OpenCV's
+    YAML or XML (M1, D1, M2, D2, R, T), Kalibr's (cam0, cam1), ROS's left.yaml beside right.yaml, or calib.txt of
+    Middlebury or KITTI. The raw pair is rectified by it, and depth is metric; the right camera may stand below."""
     rig_unit_m: Length | None = None
-    """Metres that one unit of the rig's translation is; 1 when left out, 0.001 for a board measured in millimetres."""
+    """Metres that one unit of the rig's translation is; when left out 1, or what the format defines (Middlebury:
+    millimetres); 0.001 for a board measured in millimetres."""
     relief_m: Length | None = None
     """Height of the relief made from a height map; by default that of `workspace`."""
     order: Literal["as-named"] | None = None

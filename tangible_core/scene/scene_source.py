@@ -19,10 +19,10 @@ from ..errors import ConfigError, PictureError, wrong_argument
 from ..files.paths import as_path
 from .formats.height_maps import find_picture, in_metres, read_heights_metadata
 from .formats.multi_picture import Notify
-from .formats.pairs import Layout, halves, read_pair
+from .formats.pairs import Layout, Stored, halves, read_pair, read_stored, views_of
 from .formats.phone_depth import read_phone_depth
 from .formats.pictures import labels_of, map_of, picture_of, read_labels, read_map, read_picture, read_truth, truth_of
-from .formats.rigs import read_rig
+from .formats.rigs import find_rig, read_rig
 from .framing import apply_framing, cut_out, measured_size
 from .rig import StereoRig, rectify_views
 from .scene_files import SceneFiles
@@ -33,6 +33,9 @@ log: logging.Logger = logging.getLogger(__name__)
 _PICTURES = {"left", "right", "photo", "stereo"}
 _PARTS = ("left", "right", "stereo", "photo", "video", "height", "disparity", "segments", "truth")
 _PHONE_DEPTH = "phone depth"
+_INSTEAD_OF_RIG = ("rig", "focal_px", "disparity", "truth", "segments", "crop")
+FAR_APART_M = 10.0
+"""Baseline from which millimetres are more likely than metres, unless the pictures were taken from the air."""
 
 
 def _read_heights(path: Path, notify: Notify) -> Float32[np.ndarray, "h w"]:
@@ -79,10 +82,15 @@ class SceneSource:
         }
         files = self.files.model_copy(update=paths)
         notes: list[str] = []
-        rig, size = (self.rig, None) if "rig" not in paths else read_rig(paths["rig"], files.rig_unit_m or 1.0)
+        rig, size = (self.rig, None) if "rig" not in paths else read_rig(paths["rig"], files.rig_unit_m)
         first = None if files.video is None else read_video(files.video, files, rig, notes.append)
         parts = {} if first is None else parts_of(first.picture, files, first.video.name)
+        if files.left is not None:
+            left, right = (self._read_view(part, getattr(files, part), notes.append) for part in ("left", "right"))
+            parts |= views_of(left, right, files.non_finite, notes.append)._asdict()
         for part, path in files:
+            if part in parts:
+                continue
             if part in arrays:
                 parts |= _convert(part, as_picture(part, arrays[part]), files)
             elif isinstance(path, Path) and part not in ("rig", "video"):
@@ -92,6 +100,11 @@ class SceneSource:
                 f"{paths.get(files.main, self.name)} is not {size[0]} x {size[1]}, the size that the rig was "
                 "calibrated for"
             )
+        if {"left", "right"} <= paths.keys() and not any(getattr(files, name) for name in _INSTEAD_OF_RIG):
+            shape = (parts["left"].shape[0], parts["left"].shape[1])
+            if found := find_rig(paths["left"], paths["right"], shape):
+                named = found.relative_to(self.folder) if found.is_relative_to(self.folder) else found
+                notes.append(f"{found.name} states the cameras of the pair; write `rig: {named}` to use it")
         fields = _fields(files, parts, rig, notes)
         for each in notes:
             log.info("%s", each)
@@ -102,6 +115,12 @@ class SceneSource:
             "notes": tuple(notes),
             "files": self.origin,
         }
+
+    def _read_view(self, part: str, path: Path, notify: Notify) -> Stored:
+        """Read a view of a pair as it is stored. Raises: PictureError."""
+        if part not in (self.arrays or {}):
+            return read_stored(path, notify)
+        return Stored(as_picture(part, cast(Any, self.arrays)[part]).copy(), None, str(path))
 
 
 def source_of_arguments(arguments: Mapping[str, Any]) -> SceneSource:
@@ -195,6 +214,11 @@ def _fields(files: SceneFiles, parts: dict[str, np.ndarray], rig: StereoRig | No
     if rig is not None and views is not None:
         views, known = rectify_views(views, rig)
         shown = None
+    if views is not None and views.calibration is not None and views.calibration.baseline_m >= FAR_APART_M:
+        cure = "rig_unit_m: 0.001" if rig is not None else f"baseline_m: {views.calibration.baseline_m:g} mm"
+        notes.append(
+            f"the cameras stand {views.calibration.baseline_m:.4g} m apart; if these are millimetres, write `{cure}`"
+        )
     for each in (known, shown, parts.get("height"), parts.get("truth")):
         if each is not None:
             each.flags.writeable = False

@@ -145,14 +145,22 @@ def _make_phone(folder: Path) -> None:
 
 def _make_rigs(folder: Path) -> None:
     (folder / "camchain.yaml").write_text(KALIBR)
-    storage = cv2.FileStorage(str(folder / "rig.yml"), cv2.FILE_STORAGE_WRITE)
+    (folder / "calib.txt").write_text(standard_sets.CALIB)
+    (folder / "000000.txt").write_text(KITTI)
+    for side, shift in (("left", 0), ("right", -11)):
+        (folder / f"{side}.yaml").write_text(
+            "image_width: 16\nimage_height: 12\nK: [110, 0, 60, 0, 113, 44, 0, 0, 1]\nD: [0.1, 0.01, 0, 0, 0]\n"
+            f"R: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nP: [110, 0, 60, {shift}, 0, 110, 44, 0, 0, 0, 1, 0]\n"
+        )
     camera = np.array([[110.0, 0, 60], [0, 113, 44], [0, 0, 1]])
-    for name, value in {
-        "M1": camera, "D1": np.array([[0.1, 0.01, 0, 0]]), "M2": camera, "D2": np.zeros((1, 5)), "R": np.eye(3),
-        "T": np.array([[-0.1], [0], [0]]),
-    }.items():  # fmt: skip
-        storage.write(name, value)
-    storage.release()
+    for suffix in ("yml", "xml"):
+        storage = cv2.FileStorage(str(folder / f"rig.{suffix}"), cv2.FILE_STORAGE_WRITE)
+        for name, value in {
+            "M1": camera, "D1": np.array([[0.1, 0.01, 0, 0]]), "M2": camera, "D2": np.zeros((1, 5)), "R": np.eye(3),
+            "T": np.array([[-0.1], [0], [0]]),
+        }.items():  # fmt: skip
+            storage.write(name, value)
+        storage.release()
 
 
 KALIBR = """\
@@ -741,7 +749,8 @@ READERS = {
         _pair,
     ),
     "phone-photo": Reader(_make_phone, _photo),
-    "cameras-of-a-rig": Reader(_make_rigs, _rig, text=True),
+    "cameras-of-a-rig": Reader(_make_rigs, _rig, "[!r]*.*", text=True),
+    "cameras-of-opencv": Reader(_make_rigs, _rig, "rig.*", text=True),
     "heights-in-mm": Reader(_make_heights, _heights),
     "heights-metadata": Reader(_make_heights, _heights, "*.json", text=True),
     "pipeline": Reader(_make_pipelines, _pipeline, "*.yaml", text=True),

@@ -46,9 +46,9 @@ class PipelineFrames(FrameMaker):
         """Return the disparity of the first frame in pixels of the pictures, and keep its decisions for the others."""
         stage = self._stage(views)
         self._estimate = (
-            self._method.follow(stage.views) if isinstance(self._method, Following) else self._method.estimate
+            self._method.follow(stage.matched_views) if isinstance(self._method, Following) else self._method.estimate
         )
-        estimate = stage.estimate(self._estimate, stage.views)
+        estimate = stage.estimate(self._estimate)
         order = stage.order(estimate, stage.views)
         if order is not None:
             self._exchanged = order.exchanged
@@ -57,7 +57,7 @@ class PipelineFrames(FrameMaker):
     def disparity(self, views: Views) -> DisparityMap:
         """Return the disparity of a frame in pixels of the pictures."""
         stage = self._stage(views)
-        return stage.in_picture_pixels(stage.estimate(self._estimate, stage.views), self._exchanged)
+        return stage.in_picture_pixels(stage.estimate(self._estimate), self._exchanged)
 
     def scale(self, disparity: DisparityMap) -> ReliefScale:
         """Return the scale of the relief of a map alone."""

@@ -13,11 +13,12 @@ Notify = Callable[[str], None]
 """A callback that takes remarks on a file, such as that it holds further pictures."""
 
 MOST_PAGES = 100
-"""Largest number of pages of a TIFF that are counted."""
+"""Largest number of pages of a TIFF, or pictures of a Multi-Picture file, that are counted."""
 NOT_A_PAGE = 0b101
 """Bits of a TIFF's NewSubfileType that mark a smaller copy, or a mask, of another page."""
 _SUBFILE, _MP_ENTRIES = 254, 0xB002  # tags of TIFF and of the Multi-Picture Format
 _MP_HEAD = re.compile(rb"MPF\0(?:II\*\0|MM\0\*)")
+_AUXILIARY = re.compile(rb"hdr-gain-map|:iso:ts:21496:|AuxiliaryImageType")  # in gain maps, and a phone's depth
 
 
 def ignore(_: str) -> None:
@@ -69,7 +70,23 @@ def multi_pictures(image: "Image", data: bytes) -> list[Part]:
 
 
 def view_numbers(image: "Image") -> list[int]:
-    """Return the numbers of those pictures of a Multi-Picture file that show the scene from different places."""
+    """Return the numbers of those pictures of a Multi-Picture file that show the scene from different places.
+
+    Where the file does not type two of them so, they are the pictures of the first one's size: editors write any type.
+    """
     entries = cast(Any, image).mpinfo[_MP_ENTRIES]
-    kinds = [str(each["Attribute"]["MPType"]) for each in entries]
-    return [number for number, kind in enumerate(kinds) if "Disparity" in kind or "Multi-Angle" in kind]
+    kinds = [str(entry["Attribute"]["MPType"]) for entry in entries]
+    views = [number for number, kind in enumerate(kinds) if "Disparity" in kind or "Multi-Angle" in kind]
+    return views if len(views) > 1 else _of_first_size(image, len(entries))
+
+
+def _of_first_size(image: "Image", count: int) -> list[int]:
+    image.seek(0)
+    first = image.size
+    numbers = [0]
+    for number in range(1, min(count, MOST_PAGES)):
+        image.seek(number)
+        segments = cast(Any, image).applist
+        if image.size == first and not any(_AUXILIARY.search(content) for _, content in segments):
+            numbers.append(number)
+    return numbers

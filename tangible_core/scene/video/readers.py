@@ -10,10 +10,11 @@ from typing import final
 import numpy as np
 from jaxtyping import UInt8
 
-from ...data.pictures import opaque, to_rgb8
+from ...data.pictures import full_scale, opaque, to_rgb8
 from ...errors import PictureError
 from ..formats.kinds import PICTURES
-from ..formats.pictures import read_picture
+from ..formats.pairs import Stored, read_stored, same_type, turn_alike
+from ..formats.pictures import picture_of
 from .capture import USUAL_FPS, Capture, grab, open_file, position_s, retrieve, stated_count, stated_fps
 from .frames import VideoFrame, VideoFrames, ViewsOf
 
@@ -155,7 +156,11 @@ class FileFrames(VideoFrames):
 
 @final
 class FolderFrames(VideoFrames):
-    """The pictures of a folder, in the order of the numbers in their names; skipped ones are not read."""
+    """The pictures of a folder, in the order of the numbers in their names; skipped ones are not read.
+
+    The first one that is read decides the white of floats and of whole numbers of more than 16 bits, and the
+    orientation of pictures that state none.
+    """
 
     def __init__(self, folder: Path, fps: float | None, repeat: bool, views_of: ViewsOf) -> None:
         """fps: 30 a second by default. Raises: PictureError if the folder has no picture."""
@@ -164,6 +169,7 @@ class FolderFrames(VideoFrames):
         self.count: int | None = len(self._pictures)
         self._folder, self._repeat = folder, repeat
         self._number = 0
+        self._first: Stored | None = None
 
     @property
     def at_end(self) -> bool:
@@ -199,12 +205,21 @@ class FolderFrames(VideoFrames):
         self._number += 1
         path = self._pictures[number % len(self._pictures)]
         try:
-            picture = as_frame(read_picture(path))
+            picture = as_frame(self._like_first(read_stored(path)))
         except PictureError as error:
             self.skipped += 1
             self._raise_once("damaged", error)
             return None
         return self._frame(number, number / self.fps, picture, path)
+
+    def _like_first(self, stored: Stored) -> np.ndarray:
+        """Return a picture with the orientation and white of the first one. Raises: PictureError as `picture_of`."""
+        first = self._first or stored
+        picture = picture_of(same_type(first, turn_alike(stored, first))[1], stored.name)
+        self._first = first
+        if picture.dtype.kind == first.values.dtype.kind == "f":
+            return np.clip(picture / full_scale(first.values), 0, 1)
+        return picture
 
 
 def pictures_of(folder: Path) -> list[Path]:

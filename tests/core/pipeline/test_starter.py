@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 import cv2
 import numpy as np
 import pytest
+from PIL import Image
 
 from command_line import tangible
 from pictures import write_png
@@ -115,6 +116,14 @@ def test_starter_of_a_video_reads_its_first_frame(folder: Path):
     )
     with pytest.raises(ConfigError, match="left and right are two pictures"):
         starter([Path("walk.avi")] * 2, folder / "p.yaml")
+
+
+def test_starter_of_a_stereo_jpeg_is_a_pair(folder: Path):
+    Image.fromarray(np.zeros((20, 60), np.uint8)).save(folder / "both.JPS", format="JPEG")
+    made = starter([folder / "both.JPS"], folder / "p.yaml")
+    assert "\nscene: {stereo: both.JPS}\n" in made.text
+    assert made.scene.views is not None and made.scene.views.right is not None
+    assert made.scene.views.shape == (20, 30)
 
 
 def test_new_writes_a_file_that_runs_and_never_overwrites(folder: Path):

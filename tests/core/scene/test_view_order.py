@@ -29,10 +29,11 @@ def box_and_wall(box_px: float, wall_px: float) -> tuple[DisparityMap, np.ndarra
         (40, 10, False, ""),
         (10, -20, False, ""),
         (-10, -40, False, "every disparity is negative, and yet left and right are in order: 120 of 120 contours"),
-        (-40, -10, True, "left and right seem to be exchanged: every disparity is negative. The depth was corrected"),
+        (-40, -10, True, "left and right seem to be exchanged: every disparity is negative, and 120 of 120 contours"),
         (-20, 10, True, "left and right seem to be exchanged: 120 of 120 contours occlude"),
+        (10, 40, True, "left and right seem to be exchanged: 120 of 120 contours occlude"),
     ],
-    ids=["in order", "converging", "shifted", "exchanged", "exchanged and converging"],
+    ids=["in order", "converging", "shifted", "exchanged", "exchanged and converging", "exchanged and shifted"],
 )
 def test_view_order_follows_occlusion(box_px: float, wall_px: float, exchanged: bool, message: str):
     order = view_order(*box_and_wall(box_px, wall_px))
@@ -40,10 +41,12 @@ def test_view_order_follows_occlusion(box_px: float, wall_px: float, exchanged: 
     assert order.message.startswith(message) and bool(order.message) == bool(message)
 
 
-def test_view_order_without_occlusion_follows_signs_unless_cameras_explain_them():
+def test_view_order_without_occlusion_is_open_unless_cameras_explain_the_signs():
     flat, picture = DisparityMap(np.full(SHAPE, -8, np.float32)), np.zeros(SHAPE, np.uint8)
-    assert view_order(flat, picture).exchanged
-    assert not view_order(flat, picture, offset_px=31.0).exchanged
+    order = view_order(flat, picture)
+    assert order.open and not order.exchanged
+    assert order.message.startswith("it is open whether left and right are exchanged: every disparity is negative")
+    assert view_order(flat, picture, offset_px=31.0) == pair_checks.IN_ORDER
     assert view_order(*box_and_wall(-40, -10), offset_px=31.0).exchanged
 
 
@@ -52,6 +55,56 @@ def test_view_order_of_relative_or_uncertain_maps_has_no_message():
     relative = DisparityMap(values, unit="relative")
     unsure = DisparityMap(values, np.full(SHAPE, 0.1, np.float32))
     assert not any(view_order(each, np.zeros(SHAPE, np.uint8)).message for each in (relative, unsure))
+
+
+@pytest.mark.parametrize(
+    ("low_px", "votes", "exchanged", "is_open"),
+    [
+        (-40, (44, 15), False, False),
+        (-40, (15, 44), True, False),
+        (-40, (18, 10), False, False),
+        (-40, (17, 10), False, True),
+        (-40, (10, 17), False, True),
+        (-40, (10, 18), True, False),
+        (-40, (19, 0), False, True),
+        (-40, (0, 19), False, True),
+        (-40, (20, 0), False, False),
+        (20, (0, 49), False, False),
+        (20, (0, 50), True, False),
+        (20, (25, 49), False, False),
+        (20, (24, 48), True, False),
+        (40, (0, 49), False, False),
+        (40, (17, 50), False, False),
+        (40, (17, 51), True, False),
+    ],
+)
+def test_order_follows_a_clear_majority_of_contours(low_px, votes, exchanged: bool, is_open: bool, monkeypatch):
+    """Disparities are -40 to -10 px, or have both signs, -20 to 20 px, or are 10 to 40 px."""
+    monkeypatch.setattr(pair_checks, "_votes", lambda *_: pair_checks._Votes(*votes))
+    disparity, picture = box_and_wall(low_px, {-40: -10, 20: -20, 40: 10}[low_px])
+    order = view_order(disparity, picture)
+    assert (order.exchanged, order.open) == (exchanged, is_open)
+    assert ("is open" in order.message) == is_open
+    if low_px == 40:
+        assert view_order(disparity, picture, offset_px=0.0) == pair_checks.IN_ORDER
+
+
+@pytest.mark.parametrize("exchanged", [False, True])
+def test_stereo_card_of_few_rows_is_felt_the_right_way_round(exchanged: bool):
+    """A textured box of 55 rows stands 12 px before a wall, in two pictures that were shifted by 30 px: 55 strips."""
+    random = np.random.default_rng(0)
+    left, right = random.integers(0, 90, (2, 75, 260), np.uint8)
+    right[:, 30:] = left[:, :-30]
+    box = random.integers(160, 255, (55, 60), np.uint8)
+    left[10:65, 100:160] = right[10:65, 118:178] = box
+    scene = Scene.pair(right, left) if exchanged else Scene.pair(left, right)
+    pipeline = Pipeline(scene, depth=SemiGlobal(rectify="never"), cached=False)
+    height_m = pipeline.relief.height_m
+    rows, columns = height_m.shape
+    assert height_m[rows // 2, columns // 2] > height_m[rows // 2, columns // 10] + 0.001
+    [outcome] = [each for each in pipeline.outcomes if each.product == "disparity"]
+    assert ("left and right seem to be exchanged" in outcome.why) == exchanged
+    assert "is open" not in outcome.why
 
 
 def test_correct_exchanged_changes_the_signs():

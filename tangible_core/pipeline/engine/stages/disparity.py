@@ -4,6 +4,8 @@ import logging
 from collections.abc import Callable
 from functools import cached_property
 
+import numpy as np
+
 from ....data import DisparityMap, Views
 from ....errors import PictureError, TangibleError
 from ....plugins.notes import doubt, note
@@ -33,10 +35,10 @@ class DisparityStage(MethodStage):
 
     def make(self, inputs: Inputs) -> DisparityMap:
         views = self.views
-        estimate = self.estimate(self.required_choice.method.estimate, views)
+        estimate = self.estimate(self.required_choice.method.estimate)
         order = self.order(estimate, views)
         if order is not None and order.message:
-            note(log, order.message, logging.WARNING if order.exchanged else logging.INFO)
+            note(log, order.message, logging.WARNING if order.exchanged or order.open else logging.INFO)
         disparity = self.in_picture_pixels(estimate, exchanged=order is not None and order.exchanged)
         if views.right is not None:
             reason = pair_checks.identical_views(views, disparity) or pair_checks.few_matches(
@@ -46,19 +48,32 @@ class DisparityStage(MethodStage):
                 doubt(log, reason)
         return disparity
 
-    def estimate(self, method: Callable[[Views], DisparityMap], views: Views) -> DisparityMap:
-        """Return the method's map of these views. Raises: BrokenMethod for another size; whatever the method raises."""
+    @property
+    def matched_views(self) -> Views:
+        """The pictures on the working grid as they are matched: along rows, also where one camera stands below."""
+        views = self.views
+        if not self._is_vertical or views.right is None:
+            return views
+        return Views(_quarter_turns(views.left, 1), _quarter_turns(views.right, 1), views.calibration)
+
+    def estimate(self, method: Callable[[Views], DisparityMap]) -> DisparityMap:
+        """Return the method's map of the views. Raises: BrokenMethod for another size; whatever the method raises."""
+        views = self.matched_views
         estimate = method(views)
         self.check_shape("disparity", estimate.disparity_px.shape, views.shape)
-        return estimate
+        if not self._is_vertical:
+            return estimate
+        return DisparityMap(
+            _quarter_turns(estimate.disparity_px, -1), _quarter_turns(estimate.confidence, -1), estimate.unit
+        )
 
     def order(self, estimate: DisparityMap, views: Views) -> ViewOrder | None:
         """Return the order of the views as the map shows it; None for one view, or where the file gives the order."""
-        if self._order_is_given or views.right is None:
+        if self._order_is_given or self._is_vertical or views.right is None:
             return None
         original = self.context.scene.views
-        offset_px = original.calibration.offset_px if original and original.calibration else 0.0
-        return pair_checks.view_order(estimate, views.left, offset_px / self.grid.factor)
+        offset_px = original.calibration.offset_px if original and original.calibration else None
+        return pair_checks.view_order(estimate, views.left, offset_px and offset_px / self.grid.factor)
 
     def in_picture_pixels(self, estimate: DisparityMap, exchanged: bool) -> DisparityMap:
         """Return the map on the working grid in pixels of the pictures, unknown where the pictures are.
@@ -98,3 +113,12 @@ class DisparityStage(MethodStage):
     def _order_is_given(self) -> bool:
         files = self.context.scene.files
         return isinstance(files, SceneFiles) and files.order == "as-named"
+
+    @property
+    def _is_vertical(self) -> bool:
+        views = self.context.scene.views
+        return views is not None and views.calibration is not None and views.calibration.vertical
+
+
+def _quarter_turns(values: np.ndarray, quarters: int) -> np.ndarray:
+    return np.ascontiguousarray(np.rot90(values, quarters))

@@ -33,6 +33,7 @@ from tangible_core.plugins.interfaces import (
 from tangible_core.plugins.notes import doubt, note
 from tangible_core.plugins.registry import Registry
 from tangible_core.relief import ReliefChoice
+from tangible_core.scene import pair_checks
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_files import SceneFiles
 from tangible_core.scene.workspace import Workspace
@@ -308,7 +309,8 @@ def test_outcome_of_views_has_the_notes_on_their_files(folder: Path, monkeypatch
     assert pipe.outcomes[0].why.endswith("; the first of 3 frames is taken")
 
 
-def test_views_ordered_as_named_are_not_exchanged(folder: Path):
+def test_views_ordered_as_named_are_not_exchanged(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(pair_checks, "view_order", lambda *_: pair_checks.ViewOrder(True, "exchanged"))
     paths = {"left": Path("left.png"), "right": Path("right.png")}
     found = pipeline(folder, scene=SceneFiles(**paths), depth=name_method(Ramp(slope=-3.0))).make("disparity")
     assert np.nanmax(found.disparity_px) == 87

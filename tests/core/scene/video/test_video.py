@@ -8,6 +8,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+import tifffile
+from PIL import Image
 from pydantic import ValidationError
 
 from pictures import write_png
@@ -64,7 +66,13 @@ class TestScene:
             np.testing.assert_array_equal(frames.next().views.left, scene.views.left)
 
     @pytest.mark.parametrize(
-        ("layout", "whole"), [("side-by-side", [1, 0, 9]), ("cross-eyed", [9, 0, 1]), ("top-bottom", [[1], [0], [9]])]
+        ("layout", "whole"),
+        [
+            ("side-by-side", [1, 0, 9]),
+            ("cross-eyed", [9, 0, 1]),
+            ("top-bottom", [[1], [0], [9]]),
+            ("bottom-top", [[9], [0], [1]]),
+        ],
     )
     def test_frames_of_a_stereo_video_are_pairs(self, tmp_path: Path, layout: str, whole: list):
         halves = np.kron(np.array(whole), np.ones((15, 15))).astype(np.uint8)  # an odd number: the middle is left out
@@ -104,6 +112,52 @@ class TestScene:
         assert first.calibration.focal_px == scene.views.calibration.focal_px and first.calibration.baseline_m > 0
         assert second.left.shape == first.left.shape
         assert np.any(second.left != first.left)
+
+    def test_vertical_rig_turns_every_frame_upright(self, tmp_path: Path):
+        lens = Camera(np.array([[100.0, 0, 40], [0, 100, 30], [0, 0, 1]]), np.zeros(0))
+        rig = StereoRig(lens, lens, np.eye(3), np.array([0, -0.1, 0]))
+        whole = np.random.default_rng(0).integers(0, 255, (60, 160, 3), np.uint8)
+        write_png(tmp_path / "0.png", whole)
+        scene = Scene.video(tmp_path, layout="side-by-side", rig=rig)
+        with scene.frames.open() as frames:
+            views = frames.next().views
+        assert views.calibration.vertical and scene.views.calibration.vertical
+        np.testing.assert_array_equal(views.left, whole[:, :80])
+        np.testing.assert_array_equal(views.right, whole[:, 80:])
+
+    def test_frames_of_other_depth_and_channels_show_the_same(self, tmp_path: Path):
+        shades = np.arange(48, dtype=np.uint8).reshape(6, 8) * 5
+        colours = np.dstack([shades] * 3)
+        Image.fromarray(colours).save(tmp_path / "0.png")
+        Image.fromarray(shades).save(tmp_path / "1.png")
+        Image.fromarray(shades.astype(np.uint16) * 257).save(tmp_path / "2.png")
+        write_png(tmp_path / "3.png", colours.astype(np.uint16) * 257)
+        Image.fromarray(np.dstack([colours, np.full_like(shades, 255)])).save(tmp_path / "4.png")
+        Image.fromarray(shades).convert("P").save(tmp_path / "5.png")
+        with Scene.video(tmp_path, repeat=False).frames.open() as frames:
+            shown = [frames.next().views.left for _ in range(6)]
+        for left in shown:
+            np.testing.assert_array_equal(left, colours)
+
+    def test_first_frame_decides_white_and_orientation(self, tmp_path: Path):
+        """Floats up to 200 and up to 2 in one film have one white, 255; only the first frame says how it was held."""
+        bright, dark = np.full((4, 6), 200, np.float32), np.full((4, 6), 2, np.float32)
+        exif = Image.Exif()
+        exif[0x0112] = 6
+        Image.fromarray(bright).save(tmp_path / "0.tif", exif=exif)
+        Image.fromarray(dark).save(tmp_path / "1.tif")
+        with Scene.video(tmp_path, repeat=False).frames.open() as frames:
+            first, second = (frames.next().views.left for _ in range(2))
+        assert first.shape == second.shape == (6, 4, 3)
+        assert (first.max(), second.max()) == (200, 2)
+
+    def test_whole_numbers_of_32_bits_have_one_white_in_a_film(self, tmp_path: Path):
+        """Of 16 bits by the first frame; alone, the second one would pass for eight bits."""
+        for number, value in enumerate((40_000, 200)):
+            tifffile.imwrite(tmp_path / f"{number}.tif", np.full((4, 6), value, np.int32))
+        with Scene.video(tmp_path, repeat=False).frames.open() as frames:
+            first, second = (frames.next().views.left for _ in range(2))
+        assert (first.max(), second.max()) == (round(40_000 / 257), round(200 / 257))
 
 
 class TestFiles:
@@ -261,8 +315,8 @@ class TestFolders:
     def test_folder_reads_due_pictures_only(self, folder: Path, monkeypatch: pytest.MonkeyPatch):
         video = Scene.video(folder, repeat=False).frames
         read: list[str] = []
-        whole = video_readers.read_picture
-        monkeypatch.setattr(video_readers, "read_picture", lambda path: read.append(path.name) or whole(path))
+        whole = video_readers.read_stored
+        monkeypatch.setattr(video_readers, "read_stored", lambda path: read.append(path.name) or whole(path))
         with video.open() as frames:
             assert [frames.at(number / 30).number for number in (0, 5)] == [0, 5]
             assert frames.at(0.19) is None and frames.skipped == 4

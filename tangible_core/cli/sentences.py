@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from ..data import Outcome
+    from ..data import HapticSurface, Outcome
     from ..pipeline.output.export_result import Export
     from ..pipeline.output.runs import Run
     from ..testing import CheckResult
@@ -22,20 +22,29 @@ def run_summary(run: Run) -> str:
     scene, products = without_folders(run.scene), [name for name, value in run.products.items() if value is not None]
     if made_simpler(run.outcomes):
         scene += ", its parts simplified,"
-    size, touch = "", ""
+    size, touch, flat = "", "", ""
     if (surface := run.products.get("surface")) is not None:
         width_m, length_m = surface.extent_m
-        height_m = float(surface.height_m.max())
+        height_m, flat = float(surface.height_m.max()), _flat(surface)
         size = f", as a surface of {1e3 * width_m:.0f} x {1e3 * length_m:.0f} mm, {1e3 * height_m:.3g} mm high"
     if (force := run.figures.get("force")) is not None:
         peak_n = f"{force['peak_force_n']:.1f}"
         touch = f" A simulated hand felt it for {force['seconds']:.1f} s, with forces of up to {peak_n} N."
+    if "touch" in products and flat:
+        return f"{scene} has come out flat, {flat}{size}.{touch}"
     if "touch" in products:
         return f"{scene} can now be felt{size}.{touch}"
     if products:
         several = len(products) > 1 or products[0].endswith("s")  # materials, segments, views
         return f"{scene} is done: its {listing(products)} {'are' if several else 'is'} made{size}.{touch}"
     return f"{scene} is done: nothing of it had to be made{size}.{touch}"
+
+
+def _flat(surface: HapticSurface) -> str:
+    """Return what there is to feel on a flat surface; empty for another one."""
+    if not surface.relief.is_flat:
+        return ""
+    return "only its materials can be felt" if len(surface.materials or ()) > 1 else "there is nothing to feel"
 
 
 def where(files: Sequence[Path]) -> str:

@@ -4,7 +4,7 @@ A picture is (h, w), (h, w, 3) or (h, w, 4) RGB(A); uint8, uint16, bool, or floa
 other type are understood where they are those of 8 or 16 bits, and floating point in 0..255 or 0..65535 as well.
 """
 
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from jaxtyping import Bool, Float32, UInt8
@@ -18,6 +18,10 @@ RED, BLUE = np.float32(0.299), np.float32(0.114)
 
 MOST = 65535
 """The largest value of a picture: 16 bits."""
+FAINT = 1e-5
+"""Share of its range below which the values of a picture are one: less than a step of 16 bits."""
+USED_SHARE = 0.25
+"""Share of its range, from black to white, that a picture of more than 8 bits uses if it is full: 14 bits of 16."""
 BRIGHTEST = 4.0
 """The largest value of a float picture in 0..1, two stops above white; one that exceeds it is in 0..255."""
 
@@ -110,6 +114,41 @@ def full_scale(picture: np.ndarray, *others: np.ndarray) -> float:
         largest = max(float(np.max(np.abs(values))) for values in (picture, *others))
         return next((white for white in (255.0, float(MOST)) if BRIGHTEST < largest <= white), max(1.0, largest))
     return 1.0 if picture.dtype == np.bool_ else float(np.iinfo(picture.dtype).max)
+
+
+class UsedRange(NamedTuple):
+    """The values between black and white that a picture of more than 8 bits uses, where these are few."""
+
+    low: float
+    high: float
+    white: float
+
+    def stretch(self, picture: np.ndarray) -> np.ndarray:
+        """Return a picture in which these values run from black to white; those beyond are clipped."""
+        share = (np.clip(picture, self.low, self.high).astype(np.float64) - self.low) / (self.high - self.low)
+        values = share * self.white
+        return (np.rint(values) if picture.dtype.kind == "u" else values).astype(picture.dtype)
+
+    def sentence(self, name: str) -> str:
+        """Return the remark that a picture is stretched."""
+        part = 100 * (self.high - self.low) / self.white
+        return (
+            f"{name} uses {part:.2g} % of its range ({self.low:.6g} to {self.high:.6g} of {self.white:g}); it is "
+            "stretched to all of it"
+        )
+
+
+def used_range(*pictures: np.ndarray) -> UsedRange | None:
+    """Return the range that these pictures use together; None if it is not small, or they have 8 bits.
+
+    A thermal camera writes tenths of kelvins into 16 bits: its pictures are next to black as they are.
+    """
+    if not pictures or any(picture.dtype.itemsize == 1 for picture in pictures):
+        return None
+    tones = [picture[..., :3] if picture.ndim == 3 else picture for picture in pictures]
+    low, high = float(min(map(np.min, tones))), float(max(map(np.max, tones)))
+    white = max(map(full_scale, tones))
+    return UsedRange(low, high, white) if FAINT * white < high - low <= USED_SHARE * white else None
 
 
 def to_grey(picture: np.ndarray) -> Float32[np.ndarray, "h w"]:

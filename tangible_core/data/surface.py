@@ -17,6 +17,8 @@ from .records import Record
 Texture = Literal["smooth", "periodic", "stochastic", "stick-slip", "drag"]
 TEXTURES: tuple[Texture, ...] = get_args(Texture)
 """The models of a material's fine texture."""
+FLAT_M = 1e-5
+"""Difference of heights below which a relief is flat: a third of what a Falcon resolves."""
 
 
 @named_fields
@@ -51,6 +53,11 @@ class Relief(Record):
         """The width and length of one cell, metres."""
         rows, columns = self.height_m.shape
         return self.extent_m[0] / columns, self.extent_m[1] / rows
+
+    @property
+    def is_flat(self) -> bool:
+        """True if nothing stands out that can be felt."""
+        return float(np.ptp(self.height_m)) < FLAT_M
 
 
 @named_fields

@@ -219,6 +219,7 @@ class Feeling:
             size=config.size,
             safety=config.safety,
             scene_relief_m=self.engine.scene.relief_m,
+            exaggeration=None if config.workspace.scale is None else config.workspace.exaggeration,
             of_parts=config.heights is not None,
             smoothed=self.engine.scene.height is None,
             slope=config.relief.slope if config.relief_kind in ("depth", "edges") else None,

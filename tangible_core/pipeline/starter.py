@@ -95,7 +95,7 @@ def starter(pictures: Sequence[Path], file: Path) -> Starter:
     if scene.frames is not None:
         values["name"] += ", its first frame"
         values["scene"] += "   # with layout: side-by-side, if each frame holds the two views of a pair"
-    template = kind if scene.measured is None else "measured"
+    template = "measured" if scene.own_size else kind
     text = files("tangible_core.pipeline").joinpath(f"starter_{template}.yaml").read_text(encoding="utf-8")
     return Starter(Template(text).substitute(values, file=plain_line(str(file)), **_size(scene, kind)), scene)
 
@@ -141,13 +141,14 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
     shades = scene.height if scene.views is None else to_grey(scene.views.left)
     assert shades is not None
     rows, columns = shades.shape
-    longer = max(rows, columns)
+    width, length = scene.measured[:2] if scene.measured else (columns, rows)
+    longer = max(width, length)
     size: dict[str, object] = {"columns": columns, "rows": rows}
-    size |= {"width_mm": f"{SIDE_MM * columns / longer:.3g}", "length_mm": f"{SIDE_MM * rows / longer:.3g}"}
+    size |= {"width_mm": f"{SIDE_MM * width / longer:.3g}", "length_mm": f"{SIDE_MM * length / longer:.3g}"}
     if kind == "pair":
         return size
-    if scene.measured is not None:
-        lengths_m = zip(("width_mm", "length_mm", "relief_mm"), scene.measured, strict=True)
+    if scene.own_size:
+        lengths_m = zip(("width_mm", "length_mm", "relief_mm"), scene.own_size, strict=True)
         return size | {name: f"{1e3 * length_m:.3g}" for name, length_m in lengths_m}
     slope = _slope(shades, SMOOTH_MM[kind])
     least, most = LEAST_MM, MOST_MM[kind]

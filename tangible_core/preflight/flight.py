@@ -92,7 +92,7 @@ class Flight:
     relief_key: str
     """Config key that sets the relief height; empty if heights are per part."""
     relief_m: float
-    """Relief height, metres."""
+    """Its value: the height of the relief in metres, or the exaggeration of heights at a scale."""
     smoothed: bool
     """True if `workspace.smooth_m` rounds the relief; a relief that the scene brings is not rounded."""
     slope: float | None

@@ -28,6 +28,7 @@ def survey(
     size: FeltSize | None = None,
     safety: Safety | None = None,
     scene_relief_m: float | None = None,
+    exaggeration: float | None = None,
     of_parts: bool = False,
     smoothed: bool = True,
     slope: float | None = None,
@@ -38,7 +39,8 @@ def survey(
 ) -> Flight:
     """Gather facts and measurements of a surface and its touch under a force law, on a device that is not opened.
 
-    scene_relief_m: height of the relief if the scene sets it and not the workspace. of_parts: heights are per part.
+    scene_relief_m: height of the relief if the scene sets it and not the workspace. exaggeration: of heights at a
+    scale, in place of a height of the relief. of_parts: heights are per part.
     smoothed: `workspace.smooth_m` rounds the relief. slope: `relief.slope`, where it limits this relief. law_name: of
     the force law in the configuration. fitted: the materials were limited to the device.
     Takes `loop.seconds`, in which this machine's lateness is measured, and a moment more.
@@ -49,6 +51,8 @@ def survey(
     period_s, spec = loop.period_s, device.spec()
     stiffness = stiffness_of(touch, spec).n_per_m
     probes = probe(touch, surface, hand.press_n, stiffness, spec.workspace_m[2], period_s)
+    of_scene = "scene.relief_m" if scene_relief_m else "workspace.relief_m"
+    key = "workspace.exaggeration" if exaggeration else of_scene
     _check_finite(law, probes)
     return Flight(
         surface=surface,
@@ -56,8 +60,8 @@ def survey(
         stiffness_n_per_m=stiffness,
         spec=spec,
         size=size,
-        relief_key="" if of_parts else "workspace.relief_m" if scene_relief_m is None else "scene.relief_m",
-        relief_m=scene_relief_m or size.relief_m,
+        relief_key="" if of_parts else key,
+        relief_m=exaggeration or scene_relief_m or size.relief_m,
         smoothed=smoothed,
         slope=slope,
         law_name=law_name,

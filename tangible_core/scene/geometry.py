@@ -19,7 +19,21 @@ RANGE_PERCENT = (0.5, 99.5)
 TINY, HUGE = 1e-30, 1e30
 """Magnitudes beyond which operations on a float32 may leave its range."""
 
+MAX_RELIEF_M = 1
+"""Height of the highest relief."""
+
 Coordinate = TypeVar("Coordinate", float, np.ndarray)
+
+
+class Rise(NamedTuple):
+    """What becomes of the heights of a map: 0 and the top of a relief, or a scale."""
+
+    m_per_m: float | None = None
+    """Metres of the relief in a metre of the map; None where the map's whole range becomes the relief's height."""
+    low_m: float | None = None
+    """The height that becomes 0, below which all is 0; None for the lowest of the map."""
+    high_m: float | None = None
+    """The height above which all is as high; None for the highest of the map."""
 
 
 class ValueRange(NamedTuple):
@@ -101,16 +115,22 @@ def _nearness(disparity: DisparityMap, calibration: Calibration | None) -> Float
     return nearness
 
 
-def scale_heights(heights: Shaped[np.ndarray, "h w"], width_m: float, relief_m: float, holes: Holes = "fill") -> Relief:
+def scale_heights(
+    heights: Shaped[np.ndarray, "h w"],
+    width_m: float,
+    relief_m: float,
+    holes: Holes = "fill",
+    spans: ValueRange | None = None,
+) -> Relief:
     """Make the relief of a height map in any unit: its lowest place at 0, its highest at relief_m, pixels square.
 
-    Places that are NaN or infinite are holes.
+    Places that are NaN or infinite are holes. spans: the heights that become 0 and relief_m, by default the extremes.
     Raises: GeometryError if width_m or relief_m is not positive, or if no height is known.
     """
     values = np.where(np.isfinite(heights), heights, np.nan)
     if np.isnan(values).all():
         raise GeometryError("the height map holds only NaN or infinity; use one with some known values")
-    return _relief(values, width_m, relief_m, holes, _range_of(values, (0, 100)))
+    return _relief(values, width_m, relief_m, holes, spans or _range_of(values, (0, 100)))
 
 
 def flat_relief(shape: tuple[int, int], width_m: float) -> Relief:

@@ -15,9 +15,10 @@ from ..data.arguments import named_options
 from ..data.short_repr import short_repr
 from ..errors import ConfigError, GeometryError, PictureError
 from .formats.height_maps import MeasuredSize
+from .formats.multi_picture import Notify, ignore
 from .formats.pairs import Layout
 from .formats.pictures import NonFinite, TruthScale
-from .geometry import Holes, fill_rows, scale_heights
+from .geometry import MAX_RELIEF_M, Holes, Rise, ValueRange, fill_rows, scale_heights
 from .rig import StereoRig
 from .scaling import felt_factor, reduced_map, reduced_shape
 from .scene_files import BUILTINS, SceneFiles, VideoLayout, scikit_image_data, unknown_scene
@@ -48,8 +49,10 @@ class Scene:
     """Heights in any unit, NaN where unknown: no depth is estimated."""
     relief_m: float | None = None
     """Height of the relief that `height` becomes; None for that of the workspace."""
+    offset: float = 0.0
+    """Number that was taken off all heights, which would drown their differences in 32 bits."""
     measured: MeasuredSize | None = None
-    """The size that the height map states: its heights are metres, and the lowest is kept."""
+    """The size that the height map states; where that is its own, its heights are metres, and the lowest is kept."""
     truth: Float32[np.ndarray, "h w"] | None = None
     """True disparity in pixels, NaN where unknown."""
     known: Bool[np.ndarray, "h w"] | None = None
@@ -60,6 +63,8 @@ class Scene:
     """The frames of a video, of which the views are the first."""
     notes: tuple[str, ...] = ()
     """Remarks on the files."""
+    warnings: tuple[str, ...] = ()
+    """Those of the remarks by which the scene may be another than was meant."""
     files: str | SceneFiles | None = None
     """The builtin name, or the files with absolute paths, from which it was read; None if a part was an array."""
 
@@ -77,6 +82,12 @@ class Scene:
         calibration: Calibration | None = None,
         rig: StereoRig | File | None = None,
         disparity: Picture | None = None,
+        disparity_scale: TruthScale | None = None,
+        depth: Picture | None = None,
+        depth_unit_m: float | None = None,
+        near_m: float | None = None,
+        far_m: float | None = None,
+        nodata: float | Sequence[float] | None = None,
         segments: Picture | None = None,
         truth: Picture | None = None,
         truth_scale: TruthScale | None = None,
@@ -94,7 +105,9 @@ class Scene:
         views: dict[str, Any] = {"stereo": left} if right is None else {"left": left, "right": right}
         return cls._load(
             **views, layout=layout, calibration=calibration, rig=rig, disparity=disparity,
-            segments=segments, truth=truth, truth_scale=truth_scale, crop=crop, non_finite=non_finite, name=name,
+            disparity_scale=disparity_scale, depth=depth, depth_unit_m=depth_unit_m, near_m=near_m, far_m=far_m,
+            nodata=nodata, segments=segments, truth=truth, truth_scale=truth_scale, crop=crop, non_finite=non_finite,
+            name=name,
         )  # fmt: skip
 
     @classmethod
@@ -104,6 +117,12 @@ class Scene:
         photo: Picture,
         *,
         disparity: Picture | None = None,
+        disparity_scale: TruthScale | None = None,
+        depth: Picture | None = None,
+        depth_unit_m: float | None = None,
+        near_m: float | None = None,
+        far_m: float | None = None,
+        nodata: float | Sequence[float] | None = None,
         segments: Picture | None = None,
         truth: Picture | None = None,
         truth_scale: TruthScale | None = None,
@@ -121,7 +140,8 @@ class Scene:
         The options are those of `SceneFiles`; pictures and errors are those of `pair`.
         """
         return cls._load(
-            photo=photo, disparity=disparity, segments=segments, truth=truth, truth_scale=truth_scale,
+            photo=photo, disparity=disparity, disparity_scale=disparity_scale, depth=depth, depth_unit_m=depth_unit_m,
+            near_m=near_m, far_m=far_m, nodata=nodata, segments=segments, truth=truth, truth_scale=truth_scale,
             calibration=calibration, photo_depth=photo_depth, crop=crop, rotate=rotate, invert=invert, clip=clip,
             non_finite=non_finite, name=name,
         )  # fmt: skip
@@ -134,6 +154,7 @@ class Scene:
         *,
         relief_m: float | None = None,
         nodata: float | Sequence[float] | None = None,
+        cell_m: float | Sequence[float] | None = None,
         segments: Picture | None = None,
         crop: Sequence[int] | None = None,
         rotate: int = 0,
@@ -146,8 +167,8 @@ class Scene:
         The options are those of `SceneFiles`, the errors those of `pair`.
         """
         return cls._load(
-            height=heights, relief_m=relief_m, nodata=nodata, segments=segments, crop=crop, rotate=rotate,
-            invert=invert, clip=clip, name=name,
+            height=heights, relief_m=relief_m, nodata=nodata, cell_m=cell_m, segments=segments, crop=crop,
+            rotate=rotate, invert=invert, clip=clip, name=name,
         )  # fmt: skip
 
     @classmethod
@@ -212,12 +233,28 @@ class Scene:
         rows, columns = self.height.shape
         return rows, columns
 
-    def brings(self, width_m: float, relief_m: float, holes: Holes = "fill", finest_m: float = 0) -> dict[str, Record]:
+    @property
+    def own_size(self) -> tuple[float, float, float] | None:
+        """Width, length and height in metres at which the height map is felt by itself; None if it has none."""
+        if self.measured is None or self.measured.high_m is None:
+            return None
+        return self.measured.width_m, self.measured.length_m, self.measured.high_m
+
+    def brings(
+        self,
+        width_m: float,
+        relief_m: float,
+        holes: Holes = "fill",
+        finest_m: float = 0,
+        rise: Rise | None = None,
+        notify: Notify = ignore,
+    ) -> dict[str, Record]:
         """Return the products that the scene provides, by name; heights become a relief of this size.
 
         relief_m: used if the scene has none. holes: treatment of unknown heights. finest_m: heights on a finer grid are
-        reduced to it; 0 keeps them all.
-        Raises: GeometryError for heights that are unknown everywhere.
+        reduced to it; 0 keeps them all. rise: a scale of heights, and their range.
+        notify: receives remarks on the scale.
+        Raises: GeometryError for heights that are unknown everywhere, or for a relief of more than MAX_RELIEF_M.
         """
         relief = None
         if self.height is not None:
@@ -225,18 +262,66 @@ class Scene:
             height = reduced_map(self.height, reduced_shape(self.shape, factor))
             relief_m = self.relief_m or relief_m
             try:
-                if self.measured is None:
-                    relief = scale_heights(height, width_m, relief_m, holes)
+                if self.own_size is None or rise not in (None, Rise()):
+                    relief = self._to_scale(height, width_m, relief_m, holes, rise or Rise(), notify)
                 else:
-                    relief = _measured_relief(height, self.measured, width_m, relief_m)
+                    relief = _measured_relief(height, self.own_size, width_m, relief_m)
             except GeometryError as error:
                 raise GeometryError(f"{self.name}: {error}") from error
         products = {"views": self.views, "relief": relief, "disparity": self.disparity, "segments": self.segments}
         return {product: record for product, record in products.items() if record is not None}
 
+    def _to_scale(
+        self, height: np.ndarray, width_m: float, relief_m: float, holes: Holes, rise: Rise, notify: Notify
+    ) -> Relief:
+        """Return the relief of these heights at a scale, or between the range that is given for them."""
+        measured, known = self.measured, height[np.isfinite(height)]
+        given, ends = (
+            (rise.low_m, rise.high_m),
+            (0.0 if self.own_size else known.min(initial=np.inf), known.max(initial=-np.inf)),
+        )
+        low, high = (
+            float(end) if value is None else value - self.offset for value, end in zip(given, ends, strict=True)
+        )
+        if measured is not None and rise.m_per_m is not None:
+            relief_m = (high - low) * measured.unit_m * rise.m_per_m
+            if relief_m > MAX_RELIEF_M:
+                raise GeometryError(
+                    f"the relief would be {relief_m:.3g} m high, and may be {MAX_RELIEF_M:g} m at most; choose a "
+                    "smaller scale or less exaggeration, or check the unit of the heights"
+                )
+        if beyond := np.count_nonzero((known < low) | (known > high)):
+            notify(f"{100 * beyond / known.size:.2g} % of the heights are beyond low_m or high_m, and made level there")
+        spans = None if given == (None, None) else ValueRange(low, high)
+        relief = scale_heights(height, width_m, relief_m if relief_m > 0 else 1.0, holes, spans)
+        if measured is None:
+            return relief
+        if text := scale_in_words(measured, width_m, relief_m / (high - low) if high > low else 0.0):
+            notify(text)
+        return Relief(relief.height_m, (width_m, width_m * measured.length_m / measured.width_m))
 
-def _measured_relief(height_m: np.ndarray, measured: MeasuredSize, width_m: float, relief_m: float) -> Relief:
+
+def scale_in_words(measured: MeasuredSize, width_m: float, rise: float) -> str:
+    """Describe the scale of a map of the ground. rise: metres of the relief in a number of the map; 0 for a flat one.
+
+    >>> scale_in_words(MeasuredSize(4000.0, 3000.0, None), 0.08, 4e-5)
+    'scale 1:50000, 1 mm is 50 m on the ground; heights are 2 times as steep as there, 1 mm is 25 m'
+    """
+    times = measured.width_m / width_m
+    steeper = times * rise / measured.unit_m
+    if not rise or abs(steeper - 1) < 0.005:
+        return f"scale 1:{times:.6g}, 1 mm is {times / 1000:.3g} m on the ground, also in height"
+    return (
+        f"scale 1:{times:.6g}, 1 mm is {times / 1000:.3g} m on the ground; heights are {steeper:.3g} times as steep as "
+        f"there, 1 mm is {measured.unit_m / rise / 1000:.3g} m"
+    )
+
+
+def _measured_relief(
+    height_m: np.ndarray, own_size: tuple[float, float, float], width_m: float, relief_m: float
+) -> Relief:
     """Scale heights in metres to this width and height; the lowest keeps its height above the base."""
-    scale = np.float32(relief_m / measured.high_m) if measured.high_m else np.float32(1)
+    own_width_m, own_length_m, high_m = own_size
+    scale = np.float32(relief_m / high_m) if high_m else np.float32(1)
     heights = fill_rows(height_m) if scale == 1 else fill_rows(height_m) * scale
-    return Relief(np.maximum(heights, np.float32(0)), (width_m, width_m * measured.length_m / measured.width_m))
+    return Relief(np.maximum(heights, np.float32(0)), (width_m, width_m * own_length_m / own_width_m))

@@ -23,13 +23,16 @@ Number = Annotated[float, Field(allow_inf_nan=False)]
 
 _NEEDS = {
     **{"focal_px": "baseline_m", "baseline_m": "focal_px", "offset_px": "focal_px"},
-    **{"relief_m": "height", "rig": "left", "rig_unit_m": "rig", "nodata": "height"},
-    **{"truth_scale": "truth", "fps": "video", "repeat": "video"},
+    **{"relief_m": "height", "cell_m": "height", "nodata": "height or depth or disparity"},
+    **{"rig": "left", "rig_unit_m": "rig", "fps": "video", "repeat": "video"},
+    **{"truth_scale": "truth", "disparity_scale": "disparity"},
+    **{"depth_unit_m": "depth", "near_m": "depth", "far_m": "depth"},
 }
 _OF_ONE_VIEW = ("rotate", "invert", "clip")
 _OF_VIDEOS = ("video", "layout", "fps", "segments", "crop", "repeat")
 _OF_VIDEO_PAIRS = ("focal_px", "baseline_m", "offset_px", "rig", "rig_unit_m", "order")
-_OF_VIEWS = ("disparity", "truth", "truth_scale", "focal_px", "baseline_m", "offset_px")
+_OF_DEPTH = ("disparity", "disparity_scale", "depth", "depth_unit_m", "near_m", "far_m")
+_OF_VIEWS = (*_OF_DEPTH, "truth", "truth_scale", "focal_px", "baseline_m", "offset_px")
 
 
 def _video(value: object) -> object:
@@ -82,6 +85,18 @@ class SceneFiles(Quantities):
     is estimated."""
     disparity: Path | None = None
     """A disparity map of the left view or the photo, in pixels, NaN where unknown. No depth is estimated."""
+    disparity_scale: TruthScale | None = None
+    """Value in the file `disparity` that stands for one pixel of disparity, as in `truth_scale`, where 0 or less is
+    unknown. When left out, its numbers are pixels."""
+    depth: Path | None = None
+    """A depth map of the left view or the photo: the distance of each pixel along the optical axis, smaller being
+    nearer, 0 or less and NaN where unknown, as Kinect, RealSense and phones store it. No depth is estimated."""
+    depth_unit_m: Length | None = None
+    """Metres that one number of `depth` is; 0.001 when left out, a millimetre."""
+    near_m: Length | None = None
+    """Depths that are smaller count as this one."""
+    far_m: Length | None = None
+    """Depths that are greater count as this one: what is behind is flat ground."""
     segments: Path | None = None
     """A label picture: one colour or number per segment. No texture is segmented."""
     truth: Path | None = None
@@ -104,6 +119,9 @@ class SceneFiles(Quantities):
     millimetres); 0.001 for a board measured in millimetres."""
     relief_m: Length | None = None
     """Height of the relief made from a height map; by default that of `workspace`."""
+    cell_m: Length | tuple[Length, Length] | None = None
+    """Side of a cell of the height map on the ground, or its width and length, before rotation. When left out, the one
+    that the file states (a GeoTIFF, an ESRI grid), and otherwise cells are square and of no known size."""
     order: Literal["as-named"] | None = None
     """`as-named`: left and right are in order, and not checked. When left out, the depth of exchanged views is
     corrected, with a warning: larger disparities of the view named left are then nearer."""
@@ -116,8 +134,8 @@ class SceneFiles(Quantities):
     invert: bool = False
     """Exchange light and dark of a photo or a video, or high and low of a height map."""
     nodata: Number | tuple[Number, ...] | None = None
-    """Values of a height map that stand for no data, such as -9999. The one that a GeoTIFF states itself (GDAL's tag)
-    is used anyway."""
+    """Values of a map of heights, depth or disparity, as its file has them, that stand for no data, such as -9999. The
+    one that a GeoTIFF states itself (GDAL's tag) is used anyway."""
     clip: tuple[Percent, Percent] | None = None
     """Percentiles to which a photo's brightness or a map's heights are clipped, such as [1, 99], so that a few spikes
     do not take up the whole relief."""
@@ -128,7 +146,7 @@ class SceneFiles(Quantities):
     @model_validator(mode="after")
     def _one_scene(self) -> Self:
         given = [name for name, value in self if isinstance(value, Path | float | str) and name != "non_finite"]
-        given += ["nodata"] if isinstance(self.nodata, tuple) else []
+        given += [name for name in ("nodata", "cell_m") if isinstance(getattr(self, name), tuple)]
         given += ["video"] if isinstance(self.video, int) else []
         given += [] if self.repeat else ["repeat"]
         if "video" in given:
@@ -148,13 +166,17 @@ class SceneFiles(Quantities):
             raise ValueError(f"rig gives the cameras and rectifies the pictures; leave out {', '.join(idle)}")
         if idle := self.height and [name for name in given if name in _OF_VIEWS]:
             raise ValueError(f"height already gives all heights; leave out {', '.join(idle)}")
+        if self.depth and self.disparity:
+            raise ValueError("depth and disparity are two forms of one map; leave one of them out")
+        if self.near_m and self.far_m and not self.near_m < self.far_m:
+            raise ValueError(f"near_m is less than far_m, not {self.near_m:g} and {self.far_m:g}")
         self._check_framing()
         return self
 
     def _check_needs(self, given: Collection[str]) -> None:
         """Check that an option stands with the one that it needs. Raises: ValueError."""
         for name, other in _NEEDS.items():
-            if name in given and other not in given:
+            if name in given and not set(other.split(" or ")) & set(given):
                 raise ValueError(f"{name} needs {other}")
 
     def _check_video(self, given: Collection[str]) -> None:
@@ -196,6 +218,11 @@ class SceneFiles(Quantities):
         if self.focal_px is None or self.baseline_m is None:
             return None
         return Calibration(self.focal_px, self.baseline_m, self.offset_px or 0.0)
+
+
+def as_numbers(values: float | tuple[float, ...] | None) -> tuple[float, ...]:
+    """Return the values of an option that is one number, several or none."""
+    return () if values is None else values if isinstance(values, tuple) else (values,)
 
 
 BUILTINS: Mapping[str, SceneFiles] = {

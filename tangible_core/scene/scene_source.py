@@ -3,56 +3,72 @@
 import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Float
 from pydantic import ValidationError
 
 from ..data import Calibration, DisparityMap, SegmentMap, Views
 from ..data.arguments import as_picture
 from ..data.option_errors import sentences_about
-from ..data.pictures import fill_non_finite
+from ..data.pictures import fill_non_finite, used_range
 from ..errors import ConfigError, PictureError, wrong_argument
 from ..files.paths import as_path
 from .formats.height_maps import find_picture, in_metres, read_heights_metadata
 from .formats.multi_picture import Notify
 from .formats.pairs import Layout, Stored, halves, read_pair, read_stored, views_of
 from .formats.phone_depth import read_phone_depth
-from .formats.pictures import labels_of, map_of, picture_of, read_labels, read_map, read_picture, read_truth, truth_of
+from .formats.pictures import (
+    TruthScale,
+    labels_of,
+    map_of,
+    picture_of,
+    read_labels,
+    read_map,
+    read_picture,
+    read_truth,
+    truth_of,
+    without,
+)
 from .formats.rigs import find_rig, read_rig
-from .framing import apply_framing, cut_out, measured_size
+from .framing import OFFSET, apply_framing, cut_out, measured_size
 from .rig import StereoRig, rectify_views
-from .scene_files import SceneFiles
+from .scene_files import SceneFiles, as_numbers
 from .video.files import parts_of, read_video, still
 
 log: logging.Logger = logging.getLogger(__name__)
 
 _PICTURES = {"left", "right", "photo", "stereo"}
-_PARTS = ("left", "right", "stereo", "photo", "video", "height", "disparity", "segments", "truth")
+_PARTS = ("left", "right", "stereo", "photo", "video", "height", "disparity", "depth", "segments", "truth")
+_DISPARITIES = ("disparity", "truth")
+_UNIT_CAMERA = Calibration(focal_px=1.0, baseline_m=1.0)
+"""The cameras whose disparity is one over the depth."""
+_DEPTH_UNIT_M = 0.001
 _PHONE_DEPTH = "phone depth"
-_INSTEAD_OF_RIG = ("rig", "focal_px", "disparity", "truth", "segments", "crop")
+_INSTEAD_OF_RIG = ("rig", "focal_px", "disparity", "depth", "truth", "segments", "crop")
 FAR_APART_M = 10.0
 """Baseline from which millimetres are more likely than metres, unless the pictures were taken from the air."""
 
 
-def _read_heights(path: Path, notify: Notify) -> Float32[np.ndarray, "h w"]:
+def _read_heights(path: Path, notify: Notify) -> Float[np.ndarray, "h w"]:
     """Read a height map, in metres if its metadata state a scale. Raises: PictureError."""
     metadata = read_heights_metadata(path)
     if metadata is None:
-        return read_map(path, notify)
+        return read_map(path, notify, exact=True)
     picture, metadata = find_picture(path, metadata)
     return in_metres(read_map(picture, notify), metadata, picture)
 
 
 _READERS: Mapping[str, Callable[[Path, Notify], np.ndarray]] = {
     "height": _read_heights,
-    "disparity": read_map,
+    "depth": read_map,
     "segments": read_labels,
 }
-_CONVERTERS = {"height": map_of, "disparity": map_of, "segments": labels_of}
+_CONVERTERS = {"height": partial(map_of, exact=True), "depth": map_of, "segments": labels_of}
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,14 +121,18 @@ class SceneSource:
             if found := find_rig(paths["left"], paths["right"], shape):
                 named = found.relative_to(self.folder) if found.is_relative_to(self.folder) else found
                 notes.append(f"{found.name} states the cameras of the pair; write `rig: {named}` to use it")
-        fields = _fields(files, parts, rig, notes)
+        warnings: list[str] = []
+        fields = _fields(files, parts, rig, notes, warnings)
         for each in notes:
             log.info("%s", each)
+        for each in warnings:
+            log.warning("%s", each)
         return fields | {
             "name": self.name,
             "relief_m": files.relief_m,
             "frames": first and first.video,
-            "notes": tuple(notes),
+            "notes": (*notes, *warnings),
+            "warnings": tuple(warnings),
             "files": self.origin,
         }
 
@@ -176,41 +196,53 @@ def _read(part: str, path: Path, files: SceneFiles, notify: Notify) -> dict[str,
     """Read a file of a scene: two views, or a photo and its depth, or one part."""
     if part == "stereo":
         return read_pair(path, cast("Layout | None", files.layout), files.non_finite, notify)._asdict()
-    if part == "truth":
-        return {part: read_truth(path, files.truth_scale, notify)}
+    if part in _DISPARITIES:
+        return {part: read_truth(path, *_scale(part, files), notify)}
     if part not in _PICTURES:
         return {part: _READERS[part](path, notify)}
-    may_shrink = part == "photo" and files.crop is None and files.segments is None and files.disparity is None
+    may_shrink = part == "photo" and all(
+        getattr(files, other) is None for other in ("crop", "segments", "disparity", "depth")
+    )
     picture = read_picture(path, files.non_finite, notify, reduce=may_shrink)
     depth = None
-    if part == "photo" and files.photo_depth and files.disparity is None:
+    if part == "photo" and files.photo_depth and files.disparity is None and files.depth is None:
         depth = read_phone_depth(path, (picture.shape[0], picture.shape[1]), notify)
     return {part: picture} if depth is None else {part: picture, _PHONE_DEPTH: depth}
+
+
+def _scale(part: str, files: SceneFiles) -> tuple[TruthScale | None, tuple[float, ...]]:
+    """Return the scale of a map of disparity, and its numbers for no data."""
+    return getattr(files, f"{part}_scale"), as_numbers(files.nodata) if part == "disparity" else ()
 
 
 def _convert(part: str, values: np.ndarray, files: SceneFiles) -> dict[str, np.ndarray]:
     """Convert a copy of an array to the part of a scene, or to its two views."""
     name = str(getattr(files, part))
-    if part == "truth":
-        return {part: truth_of(values.copy(), name, files.truth_scale)}
+    if part in _DISPARITIES:
+        return {part: truth_of(values.copy(), name, *_scale(part, files))}
     if part not in _PICTURES:
         return {part: _CONVERTERS[part](values.copy(), name)}
     picture = picture_of(values.copy(), name, files.non_finite)
     return halves(picture, cast("Layout | None", files.layout), name)._asdict() if part == "stereo" else {part: picture}
 
 
-def _fields(files: SceneFiles, parts: dict[str, np.ndarray], rig: StereoRig | None, notes: list[str]) -> dict[str, Any]:
+def _fields(
+    files: SceneFiles, parts: dict[str, np.ndarray], rig: StereoRig | None, notes: list[str], warnings: list[str]
+) -> dict[str, Any]:
     """Frame the parts and return them as fields of a `Scene`."""
     if files.video is not None:
         files = still(files)
     elif files.stereo is not None:
         files = files.model_copy(update={"left": files.stereo, "right": files.stereo, "stereo": None})
     _check_sizes(files, parts)
-    parts = apply_framing(parts, files)
+    measured = measured_size(files, parts["height"].shape) if files.height else None
+    parts = apply_framing(parts, files, warnings.append)
     shown = None if files.height else _cut_out(parts, files, notes.append)
     masked = files.non_finite == "mask" and files.main in _PICTURES
     known = _both(_fill(parts, files.main) if masked else None, shown)
-    views = None if files.height else Views(parts[files.main], parts.get("right"), files.calibration)
+    _stretch(parts, Path(getattr(files, files.main)).name, warnings.append)
+    camera = files.calibration or (_UNIT_CAMERA if files.depth else None)
+    views = None if files.height else Views(parts[files.main], parts.get("right"), camera)
     if rig is not None and views is not None:
         views, known = rectify_views(views, rig)
         shown = None
@@ -224,19 +256,25 @@ def _fields(files: SceneFiles, parts: dict[str, np.ndarray], rig: StereoRig | No
             each.flags.writeable = False
     return {
         "views": views,
-        "disparity": _disparity(parts),
+        "disparity": _disparity(parts, files, camera),
         "segments": SegmentMap(parts["segments"]) if "segments" in parts else None,
         "height": parts.get("height"),
-        "measured": measured_size(files),
+        "offset": float(parts.get(OFFSET, 0.0)),
+        "measured": measured,
         "truth": parts.get("truth"),
         "known": known,
         "shown": shown,
     }
 
 
-def _disparity(parts: Mapping[str, np.ndarray]) -> DisparityMap | None:
+def _disparity(parts: Mapping[str, np.ndarray], files: SceneFiles, camera: Calibration | None) -> DisparityMap | None:
     if _PHONE_DEPTH in parts:
         return DisparityMap(parts[_PHONE_DEPTH], unit="relative")
+    if "depth" in parts and camera is not None:
+        depth = without(parts["depth"], *as_numbers(files.nodata))
+        depth_m = np.where(depth > 0, depth, np.nan).astype(np.float64) * (files.depth_unit_m or _DEPTH_UNIT_M)
+        depth_m = np.clip(depth_m, files.near_m, files.far_m)
+        return DisparityMap((camera.focal_px * camera.baseline_m / depth_m - camera.offset_px).astype(np.float32))
     return DisparityMap(parts["disparity"]) if "disparity" in parts else None
 
 
@@ -270,6 +308,14 @@ def _cut_out(parts: dict[str, np.ndarray], files: SceneFiles, notify: Notify) ->
         return None
     notify(f"{100 * (1 - main.mean()):.0f} % of {Path(getattr(files, files.main)).name} is transparent: flat ground")
     return main
+
+
+def _stretch(parts: dict[str, np.ndarray], name: str, notify: Notify) -> None:
+    """Stretch pictures of more than 8 bits that use little of their range to all of it, both views alike."""
+    pictures = {part: values for part, values in parts.items() if part in _PICTURES}
+    if (used := used_range(*pictures.values())) is not None:
+        parts.update({part: used.stretch(values) for part, values in pictures.items()})
+        notify(used.sentence(name))
 
 
 def _both(one: np.ndarray | None, other: np.ndarray | None) -> np.ndarray | None:

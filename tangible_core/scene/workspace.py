@@ -1,11 +1,20 @@
 """The size of the surface under the hand, and its defaults for each kind of scene."""
 
-from typing import Annotated, ClassVar, Literal, NamedTuple
+import re
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
-from pydantic import ConfigDict, Field
+from pydantic import (
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    SerializerFunctionWrapHandler,
+    model_serializer,
+    model_validator,
+)
 
+from ..data import Relief
 from ..data.quantities import Quantities
-from .geometry import Holes
+from .geometry import MAX_RELIEF_M, Holes, Rise
 from .scene import Scene
 from .scene_files import BUILTINS, SceneFiles
 
@@ -26,6 +35,21 @@ in a photograph, where every line is such an edge. The slopes of depth are limit
 rounded. A height map is not smoothed, and the borders of parts only enough to soften a wall's edge."""
 
 
+FLAT: dict[ReliefKind, str] = {
+    "photograph": "all of the picture is equally light; use one with light and dark",
+    "edges": "the picture has no edges; `relief: disparity` takes its light and dark",
+    "depth": "all of it is equally far; check the map of depth, or that left and right are two views of one scene",
+    "heights": "all heights are equal; check the file, and `nodata`, `clip`, `crop`, `low_m` and `high_m`",
+    "parts": "all parts are equally high; give them heights, `heights: {by: given}` and `height_m` under `parts:`",
+}
+"""Why a relief is flat, and the cure."""
+
+
+def flat_warning(relief: Relief, kind: ReliefKind) -> str:
+    """Return the sentence about a relief in which nothing stands out; empty for any other one."""
+    return f"the relief is flat, nothing stands out: {FLAT[kind]}" if relief.is_flat else ""
+
+
 class Section(Quantities):
     """Base of the configuration's own blocks."""
 
@@ -40,14 +64,34 @@ class FeltSize(NamedTuple):
     smooth_m: float
     finest_m: float
     holes: Holes
+    rise: Rise = Rise()
+
+
+MIN_WIDTH_M, MAX_WIDTH_M = 1e-6, 10
+"""Bounds of the width of a surface."""
+SCALE = r"^1:[0-9]+(\.[0-9]+)?$"
+"""The form of a scale."""
+
+
+def _check_scale(scale: object) -> object:
+    if scale is not None and not (isinstance(scale, str) and re.match(SCALE, scale) and 0 < _times(scale) < 1e12):
+        raise ValueError("Input should be a scale, such as 1:50000")
+    return scale
+
+
+def _times(scale: str) -> float:
+    return float(scale.removeprefix("1:"))
+
+
+Metres = Annotated[float, Field(allow_inf_nan=False)]
 
 
 class Workspace(Section):
     """The size of the surface under the hand."""
 
-    width_m: Annotated[float, Field(ge=1e-6, le=10, allow_inf_nan=False)] = 0.08
+    width_m: Annotated[float, Field(ge=MIN_WIDTH_M, le=MAX_WIDTH_M, allow_inf_nan=False)] = 0.08
     """Width of the surface under the hand."""
-    relief_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] | None = None
+    relief_m: Annotated[float, Field(gt=0, le=MAX_RELIEF_M, allow_inf_nan=False)] | None = None
     """Height of the nearest point above the farthest; null for a default by the scene: 0.004 for a photograph, whose
     brightness is not depth, 0.002 for its edges, 0.005 for depth, 0.02 for a height map, 0.006 for parts with
     `heights:`."""
@@ -59,6 +103,36 @@ class Workspace(Section):
     """Finest detail to keep: larger pictures are first reduced to it. A Falcon resolves 0.03 mm; 0 keeps all pixels."""
     holes: Literal["fill", "cut"] = "fill"
     """Treatment of unknown depth: `fill` from the background next to it, or `cut` down to the base plane."""
+    scale: Annotated[str, BeforeValidator(_check_scale), Field(json_schema_extra={"pattern": SCALE})] | None = None
+    """The scale of a height map whose cells have a known size on the ground, such as `1:50000`: width and height of the
+    surface follow from it, so that several maps fit together. null for `width_m` and `relief_m`."""
+    exaggeration: Annotated[float, Field(gt=0, le=1000)] = 1.0
+    """Times that heights are higher than at `scale`."""
+    low_m: Metres | None = None
+    """The height in a height map that becomes the base plane; null for its lowest. The same for all tiles of a map."""
+    high_m: Metres | None = None
+    """The height in a height map that becomes the top of the relief; null for its highest."""
+
+    @model_validator(mode="after")
+    def _one_size(self) -> Self:
+        given = self.model_fields_set
+        if self.scale is not None and (idle := [name for name in ("width_m", "relief_m") if name in given]):
+            raise ValueError(f"scale already gives the size of the surface; leave out {' and '.join(idle)}")
+        if self.scale is None and self.exaggeration != 1:
+            raise ValueError("exaggeration needs scale; without it, relief_m is the height of the whole relief")
+        if self.low_m is not None and self.high_m is not None and not self.low_m < self.high_m:
+            raise ValueError(f"low_m is less than high_m, not {self.low_m:g} and {self.high_m:g}")
+        return self
+
+    @model_serializer(mode="wrap")
+    def _without_idle(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        idle = ("exaggeration",) if self.scale is None else ("width_m", "relief_m")
+        return {name: value for name, value in handler(self).items() if name not in idle}
+
+    @property
+    def times(self) -> float | None:
+        """The number of metres on the ground in a metre of the surface; None without a scale."""
+        return None if self.scale is None else _times(self.scale)
 
     def size(self, kind: ReliefKind) -> FeltSize:
         """Return this workspace with the defaults for a relief of this kind.
@@ -69,7 +143,8 @@ class Workspace(Section):
         relief_m, smooth_m = SUITS[kind]
         relief_m = relief_m if self.relief_m is None else self.relief_m
         smooth_m = smooth_m if self.smooth_m is None else self.smooth_m
-        return FeltSize(self.width_m, relief_m, smooth_m, self.finest_m, self.holes)
+        rise = Rise(self.times and self.exaggeration / self.times, self.low_m, self.high_m)
+        return FeltSize(self.width_m, relief_m, smooth_m, self.finest_m, self.holes, rise)
 
 
 def kind_of(scene: str | SceneFiles | Scene) -> SceneKind:
@@ -80,7 +155,7 @@ def kind_of(scene: str | SceneFiles | Scene) -> SceneKind:
         scene = BUILTINS[scene]
     if isinstance(scene, SceneFiles):
         pair = scene.right is not None or (scene.video is not None and scene.layout not in (None, "mono"))
-        heights, depth = scene.height is not None, pair or scene.disparity is not None
+        heights, depth = scene.height is not None, pair or scene.disparity is not None or scene.depth is not None
     else:
         heights = scene.height is not None
         depth = scene.disparity is not None or (scene.views is not None and scene.views.right is not None)

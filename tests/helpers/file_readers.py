@@ -208,6 +208,25 @@ def _make_heights(folder: Path) -> None:
     Image.fromarray(MAP).save(folder / "own.tif", tiffinfo=tags)
 
 
+def _make_ground(folder: Path) -> None:
+    import tifffile
+
+    keys = (34735, "H", 8, [1, 1, 0, 1, 1024, 0, 1, 2], True)
+    place = (33922, "d", 6, (0.0, 0.0, 0.0, 10.0, 60.0, 0.0), True)
+    for name, order in (("a.tif", "<"), ("b.tif", ">")):
+        tags = [(33550, "d", 3, (0.01, 0.02, 0.0), True), place, keys]
+        tifffile.imwrite(folder / name, MAP, byteorder=order, extratags=tags)
+    matrix = (0.0, 10, 0, 1000, -5, 0, 0, 2000, 0, 0, 0, 0, 0, 0, 0, 1)
+    tifffile.imwrite(folder / "c.tif", MAP, extratags=[(34264, "d", 16, matrix, True)])
+    (folder / "d.asc").write_text("ncols 3\nnrows 2\nxllcorner 10\nyllcorner 60\ncellsize 0.001\n1 2 3\n4 5 6\n")
+
+
+def _ground(path: Path) -> object:
+    from tangible_core.scene.formats.ground import read_ground
+
+    return read_ground(path)
+
+
 def _heights(path: Path) -> object:
     from tangible_core import Scene
 
@@ -730,6 +749,7 @@ READERS = {
         _picture,
     ),
     "avif": Reader(_all(_image("a.avif", COLOURS), _image("b.avif", GREY)), _picture),
+    "ground": Reader(_make_ground, _ground),
     "labels": Reader(_all(_image("a.png", LABELS), _palette("b.png"), lambda f: np.save(f / "c.npy", LABELS)), _labels),
     "truth": Reader(_all(_image("kitti.png", DEEP), _image("sintel.png", COLOURS), _pfm), _truth),
     "large-picture": Reader(

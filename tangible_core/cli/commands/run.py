@@ -189,7 +189,8 @@ def _print(run: Run, as_json: bool, verbose: bool) -> None:
         return
     for name in SENTENCES:
         if name in run.figures:
-            show.plain(f"{run.figures[name]['says']}\n")
+            for line in LINES[name][1](run.figures[name]):
+                show.plain(f"{line}\n")
     show.plain(sentences.where(run.files))
 
 
@@ -252,14 +253,15 @@ def _force_lines(figures: Mapping[Any, Any]) -> list[str]:
     ]
 
 
-SENTENCES = ("guard", "hand")
-"""The figures that tell what went differently from what was requested: printed without --verbose too."""
+SENTENCES = ("heights", "guard", "hand")
+"""The figures that tell the scale, and what went differently from what was requested: printed without --verbose too."""
 
 LINES: dict[str, tuple[str, Callable[[Mapping[Any, Any]], list[str]]]] = {
     "disparity": ("error against the truth", _error_lines),
     "materials": ("materials", _material_lines),
     "parts": ("parts", _part_lines),
     "force": ("force along the path", _force_lines),
+    "heights": ("the heights", lambda figures: figures["says"]),
     "guard": ("what the guard changed", lambda figures: [figures["says"]]),
     "hand": ("the hand", lambda figures: [figures["says"]]),
 }

@@ -187,6 +187,10 @@ class PipelineConfig(BaseModel):
         size = self.workspace.size(self.relief_kind)
         if self.measured is None:
             return size
+        if self.workspace.times is not None:
+            return size._replace(width_m=self.measured.width_m / self.workspace.times)
+        if self.measured.high_m is None:
+            return size
         width_m = size.width_m if "width_m" in self.workspace.model_fields_set else self.measured.width_m
         relief_m = self.workspace.relief_m or self.measured.high_m or size.relief_m
         return size._replace(width_m=width_m, relief_m=relief_m)
@@ -239,8 +243,9 @@ class PipelineConfig(BaseModel):
 
         Raises: ConfigError for what no file can have: a scene of arrays, a method that is not installed.
         """
-        size = self.workspace.model_copy(update=self.size._asdict())
-        values = {name: getattr(self, name) for name in KEYS} | {"workspace": size}
+        size = {name: value for name, value in self.size._asdict().items() if name in Workspace.model_fields}
+        workspace = self.workspace.model_copy(update=size)
+        values = {name: getattr(self, name) for name in KEYS} | {"workspace": workspace}
         shown = [name for name, value in values.items() if value not in (None, "", ()) or self._is_off(name)]
         shown.sort(key=lambda name: KEYS[name].stands_last)
         return {name: KEYS[name].write(values[name]) for name in shown}

@@ -16,6 +16,7 @@ from .keys import MethodList, Reading
 from .keys.method import index_of
 from .model import KEYS, PipelineConfig, without_places
 from .part_checks import wrong_of_parts
+from .scale_checks import wrong_of_scale
 
 EXPECTED = "a configuration is a mapping that starts with `scene:`"
 """The complaint about a file that is not a mapping."""
@@ -47,7 +48,9 @@ def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[
     values["measured"] = _size_of_heights(source, values.get("scene"))
     values = {name: value for name, value in values.items() if value is not None}
     if "scene" in values:
-        for location, wrong in wrong_of_parts(PipelineConfig(path=path, source=source, **values)):
+        config = PipelineConfig(path=path, source=source, **values)
+        of_scale = () if source.complaints else wrong_of_scale(config)
+        for location, wrong in (*wrong_of_parts(config), *of_scale):
             source.complain(location, f"{'.'.join(map(str, location))}: {wrong}")
     source.settle()
     return PipelineConfig(path=path, source=source, **values)
@@ -66,7 +69,7 @@ def config_of(scene: Scene, registry: Registry, /, **arguments: Any) -> Pipeline
     if source.complaints:
         raise without_places(source)
     config = PipelineConfig(scene=scene, measured=scene.measured, **taken)
-    if wrong := list(wrong_of_parts(config)):
+    if wrong := [*wrong_of_parts(config), *wrong_of_scale(config)]:
         raise config.error_at(*wrong)
     return config
 

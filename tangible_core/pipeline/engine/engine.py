@@ -4,24 +4,25 @@ import logging
 from collections.abc import Container, Generator, Mapping
 from contextlib import contextmanager
 from copy import copy
-from functools import cached_property
+from functools import cached_property, partial
 from threading import Event
 from time import perf_counter
 from typing import Any
 
 from ...compiled.background import BackgroundCompiler
-from ...data import Note, Outcome, Outcomes, Plan, Record
+from ...data import Note, Outcome, Outcomes, Plan, Record, Relief
 from ...data.products import PRODUCTS
 from ...errors import TangibleError, UnknownName
 from ...files.paths import without_folders
 from ...plugins import hooks
 from ...plugins.failures import naming_plugins
 from ...plugins.interfaces import HapticDevice
-from ...plugins.notes import collect_notes
+from ...plugins.notes import collect_notes, note
 from ...plugins.registry import Registry
 from ...runtime.stopping import check_stopped, stoppable
 from ...runtime.threads import check_threads, limited_threads
 from ...scene.scene import Scene
+from ...scene.workspace import flat_warning
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from .cache import Cache, Notes
@@ -56,6 +57,8 @@ class Engine:
         self._outcomes: dict[str, Outcome] = {}
         self._notes: dict[str, tuple[Note, ...]] = {}
         """The notes on each product from when it was made, in this process or before."""
+        self.on_heights: list[Note] = []
+        """Remarks on the scale of the heights that the scene provides."""
         self._substituted: frozenset[str] = frozenset()
         """The products of `with_products`, and all that is made of them: they are neither cached nor reported."""
         self._progress: Progress = ignore_event
@@ -88,13 +91,20 @@ class Engine:
         given = self.config.scene
         with collect_notes() as notes:
             scene = given if isinstance(given, Scene) else Scene.read(given, self.config.folder)
-        return scene, (*notes, *map(Note, scene.notes))
+        of_files = (Note(text, "warning" if text in scene.warnings else "decision") for text in scene.notes)
+        return scene, (*notes, *of_files)
 
     @cached_property
     def scene_products(self) -> Mapping[str, Record]:
         """The products that the scene provides, by name."""
         start, size = perf_counter(), self.config.size
-        products = self.scene.brings(size.width_m, size.relief_m, size.holes, size.finest_m)
+        with collect_notes() as self.on_heights:
+            products = self.scene.brings(
+                size.width_m, size.relief_m, size.holes, size.finest_m, size.rise, partial(note, log)
+            )
+            relief = products.get("relief")
+            if isinstance(relief, Relief) and (text := flat_warning(relief, "heights")):
+                note(log, text, logging.WARNING)
         for product in products:
             why, notes = self.source_of(product)
             self._note(Outcome(product, "given", why, "", perf_counter() - start, notes))
@@ -273,13 +283,15 @@ class Engine:
         """Take over the notes on a cached product and on the products that it was made from; log warnings again."""
         for product in kept.keys() - self._notes.keys():
             self._notes[product] = kept[product]
-            for each in (note for note in kept[product] if note.kind != "decision"):
-                log.warning("%s", each.text)
+            for each in kept[product]:
+                if each.kind != "decision":
+                    log.warning("%s", each.text)
 
     def source_of(self, product: str) -> tuple[str, tuple[Note, ...]]:
         """Return why a product is given, and for the pictures or the heights the notes on their files."""
         scene, of_files = self._read
         notes = of_files if product == ("relief" if scene.views is None else "views") else ()
+        notes += tuple(self.on_heights) if product == "relief" else ()
         return with_notes(notes, f"provided by the scene {without_folders(scene.name)}"), notes
 
     @cached_property

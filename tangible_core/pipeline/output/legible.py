@@ -60,8 +60,14 @@ def drawn_parts(engine: Engine, exporter: NamedMethod[Exporter] | None) -> Liter
 
 
 def drawn_width_m(engine: Engine, exporter: NamedMethod[Exporter] | None) -> float:
-    """Return the width of the whole picture in the files of an exporter; that of the workspace without one."""
-    width_m = None if exporter is None else exporter.method.picture_width_m(_aspect(engine))
+    """Return the width of the whole picture in the files of an exporter; that of the workspace without one.
+
+    Solids of maps at a scale have this scale, so that they fit together.
+    """
+    to_scale = engine.config.workspace.scale is not None
+    if exporter is None or (to_scale and exporter.method.medium == "print"):
+        return engine.config.size.width_m
+    width_m = exporter.method.picture_width_m(_aspect(engine))
     return engine.config.size.width_m if width_m is None else width_m
 
 
@@ -85,8 +91,8 @@ def _with_width_of(exporter: NamedMethod[Exporter], verdict: Verdict, aspect: fl
 
 
 def _aspect(engine: Engine) -> float:
-    rows, columns = engine.scene.shape
-    return columns / rows
+    (rows, columns), measured = engine.scene.shape, engine.scene.measured
+    return columns / rows if measured is None else measured.width_m / measured.length_m
 
 
 def judge_products(engine: Engine, medium: Medium, parts: str, judged: Collection[str]) -> Legibility:
@@ -110,8 +116,10 @@ def with_width(engine: Engine, width_m: float | None) -> Engine:
         return engine
     columns, factor = engine.scene.shape[1], WorkingGrid(engine.scene, config.size).factor
     finest_m = 0.0 if factor == 1 else factor * width_m / columns * (1 + ROUNDING)
+    times, before_m = config.workspace.times, config.size.width_m
+    wide = {"width_m": width_m} if times is None else {"scale": f"1:{times * before_m / width_m:f}"}
     try:
-        workspace = Workspace.model_validate({**dict(config.workspace), "width_m": width_m, "finest_m": finest_m})
+        workspace = Workspace.model_validate({**config.workspace.model_dump(), **wide, "finest_m": finest_m})
     except ValueError as error:
         raise ConfigError(f"width_m: is {quoted(width_m)}; a width is from 1e-6 to 10 m") from error
     return engine.with_config(config.with_values(workspace=workspace))

@@ -230,6 +230,8 @@ def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording |
             label: {"name": material.name, "why": why}
             for label, (material, why) in enumerate(zip(chosen.materials, chosen.reasons, strict=True))
         }
+    if says := [note.text for note in engine.on_heights if note.kind == "decision"]:
+        figures["heights"] = {"says": says}
     if isinstance(surface := products.get("surface"), HapticSurface) and surface.names is not None:
         figures["parts"] = _part_figures(engine, surface)
     if recording is not None:

@@ -64,6 +64,15 @@ def heighten(flight: Flight, times: float) -> Change | str:
     return Change(flight.relief_key, over(flight.relief_m * times), "at least")
 
 
+def narrow(flight: Flight, width_m: str) -> Change:
+    """Return the cure that makes the surface at most this wide."""
+    rise = flight.size.rise.m_per_m
+    if rise is None:
+        return Change("workspace.width_m", width_m, "at most")
+    times = flight.relief_m / rise * flight.size.width_m / float(width_m)
+    return Change("workspace.scale", f"1:{math.ceil(times)}", "is")
+
+
 def gentler(flight: Flight, steepest: float, few: float) -> Cure:
     """Return the cures after which at most `few` of the surface is steeper than this: slope, rounding, height."""
     if flight.slope is not None and (not flight.slope or flight.slope > steepest):

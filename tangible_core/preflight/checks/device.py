@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from ..flight import Flight
-from ..verdict import Change, Verdict, check_bound, under
-from .cures import flatten
+from ..verdict import Verdict, check_bound, under
+from .cures import flatten, narrow
 
 REACH = "the device's workspace"
 
@@ -50,7 +50,7 @@ def workspace(flight: Flight) -> Iterator[Verdict]:
         yield check_bound(
             *("workspace", of, size_m, "<=", reach_m, "m", REACH),
             says=f"the surface has more {of} than the device reaches",
-            cure=[Change("workspace.width_m", narrower, "at most"), "; or the borders cannot be reached"],
+            cure=[narrow(flight, narrower), "; or the borders cannot be reached"],
         )
     height_m = float(flight.surface.height_m.max())
     yield check_bound(

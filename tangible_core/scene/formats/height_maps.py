@@ -52,6 +52,11 @@ class HeightsMetadata(BaseModel):
     """Height between one number and the next."""
 
     @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self.rows, self.columns
+
+    @property
     def size(self) -> "MeasuredSize":
         """The size in metres."""
         return MeasuredSize(self.width_mm / MM, self.length_mm / MM, self.high_mm / MM)
@@ -62,7 +67,10 @@ class MeasuredSize(NamedTuple):
 
     width_m: float
     length_m: float
-    high_m: float
+    high_m: float | None
+    """Height of the highest place above the base; None for a map of the ground, which is felt smaller than it is."""
+    unit_m: float = 1.0
+    """Metres that one number of the heights is."""
 
 
 def levels(relief: Relief) -> tuple[UInt16[np.ndarray, "h w"], float, float]:

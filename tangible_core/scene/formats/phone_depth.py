@@ -5,10 +5,11 @@ Sources: developers.google.com/depthmap-metadata; developer.android.com, Dynamic
 Format), whose second picture is described by Apple's `pixeldatainfo`; Adobe, XMP part 3 (extended XMP).
 """
 
+import math
 import re
 import struct
 from base64 import b64decode
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -28,6 +29,7 @@ _XMP, _EXTENDED = b"http://ns.adobe.com/xap/1.0/\0", b"http://ns.adobe.com/xmp/e
 _GUID = 32
 _APP1, _SCAN, _ALONE = 0xE1, 0xDA, (0x01, *range(0xD0, 0xD8))
 _DATA = re.compile(rb'GDepth:Data\s{0,9}(?:=\s{0,9}(")|(>))')
+_RANGE = re.compile(rb'GDepth:(Format|Near|Far)\s{0,9}(?:=\s{0,9}"|>)\s{0,9}([\w.+-]{1,30})')
 _ITEM = re.compile(rb"<Container:Item\b[^>]{0,600}>")
 _ITEMS = 1 << 20
 """Bytes of metadata in which a list of container items is searched: this bounds the time on any file."""
@@ -44,6 +46,8 @@ class PhoneDepth(NamedTuple):
     near_is_light: bool
     kind: str
     """Name of the format."""
+    linear: tuple[float, float] | None = None
+    """The depths of black and white, where the picture is linear in depth; None where it is in one over the depth."""
 
 
 def read_phone_depth(path: Path, shape: tuple[int, int], notify: Notify = ignore) -> Float32[np.ndarray, "h w"] | None:
@@ -64,14 +68,18 @@ def _nearness(
 ) -> Float32[np.ndarray, "h w"]:
     import cv2
 
-    picture = decode(path, depth.picture)
-    grey = np.ascontiguousarray(upright(to_grey(picture), turn))
+    own_turn = look_at(path, depth.picture, orientation)
+    grey = np.ascontiguousarray(upright(to_grey(decode(path, depth.picture)), turn if own_turn == 1 else 1))
     notify(
         f"{path.name} holds a depth map of {size_in_words(grey)} ({depth.kind}), which is used; "
         "`photo_depth: false` leaves it out"
     )
     with plain_opencv():
         near = np.asarray(cv2.resize(grey, shape[::-1], interpolation=cv2.INTER_LINEAR))
+    if depth.linear is not None:
+        low, high = depth.linear
+        share = low / (low + near * np.float32(high - low))
+        return (share - np.float32(low / high)) / np.float32(1 - low / high)
     return near if depth.near_is_light else 1 - near
 
 
@@ -80,13 +88,20 @@ def phone_depth(image: "Image", data: bytes) -> PhoneDepth | None:
     xmp = _xmp(data)
     if found := _DATA.search(xmp):
         end = xmp.find(b'"' if found[1] else b"<", found.end())
-        return PhoneDepth(b64decode(xmp[found.end() : max(end, found.end())]), False, "GDepth")
+        data = b64decode(xmp[found.end() : max(end, found.end())])
+        return PhoneDepth(data, False, "GDepth", _linear_range(dict(_RANGE.findall(xmp))))
     if item := _depth_item(xmp, data):
         return PhoneDepth(item, False, "Dynamic Depth")
     for part in multi_pictures(image, data)[1:]:
         if found := _AUXILIARY.search(_xmp(part.data)):
             return PhoneDepth(part.data, found[1] == b"disparity", "an iPhone's")
     return None
+
+
+def _linear_range(stated: Mapping[bytes, bytes]) -> tuple[float, float] | None:
+    """Return near and far of a picture in GDepth's RangeLinear; None for RangeInverse. Raises: ValueError."""
+    low, high = (float(stated.get(name, b"0")) for name in (b"Near", b"Far"))
+    return (low, high) if stated.get(b"Format") == b"RangeLinear" and 0 < low < high < math.inf else None
 
 
 def _xmp(data: bytes) -> bytes:

@@ -1,10 +1,11 @@
 """Pictures, maps of numbers, true disparities and label pictures in files."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, cast
 
 import numpy as np
-from jaxtyping import Float32, Int32
+from jaxtyping import Float, Float32, Int32
 from pydantic import Field
 
 from ...data.pictures import check_finite, check_picture, opaque
@@ -44,23 +45,24 @@ def picture_of(values: np.ndarray, name: str, non_finite: NonFinite = "error") -
     return values
 
 
-def read_map(path: Path, notify: Notify = ignore) -> Float32[np.ndarray, "h w"]:
+def read_map(path: Path, notify: Notify = ignore, exact: bool = False) -> Float[np.ndarray, "h w"]:
     """Read a map of numbers: .npy, .npz, .pfm, .tif, or the raw values of any grey picture.
 
+    exact: keep numbers in 64 bits that 32 do not hold.
     NaN stands for infinity, for transparent pixels, and for a GeoTIFF's value for no data (GDAL's tag).
     Raises: PictureError as `read_picture`, or if there is more than one number a pixel.
     """
-    return map_of(values_of(path, bytes_of(path), notify, "map"), str(path))
+    return map_of(values_of(path, bytes_of(path), notify, "map"), str(path), exact)
 
 
-def map_of(values: np.ndarray, name: str) -> Float32[np.ndarray, "h w"]:
+def map_of(values: np.ndarray, name: str, exact: bool = False) -> Float[np.ndarray, "h w"]:
     """Return an array as `read_map` does, NaN where it is masked.
 
     Raises: PictureError if there is more than one number a pixel.
     """
     masked: Any = values if np.ma.isMaskedArray(values) and values.dtype.kind in "buif" else None
     if masked is not None:
-        values = cast(np.ndarray, masked.astype(np.float64).filled(np.nan))
+        values = cast(np.ndarray, masked.astype(np.result_type(masked.dtype, np.float32)).filled(np.nan))
     shown = opaque(values) if values.ndim == 3 and values.shape[2] == 4 else None
     if values.ndim == 3 and values.shape[2] in (3, 4) and not np.any(values[..., :3] != values[..., :1]):
         values = values[..., 0]
@@ -69,16 +71,19 @@ def map_of(values: np.ndarray, name: str) -> Float32[np.ndarray, "h w"]:
             f"{name}: a map must have one number per pixel, (h, w), not {values.shape} of {values.dtype}"
         )
     with np.errstate(over="ignore"):
-        numbers = values.astype(np.float32)
+        numbers = values.astype(np.result_type(values.dtype, np.float32) if exact else np.float32)
     known = np.isfinite(numbers) if shown is None else np.isfinite(numbers) & shown
-    return np.where(known, numbers, np.float32(np.nan))
+    return np.where(known, numbers, numbers.dtype.type(np.nan))
 
 
-def without(values: Float32[np.ndarray, "h w"], *nodata: float) -> Float32[np.ndarray, "h w"]:
-    """Replace these values of a map, rounded to 32 bits, by NaN."""
+def without(values: Float[np.ndarray, "h w"], *nodata: float) -> Float[np.ndarray, "h w"]:
+    """Replace these values of a map, also rounded to 32 bits, by NaN."""
+    if not nodata:
+        return values
     with np.errstate(over="ignore"):
-        marks = np.array(nodata, np.float64).astype(np.float32)
-    return np.where(np.isin(values, marks), np.float32(np.nan), values)
+        marks = np.array(nodata, np.float64)
+        marks = np.concatenate([marks, marks.astype(np.float32)]).astype(values.dtype)
+    return np.where(np.isin(values, marks), values.dtype.type(np.nan), values)
 
 
 def read_labels(path: Path, notify: Notify = ignore) -> Int32[np.ndarray, "h w"]:
@@ -115,26 +120,30 @@ def _rank(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.flatnonzero(present), (np.cumsum(present, dtype=np.int32) - 1)[values]
 
 
-def read_truth(path: Path, scale: TruthScale | None = None, notify: Notify = ignore) -> Float32[np.ndarray, "h w"]:
-    """Read true disparity, in pixels, NaN where unknown, as the kits of benchmarks store it.
+def read_truth(
+    path: Path, scale: TruthScale | None = None, nodata: Sequence[float] = (), notify: Notify = ignore
+) -> Float32[np.ndarray, "h w"]:
+    """Read true or given disparity, in pixels, NaN where unknown, as the kits of benchmarks store it.
 
     scale: None for numbers in pixels; the number of file units a pixel, where 0 or less is unknown; or `sintel` for
-    red * 4 + green / 64 + blue / 16384, which cannot mark unknown pixels.
+    red * 4 + green / 64 + blue / 16384, which cannot mark unknown pixels. nodata: numbers of the file for no data.
     Raises: PictureError as `read_map`.
     """
     if scale == "sintel":
         return truth_of(values_of(path, bytes_of(path), notify), str(path), scale)
-    return _in_pixels(read_map(path, notify), scale)
+    return _in_pixels(without(read_map(path, notify), *nodata), scale)
 
 
-def truth_of(values: np.ndarray, name: str, scale: TruthScale | None = None) -> Float32[np.ndarray, "h w"]:
+def truth_of(
+    values: np.ndarray, name: str, scale: TruthScale | None = None, nodata: Sequence[float] = ()
+) -> Float32[np.ndarray, "h w"]:
     """Return an array as `read_truth` does. Source: the kit of MPI Sintel, sintel_io.py. Raises: PictureError."""
     if scale != "sintel":
-        return _in_pixels(map_of(values, name), scale)
+        return _in_pixels(without(map_of(values, name), *nodata), scale)
     if values.ndim != 3 or values.shape[2] != 3 or values.dtype != np.uint8:
         raise PictureError(
             f"{name}: Sintel's disparities are pictures of three channels of 8 bits, not {values.shape} of "
-            f"{values.dtype}; leave `truth_scale: sintel` out"
+            f"{values.dtype}; leave the scale `sintel` out"
         )
     red, green, blue = np.moveaxis(values.astype(np.float32), 2, 0)
     return 4 * red + green / 64 + blue / 16384

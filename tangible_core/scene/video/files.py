@@ -93,6 +93,8 @@ def read_video(source: Path | int, files: SceneFiles, rig: StereoRig | None, not
         if first is None or (isinstance(frames, FileFrames) and _is_picture(source, frames)):
             raise PictureError(f"{source}: is a picture, not a video; write `photo:` instead of `video:`")
         fps, count = frames.fps, frames.count
+        if isinstance(frames, FolderFrames) and frames.used:
+            notify(frames.used.sentence(_short(source)))
     picture: np.ndarray = cast(Any, first.views)
     video = Video(
         source, files.layout or "mono", fps, name, files.repeat, files.fps is None, count, picture.shape[:2], files, rig

@@ -10,7 +10,7 @@ from typing import final
 import numpy as np
 from jaxtyping import UInt8
 
-from ...data.pictures import full_scale, opaque, to_rgb8
+from ...data.pictures import UsedRange, full_scale, opaque, to_rgb8, used_range
 from ...errors import PictureError
 from ..formats.kinds import PICTURES
 from ..formats.pairs import Stored, read_stored, same_type, turn_alike
@@ -170,6 +170,8 @@ class FolderFrames(VideoFrames):
         self._folder, self._repeat = folder, repeat
         self._number = 0
         self._first: Stored | None = None
+        self.used: UsedRange | None = None
+        """The range that the first picture uses, if it is small; all are stretched alike."""
 
     @property
     def at_end(self) -> bool:
@@ -205,7 +207,10 @@ class FolderFrames(VideoFrames):
         self._number += 1
         path = self._pictures[number % len(self._pictures)]
         try:
-            picture = as_frame(self._like_first(read_stored(path)))
+            is_first, picture = self._first is None, self._like_first(read_stored(path))
+            if is_first:
+                self.used = used_range(picture)
+            picture = as_frame(self.used.stretch(picture) if self.used else picture)
         except PictureError as error:
             self.skipped += 1
             self._raise_once("damaged", error)

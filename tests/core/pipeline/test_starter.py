@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 import cv2
 import numpy as np
 import pytest
+import tifffile
 from PIL import Image
 
 from command_line import tangible
@@ -80,6 +81,14 @@ def test_starter_of_heights_in_millimetres_keeps_their_size(folder: Path):
         assert isinstance(config.scene, SceneFiles) and config.scene.height == folder / name
         assert config.size.width_m == pytest.approx(0.08)
         assert config.size.relief_m == pytest.approx(0.015)
+
+
+def test_starter_of_a_map_on_the_ground_has_its_proportions(folder: Path):
+    """60 x 30 cells of 5 x 20 m are 300 x 600 m: half as wide as long."""
+    tags = [(33550, "d", 3, (5.0, 20.0, 0.0), True)]
+    tifffile.imwrite("dem.tif", np.load("map.npy").astype(np.float32), extratags=tags)
+    made = starter([Path("dem.tif")], folder / "p.yaml")
+    assert parse_config(made.text, folder / "p.yaml", default_registry()).workspace.width_m == 0.04
 
 
 @pytest.mark.parametrize("hole", [np.nan, np.inf, -np.inf])

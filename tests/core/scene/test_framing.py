@@ -70,7 +70,7 @@ class TestHeights:
         for crop, sides in ((None, (0.04, 0.09)), ([1, 2, 2, 1], (0.02, 0.03))):
             scene = Scene.heights(tmp_path / "h.png", crop=crop, rotate=rotate)
             width_m, length_m = sides if rotate in (0, 180) else sides[::-1]
-            assert scene.measured == pytest.approx((width_m, length_m, 0.011))
+            assert scene.own_size == pytest.approx((width_m, length_m, 0.011))
         assert Scene.heights(tmp_path / "h.png", invert=True).measured is None
 
 

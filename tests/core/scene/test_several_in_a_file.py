@@ -232,8 +232,8 @@ class TestOneForBoth:
 
     @pytest.mark.parametrize("number", [float, np.int64])
     def test_white_of_the_lighter_view_is_that_of_the_darker_one(self, tmp_path: Path, number: type):
-        """The left view reaches 200, the right one 3 in floats, and 1000 and 3 in whole numbers."""
-        lightest = 200 if number is float else 1000
+        """The left view reaches 200, the right one 3 in floats, 30,000 and 3 in whole numbers: not stretched."""
+        lightest = 200 if number is float else 30_000
         left, right = np.array([[0, lightest]], number), np.array([[3, 0]], number)
         white = 255 if number is float else 65535
         np.save(tmp_path / "left.npy", left)

@@ -68,7 +68,8 @@ def test_few_matches_appear_in_log_outcomes_and_sheet_title(
     monkeypatch.setattr(runs, "drawing", lambda: sheet)
     picture = np.random.default_rng(0).random((8, 8))
     Pipeline(Scene.pair(left=picture, right=picture[::-1]), depth=Guesses(), cached=False).run(tmp_path, "relief")
-    [message] = [each.message for each in caplog.records]
+    [message, flat] = [each.message for each in caplog.records]
+    assert flat.startswith("the relief is flat, nothing stands out: all of it is equally far; ")
     outcomes = {each["product"]: each for each in json.loads((tmp_path / "outcomes.json").read_text())["outcomes"]}
     assert outcomes["disparity"]["notes"] == [{"text": message, "kind": "doubt"}]
     assert message.startswith("hardly anything matches in the two pictures: a depth was found for 0%")

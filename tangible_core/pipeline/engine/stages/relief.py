@@ -12,7 +12,7 @@ from ....plugins.interfaces import Hierarchical
 from ....plugins.notes import note
 from ....relief import ReliefChoice, ReliefScale, edge_relief, edges, relief_scale, shape_relief, shaping
 from ....scene import geometry, scaling
-from ....scene.workspace import FeltSize
+from ....scene.workspace import FeltSize, flat_warning
 from .. import part_heights
 from ..keys import method_identity
 from ..part_heights import warn_missing_heights
@@ -75,6 +75,12 @@ class ReliefStage(Stage):
         return f"no depth is needed: heights are {'given' if heights.by == 'given' else 'guessed'}"
 
     def make(self, inputs: Inputs) -> Relief:
+        relief = self._make(inputs)
+        if text := flat_warning(relief, self.config.relief_kind):
+            note(log, text, logging.WARNING)
+        return relief
+
+    def _make(self, inputs: Inputs) -> Relief:
         if self.config.heights is not None:
             return self._from_parts(inputs[self.config.felt_parts], inputs.get("disparity"))
         if self.config.relief_kind == "edges":

@@ -107,6 +107,7 @@ def test_form_has_titles_and_units():
     workspace = schema["properties"]["workspace"]["properties"]
     assert {name: option.get("unit") for name, option in workspace.items()} == {
         "width_m": "m", "relief_m": "m", "smooth_m": "m", "finest_m": "m", "holes": None,
+        "scale": None, "exaggeration": None, "low_m": "m", "high_m": "m",
     }  # fmt: skip
     assert schema["properties"]["depth"]["anyOf"][1]["title"] == "auto"
     assert schema["$defs"]["VirtualHand"]["title"] == "Virtual hand"

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from flights import fly, half_slope, level, material, surface_with_materials
-from tangible_core import HapticSurface
+from tangible_core import HapticSurface, Workspace
 from tangible_core.preflight import CHECKS, judge
+from tangible_core.preflight.checks.cures import flatten, narrow
 from tangible_core.preflight.checks.jitter import lateness
 from tangible_core.preflight.checks.stiffness import law_stiffness, quantisation
 from tangible_core.preflight.verdict import check_bound
@@ -41,6 +42,15 @@ def test_checks_all_yield_verdicts_and_failures_have_cures(law: str, surface: Ha
 def test_check_bound_nan_meets_no_bound(relation: Any):
     assert check_bound("check", "of", math.nan, relation, 1.0, "N", "", cure="measure it").verdict == "warn"
     assert check_bound("check", "of", 1.0, relation, math.nan, "N", "", cure="measure it").verdict == "warn"
+
+
+def test_surface_at_a_scale_is_made_smaller_by_the_scale():
+    """240 m at 1:2000 are 120 mm; what reaches 60 mm is 1:4000, and half as high is half the exaggeration."""
+    size = Workspace(scale="1:2000", exaggeration=2).size("heights")._replace(width_m=0.12)
+    flight = fly(level(), size=size, relief_key="workspace.exaggeration", relief_m=2.0)
+    assert str(narrow(flight, "0.06")) == "`workspace.scale: 1:4000`"
+    assert str(flatten(flight, 0.5)) == "`workspace.exaggeration: 1`"
+    assert str(narrow(fly(level()), "0.06")) == "`workspace.width_m: 0.06`"
 
 
 def test_law_that_is_not_a_spring_has_no_stiffness_limit():

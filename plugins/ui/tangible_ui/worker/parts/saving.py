@@ -157,7 +157,7 @@ def undo_framing(labels: Int32[np.ndarray, "h w"], config: PipelineConfig) -> Sh
     labels = np.rot90(labels, files.rotate // 90)
     if files.crop is None:
         return labels
-    alone = {"crop": None, "rotate": 0, "segments": None, "disparity": None, "truth": None}
+    alone = {"crop": None, "rotate": 0, "segments": None, "disparity": None, "depth": None, "truth": None}
     rows, columns = Scene.read(files.model_copy(update=alone), config.folder).shape
     x, y, width, height = files.crop
     return np.pad(labels, ((y, rows - y - height), (x, columns - x - width)), mode="edge")

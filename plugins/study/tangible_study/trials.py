@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any, Self, final, get_args
 
 from tangible_core.errors import ResultsError
-from tangible_core.files.line_file import LineFile, read_lines
+from tangible_core.files.line_file import LineFile
+from tangible_core.files.tables import read_table
 
 MISSING = "n/a"
 """The text of a missing value, as BIDS has it."""
@@ -75,22 +76,22 @@ def read_answers(path: Path) -> list[Answer]:
     Further columns are ignored. Raises: ResultsError for a file that cannot be read, with the line.
     """
     try:
-        lines = list(read_lines(path))
+        columns, lines = read_table(path, appended=True)
+        rows = list(lines)
     except FileNotFoundError:
         return []
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or error
         raise ResultsError(f"{path}: cannot be read as a table of answers: {why}; name another folder") from error
-    return list(_answers(path, lines))
-
-
-def _answers(path: Path, lines: list[tuple[int, str]]) -> Iterable[Answer]:
-    header = lines[0][1].split("\t") if lines else []
-    if lines and (missing := [name for name in COLUMNS if name not in header]):
+    if columns and (missing := [name for name in COLUMNS if name not in columns]):
         raise ResultsError(f"{path}:1: has no column {missing[0]}; name a table that `tangible study run` wrote")
-    for number, line in lines[1:]:
+    return list(_answers(path, rows))
+
+
+def _answers(path: Path, rows: list[tuple[int, dict[str, str]]]) -> Iterable[Answer]:
+    for number, cells in rows:
         try:
-            yield Answer.of(dict(zip(header, line.split("\t"), strict=True)))
+            yield Answer.of(cells)
         except (ValueError, KeyError) as error:
             raise ResultsError(f"{path}:{number}: is not an answer: {error}; correct the line") from error
 
@@ -136,5 +137,5 @@ def _value(text: str, kind: Any) -> Any:
     if text == MISSING:
         return None if type(None) in kinds else kinds[0]()
     if bool in kinds:
-        return {"true": True, "false": False}[text]
+        return {"true": True, "false": False}[text.casefold()]
     return next(each for each in kinds if each is not type(None))(text)

@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 
 from tangible_core.errors import OutputError, ResultsError
+from tangible_study.analysis.results_folder import read_results
+from tangible_study.session.folder import Participant, participants
 from tangible_study.trials import COLUMNS, Answer, AnswerFile, read_answers
 from unreadable import unreadable
 
@@ -79,3 +81,17 @@ def test_damaged_line_is_named(tmp_path: Path):
     (tmp_path / "a.tsv").write_text(text.replace("false", "maybe"))
     with pytest.raises(ResultsError, match=r"a\.tsv:2: is not an answer"):
         read_answers(tmp_path / "a.tsv")
+
+
+def test_list_of_participants_from_a_spreadsheet_is_the_same(tmp_path: Path):
+    rows = ["participant_id;language;started;finished", "sub-P7;de;2026-01-02T03:04:05;n/a"]
+    (tmp_path / "participants.tsv").write_text("\r\n".join(rows), encoding="utf-8-sig")
+    assert participants(tmp_path) == [Participant("sub-P7", "de", "2026-01-02T03:04:05")]
+
+
+def test_answers_under_another_name_are_not_passed_over(tmp_path: Path):
+    (tmp_path / "study.yaml").touch()
+    (tmp_path / "sub-P7" / "beh").mkdir(parents=True)
+    (tmp_path / "sub-P7" / "beh" / "sub-P7_task-s_beh.csv").touch()
+    with pytest.raises(ResultsError, match=r"rename it to sub-P7_task-s_beh\.tsv"):
+        read_results(tmp_path)

@@ -46,7 +46,7 @@ def analyse_levels(comparison: Comparison, answers: ByParticipant) -> Result:
     notes += [
         f"The threshold of {key} is outside the levels that were presented; it is a guess."
         for key, curve in curves.items()
-        if not blocks[key].levels.min() <= curve.threshold.value <= blocks[key].levels.max()
+        if not (curve.threshold.is_bound or min(blocks[key].levels) <= curve.threshold.value <= max(blocks[key].levels))
     ]
     return Result(comparison.name, comparison.question, list(answers), rows, main, curves, blocks, notes)
 

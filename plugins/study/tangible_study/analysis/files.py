@@ -1,6 +1,7 @@
 """The files of an analysis: a table for programs, one for a paper, and plots."""
 
 from collections.abc import Iterator
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -69,7 +70,7 @@ def _cells(row: Row) -> tuple[str, ...]:
         row.what.measure,
         row.what.condition,
         row.what.other,
-        f"{value:.3g} {row.unit}".rstrip(),
+        f"{value:.3g} {row.unit}".rstrip() if isfinite(value) else "",
         f"{low:.3g} to {high:.3g}" if row.estimate.has_interval else "",
         "" if row.chance != row.chance else f"{row.chance:.3g}",
         "" if row.p != row.p else "< .001" if row.p < 0.001 else f"{row.p:.3f}".removeprefix("0"),

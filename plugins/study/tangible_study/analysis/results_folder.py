@@ -47,6 +47,8 @@ def read_results(folder: Path) -> Kept:
     """Read the folder that `tangible study run` or `simulate` wrote. Raises: ResultsError, ConfigError."""
     if not (folder / "study.yaml").is_file():
         raise ResultsError(f"{folder}: is not the folder of a study; name one that `tangible study run` wrote")
+    if renamed := next(folder.glob("sub-*/beh/*_beh.csv"), None):
+        raise ResultsError(f"{renamed}: is a table under another name; rename it to {renamed.stem}.tsv, or remove it")
     tables = {
         path.parts[-3].removeprefix("sub-"): read_answers(path) for path in sorted(folder.glob("sub-*/beh/*_beh.tsv"))
     }

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
-from math import isfinite, nan
+from math import isfinite, isnan, nan
 from typing import Any, NamedTuple
 
 from ..statistics import intervals
@@ -85,17 +85,17 @@ def over_participants(
 
 
 def _mean_of(what: What, group: Sequence[Row], pooled: Row | None, bounds: tuple[float, float]) -> Row:
-    values = [each.estimate.value for each in group if isfinite(each.estimate.value)]
-    estimate, chance = intervals.mean(values), group[0].chance
-    p = intervals.p_of_mean(values, chance) if isfinite(chance) else nan
+    known = [row.estimate for row in group if row.estimate.value == row.estimate.value]
+    estimate, chance = intervals.mean_of_estimates(known, closed=pooled is not None), group[0].chance
+    p = intervals.p_of_mean([single.value for single in known], chance) if isfinite(chance) else nan
     trials = sum(each.trials for each in group)
     row = Row(what, ALL, estimate, group[0].unit, trials, None, chance, p)
     if pooled is None:
         return row
-    wider = intervals.wider(Estimate(estimate.value, *estimate[1:]), pooled.estimate)
-    known = [each for each in (p, pooled.p) if each == each]
+    wider = intervals.wider(estimate, pooled.estimate)
     bounded = Estimate(wider.value, max(wider.low, bounds[0]), min(wider.high, bounds[1]))
-    return replace(row, estimate=bounded, count=pooled.count, p=max(known, default=nan))
+    chances = [each for each in (p, pooled.p) if each == each]
+    return replace(row, estimate=bounded, count=pooled.count, p=max(chances, default=nan))
 
 
 def contrast(one: Row, other: Row, groups: tuple[Sequence[Row], Sequence[Row]], pooled: Estimate | None = None) -> Row:
@@ -106,12 +106,13 @@ def contrast(one: Row, other: Row, groups: tuple[Sequence[Row], Sequence[Row]], 
     """
     what = What(f"difference of {one.what.measure}", one.what.condition, other.what.condition)
     row = Row(what, one.participant, Estimate(nan), one.unit, one.trials + other.trials, None, 0.0)
-    seconds = {each.participant: each.estimate.value for each in groups[1]}
-    pairs = [(each.estimate.value, seconds[each.participant]) for each in groups[0] if each.participant in seconds]
-    differences = [first - second for first, second in pairs if isfinite(first - second)]
+    seconds = {row.participant: row.estimate for row in groups[1]}
+    pairs = [(row.estimate, seconds[row.participant]) for row in groups[0] if row.participant in seconds]
+    differences = [intervals.difference(*pair) for pair in pairs if not any(isnan(side.value) for side in pair)]
     if len(differences) < 2:
         return replace(row, estimate=intervals.difference(one.estimate, other.estimate))
-    estimate, p = intervals.mean(differences), intervals.p_of_mean(differences, 0.0)
+    estimate = intervals.mean_of_estimates(differences, closed=pooled is not None)
+    p = intervals.p_of_mean([apart.value for apart in differences], 0.0)
     return replace(row, estimate=estimate if pooled is None else intervals.wider(estimate, pooled), p=p)
 
 

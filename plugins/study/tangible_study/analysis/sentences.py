@@ -1,6 +1,7 @@
 """Plain sentences: what was found, and how sure that is."""
 
 from collections.abc import Iterator
+from math import inf, isfinite, isinf, isnan
 
 from .curves import EQUALITY, NOTICEABLE, THRESHOLD
 from .pairs import CHOSEN, DIFFERENCE, SCALE
@@ -59,7 +60,8 @@ def _describe(result: Result, row: Row, who: str) -> Iterator[str]:
     value, low, high = row.estimate
     one, other, trials, unit = row.what.condition, row.what.other, row.trials, row.unit
     share = f"{100 * value:.0f} % of {trials} trials (95 % interval {100 * low:.0f} to {100 * high:.0f} %)"
-    between = f"95 % interval {low:.3g} to {high:.3g}" if row.estimate.has_interval else "no interval from one value"
+    between = _interval(low, high)
+    bound = f"below {high:.3g} {unit}" if high < inf else f"above {low:.3g} {unit}"
     guess = 100 * row.chance
     match row.what.measure:
         case "proportion correct" if result.question == "same":
@@ -87,10 +89,16 @@ def _describe(result: Result, row: Row, who: str) -> Iterator[str]:
                 else f"It is open whether {more} is {result.question} than {less}: {who} chose {one} in {share}, and "
                 "no difference gives 50 %."
             )
+        case "point of equality" | "threshold" if isinf(high) and low in (-inf, 0.0):
+            yield f"With {one}, the answers do not tell the {row.what.measure}: any level explains them."
+        case "point of equality" if row.estimate.is_bound:
+            yield f"With {one}, what feels equal to the standard, {row.chance:.3g} {unit}, is {bound} (95 %)."
+        case "threshold" if row.estimate.is_bound:
+            yield f"With {one}, the difference that is named rightly in two of three trials is {bound} (95 %)."
         case "point of equality":
             yield f"With {one}, {value:.3g} {unit} feels equal to the standard, {row.chance:.3g} {unit} ({between})."
             for noticed in result.of_all(NOTICEABLE):
-                if noticed.what.condition == one:
+                if noticed.what.condition == one and not isinf(noticed.estimate.high):
                     yield f"A difference of {noticed.estimate.value:.3g} {unit} is noticed in three of four trials."
         case "threshold":
             yield f"With {one}, a difference of {value:.3g} {unit} is named rightly in two of three trials ({between})."
@@ -105,6 +113,15 @@ def _describe(result: Result, row: Row, who: str) -> Iterator[str]:
         yield f"If there were no difference, a result as clear as this would come about in {odds(row.p)} studies."
 
 
+def _interval(low: float, high: float) -> str:
+    """Return the interval of an estimate in words."""
+    if isnan(low):
+        return "no interval from one value"
+    if isinf(high):
+        return f"95 % interval from {low:.3g} upwards" if isfinite(low) else "95 % interval without bounds"
+    return f"95 % interval {low:.3g} to {high:.3g}" if isfinite(low) else f"95 % interval up to {high:.3g}"
+
+
 def _difference(measure: str, row: Row) -> Iterator[str]:
     """Yield sentences about a difference between two conditions."""
     what = NAMES[measure]
@@ -113,18 +130,22 @@ def _difference(measure: str, row: Row) -> Iterator[str]:
     unit = "percentage points" if measure == CORRECT else row.unit
     more = "greater" if value > 0 else "smaller"
     least, most = (low, high) if value > 0 else (-high, -low)
-    amount = f"{abs(value):.3g} {unit}".rstrip()
+    amount, between = f"{abs(value):.3g} {unit}".rstrip(), _interval(least, most)
     if not row.estimate.has_interval:
         yield f"With {one}, {what} is {amount} {more} than with {other}; one value each does not tell how sure that is."
+    elif is_sure(row) and isinf(value):
+        yield f"With {one}, {what} is {more} than with {other}, by {least:.3g} {unit} or more (95 %)."
     elif is_sure(row):
-        yield f"With {one}, {what} is {amount} {more} than with {other} (95 % interval {least:.3g} to {most:.3g})."
+        yield f"With {one}, {what} is {amount} {more} than with {other} ({between})."
         if row.p < 0.05:
             yield f"If there were no difference, a result as clear as this would come about in {odds(row.p)} studies."
-    else:
+    elif isfinite(value):
         yield (
-            f"It is open whether {what} differs: with {one}, it is {amount} {more} than with {other} (95 % interval "
-            f"{least:.3g} to {most:.3g}, which holds 0)."
+            f"It is open whether {what} differs: with {one}, it is {amount} {more} than with {other} "
+            f"({between}, which holds 0)."
         )
+    else:
+        yield f"It is open whether {what} differs between {one} and {other}: one of them has a bound, no estimate."
 
 
 def _scale(result: Result) -> Iterator[str]:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from tangible_core.errors import ConfigError, OutputError, ResultsError, quoted
 from tangible_core.files.json_text import write_figures
 from tangible_core.files.reading import read_bytes
+from tangible_core.files.tables import read_table
 from tangible_core.files.writing import folder_lock, write_text
 from tangible_core.pipeline.output.run_folder import make_writable
 from tangible_core.provenance.versions import versions
@@ -136,11 +137,10 @@ def participants(root: Path) -> list[Participant]:
     """Return the participants in the order of their first trials. Raises: ResultsError for a damaged list."""
     path = root / "participants.tsv"
     try:
-        lines = read_bytes(path).decode().splitlines()[1:]
-        return [Participant(*line.split("\t")) for line in lines]
+        return [Participant(**cells) for _, cells in read_table(path)[1]]
     except FileNotFoundError:
         return []
-    except (OSError, UnicodeDecodeError, TypeError) as error:
+    except (OSError, ValueError, TypeError) as error:
         raise ResultsError(f"{path}: is not a list of participants: {error}; restore it") from error
 
 

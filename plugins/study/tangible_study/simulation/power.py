@@ -135,6 +135,8 @@ def _need(
     answers = [simulate(one, observer, number, seed) for number in range(TRIED_CURVES if curves else TRIED)]
     [changed], trials = one.study.comparisons, len(answers[0])
     effects = effects_of(analyse_comparison(changed, kept_of(one, answers).of(changed)))
+    if not all(isfinite(effect) for some in effects.values() for effect in some):
+        return Need(comparison.name, repetitions, trials, nan, nan, None)
     worst = min(
         effects.values(), key=lambda each: abs(float(np.mean(each))) / (float(np.std(each)) or 1e-9), default=[]
     )

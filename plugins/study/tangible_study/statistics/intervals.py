@@ -1,7 +1,7 @@
 """Estimates with their 95 % intervals: proportions, means, and differences of both."""
 
 from collections.abc import Callable, Sequence
-from math import hypot, isfinite, nan
+from math import hypot, isfinite, isinf, nan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,6 +26,11 @@ class Estimate(NamedTuple):
     def holds(self, value: float) -> bool:
         """Return True if a value is within the interval, or there is no interval that could exclude it."""
         return not self.has_interval or self.low <= value <= self.high
+
+    @property
+    def is_bound(self) -> bool:
+        """True if the answers give no estimate but a bound: the value is at an end of the interval."""
+        return self.value in (self.low, self.high)
 
     def mapped(self, function: Callable[[float], float]) -> "Estimate":
         """Return the estimate on another scale. function: rises with its argument."""
@@ -62,12 +67,37 @@ def mean(values: Sequence[float]) -> Estimate:
     return Estimate(middle, middle - half, middle + half)
 
 
+def mean_of_estimates(estimates: Sequence[Estimate], closed: bool = False) -> Estimate:
+    """Return the mean of the values with Student's interval, in which infinite bounds count, and so do bounds alone.
+
+    closed: the ends of an interval may be values as others are, such as a share of 0 or 1.
+
+    >>> mean_of_estimates([Estimate(-np.inf, -np.inf, 2.0), Estimate(1.0, 0.5, 1.5)])[:2]
+    (-inf, -inf)
+    """
+    values = [estimate.value for estimate in estimates]
+    if len(estimates) < 2:
+        return mean(values)
+    bounds = [estimate.is_bound and not closed for estimate in estimates]
+    low, high = (
+        mean([end if alone or isinf(end) else value for end, value, alone in zip(ends, values, bounds, strict=True)])
+        for ends in list(zip(*estimates, strict=True))[1:]
+    )
+    return Estimate(
+        sum(values) / len(values),
+        low.low if isfinite(low.value) else low.value,
+        high.high if isfinite(high.value) else high.value,
+    )
+
+
 def difference(one: Estimate, other: Estimate) -> Estimate:
     """Return one - other, with the interval that follows from both intervals if they are independent.
 
     Source: Zou & Donner (2008), Statistics in Medicine 27:1693.
     """
     value = one.value - other.value
+    if not isfinite(value):
+        return Estimate(value, one.low - other.high, one.high - other.low)
     low = value - hypot(one.value - one.low, other.high - other.value)
     return Estimate(value, low, value + hypot(one.high - one.value, other.value - other.low))
 
@@ -81,7 +111,7 @@ def wider(one: Estimate, other: Estimate) -> Estimate:
 
 def p_of_mean(values: Sequence[float], expected: float) -> float:
     """Return the probability, two-sided by Student's t, of a mean this far from the expected one; NaN if unknown."""
-    if len(values) < 2 or np.ptp(values) == 0:
+    if len(values) < 2 or not all(map(isfinite, values)) or np.ptp(values) == 0:
         return nan
     found: Any = stats.ttest_1samp(values, expected)
     return float(found.pvalue)

@@ -4,6 +4,7 @@ Source: Schütt, Harmeling, Macke & Wichmann (2016), Vision Research 122:105.
 """
 
 import warnings
+from itertools import pairwise
 from math import exp, inf, log
 from typing import Any, NamedTuple
 
@@ -13,6 +14,8 @@ from jaxtyping import Float64
 from ..extra import need
 from .intervals import LEVEL, Estimate
 
+STEP = 0.01
+"""Width of what counts as a step, as a share of the distance of two levels."""
 JND = 0.20503033
 """Half the distance from 25 to 75 % as a share of the width (5 to 95 %) of a cumulative Gaussian: 0.6745 / 3.2897."""
 STEPS = {"threshold": 60, "width": 60, "lambda": 20}
@@ -54,7 +57,8 @@ class Curve(NamedTuple):
 
         if self.chance:
             steep = (log(-log(0.05)) - log(-log(0.95))) / self.width.value
-            height = 1 - 0.5 ** ((levels / self.threshold.value) ** steep)
+            with np.errstate(divide="ignore", over="ignore"):  # a threshold below all levels is 0, a step is steep
+                height = 1 - 0.5 ** ((levels / self.threshold.value) ** steep)
             return self.chance + (1 - self.chance - self.lapses) * height
         sd = self.width.value / GAUSSIAN
         return self.lapses + (1 - 2 * self.lapses) * stats.norm.cdf((levels - self.threshold.value) / sd)
@@ -67,7 +71,8 @@ def fit_choice(blocks: Blocks, span: tuple[float, float]) -> Curve:
     """
     found = _fit(blocks, sigmoid="norm", experiment_type="equal asymptote", stimulus_range=span)
     threshold, width = _estimate(found, "threshold"), float(found.parameter_estimate["width"])
-    return Curve(threshold, width_interval(blocks, threshold, width), found.parameter_estimate["lambda"], 0.0)
+    curve = Curve(threshold, width_interval(blocks, threshold, width), found.parameter_estimate["lambda"], 0.0)
+    return curve._replace(threshold=_threshold_interval(curve, blocks))
 
 
 def width_interval(blocks: Blocks, threshold: Estimate, width: float) -> Estimate:
@@ -106,12 +111,37 @@ def fit_difference(blocks: Blocks, span: tuple[float, float], choices: int = 3) 
     logs = blocks._replace(levels=np.log(blocks.levels))
     within = (log(span[0]), log(span[1]))
     found = _fit(logs, sigmoid="weibull", experiment_type=f"{choices}AFC", stimulus_range=within)
-    return Curve(
-        _estimate(found, "threshold").mapped(exp),
-        _estimate(found, "width"),
-        found.parameter_estimate["lambda"],
-        1 / choices,
-    )
+    threshold, width = _estimate(found, "threshold").mapped(exp), _estimate(found, "width")
+    curve = Curve(threshold, width, found.parameter_estimate["lambda"], 1 / choices)
+    return curve._replace(threshold=_threshold_interval(curve, blocks, beyond=0.0))
+
+
+def _threshold_interval(curve: Curve, blocks: Blocks, beyond: float = -inf) -> Estimate:
+    """Return the threshold in an interval that also holds what the prior of psignifit leaves out.
+
+    By the likelihood ratio, a threshold beyond all levels may explain the answers too: it leaves the same share at all,
+    above the middle if it is below them. Then the interval has no bound there, and if it explains them as well as the
+    curve, there is no estimate but a bound. So may a step, which is anywhere between two levels.
+    beyond: the threshold that is below all levels.
+    """
+    from scipy import special, stats
+
+    def lack(share: Any) -> float:
+        return best - float((special.xlogy(hits, share) + special.xlog1py(misses, -share)).sum())
+
+    hits, misses, middle, best = blocks.counts, blocks.trials - blocks.counts, (1 + curve.chance) / 2, 0.0
+    best, limit = -lack(curve.at(blocks.levels)), stats.chi2.ppf(LEVEL, 1) / 2
+    same = hits.sum() / blocks.trials.sum()
+    below, above = lack(np.clip(same, middle, 1)), lack(np.clip(same, curve.chance, middle))
+    value, low, high = curve.threshold
+    for one, other in pairwise(blocks.levels.tolist()):
+        width = STEP * (log(other / one) if curve.chance else other - one)
+        step = curve._replace(threshold=Estimate((one + other) / 2), width=Estimate(width))
+        if lack(step.at(blocks.levels)) <= limit:
+            low, high = min(low, one), max(high, other)
+    if min(below, above) <= 0:
+        value = beyond if below < above else inf
+    return Estimate(value, beyond if below <= limit else low, inf if above <= limit else high)
 
 
 def _fit(blocks: Blocks, **options: Any) -> Any:
@@ -128,5 +158,5 @@ def _fit(blocks: Blocks, **options: Any) -> Any:
 
 
 def _estimate(result: Any, name: str) -> Estimate:
-    low, high = result.confidence_intervals[name][str(LEVEL)]
-    return Estimate(float(result.parameter_estimate[name]), float(low), float(high))
+    value, (low, high) = float(result.parameter_estimate[name]), result.confidence_intervals[name][str(LEVEL)]
+    return Estimate(value, min(float(low), value), max(float(high), value))

@@ -21,14 +21,15 @@ class Gabor(Segmenter, Skippable):
     or more, a small network, fitted to many other textures, makes further values of the features, and the difference in
     these counts as much. In the last joinings the discriminating features are computed again at each step, and
     neighbouring cells are drawn to the same class. If `auto`, joining ends where the next two clusters are likely to be
-    two textures, by their distance and size. The result is deterministic and does not depend on the picture's origin.
-    Labels are in the order of their first pixels, row by row. Confidence is 1 - q / p, where p and q are the
-    memberships of a pixel's class and of the second best class: 0 on borders.
+    two textures, by their distance and size. Flat areas, which have no texture, are told apart by tone. The result is
+    deterministic and does not depend on the picture's origin. Labels are in the order of their first pixels, row by
+    row. Confidence is 1 - q / p, where p and q are the memberships of a pixel's class and of the second best class: 0
+    on borders.
     Sources: Jain & Farrokhnia, Pattern Recognition 24, 1991 (the energies); Ojala et al., IEEE TPAMI 24, 2002
     (patterns); Su & Dy, ICTAI 2004 (division); Ward, J. Am. Stat. Ass. 58, 1963 (joining).
     """
 
-    version: ClassVar[int] = 8
+    version: ClassVar[int] = 9
 
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
     """Largest number of textures; `auto`: an estimate, at most 16, told with its confidence and the next best."""
@@ -53,6 +54,8 @@ class Gabor(Segmenter, Skippable):
         Raises: PictureError as `check_picture`.
         """
         from .clusters.classes import classes
+        from .clusters.counting import LARGEST_NUMBER
+        from .clusters.flat_areas import flat_areas
         from .clusters.full_size import fine_memberships, pixel_labels
         from .clusters.planes import combine_planes
         from .features.cells import CELL_PX
@@ -62,6 +65,10 @@ class Gabor(Segmenter, Skippable):
 
         if self.segments == 1:
             return one_segment(check_picture(picture).shape[:2])
+        most = LARGEST_NUMBER if self.segments == "auto" else self.segments
+        flat = flat_areas(picture, self.colour is not False, most)
+        if flat is not None:
+            return SegmentMap(number_in_reading_order(flat))
         windows = features(picture, self.lambda_max_px, self.least_energy, self.colour)
         if windows is None:
             return one_segment(picture.shape[:2])

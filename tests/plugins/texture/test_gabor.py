@@ -8,6 +8,7 @@ from label_maps import rand_index
 from tangible_core.data import Views
 from tangible_core.errors import OptionError, PictureError
 from tangible_core.plugins.notes import collected
+from tangible_texture.clusters.flat_areas import flat_areas
 from tangible_texture.energies.gabor_bank import Gabor as bank_filter
 from tangible_texture.energies.gabor_bank import kernel, sigma_of_bandwidth
 from tangible_texture.gabor import Gabor
@@ -226,3 +227,46 @@ def test_labels_with_one_thread_are_the_same(monkeypatch: pytest.MonkeyPatch):
     alone = Gabor(segments=3).segment(PICTURE)
     np.testing.assert_array_equal(whole.labels, alone.labels)
     np.testing.assert_array_equal(whole.confidence, alone.confidence)
+
+
+def halves(left: int, right: int, sigma: float = 0.0) -> np.ndarray:
+    picture = np.full((256, 256), float(left))
+    picture[:, 128:] = right
+    noise = np.random.default_rng(3).normal(0, sigma, picture.shape) if sigma else 0.0
+    return np.clip(np.round(picture + noise), 0, 255).astype(np.uint8)
+
+
+def quarters(*tones: int) -> np.ndarray:
+    return np.repeat(np.repeat(np.array(tones, np.uint8).reshape(2, 2), 128, axis=0), 128, axis=1)
+
+
+ROW, COLUMN = np.indices((256, 256))
+FLAT = {
+    "halves": (halves(60, 200), 2),
+    "faint halves": (halves(100, 110), 2),
+    "halves with noise of a sensor": (halves(60, 200, 3.0), 2),
+    "one tone with noise of a sensor": (halves(90, 90, 2.0), 1),
+    "quarters of four tones": (quarters(60, 200, 130, 250), 4),
+    "quarters of three tones": (quarters(60, 200, 130, 60), 3),
+    "disc": (np.where(np.hypot(ROW - 128, COLUMN - 128) < 64, 200, 60).astype(np.uint8), 2),
+    "halves of one brightness": (np.stack([halves(150, 60), halves(80, 126), halves(60, 60)], axis=2), 2),
+    "blurred edge": (np.clip(60 + 14 * (COLUMN - 123), 60, 200).astype(np.uint8), 2),
+    "gradient": (COLUMN.astype(np.uint8), 1),
+    "gradient along the diagonal": (((ROW + COLUMN) // 2).astype(np.uint8), 1),
+}
+
+
+@pytest.mark.parametrize("effort", EFFORTS)
+@pytest.mark.parametrize(("picture", "areas"), FLAT.values(), ids=FLAT)
+def test_flat_areas_are_as_many_as_there_are_tones(picture: np.ndarray, areas: int, effort: str):
+    assert Gabor(effort=effort).segment(picture).count == areas
+
+
+def test_border_of_flat_areas_is_that_of_the_picture():
+    labels = Gabor().segment(halves(200, 60)).labels
+    assert np.array_equal(labels, np.repeat([[0] * 128 + [1] * 128], 256, axis=0))
+
+
+@pytest.mark.parametrize("half", [PICTURE, np.where(np.arange(256) < 128, PICTURE, 0.9)], ids=["textures", "half flat"])
+def test_textures_are_no_flat_areas(half: np.ndarray):
+    assert flat_areas(half, True, 16) is None

@@ -1,8 +1,9 @@
 """The scenes of a batch: the rows of a manifest, or the pictures and pairs of a folder or a glob."""
 
-import csv
 import glob
 import json
+import logging
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from os.path import commonpath
 from pathlib import Path
@@ -10,16 +11,22 @@ from typing import Any, NamedTuple
 
 from tangible_core.errors import BatchError, quoted, shown, what_is
 from tangible_core.files.paths import as_path
+from tangible_core.files.tables import read_table
 from tangible_core.files.yaml.editing import json_in_yaml
 from tangible_core.scene.formats.kinds import PICTURES, VIDEOS
 from tangible_core.scene.scene_files import SceneFiles
 
+log: logging.Logger = logging.getLogger(__name__)
 MANIFESTS = (".csv", ".parquet")
 FILES = tuple(f"scene.{name}" for name, field in SceneFiles.model_fields.items() if "Path" in str(field.annotation))
 """The keys whose values are files; in a manifest, they are relative to the manifest."""
 SIDES = (("_left", "_right"), ("_l", "_r"), ("-left", "-right"), ("_L", "_R"))
 """The ends of the names of a pair's two pictures."""
 ID = "id"
+BESIDE_FILE = "._"
+"""Beginning of the names of files that macOS writes beside others on foreign disks; they hold no picture."""
+MAX_NAMED = 5
+"""Number of files left out that are named."""
 MAX_IN_REASON = 200
 """Number of characters of a library's reason in a message."""
 
@@ -49,13 +56,15 @@ def rows_of(over: str | Sequence[str], besides: Path | None = None) -> Iterator[
         yield from _check_names(_pictures(_existing_pictures(several), _common(several)), "--over: ")
         return
     path = as_path(over, "--over")
+    known = next((place for place in (path, *path.parents) if place.exists()), path)
     if path.suffix.lower() in MANIFESTS:
         rows = _read_manifest(path)
     elif path.is_dir():
         rows = _pictures(_files(path.rglob("*"), besides), path)
-    else:
-        names = map(Path, glob.glob(str(path), recursive=True))  # noqa: PTH207 - pathlib refuses absolute patterns
-        rows = _pictures(_files(names, besides), _base(path))
+    else:  # a folder that is there may have brackets in its name, which are no pattern
+        pattern = str(Path(glob.escape(str(known)), path.relative_to(known)))
+        names = map(Path, glob.glob(pattern, recursive=True))  # noqa: PTH207 - pathlib refuses absolute patterns
+        rows = _pictures(_files(names, besides), known if known.is_dir() else known.parent)
     empty = True
     for row in _check_names(rows, f"{over}: "):
         empty = False
@@ -141,16 +150,14 @@ def _read_manifest(path: Path) -> Iterator[SceneRow]:
         yield from _rows(read(path), path.absolute().parent)
     except OSError as error:
         raise BatchError(f"{path}: cannot be read: {error.strerror or error}; name an existing manifest") from error
-    except (UnicodeDecodeError, csv.Error) as error:
+    except UnicodeDecodeError as error:
         raise BatchError(f"{path}: is not a table: {error}; save it as CSV in UTF-8") from error
+    except ValueError as error:
+        raise BatchError(f"{path}: {error}") from error
 
 
 def _csv(path: Path) -> Iterator[dict[str, Any]]:
-    with path.open(newline="", encoding="utf-8-sig") as file:
-        for row in csv.DictReader(file):
-            if None in row:
-                raise BatchError(f"{path}: row {quoted(row.get(ID))} has more cells than there are columns")
-            yield row
+    yield from (dict[str, Any](row) for _, row in read_table(path)[1])
 
 
 def _parquet(path: Path) -> Iterator[dict[str, Any]]:
@@ -168,17 +175,32 @@ def _parquet(path: Path) -> Iterator[dict[str, Any]]:
 
 
 def _pictures(files: list[Path], base: Path) -> Iterator[SceneRow]:
-    pictures = {file for file in files if file.suffix.lower() in PICTURES}
+    """Yield a row for each picture or pair, or without any for each video; two of one name keep their suffixes."""
+    pictures = {file for file in files if file.suffix.lower() in PICTURES and not file.name.startswith(BESIDE_FILE)}
+    scenes = list(_scenes_of(sorted(pictures)))
     if not pictures:  # phones save a short film of the same name next to each photo
-        yield from (_row(_name(file, base), {"scene.video": file}) for file in files if file.suffix.lower() in VIDEOS)
+        scenes = [(file, "", {"scene.video": file}) for file in files if file.suffix.lower() in VIDEOS]
+    taken = {path for _, _, parts in scenes for path in parts.values()}
+    if scenes and (others := [shown(file.name) for file in files if file not in taken]):
+        more = f" and {len(others) - MAX_NAMED} more" if len(others) > MAX_NAMED else ""
+        log.warning("%s: left out: %s", base, ", ".join(others[:MAX_NAMED]) + more)
+    names = [_name(file, base).removesuffix(end) for file, end, _ in scenes]
+    count = Counter(names)
+    for name, (file, _, parts) in zip(names, scenes, strict=True):
+        whole = name if count[name] == 1 else name + file.suffix
+        yield SceneRow(whole, tuple(f"{key}={_file_text(path)}" for key, path in parts.items()))
+
+
+def _scenes_of(pictures: list[Path]) -> Iterator[tuple[Path, str, dict[str, Path]]]:
+    """Yield the first picture of each scene, the end of its name as a left view, and the scene's files by key."""
     rights = {right for file in pictures if (right := _right_of(file)) in pictures}
-    for left in (file for file in files if file in pictures - rights):
+    for left in (file for file in pictures if file not in rights):
         right = _right_of(left)
-        if right in pictures:
+        if right in rights:
             end = next(end for end, _ in SIDES if left.stem.endswith(end))
-            yield _row(_name(left, base).removesuffix(end), {"scene.left": left, "scene.right": right})
+            yield left, end, {"scene.left": left, "scene.right": right}
         else:
-            yield _row(_name(left, base), {"scene.photo": left})
+            yield left, "", {"scene.photo": left}
 
 
 def _name(file: Path, base: Path) -> str:
@@ -187,18 +209,7 @@ def _name(file: Path, base: Path) -> str:
     return str((file.relative_to(base) if file.is_relative_to(base) else Path(file.name)).with_suffix(""))
 
 
-def _row(name: str, files: Mapping[str, Path]) -> SceneRow:
-    return SceneRow(name, tuple(f"{key}={_file_text(path)}" for key, path in files.items()))
-
-
 def _right_of(left: Path) -> Path | None:
     """Return the path of the right view if this is a left one."""
     ends = next((ends for ends in SIDES if left.stem.endswith(ends[0])), None)
     return left.with_name(left.stem.removesuffix(ends[0]) + ends[1] + left.suffix) if ends else None
-
-
-def _base(pattern: Path) -> Path:
-    """Return the folder of a glob that holds all its matches."""
-    plain = [part for part in pattern.parts if not glob.has_magic(part)]
-    whole = Path(*pattern.parts[: next((i for i, part in enumerate(pattern.parts) if part not in plain), 0)])
-    return whole if len(plain) < len(pattern.parts) else pattern.parent

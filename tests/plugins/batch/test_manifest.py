@@ -105,3 +105,48 @@ def test_cell_that_no_pipeline_file_can_hold_names_its_column(tmp_path: Path):
     path = parquet(tmp_path / "rows.parquet", want=[datetime(2026, 1, 1)])
     with pytest.raises(BatchError, match="column 'want': holds a datetime"):
         scenes(path)
+
+
+def test_pictures_of_one_name_keep_their_suffixes_and_others_do_not(tmp_path: Path):
+    touch(tmp_path, "1.jpg", "1.png", "2.png", "a_left.png", "a_right.png", "a.jpg")
+    assert list(scenes(tmp_path)) == ["1.jpg", "1.png", "2", "a.jpg", "a.png"]
+    assert [len(sets) for sets in scenes(tmp_path).values()] == [1, 1, 1, 1, 2]
+
+
+@pytest.mark.parametrize(
+    ("over", "names"),
+    [("[a]/x.png", ["x"]), ("[a]/*.png", ["x"]), ("[a]", ["x"]), ("[ab]/*.png", ["a/y"]), ("b[1].png", ["b[1]"])],
+)
+def test_brackets_of_a_folder_that_is_there_are_no_pattern(tmp_path: Path, over: str, names: list[str]):
+    touch(tmp_path, "[a]/x.png", "a/y.png", "b[1].png", "b1.png")
+    assert list(scenes(tmp_path / over)) == names
+
+
+def test_files_left_out_of_a_folder_are_named(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+    touch(tmp_path, "a.png", "._a.png", "film.mp4", "notes.txt")
+    assert list(scenes(tmp_path)) == ["a"]
+    assert f"{tmp_path}: left out: ._a.png, film.mp4, notes.txt" in caplog.text
+    touch(tmp_path, *(f"{number}.txt" for number in range(9)))
+    assert list(scenes(tmp_path)) == ["a"]
+    assert "left out: ._a.png, 0.txt, 1.txt, 2.txt, 3.txt and 7 more" in caplog.text
+
+
+def test_side_files_of_macos_alone_are_no_pictures(tmp_path: Path):
+    touch(tmp_path, "._a.png")
+    with pytest.raises(BatchError, match="holds no picture and no row"):
+        scenes(tmp_path)
+
+
+def test_table_of_a_german_spreadsheet_is_read(tmp_path: Path):
+    text = "id;scene.photo;workspace.width_m;title\r\nwide;a.png;0,1;Ein Krug, blau\r\n"
+    (tmp_path / "rows.csv").write_text(text, encoding="utf-8-sig")
+    photo = f'scene.photo="{tmp_path / "a.png"}"'
+    assert scenes(tmp_path / "rows.csv") == {"wide": (photo, "workspace.width_m=0.1", "title=Ein Krug, blau")}
+
+
+def test_quote_that_swallows_rows_is_refused(tmp_path: Path):
+    (tmp_path / "rows.csv").write_text('id,title\na,"one\nb,two\n')
+    with pytest.raises(
+        BatchError, match=r"rows\.csv: line 3 is not of a table: unexpected end of data; correct its quotes"
+    ):
+        scenes(tmp_path / "rows.csv")

@@ -155,3 +155,80 @@ def test_heights_of_one_cell_or_flat_surface_are_read_back(tmp_path: Path):
             read_back = read(path).relief
             assert read_back.extent_m == pytest.approx(relief.extent_m)
             np.testing.assert_allclose(read_back.height_m, relief.height_m, atol=TENTH_UM)
+
+
+def saved_again(path: Path, how: str) -> None:
+    """Save a PNG of heights as a paint program does."""
+    numbers = np.asarray(Image.open(path)).astype(np.uint16)
+    eight = np.rint(numbers / 257).astype(np.uint8)
+    if how == "8 bits":
+        Image.fromarray(eight).save(path)
+    elif how == "palette":
+        Image.fromarray(eight).convert("P").save(path)
+    elif how == "colours":
+        Image.fromarray(np.dstack([eight] * 3)).save(path)
+    else:
+        Image.fromarray(np.dstack([eight, eight, eight, np.full_like(eight, 255)])).save(path)
+
+
+@pytest.mark.parametrize("how", ["8 bits", "palette", "colours", "alpha"])
+def test_heights_that_a_paint_program_saved_with_8_bits_keep_their_scale(tmp_path: Path, how: str):
+    relief, files = bumps(), write(tmp_path, bumps())
+    saved_again(files["png"], how)
+    found = read(files["png"])
+    assert np.abs(found.relief.height_m - relief.height_m).max() < 0.0088 / 255 * 0.51
+    assert any("has 8 bits, and was exported with 16: its heights are in steps of 0.035 mm" in each
+               for each in found.scene.notes)  # fmt: skip
+
+
+def test_heights_that_were_painted_over_are_told(tmp_path: Path):
+    files = write(tmp_path, bumps())
+    numbers = np.asarray(Image.open(files["png"])).copy()
+    numbers[numbers > 40_000] = 40_000
+    Image.fromarray(numbers).save(files["png"])
+    found = read(files["png"])
+    expected_mm = 1.2 + 8.8 * 40_000 / 65_535
+    assert found.relief.height_m.max() == pytest.approx(expected_mm / 1e3, abs=TENTH_UM)
+    assert any(f"its highest place is {expected_mm:.4g} mm, and was 10 mm" in each for each in found.scene.notes)
+
+
+@pytest.mark.parametrize("factor", [25.5, 0.1])
+def test_exact_heights_with_other_numbers_are_refused(tmp_path: Path, factor: float):
+    files = write(tmp_path, bumps())
+    picture = Image.open(files["tif"])
+    text = picture.tag_v2[270]
+    Image.fromarray(np.asarray(picture) * np.float32(factor)).save(files["tif"], description=text)
+    for ending in ("tif", "json"):
+        with pytest.raises(PictureError, match=r"its metadata state 10 mm: another program has changed its numbers"):
+            assert read(files[ending]).relief
+
+
+def test_heights_that_were_resized_are_refused(tmp_path: Path):
+    files = write(tmp_path, bumps())
+    Image.open(files["png"]).resize((106, 74)).save(files["png"])
+    with pytest.raises(PictureError, match="is 106 x 74, but its metadata state 53 x 37"):
+        assert read(files["png"]).relief
+
+
+@pytest.mark.parametrize("how", ["mark", "line ends"])
+def test_heights_whose_text_went_by_mail_are_the_same(tmp_path: Path, how: str):
+    files = write(tmp_path, bumps())
+    data = files["json"].read_bytes()
+    files["json"].write_bytes(b"\xef\xbb\xbf" + data if how == "mark" else data.replace(b"\n", b"\r\n"))
+    for ending in ("json", "png"):
+        assert read(files[ending]).relief.extent_m == pytest.approx(bumps().extent_m)
+
+
+def test_heights_whose_text_has_decimal_commas_are_refused(tmp_path: Path):
+    files = write(tmp_path, bumps())
+    files["json"].write_text(files["json"].read_text().replace("160.0", "160,0"))
+    for ending in ("json", "png"):
+        with pytest.raises(PictureError, match=r"hills-heights.json: was changed and is not JSON any more: .* line"):
+            assert read(files[ending]).relief
+
+
+def test_heights_under_another_name_are_told_to_lose_their_size(tmp_path: Path):
+    files = write(tmp_path, bumps())
+    for ending in ("png", "json"):
+        files[ending].rename(tmp_path / f"copy.{ending}")
+    assert any("copy.json describes hills-heights.png" in each for each in read(tmp_path / "copy.png").scene.notes)

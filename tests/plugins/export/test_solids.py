@@ -33,7 +33,7 @@ from solids import (
 )
 from tangible_core import Pipeline, Scene
 from tangible_core.data import Relief, Work
-from tangible_core.errors import BrailleError, GeometryError, OutputError
+from tangible_core.errors import GeometryError, OutputError
 from tangible_core.plugins.interfaces import Exporter
 from tangible_core.plugins.notes import collected
 from tangible_depth import Luminance
@@ -230,8 +230,6 @@ class TestBraille:
         ("title", "error", "message"),
         [
             ("word " * 40, OutputError, "takes 20 lines of braille of 60 mm; a plate has 6"),
-            ("猫", BrailleError, "猫"),
-            ("a\x07", BrailleError, r"\\x07"),
         ],
     )
     def test_braille_of_unwritable_title_is_refused_in_one_line(
@@ -242,6 +240,11 @@ class TestBraille:
             ThreeMF().write(sample, tmp_path / "x")
         assert "\n" not in str(raised.value) and not list(tmp_path.iterdir())
         assert ThreeMF(braille=False).write(sample, tmp_path / "x")
+
+    def test_title_without_braille_is_left_out(self, tmp_path: Path):
+        cat, plain = (work(np.full((9, 9), 0.002), 0.06, title) for title in ("猫", ""))
+        [path], [other] = Stl().write(cat, tmp_path / "cat"), Stl().write(plain, tmp_path / "plain")
+        assert path.read_bytes()[84:] == other.read_bytes()[84:]
 
     def test_braille_on_narrow_picture_is_refused_with_the_cure(self, tmp_path: Path):
         sample = work(np.full((9, 9), 0.002), 0.016, "I")

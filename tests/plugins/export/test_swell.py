@@ -369,11 +369,19 @@ def test_page_without_parts_is_refused(tmp_path):
         Swell().write(work, tmp_path / "map")
 
 
-@pytest.mark.parametrize(("title", "names"), [("東京", ()), ("Map", ("地", "海"))])
-def test_page_text_without_braille_is_refused_before_writing(tmp_path, title, names):
+def test_name_without_braille_is_refused_before_writing(tmp_path):
     with pytest.raises(BrailleError):
-        Swell().write(labels_work(halves(), names, title=title), tmp_path / "map")
+        Swell().write(labels_work(halves(), ("地", "海"), title="Map"), tmp_path / "map")
     assert not list(tmp_path.iterdir())
+
+
+def test_title_without_braille_is_left_out_of_page_and_key(tmp_path):
+    with collected() as notes:
+        page, key, *_ = Swell().write(labels_work(halves(), ("sea", "land"), title="東京"), tmp_path / "map")
+    assert any(each.startswith("the title is left out: '東京': character 1") for each in notes)
+    plain, plain_key, *_ = Swell().write(labels_work(halves(), ("sea", "land"), title=""), tmp_path / "plain")
+    assert page.read_text().replace("東京", "") == plain.read_text()
+    assert key.read_text() == plain_key.read_text()
 
 
 def test_page_without_shapely_names_what_to_install(tmp_path, monkeypatch):

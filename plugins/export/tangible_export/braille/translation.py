@@ -22,8 +22,6 @@ _GERMAN_QUOTES = re.compile("[„\u201c\u201d]")
 """German quotation marks, made straight: the mark that closes in German opens in English."""
 _FRENCH_SPACE = re.compile("(«) +| +([:;!?»])")
 """Spaces that print has and braille has not."""
-_LEFT_OUT = "\u00ad\u200b\u2060\ufeff"
-"""Invisible characters that allow or forbid a line break."""
 _HYPHEN = "-"
 _BREAK = re.compile("[^\\S\u00a0\u202f]+(?!%)")
 """Spaces at which a line may break: not the non-breaking ones, nor before a per cent sign."""
@@ -72,7 +70,7 @@ def _language_of(tag: str) -> str:
 def _plain(text: str, language: str) -> str:
     """Return composed letters and plain spaces. Raises: BrailleError for control and unassigned characters."""
     composed = unicodedata.normalize("NFC", text)
-    plain = "".join(" " if each.isspace() else each for each in composed if each not in _LEFT_OUT)
+    plain = "".join(" " if each.isspace() else each for each in visible(composed))
     plain = _APOSTROPHE.sub("'", plain)
     if language == "en":
         plain = _OPENING.sub("\u201c", plain).replace('"', "\u201d")
@@ -84,6 +82,21 @@ def _plain(text: str, language: str) -> str:
         if unicodedata.category(each) in ("Cc", "Cs", "Co", "Cn"):
             raise BrailleError(missing_character(each, place, plain, "any braille"))
     return plain
+
+
+def visible(text: str) -> str:
+    """Return a text without its invisible characters, such as those that allow a line break or turn its direction."""
+    return "".join(character for character in text if unicodedata.category(character) != "Cf")
+
+
+def title_in_braille(title: str, language: str) -> str:
+    """Return a title that braille can write; "" after a note if a character of it has no braille."""
+    try:
+        translate(title, language)
+    except BrailleError as error:
+        note(log, f"the title is left out: {error}, in `title:`", logging.WARNING)
+        return ""
+    return visible(title)
 
 
 def wrapped(text: str, language: str, width_m: float, indent: int = 0) -> list[Cells]:

@@ -16,7 +16,7 @@ from tangible_core.errors import PictureError
 from tangible_core.errors import shown as shown_text
 from tangible_core.plugins.notes import note
 
-from ..braille import Cells, height_m, translate, written_by
+from ..braille import Cells, height_m, title_in_braille, translate, written_by
 from ..labels import first_labels
 from .colouring import choose_fills
 from .fills import BLANK, KINDS, fill_shape
@@ -66,7 +66,8 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[Dr
             f"{len(groups)} parts are more than anybody can tell apart on a page, which takes {MOST_NAMES}; have "
             "fewer, by a texture method with fewer segments or by one name for several in `parts:`"
         )
-    lines, whole = title_lines(work.title, work.language, sheet)
+    title = title_in_braille(work.title, work.language)
+    lines, whole = title_lines(title, work.language, sheet)
     sheet = sheet.below(1000 * height_m(len(lines)))
     if not whole:
         note(log, f"only {len(lines)} lines of the title's braille have room above the picture; the key has all")
@@ -77,11 +78,11 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[Dr
         language=work.language,
         corner=words(work.language).corner,
         areas=(),
-        texts=(title_at(work.title, lines),),
+        texts=(title_at(title, lines),),
     )
     symbols, picture = _draw_readable(blank, parts, groups)
     _note_left_out(symbols, picture)
-    keys = key_pages(_entries(symbols, picture), work.title, work.language, page, sheet)
+    keys = key_pages(_entries(symbols, picture), title, work.language, page, sheet)
     for key in keys:
         _check_key(key)
     return [picture, *keys]

@@ -8,7 +8,7 @@ from tangible_core.data import Relief, Work
 from tangible_core.errors import GeometryError, OutputError, quoted
 from tangible_core.plugins.notes import note
 
-from ..braille import Cells, width_m, wrapped, written_by
+from ..braille import Cells, title_in_braille, width_m, wrapped, written_by
 from .closed import Solid, close_solid
 from .plate import LEAST_RIM_M, Layout, plate
 from .printable import note_print_problems
@@ -107,7 +107,9 @@ def _title(options: PlateOptions, work: Work) -> tuple[Cells, ...]:
             f"the picture is {1000 * room_m:.3g} mm wide, too narrow for its title in braille; make longer_side_m "
             "larger, or set braille: false"
         )
-    lines = tuple(wrapped(work.title, language, room_m))
+    if not (title := title_in_braille(work.title, language)):
+        return ()
+    lines = tuple(wrapped(title, language, room_m))
     if len(lines) > MOST_LINES:
         raise OutputError(
             f"the title {quoted(work.title)} takes {len(lines)} lines of braille of {1000 * room_m:.0f} mm; a plate "

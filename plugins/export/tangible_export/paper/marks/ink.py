@@ -3,7 +3,7 @@
 # pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.sax.saxutils import escape
 
@@ -13,6 +13,7 @@ import shapely
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from ...braille import visible
 from ..sheet import MARGIN_MM
 from .reading import read
 from .rendering import POINTS_PER_MM, figure_of, save_pdf
@@ -59,6 +60,7 @@ def labels(drawing: Drawing, note: str, named: bool) -> list[Label]:
     foot, (left, right) = _foot_mm(drawing) + LETTERS_MM / 3, _scale_mm()
     found = [_above(each) for each in drawing.texts if len(each.dots_mm)]
     found += [_at_part(each, drawing.sheet.width_mm) for each in _one_of_each(drawing.areas)] if named else []
+    found = [replace(label, text=visible(label.text)) for label in found]  # a font has nothing for what cannot be seen
     return [*found, Label(SCALE, right + 2, foot), Label(note, left + SCALE_MM + 20, foot)]
 
 

@@ -1,10 +1,8 @@
 """Paths of a scripted hand: closed strokes at constant speed, and recordings read from a CSV file."""
 
-import csv
-import io
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -15,7 +13,7 @@ from jaxtyping import Float64
 
 from tangible_core.data import Vector
 from tangible_core.errors import DeviceError, did_you_mean, quoted
-from tangible_core.files.reading import read_bytes
+from tangible_core.files.tables import read_table
 
 Points = Float64[np.ndarray, "n 3"]
 COLUMNS = ("time_s", "x_m", "y_m", "z_m")
@@ -112,12 +110,12 @@ def read_csv(path: Path, period_s: float) -> Stroke:
     Raises: DeviceError that names the file, the line and the correction.
     """
     try:
-        lines = csv.DictReader(io.StringIO(read_bytes(path).decode("utf-8-sig"), newline=""))
-        _check_columns(path, lines.fieldnames or ())
-        rows = [(lines.line_num, _numbers(path, lines.line_num, row)) for row in lines]
+        columns, lines = read_table(path)
+        _check_columns(path, columns)
+        rows = [(number, _numbers(path, number, row)) for number, row in lines]
     except OSError as error:
         raise DeviceError(f"{path}: cannot be read: {error.strerror}; check csv_file") from error
-    except (UnicodeDecodeError, csv.Error) as error:
+    except ValueError as error:
         raise DeviceError(f"{path}: is not a CSV text file ({error}); save it as CSV in UTF-8") from error
     if not rows:
         raise DeviceError(f"{path}: has no rows; write one row per moment: {','.join(COLUMNS)}")
@@ -137,18 +135,17 @@ def _vectors(points_m: np.ndarray) -> tuple[Vector, ...]:
     return tuple((x, y, z) for x, y, z in points_m.tolist())
 
 
-def _check_columns(path: Path, columns: Iterable[str]) -> None:
-    names = [name for name in columns if name]
+def _check_columns(path: Path, names: list[str]) -> None:
     for column in COLUMNS:
         if column not in names:
             hint = did_you_mean(column, names) or f"; there are {', '.join(names) or 'none'}"
             raise DeviceError(f"{path}:1: there is no column {column}{hint}; the first line names {','.join(COLUMNS)}")
 
 
-def _numbers(path: Path, line: int, row: dict[str, str | None]) -> list[float]:
+def _numbers(path: Path, line: int, row: dict[str, str]) -> list[float]:
     values: list[float] = []
     for column in COLUMNS:
-        text = row[column]
+        text = row.get(column)
         try:
             value = float(text or "")
         except ValueError:

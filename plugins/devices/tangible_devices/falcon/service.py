@@ -1,6 +1,6 @@
 """The connected Falcons, and what keeps them from working, in the order of the cures. Imports pyusb and numba."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
@@ -40,11 +40,11 @@ def findings(settings: Settings, firmware: Path | None, backend: Any, clock: Cal
         yield _failure("libusb", error, "not asked" if isinstance(error, DeviceAbsent) else "failed")
         return
     yield Finding("libusb", "fine", "is there")
-    yield _file(firmware)
+    checks = [check for device in devices for check in _device_findings(device, settings, firmware, clock)]
+    yield _file(firmware, [check.verdict for check in checks if check.check.endswith(": firmware")])
+    yield from checks
     if not devices:
         yield Finding("device", "not asked", "none is plugged in; it needs its USB cable and its power supply")
-    for device in devices:
-        yield from _device_findings(device, settings, firmware, clock)
 
 
 def calibrate(
@@ -88,9 +88,12 @@ def _unit(device: Any) -> Unit:
         return Unit("Novint Falcon", "", place, f"{str(error).splitlines()[0]} (tangible devices doctor falcon)")
 
 
-def _file(firmware: Path | None) -> Finding:
+def _file(firmware: Path | None, answers: Sequence[str]) -> Finding:
+    """Check the firmware's file. answers: verdicts on the firmware of each device."""
     if firmware is None:
-        return Finding("firmware file", "fine", "none is given; one is needed after each time the device was powered")
+        needless = set(answers) == {"fine"}
+        says = "none is given; one is needed after each time the device was powered: --set firmware=FILE"
+        return Finding("firmware file", "fine" if needless else "not asked", says)
     try:
         return Finding("firmware file", "fine", f"{firmware}: {len(read_image(firmware))} bytes, whole")
     except DeviceError as error:

@@ -95,9 +95,16 @@ class TestDoctor:
         bus, clock = held_bus(())
         assert [each.verdict for each in findings(Falcon().settings(), None, bus, clock)] == [
             "fine",
-            "fine",
+            "not asked",
             "not asked",
         ]
+
+    def test_doctor_calls_a_missing_firmware_file_fine_only_while_the_firmware_answers(self):
+        running, powered = (
+            [each for each in examine(loaded=on) if each.check == "firmware file"] for on in (True, False)
+        )
+        assert [each.verdict for each in (*running, *powered)] == ["fine", "not asked"]
+        assert powered[0].says.endswith("--set firmware=FILE")
 
     def test_doctor_of_failing_bus_fails(self):
         bus, clock = held_bus(faults=(Fault(at="look", error="access-denied"),))

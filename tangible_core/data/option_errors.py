@@ -17,9 +17,12 @@ PLAIN_WORDS = {
     "tuple_type": "Input should be a list, such as [1, 2]",
     "path_type": "Input should be the path of a file",
     "int_parsing": "Input should be a valid integer",
+    "string_unicode": "Input should be text of whole characters",
     "float_parsing": "Input should be a valid number",
+    "invalid_key": "Keys should be words (a number has a decimal point, such as 0.08)",
 }
 """Messages in place of pydantic's, which name types of Python, by the type of its error."""
+DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(?![\d,])")
 _WANTED = "Input should be "
 
 
@@ -63,10 +66,12 @@ def _sentence(error: dict[str, Any], model: type[BaseModel], location: Location)
         known = f"; known: {', '.join(options)}" if options else "; there are no options"
         return where, f"{name}: unknown option{did_you_mean(str(where[-1]), options)}{known}"
     is_clear = isinstance(error["input"], dict) or error["type"] == "missing"
-    given = "" if is_clear else f", not {quoted(error['input'])}"
+    given, hint = "" if is_clear else f", not {quoted(error['input'])}", ""
+    if isinstance(error["input"], str) and DECIMAL_COMMA.match(error["input"]):
+        hint = f"; with a decimal point it is {shown(error['input'].replace(',', '.'))}"
     if error["type"] == "literal_error":
-        given += did_you_mean(f"{error['input']}", re.findall(r"'([^']*)'", error["msg"]))
-    return where, f"{name}: {error['msg']}{given}".removeprefix(": ")
+        hint = did_you_mean(f"{error['input']}", re.findall(r"'([^']*)'", error["msg"]))
+    return where, f"{name}: {error['msg']}{given}{hint}".removeprefix(": ")
 
 
 def _is_within(inner: Location, outer: Location) -> bool:

@@ -1,11 +1,12 @@
 """Paths as people write them: `~` stands for a home folder."""
 
 import re
+from collections.abc import Iterable
 from os import PathLike, fsencode
 from pathlib import Path
 from typing import cast
 
-from ..errors import ConfigError, quoted, wrong_argument
+from ..errors import ConfigError, did_you_mean, quoted, shown, wrong_argument
 
 CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff]")
 """Characters that a line of text, or an XML file, cannot have: controls, line breaks, halves of characters."""
@@ -17,7 +18,7 @@ MOST_PATH_BYTES = 4095
 
 
 def as_path(value: object, name: str = "path") -> Path:
-    """Return a value as a path; a leading `~` or `~user` becomes that user's home folder.
+    """Return a value as a path; a leading `~` or `~user` becomes that user's home folder, unless a file has it.
 
     name: the argument's name in messages.
     Raises: ArgumentError if the value is not a path; ConfigError if there is no such user, or if no file can have the
@@ -30,7 +31,16 @@ def as_path(value: object, name: str = "path") -> Path:
     try:
         return path.expanduser()
     except RuntimeError as error:
+        if path.exists() or (len(path.parts) == 1 and path.suffix):  # the name of a file, such as ~.png
+            return path
         raise ConfigError(f"{path}: no user here is named {quoted(path.parts[0][1:])}, and `~` names a home") from error
+
+
+def what_is_missing(path: Path, names: Iterable[str], what: str = "file") -> str:
+    """Return why there is nothing at a path, and what to do; names: those of the files that may be meant."""
+    if path.is_symlink():
+        return f"is a link to {shown(str(path.readlink()))}, which is not there; restore that file, or name another one"
+    return f"there is no such {what}{did_you_mean(path.name, names)}"
 
 
 def without_folders(name: str) -> str:

@@ -18,7 +18,7 @@ from ..data.option_errors import sentences_about
 from ..data.pictures import fill_non_finite, used_range
 from ..errors import ConfigError, PictureError, wrong_argument
 from ..files.paths import as_path
-from .formats.height_maps import find_picture, in_metres, read_heights_metadata
+from .formats.height_maps import find_picture, in_metres, metadata_beside, read_heights_metadata
 from .formats.multi_picture import Notify
 from .formats.pairs import Layout, Stored, halves, read_pair, read_stored, views_of
 from .formats.phone_depth import read_phone_depth
@@ -58,9 +58,11 @@ def _read_heights(path: Path, notify: Notify) -> Float[np.ndarray, "h w"]:
     """Read a height map, in metres if its metadata state a scale. Raises: PictureError."""
     metadata = read_heights_metadata(path)
     if metadata is None:
+        if (other := metadata_beside(path)) is not None and path.suffix.lower() != ".json":
+            notify(f"{path.stem}.json describes {other.file}: its sizes do not count for {path.name}")
         return read_map(path, notify, exact=True)
     picture, metadata = find_picture(path, metadata)
-    return in_metres(read_map(picture, notify), metadata, picture)
+    return in_metres(read_map(picture, notify), metadata, picture, notify)
 
 
 _READERS: Mapping[str, Callable[[Path, Notify], np.ndarray]] = {

@@ -55,7 +55,9 @@ def check_events(events: Iterable[Any]) -> None:
     for event in events:
         kind, tag = type(event).__name__, getattr(event, "tag", None)
         if tag == f"{_TAG}set" or (kind == "ScalarEvent" and tag not in _PLAIN):
-            raise _refusal(event, f"a value cannot have the tag {quoted(tag)}; leave it out")
+            raise _refusal(
+                event, f"a value cannot have the tag {quoted(tag)}; leave it out, and write the value itself"
+            )
         if kind in ("MappingStartEvent", "SequenceStartEvent"):
             _open(count, event, kind == "MappingStartEvent")
         elif kind in ("MappingEndEvent", "SequenceEndEvent"):

@@ -1,5 +1,6 @@
 """YAML parsed with the place of each key and value: all complaints at once, each with file:line:column."""
 
+import re
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -14,10 +15,22 @@ from ruamel.yaml.error import YAMLError
 from ...data.option_errors import Location as Location
 from ...data.option_errors import has, sentences_about
 from ...errors import Complaint, ConfigError, did_you_mean, quoted, shown
-from ..paths import as_path
+from ..paths import as_path, what_is_missing
 from ..reading import MOST_TEXT_BYTES, in_words, read_bytes
 from .bounds import MOST_DEPTH, MOST_DIGITS, BoundedConstructor, BoundedScanner, check_events
 
+CONFLICT = re.compile(r"(<{7}|>{7}|={7}|\|{7})( |$)")
+CURES = {
+    "\\t": "{text}; indent with spaces, not tabs",
+    "mapping values are not allowed": "{text}; a text with a colon and a space stands in quotes",
+    "could not find expected ':'": "{text}; a line is `key: value`, and what belongs to a key is indented",
+    "cannot start any token": "{text}; a text that begins with this character stands in quotes",
+    "undefined alias": "{text}; a text that begins with * stands in quotes",
+    "unexpected end of stream": "{text}; end what was opened, such as quotes",
+    "duplicate key": "{text}; remove one of them",
+    "expected <block end>": "{text}; indent lines of one block alike",
+}
+"""Cures by a part of what the parser says; the first one counts."""
 Tree = dict[Any, Any]
 """The parser's own mapping: a dict with the line and column of its parts."""
 Shorthand = Callable[[Location], str]
@@ -140,10 +153,10 @@ class Source:
 def read_text(path: Path) -> str:
     """Read the text of a YAML file. Raises: ConfigError; if there is no such file, with a similar name that exists."""
     try:
-        return read_bytes(path, MOST_TEXT_BYTES).decode()
+        return read_bytes(path, MOST_TEXT_BYTES).decode("utf-8-sig")
     except FileNotFoundError as error:
-        near = did_you_mean(path.name, (each.name for each in path.parent.glob("*.y*ml")))
-        raise ConfigError(f"{path}: there is no such file{near}") from error
+        missing = what_is_missing(path, (each.name for each in path.parent.glob("*.y*ml")))
+        raise ConfigError(f"{path}: {missing}") from error
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path}: cannot be read as text: {getattr(error, 'strerror', None) or error}") from error
 
@@ -166,7 +179,7 @@ def parse_source(
     try:
         tree = parse_value(text)
     except YAMLError as error:
-        mark, problem = _mark_of(error), _problem(error)
+        mark, problem = _conflict(text) or (_mark_of(error), _problem(error))
         place = ":".join(map(str, (path, *mark)))
         raise ConfigError(f"{place}: {problem}", complaints=[Complaint((), problem, *mark)]) from error
     if tree is None and empty:
@@ -212,7 +225,14 @@ def parse_value(text: str) -> Any:
 def _problem(error: YAMLError) -> str:
     problem = getattr(error, "problem", None) or getattr(error, "context", None) or error
     text = shown(str(problem).strip().splitlines()[0], 200)
-    return f"{text}; indent with spaces, not tabs" if "\\t" in text else text
+    return next((cure for part, cure in CURES.items() if part in text), "{text}").format(text=text)
+
+
+def _conflict(text: str) -> tuple[tuple[int, int], str] | None:
+    """Return the place of the first mark of a merge conflict, and what to do about it."""
+    lines = text.splitlines()
+    line = next((number for number, line in enumerate(lines, 1) if CONFLICT.match(line)), 0)
+    return ((line, 1), "a merge has left both versions here; keep one, and remove the marks") if line else None
 
 
 def _mark_of(error: YAMLError) -> tuple[int, int] | tuple[()]:

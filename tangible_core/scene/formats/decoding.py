@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Literal, TypeVar
 import numpy as np
 
 from ...data.pictures import is_opaque
-from ...errors import PictureError, TangibleError, did_you_mean, shown
+from ...errors import PictureError, TangibleError, shown
 from ...files import arrays
+from ...files.paths import what_is_missing
 from ...files.reading import MOST_PIXELS, TOO_MANY_PIXELS, TooLargeError, check_size, read_bytes
 from ...runtime.opencv import silent_opencv
 from .grids import GRIDS, read_grid
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 log: logging.Logger = logging.getLogger(__name__)
 
 T = TypeVar("T")
+TERSE = ("cv2", "imagecodecs")
+"""Libraries whose errors name lines of their source and no fault that people know."""
 
 Purpose = Literal["picture", "map", "labels"]
 """The use of a file's numbers: brightness up to white, numbers as they are stored, or numbers that name segments."""
@@ -82,8 +85,7 @@ def absent(path: Path, what: str) -> PictureError:
     """Return the error for a path at which nothing is, with a similar name from its folder as a hint."""
     if not path.parent.is_dir():
         return PictureError(f"{path}: there is no folder {path.parent}; check the path")
-    near = did_you_mean(path.name, (each.name for each in path.parent.iterdir()))
-    return PictureError(f"{path}: there is no such {what}{near}")
+    return PictureError(f"{path}: {what_is_missing(path, (each.name for each in path.parent.iterdir()), what)}")
 
 
 def _array(path: Path, data: bytes) -> np.ndarray:
@@ -206,9 +208,8 @@ def _picture_errors(path: Path) -> Generator[None]:
     except TangibleError:  # also a stop, which is no damage
         raise
     except Exception as error:  # a damaged file can provoke any
-        raise PictureError(
-            f"{path}: the picture is damaged or cut short: {shown(str(error))}; copy or download it again"
-        ) from error
+        why = "" if type(error).__module__.partition(".")[0] in TERSE else f": {shown(str(error))}"
+        raise PictureError(f"{path}: the picture is damaged or cut short{why}; copy or download it again") from error
 
 
 def _too_large(path: Path, why: object) -> PictureError:

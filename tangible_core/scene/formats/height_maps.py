@@ -15,12 +15,14 @@ from ...data import Relief
 from ...data.pictures import size_in_words
 from ...errors import PictureError, quoted
 from ...files.reading import MOST_TEXT_BYTES, read_bytes
+from .multi_picture import Notify, ignore
 from .tiff import tiff_description
 
 FORMATS = "tangible heights "
 FORMAT = "tangible heights 1"
 LEVELS = 0xFFFF
 """Number of the highest place in a picture of 16 bits."""
+BYTE = 0xFF
 MM = 1000.0
 """Millimetres in a metre."""
 Millimetres = Annotated[float, Field(gt=0, le=10 * MM, allow_inf_nan=False)]
@@ -93,14 +95,22 @@ def read_heights_metadata(path: Path) -> HeightsMetadata | None:
         if kind == ".json":
             return _parse(read_bytes(path, MOST_TEXT_BYTES), path)
         if kind == ".png":
-            text_path = path.with_suffix(".json")
-            metadata = _parse(read_bytes(text_path, MOST_TEXT_BYTES), text_path)
+            metadata = metadata_beside(path)
             return metadata if metadata is not None and metadata.file == path.name else None
         if kind in (".tif", ".tiff"):
             return _parse(tiff_description(path), path)
     except OSError:
         return None
     return None
+
+
+def metadata_beside(path: Path) -> HeightsMetadata | None:
+    """Read the metadata in the JSON text beside a picture, whatever picture they describe. Raises: PictureError."""
+    text_path = path.with_suffix(".json")
+    try:
+        return _parse(read_bytes(text_path, MOST_TEXT_BYTES), text_path)
+    except OSError:
+        return None
 
 
 def find_picture(path: Path, metadata: HeightsMetadata) -> tuple[Path, HeightsMetadata]:
@@ -119,22 +129,46 @@ def find_picture(path: Path, metadata: HeightsMetadata) -> tuple[Path, HeightsMe
     return path.with_name(metadata.file), metadata
 
 
-def in_metres(numbers: np.ndarray, metadata: HeightsMetadata, path: Path) -> Float32[np.ndarray, "h w"]:
-    """Convert a picture's numbers to heights. Raises: PictureError if its size differs from the metadata."""
+def in_metres(
+    numbers: np.ndarray, metadata: HeightsMetadata, path: Path, notify: Notify = ignore
+) -> Float32[np.ndarray, "h w"]:
+    """Convert a picture's numbers to heights; notify: receives a remark if another program has changed them.
+
+    Raises: PictureError if its size or its heights cannot be those of the metadata.
+    """
     if numbers.shape != (metadata.rows, metadata.columns):
         raise PictureError(
             f"{path}: is {size_in_words(numbers)}, but its metadata state {metadata.columns} x {metadata.rows}; "
             "export the heights again, or remove the metadata"
         )
-    return ((numbers.astype(np.float64) * metadata.step_mm + metadata.low_mm) / MM).astype(np.float32)
+    top = numbers.max(initial=0, where=np.isfinite(numbers))
+    wide = (metadata.high_mm - metadata.low_mm) > (LEVELS - 1) * metadata.step_mm > 0  # as `levels` makes them
+    times = LEVELS // BYTE if wide and top <= BYTE else 1
+    if times > 1:
+        step_mm = times * metadata.step_mm
+        notify(f"{path.name} has 8 bits, and was exported with 16: its heights are in steps of {step_mm:.2g} mm")
+    heights_mm = numbers.astype(np.float64) * times * metadata.step_mm + metadata.low_mm
+    high_mm, fine_mm = float(top) * times * metadata.step_mm + metadata.low_mm, 1e-3 * metadata.high_mm
+    if high_mm > metadata.high_mm + fine_mm or (metadata.step_mm == 1 and high_mm < metadata.high_mm - fine_mm):
+        raise PictureError(
+            f"{path}: its highest place is {high_mm:.4g} mm, but its metadata state {metadata.high_mm:.4g} mm: another "
+            "program has changed its numbers; export the heights again, or remove the metadata"
+        )
+    if high_mm < metadata.high_mm - fine_mm:
+        notify(f"{path.name} was changed: its highest place is {high_mm:.4g} mm, and was {metadata.high_mm:.4g} mm")
+    return (heights_mm / MM).astype(np.float32)
 
 
 def _parse(text: bytes, path: Path) -> HeightsMetadata | None:
     """Parse metadata; None for any other text. Raises: PictureError."""
     try:
         plain = json.loads(text)
-    except (ValueError, RecursionError):
-        return None
+    except (ValueError, RecursionError) as error:
+        if FORMATS.encode() not in text or path.suffix.lower() != ".json":
+            return None
+        raise PictureError(
+            f"{path}: was changed and is not JSON any more: {error}; export the heights again"
+        ) from error
     if not isinstance(plain, dict) or not str(cast("dict[Any, Any]", plain).get("format")).startswith(FORMATS):
         return None
     try:

@@ -11,11 +11,15 @@ from pydantic import Field
 from ...data.pictures import check_finite, check_picture, opaque
 from ...errors import PictureError
 from .decoding import bytes_of, decode_reduced, values_of
+from .label_colours import labels_by_colour
 from .multi_picture import Notify, ignore
 
 TruthScale = Annotated[float, Field(gt=0, allow_inf_nan=False)] | Literal["sintel"]
 NonFinite = Literal["error", "mask"]
 
+JPEG = b"\xff\xd8"
+FEW_PIXELS = 1e-3
+"""Share of a JPEG's pixels that most colours have less of where compression made them."""
 MAX_LABELS = 4096
 """Largest number of labels in a label picture; a picture with more colours is taken for a photo."""
 
@@ -89,9 +93,21 @@ def without(values: Float[np.ndarray, "h w"], *nodata: float) -> Float[np.ndarra
 def read_labels(path: Path, notify: Notify = ignore) -> Int32[np.ndarray, "h w"]:
     """Read a label picture as 0..n-1, each of them present, in the order of its grey values, indices or colours.
 
+    One of ours keeps its order in whatever form another program saved it.
     Raises: PictureError as `read_picture`, or if it holds too many labels to be a label picture.
     """
-    return labels_of(values_of(path, bytes_of(path), notify, "labels"), str(path))
+    data = bytes_of(path)
+    values = values_of(path, data, notify, "labels")
+    colours = values_of(path, data, ignore) if values.ndim == 2 and values.dtype == np.uint8 else values
+    is_coloured = colours.ndim == 3 and colours.dtype == np.uint8
+    labels = labels_by_colour(colours, str(path)) if is_coloured else None
+    labels = labels_of(values, str(path)) if labels is None else labels
+    if data.startswith(JPEG) and np.median(np.bincount(labels.ravel())) < labels.size * FEW_PIXELS:
+        raise PictureError(
+            f"{path}: holds {labels.max() + 1} labels, most of a few pixels: JPEG mixes the colours of segments; save "
+            "the picture losslessly, as PNG"
+        )
+    return labels
 
 
 def labels_of(values: np.ndarray, name: str) -> Int32[np.ndarray, "h w"]:

@@ -10,7 +10,8 @@ from jaxtyping import Float64
 from ...data import TICK_COLUMNS
 from ...errors import OutputError, shown
 from ...files.arrays import Archive
-from ...files.reading import check_file, read_bytes
+from ...files.reading import check_file
+from ...files.tables import read_table
 from ...files.writing import atomic_write
 from . import tick_file
 from .tick_arrays import ARRAYS, NEEDED, UNKNOWN, join_arrays, unknown_rows
@@ -96,16 +97,25 @@ def _from_npz(path: Path) -> RecordingContents:
 
 
 def _from_csv(path: Path) -> RecordingContents:
-    header, *lines = read_bytes(path).decode("utf-8-sig").splitlines()
-    names = header.split(",")
+    names, lines = read_table(path)
     if missing := [name for name in TICK_COLUMNS if name not in (*names, *UNKNOWN)]:
         raise ValueError(f"its first line has no {', '.join(missing)}")
-    table = np.array([line.split(",") for line in lines], np.float64).reshape(-1, len(names))
+    table = np.array([_numbers(number, names, cells) for number, cells in lines], np.float64).reshape(-1, len(names))
     rows = unknown_rows(len(table))
     for name, values in zip(names, table.T, strict=True):
         if name in TICK_COLUMNS:
             rows[:, TICK_COLUMNS.index(name)] = values
     return RecordingContents(rows)
+
+
+def _numbers(line: int, names: list[str], cells: dict[str, str]) -> list[float]:
+    values: list[float] = []
+    for name in names:
+        try:
+            values.append(float(cells.get(name, "")))
+        except ValueError as error:
+            raise ValueError(f"in line {line}, {name} is not a number: {error}") from error
+    return values
 
 
 READERS = {".nc": _from_nc, ".npz": _from_npz, ".csv": _from_csv}

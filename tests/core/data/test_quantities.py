@@ -40,7 +40,7 @@ def test_length_written_in_any_unit_gives_the_same_block(text: str):
     assert Workspace(relief_m=text) == Workspace(relief_m=0.006)
 
 
-@pytest.mark.parametrize("text", ["6 inches", "6 N/m", "6 m m m", "6,5 mm"])
+@pytest.mark.parametrize("text", ["6 inches", "6 N/m", "6 m m m"])
 def test_text_that_is_not_a_length_is_refused_with_the_known_units(text: str):
     with pytest.raises(ConfigError) as error:
         parse_config(f"scene: builtin/coins\nworkspace: {{width_m: {text!r}}}\n", Path("p.yaml"), default_registry())

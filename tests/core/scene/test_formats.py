@@ -189,3 +189,12 @@ def test_labels_in_a_bitmap_and_a_pgm_are_ranked(tmp_path: Path):
         file = BytesIO()
         Image.fromarray(values).save(file, form)
         assert read_labels(put(tmp_path / "a", file.getvalue()))[:, 0].tolist() == [0, 1, 2]
+
+
+def test_damaged_tiff_is_refused_in_words_that_people_know(tmp_path: Path):
+    tifffile.imwrite(tmp_path / "a.tif", np.arange(3072, dtype=np.uint8).reshape(48, 64), compression="lzw")
+    data = bytearray((tmp_path / "a.tif").read_bytes())
+    data[-600:] = bytes(each ^ 0x5A for each in data[-600:])
+    (tmp_path / "a.tif").write_bytes(data)
+    with pytest.raises(PictureError, match=r"a\.tif: the picture is damaged or cut short; copy or download it again"):
+        read_picture(tmp_path / "a.tif")

@@ -7,11 +7,11 @@ import cv2
 import numpy as np
 
 from command_line import tangible
-from tangible_authoring.label_picture import DARKEST, LIGHTEST, MOST_CHROMA, STEPS, distinct_colours
 from tangible_authoring.listed_parts import MOST_CELLS, ListedPart, list_rows
 from tangible_authoring.renumbering import Moved, moves
 from tangible_core.data import PartMap
 from tangible_core.parts import PartChoice, PartHeights
+from tangible_core.scene.formats.label_colours import DARKEST, LIGHTEST, MOST_CHROMA, STEPS, distinct_colours
 from tangible_report.numbered_parts import Before
 
 

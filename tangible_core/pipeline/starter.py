@@ -123,13 +123,13 @@ def _parts(pictures: Sequence[Path]) -> Mapping[str, Any]:
     """Return the pictures by their keys in `scene:`; none for a builtin scene. Raises: ConfigError."""
     if len(pictures) == 1:
         (path,) = pictures
-        return {} if _is_builtin(path) else {_part(path): path}
-    if odd := next((path for path in pictures if _is_builtin(path) or _part(path) != "photo"), None):
+        return {} if _is_builtin(path) else {scene_key(path): path}
+    if odd := next((path for path in pictures if _is_builtin(path) or scene_key(path) != "photo"), None):
         raise ConfigError(f"{odd}: left and right are two pictures; name this one alone")
     return dict(zip(("left", "right"), pictures, strict=True))
 
 
-def _part(path: Path) -> str:
+def scene_key(path: Path) -> str:
     """Return the key in `scene:` of a file that is given alone."""
     if path.suffix.lower() == ".jps":
         return "stereo"

@@ -13,7 +13,8 @@ from tangible_core.errors import BatchError, quoted, shown, what_is
 from tangible_core.files.paths import as_path
 from tangible_core.files.tables import read_table
 from tangible_core.files.yaml.editing import json_in_yaml
-from tangible_core.scene.formats.kinds import PICTURES, VIDEOS
+from tangible_core.pipeline.starter import scene_key
+from tangible_core.scene.formats.kinds import MAPS, file_kind
 from tangible_core.scene.scene_files import SceneFiles
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -23,6 +24,8 @@ FILES = tuple(f"scene.{name}" for name, field in SceneFiles.model_fields.items()
 SIDES = (("_left", "_right"), ("_l", "_r"), ("-left", "-right"), ("_L", "_R"))
 """The ends of the names of a pair's two pictures."""
 ID = "id"
+STILL = ("picture", "heights")
+"""Kinds of files that are felt as they stand."""
 BESIDE_FILE = "._"
 """Beginning of the names of files that macOS writes beside others on foreign disks; they hold no picture."""
 MAX_NAMED = 5
@@ -47,7 +50,7 @@ def rows_of(over: str | Sequence[str], besides: Path | None = None) -> Iterator[
 
     In a manifest, the column `id` names the row (by default its number), and each other column is a key of the pipeline
     file (`scene.left`, `workspace.width_m`); empty cells change nothing. In a folder or glob, two pictures whose names
-    end with `_left` and `_right` are a pair; without any picture, the videos are taken.
+    end with `_left` and `_right` are a pair; without any picture, the videos are taken, and then maps of heights.
     Raises: BatchError if there is no such file, nothing in it, or two rows have the same name.
     """
     several = () if isinstance(over, str) else tuple(over)
@@ -79,8 +82,7 @@ def rows_of(over: str | Sequence[str], besides: Path | None = None) -> Iterator[
 def _existing_pictures(names: Iterable[str]) -> list[Path]:
     """Return the pictures and videos of these names, in order. Raises: BatchError for any other file, or none."""
     files = [as_path(name, "--over") for name in names]
-    taken = PICTURES | VIDEOS
-    if odd := next((file for file in files if file.suffix.lower() not in taken or not file.is_file()), None):
+    if odd := next((file for file in files if not file.is_file() or file_kind(file) is None), None):
         why = "there is no such file" if not odd.exists() else "is not a picture or a video"
         raise BatchError(f"{odd}: {why}; after --over stand pictures, or one folder, glob, .csv or .parquet file")
     return sorted(files)
@@ -176,10 +178,13 @@ def _parquet(path: Path) -> Iterator[dict[str, Any]]:
 
 def _pictures(files: list[Path], base: Path) -> Iterator[SceneRow]:
     """Yield a row for each picture or pair, or without any for each video; two of one name keep their suffixes."""
-    pictures = {file for file in files if file.suffix.lower() in PICTURES and not file.name.startswith(BESIDE_FILE)}
-    scenes = list(_scenes_of(sorted(pictures)))
-    if not pictures:  # phones save a short film of the same name next to each photo
-        scenes = [(file, "", {"scene.video": file}) for file in files if file.suffix.lower() in VIDEOS]
+    kinds = {file: file_kind(file) for file in files if not file.name.startswith(BESIDE_FILE)}
+    arrays = {file for file in kinds if file.suffix.lower() in MAPS}  # labels and other maps lie beside pictures
+    scenes = list(_scenes_of(sorted(file for file, kind in kinds.items() if kind in STILL and file not in arrays)))
+    if not scenes:  # phones save a short film of the same name next to each photo
+        scenes = [(file, "", {"scene.video": file}) for file, kind in kinds.items() if kind == "video"]
+    if not scenes:
+        scenes = [(file, "", {"scene.height": file}) for file, kind in kinds.items() if kind == "heights"]
     taken = {path for _, _, parts in scenes for path in parts.values()}
     if scenes and (others := [shown(file.name) for file in files if file not in taken]):
         more = f" and {len(others) - MAX_NAMED} more" if len(others) > MAX_NAMED else ""
@@ -200,7 +205,7 @@ def _scenes_of(pictures: list[Path]) -> Iterator[tuple[Path, str, dict[str, Path
             end = next(end for end, _ in SIDES if left.stem.endswith(end))
             yield left, end, {"scene.left": left, "scene.right": right}
         else:
-            yield left, "", {"scene.photo": left}
+            yield left, "", {f"scene.{scene_key(left)}": left}
 
 
 def _name(file: Path, base: Path) -> str:

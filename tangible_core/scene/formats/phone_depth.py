@@ -1,6 +1,6 @@
 """The depth that a phone stored in a portrait: Google's GDepth and Dynamic Depth, and the JPEGs of iPhones.
 
-Not supported: HEIC, for which Pillow has no decoder, and Samsung's data behind the JPEG.
+HEIC has its depth by the extra `heic`. Not supported: Samsung's data behind the JPEG.
 Sources: developers.google.com/depthmap-metadata; developer.android.com, Dynamic Depth 1.0; CIPA DC-007 (Multi-Picture
 Format), whose second picture is described by Apple's `pixeldatainfo`; Adobe, XMP part 3 (extended XMP).
 """
@@ -19,7 +19,8 @@ from jaxtyping import Float32
 from ...data.pictures import size_in_words, to_grey
 from ...errors import PictureError, shown
 from ...runtime.opencv import plain_opencv
-from .decoding import bytes_of, decode, look_at, orientation, upright
+from .decoding import JPEG, bytes_of, decode, look_at, orientation, upright
+from .heif import heif_depth, is_heif
 from .multi_picture import Notify, ignore, multi_pictures
 
 if TYPE_CHECKING:
@@ -53,23 +54,35 @@ class PhoneDepth(NamedTuple):
 def read_phone_depth(path: Path, shape: tuple[int, int], notify: Notify = ignore) -> Float32[np.ndarray, "h w"] | None:
     """Read the nearness, 0 far to 1 near, that a phone stored in its photo of (h, w); None if there is none."""
     data = bytes_of(path)
-    if not data.startswith(b"\xff\xd8"):
-        return None
     try:
-        turn, depth = look_at(path, data, lambda image: (orientation(image), phone_depth(image, data)))
-        return None if depth is None else _nearness(path, depth, turn, shape, notify)
+        found = _heic_depth(data) if is_heif(data) else _jpeg_depth(path, data)
+        return None if found is None else _nearness(path, *found, shape, notify)
     except (PictureError, ValueError, struct.error) as error:
         notify(f"the depth map in {path.name} is damaged and left out: {shown(str(error))}")
         return None
 
 
+def _jpeg_depth(path: Path, data: bytes) -> tuple[Float32[np.ndarray, "h w"], PhoneDepth] | None:
+    if not data.startswith(JPEG):
+        return None
+    turn, depth = look_at(path, data, lambda image: (orientation(image), phone_depth(image, data)))
+    if depth is None:
+        return None
+    own_turn = look_at(path, depth.picture, orientation)
+    return upright(to_grey(decode(path, depth.picture)), turn if own_turn == 1 else 1), depth
+
+
+def _heic_depth(data: bytes) -> tuple[Float32[np.ndarray, "h w"], PhoneDepth] | None:
+    found = heif_depth(data)
+    return None if found is None else (to_grey(found.grey), PhoneDepth(b"", found.near_is_light, "HEIC"))
+
+
 def _nearness(
-    path: Path, depth: PhoneDepth, turn: int, shape: tuple[int, int], notify: Notify
+    path: Path, turned: Float32[np.ndarray, "rows columns"], depth: PhoneDepth, shape: tuple[int, int], notify: Notify
 ) -> Float32[np.ndarray, "h w"]:
     import cv2
 
-    own_turn = look_at(path, depth.picture, orientation)
-    grey = np.ascontiguousarray(upright(to_grey(decode(path, depth.picture)), turn if own_turn == 1 else 1))
+    grey = np.ascontiguousarray(turned)
     notify(
         f"{path.name} holds a depth map of {size_in_words(grey)} ({depth.kind}), which is used; "
         "`photo_depth: false` leaves it out"

@@ -2,6 +2,7 @@
 
 import shutil
 import struct
+import sys
 import zlib
 from io import BytesIO
 from pathlib import Path
@@ -13,6 +14,7 @@ import pytest
 import tifffile
 from PIL import Image
 
+from tangible_core import Scene
 from tangible_core.cli.commands.run import open_pipeline
 from tangible_core.errors import ConfigError, PictureError
 from tangible_core.scene.formats.kinds import file_kind
@@ -198,3 +200,34 @@ def test_damaged_tiff_is_refused_in_words_that_people_know(tmp_path: Path):
     (tmp_path / "a.tif").write_bytes(data)
     with pytest.raises(PictureError, match=r"a\.tif: the picture is damaged or cut short; copy or download it again"):
         read_picture(tmp_path / "a.tif")
+
+
+@pytest.mark.parametrize(("representation", "near_is_light"), [(1, True), (2, False)])
+def test_depth_of_a_phones_heic_is_used(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, representation: int, near_is_light: bool
+):
+    """No encoder writes depth into a HEIC, so that what the library gives is replaced here."""
+    depth = np.linspace(0, 255, 48 * 64).reshape(48, 64).astype(np.uint8)
+    path = tmp_path / "IMG_1.HEIC"
+    pillow_heif.from_pillow(Image.fromarray(np.zeros((96, 128, 3), np.uint8))).save(path)
+    found = pillow_heif.open_heif(path)
+    image = Image.fromarray(depth)
+    image.info["metadata"] = {"representation_type": representation}
+    image.to_pillow = lambda: image  # type: ignore[attr-defined]
+    found.info["depth_images"] = [image]
+    monkeypatch.setattr(pillow_heif, "open_heif", lambda *_, **__: found)
+    scene = Scene.photo(path)
+    assert scene.disparity is not None
+    near = scene.disparity.disparity_px
+    assert near.shape == (96, 128) and (near[-1, -1] > near[0, 0]) == near_is_light
+    assert scene.notes == (
+        "IMG_1.HEIC holds a depth map of 64 x 48 (HEIC), which is used; `photo_depth: false` leaves it out",
+    )
+
+
+def test_heic_without_its_extra_names_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    path = tmp_path / "a.heic"
+    pillow_heif.from_pillow(Image.fromarray(np.zeros((96, 128, 3), np.uint8))).save(path)
+    monkeypatch.setitem(sys.modules, "pillow_heif", None)
+    with pytest.raises(PictureError, match=r"is a HEIC picture; `pip install 'tangible-images\[heic\]'` reads these"):
+        read_picture(path)

@@ -3,7 +3,10 @@
 from datetime import datetime
 from pathlib import Path
 
+import numpy as np
 import pytest
+import tifffile
+from PIL import Image
 
 from tangible_batch.manifest import file_of, rows_from, rows_of
 from tangible_core.errors import BatchError
@@ -150,3 +153,18 @@ def test_quote_that_swallows_rows_is_refused(tmp_path: Path):
         BatchError, match=r"rows\.csv: line 3 is not of a table: unexpected end of data; correct its quotes"
     ):
         scenes(tmp_path / "rows.csv")
+
+
+def test_files_are_felt_as_what_their_first_bytes_say(tmp_path: Path):
+    tifffile.imwrite(tmp_path / "alps.tif", np.zeros((4, 5), np.float32))
+    tifffile.imwrite(tmp_path / "cat.tif", np.zeros((4, 5), np.uint8))
+    Image.new("L", (5, 4)).save(tmp_path / "dog", "PNG")
+    Image.new("L", (5, 4)).save(tmp_path / "both.jps", "JPEG")
+    np.save(tmp_path / "labels.npy", np.zeros((4, 5)))
+    keys = {name: sets[0].partition("=")[0] for name, sets in scenes(tmp_path).items()}
+    assert keys == {"alps": "scene.height", "cat": "scene.photo", "dog": "scene.photo", "both": "scene.stereo"}
+
+
+def test_folder_of_nothing_but_maps_is_a_batch_of_heights(tmp_path: Path):
+    np.save(tmp_path / "one.npy", np.zeros((4, 5)))
+    assert scenes(tmp_path) == {"one": (f'scene.height="{tmp_path / "one.npy"}"',)}

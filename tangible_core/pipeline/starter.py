@@ -19,6 +19,7 @@ from ..plugins.registry import default_registry
 from ..runtime.opencv import plain_opencv
 from ..scene.formats.height_maps import read_heights_metadata
 from ..scene.formats.kinds import file_kind
+from ..scene.formats.pairs import holds_two_views
 from ..scene.formats.rigs import find_rig
 from ..scene.scene import Scene
 from ..scene.scene_files import SceneFiles
@@ -131,7 +132,8 @@ def _parts(pictures: Sequence[Path]) -> Mapping[str, Any]:
 
 def scene_key(path: Path) -> str:
     """Return the key in `scene:` of a file that is given alone."""
-    if path.suffix.lower() == ".jps":
+    suffix = path.suffix.lower()
+    if suffix == ".jps" or (suffix == ".mpo" and holds_two_views(path)):
         return "stereo"
     return "height" if _is_map(path) else "video" if file_kind(path) == "video" else "photo"
 

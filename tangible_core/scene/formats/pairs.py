@@ -92,17 +92,26 @@ def read_pair(
     Raises: PictureError as `read_picture`, or if there are no halves.
     """
     data = bytes_of(path)
-    if layout is None and data[:3] == JPEG:
-        numbers = look_at(path, data, lambda image: view_numbers(image) if image.format == "MPO" else [])
-        if len(numbers) > 1:
-            left, right = (
-                Stored(decode(path, data, frame=number), _stated_orientation(path, data, number), str(path))
-                for number in numbers[:2]
-            )
-            return views_of(left, right, non_finite, notify)
+    if layout is None and len(numbers := _view_numbers(path, data)) > 1:
+        left, right = (
+            Stored(decode(path, data, frame=number), _stated_orientation(path, data, number), str(path))
+            for number in numbers[:2]
+        )
+        return views_of(left, right, non_finite, notify)
     layout = layout or _stated_layout(path, data, notify)
     whole = picture_of(values_of(path, data, notify), str(path), non_finite)
     return halves(whole, layout, str(path))
+
+
+def holds_two_views(path: Path) -> bool:
+    """Return True for a Multi-Picture file of two views. Raises: PictureError as `read_picture`."""
+    return len(_view_numbers(path, bytes_of(path))) > 1
+
+
+def _view_numbers(path: Path, data: bytes) -> list[int]:
+    if data[:3] != JPEG:
+        return []
+    return look_at(path, data, lambda image: view_numbers(image) if image.format == "MPO" else [])
 
 
 def halves(picture: np.ndarray, layout: Layout | None, name: str) -> Pair:

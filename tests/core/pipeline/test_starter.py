@@ -17,7 +17,7 @@ from tangible_core.errors import ConfigError
 from tangible_core.files.writing import write_text
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.pipeline import load_pipeline
-from tangible_core.pipeline.starter import are_pictures, starter
+from tangible_core.pipeline.starter import are_pictures, scene_key, starter
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene_files import SceneFiles
 from tangible_depth import Auto
@@ -211,3 +211,11 @@ def test_title_that_no_line_holds_is_refused(title: str):
         parse_config(f'scene: builtin/coins\ntitle: "{title}"\n', Path("p.yaml"), default_registry())
     kept = 'scene: builtin/coins\ntitle: "\\u00A0\U0001f642 z. B.\\n"\n'
     assert parse_config(kept, Path("p.yaml"), default_registry()).title.strip() == "🙂 z. B."
+
+
+def test_picture_of_two_lenses_that_is_named_alone_is_a_pair(tmp_path: Path):
+    one, other = (Image.new("RGB", (64, 48), colour) for colour in ("red", "blue"))
+    one.save(tmp_path / "two.mpo", "MPO", save_all=True, append_images=[other])
+    one.save(tmp_path / "one.mpo", "JPEG")
+    assert scene_key(tmp_path / "two.mpo") == "stereo"
+    assert scene_key(tmp_path / "one.mpo") == "photo"

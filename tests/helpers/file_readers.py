@@ -204,7 +204,8 @@ def _make_heights(folder: Path) -> None:
     (folder / "map.json").write_text(metadata.model_dump_json())
     Image.fromarray(numbers).save(folder / "map.png")
     tags = TiffImagePlugin.ImageFileDirectory_v2()
-    tags[270] = metadata.model_copy(update={"file": "own.tif", "step_mm": 1.0, "low_mm": 0.0}).model_dump_json()
+    own = {"file": "own.tif", "step_mm": 1.0, "low_mm": 0.0, "high_mm": float(MAP.max())}
+    tags[270] = metadata.model_copy(update=own).model_dump_json()
     Image.fromarray(MAP).save(folder / "own.tif", tiffinfo=tags)
 
 

@@ -99,7 +99,7 @@ def _geotiff(path: Path) -> Ground | None:
     keys = dict(np.reshape(tags[GEO_KEYS] or [], (-1, 4))[1:, [0, 3]].tolist())
     unit_m = UNITS_M.get(keys.get(VERTICAL_UNIT, 0), 1.0)
     across, down = np.hypot(*steps[:, :2]).tolist()
-    middle = float(steps[1] @ [shape[1] / 2, shape[0] / 2, 1])
+    middle = float(steps[1, 0] * shape[1] / 2 + steps[1, 1] * shape[0] / 2 + steps[1, 2])
     in_degrees = GEOGRAPHIC_TYPE in keys and PROJECTED_TYPE not in keys
     if keys.get(MODEL_TYPE, GEOGRAPHIC if in_degrees else 0) == GEOGRAPHIC:
         return Ground(cells_in_degrees(across, down, middle), shape, unit_m)

@@ -14,7 +14,6 @@ from tangible_core.data.pictures import to_grey
 from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import note
 
-from ..search.disparity_range import ALL_NEGATIVE
 from ..sparse.matches import Matches, flow_matches, sift_matches
 from ..sparse.off_plane_matches import match_off_plane
 from .epipolar import homogeneous, product
@@ -109,6 +108,8 @@ def _keep_pair(views: Views, why: str, level: int = logging.INFO) -> RectifiedPa
 
 
 def _warn_if_exchanged(disparity_px: Float64[np.ndarray, "n"]) -> None:
+    from ..search.disparity_range import ALL_NEGATIVE
+
     if _all_negative(disparity_px):
         note(logger, ALL_NEGATIVE, logging.WARNING)
 

@@ -18,8 +18,8 @@ INSIDE_PX = 5
 """Distance from a change of tone at which a pixel is inside of an area, px."""
 MAX_AREAS = 32
 """Number of areas beyond which they make a pattern."""
-SENSOR = 0.04
-"""Largest deviation of the noise of a sensor, as a share of the brightest tone: beyond, it is a texture."""
+SENSOR = 0.05
+"""Largest deviation of the noise of a sensor, as a share of what the tones differ by: beyond, it is a texture."""
 ROUNDING = 1.5 / 255
 """Largest change of tone within an area without noise, as a share of the brightest tone."""
 DEVIATIONS = 6
@@ -55,4 +55,5 @@ def flat_areas(picture: np.ndarray, colour: bool, most: int) -> Int32[np.ndarray
         near = [index for index, tone in enumerate(tones) if (np.abs(values.mean(axis=0) - tone) <= step).all()]
         tone_of_area[area] = near[0] if near else len(tones)
         tones += [] if near else [values.mean(axis=0)]
-    return tone_of_area[areas] if len(tones) <= most else None
+    apart = float(np.ptp(tones, axis=0).max()) if len(tones) > 1 else 1.0
+    return tone_of_area[areas] if len(tones) <= most and noise <= SENSOR * apart else None

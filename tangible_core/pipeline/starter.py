@@ -53,7 +53,9 @@ Kind = Literal["photo", "pair", "heights"]
 
 def are_pictures(paths: Iterable[Path]) -> bool:
     """Return True for pictures, videos, maps and builtin scenes, which are not pipeline files."""
-    return all(_is_builtin(path) or file_kind(path) is not None or _is_map(path) for path in paths)
+    return all(
+        _is_builtin(path) or file_kind(path) is not None or read_heights_metadata(path) is not None for path in paths
+    )
 
 
 def not_pictures(paths: Iterable[Path]) -> ConfigError:
@@ -115,11 +117,6 @@ def _is_builtin(path: Path) -> bool:
     return path.parts[:1] == ("builtin",) and not path.suffix and not path.exists()
 
 
-def _is_map(path: Path) -> bool:
-    """Return True for a map of heights, by its name or its metadata. Raises: PictureError for nonsense in these."""
-    return file_kind(path) == "heights" or read_heights_metadata(path) is not None
-
-
 def _parts(pictures: Sequence[Path]) -> Mapping[str, Any]:
     """Return the pictures by their keys in `scene:`; none for a builtin scene. Raises: ConfigError."""
     if len(pictures) == 1:
@@ -135,7 +132,10 @@ def scene_key(path: Path) -> str:
     suffix = path.suffix.lower()
     if suffix == ".jps" or (suffix == ".mpo" and holds_two_views(path)):
         return "stereo"
-    return "height" if _is_map(path) else "video" if file_kind(path) == "video" else "photo"
+    kind = file_kind(path)
+    if kind == "heights" or read_heights_metadata(path) is not None:
+        return "height"
+    return "video" if kind == "video" else "photo"
 
 
 def _size(scene: Scene, kind: Kind) -> dict[str, object]:

@@ -19,7 +19,8 @@ from ...files.reading import MOST_PIXELS, TOO_MANY_PIXELS, TooLargeError, check_
 from ...runtime.opencv import silent_opencv
 from .grids import GRIDS, read_grid
 from .heif import is_heif, read_heif
-from .kinds import ASC, VIDEOS
+from .kinds import ASC, JPEG, JPEG_2000, NPY, PNG, VIDEOS, ZIP
+from .map_numbers import is_nodata
 from .multi_picture import Notify, count_pictures, ignore
 from .netpbm import NETPBM, read_netpbm
 from .tiff import TIFF, TiffRaster, UnreadableError, tiff_picture, tiff_size
@@ -39,14 +40,6 @@ Purpose = Literal["picture", "map", "labels"]
 FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "WEBP", "PPM", "JPEG2000", "AVIF")
 """Formats that Pillow may read. Others that it knows run programs (EPS) or cannot be told from noise (TGA)."""
 
-JPEG = b"\xff\xd8\xff"
-"""The first bytes of a JPEG."""
-PNG = b"\x89PNG\r\n\x1a\n"
-"""The first bytes of a PNG."""
-NPY, ZIP = b"\x93NUMPY", b"PK\x03\x04"
-"""The first bytes of .npy and of .npz."""
-JPEG_2000 = (b"\0\0\0\x0cjP  ", b"\xff\x4f\xff\x51")
-"""The first bytes of a JPEG 2000, with and without its boxes."""
 MOST_REDUCED = 10 * MOST_PIXELS
 """The most pixels of a picture that is reduced while it is decoded: more would take minutes."""
 
@@ -228,7 +221,7 @@ def _decode_tiff(path: Path, data: bytes, purpose: Purpose, notify: Notify) -> n
             notify(f"{path.name} has {raster.dropped} more channels, such as infrared, which are left out")
         values = _meaning(raster, purpose, picture.nodata)
         if np.ma.isMaskedArray(values) and picture.nodata is not None:
-            missing = np.count_nonzero(_is(raster.values, picture.nodata))
+            missing = np.count_nonzero(is_nodata(raster.values, picture.nodata))
             notify(f"{100 * missing / values.size:.1f} % of {path.name} is {picture.nodata:g}, its value for no data")
         return upright(values, picture.orientation)
 
@@ -238,7 +231,8 @@ def _meaning(raster: TiffRaster, purpose: Purpose, nodata: float | None) -> np.n
     values, known = raster.values, raster.known
     if purpose == "labels":
         return values
-    if nodata is not None and values.ndim == 2 and raster.palette is None and (missing := _is(values, nodata)).any():
+    is_number = values.ndim == 2 and raster.palette is None
+    if nodata is not None and is_number and (missing := is_nodata(values, nodata)).any():
         known = ~missing if known is None else known & ~missing
     if purpose == "map":
         if values.ndim == 3 and not np.any(values != values[..., :1]):
@@ -254,13 +248,6 @@ def _meaning(raster: TiffRaster, purpose: Purpose, nodata: float | None) -> np.n
         values = _in_full(raster.white - values if raster.zero_is_white else values, raster.white)
         alpha = None if alpha is None else _in_full(alpha, raster.white)
     return values if known is None and alpha is None else _with_alpha(values, known, alpha)
-
-
-def _is(values: np.ndarray, nodata: float) -> np.ndarray:
-    """Return True where a value is the one for no data; of floating point, as it is written with few digits."""
-    if values.dtype.kind != "f":
-        return values == nodata
-    return np.isclose(values, np.array(nodata).astype(values.dtype), rtol=1e-5 if abs(nodata) > 1e30 else 0, atol=0)
 
 
 def _in_full(values: np.ndarray, white: int) -> np.ndarray:

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ...files.reading import MOST_TEXT_BYTES, check_size, read_bytes
+from .map_numbers import is_nodata
 from .tiff import UnreadableError
 
 GRIDS = frozenset((".hgt", ".bil", ".flt"))
@@ -39,7 +40,8 @@ def read_grid(path: Path, data: bytes) -> np.ndarray:
             _binary_numbers(header, data, shape, suffix) if suffix in (".bil", ".flt") else _ascii_numbers(data, shape)
         )
     nodata = float(header.get("nodata_value", header.get("nodata", _SRTM_VOID if suffix == ".hgt" else _ESRI_NODATA)))
-    return np.ma.masked_array(values.astype(values.dtype.newbyteorder("=")), values == nodata)
+    values = values.astype(values.dtype.newbyteorder("="))
+    return np.ma.masked_array(values, is_nodata(values, nodata))
 
 
 def grid_header(path: Path, data: bytes) -> Mapping[str, str]:

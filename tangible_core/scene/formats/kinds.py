@@ -23,11 +23,16 @@ VIDEOS = frozenset((".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".m
 MAPS = frozenset((".npy", ".npz", ".pfm", ".asc", ".hgt", ".bil", ".flt"))
 """Suffixes of maps of heights; a TIFF of signed numbers, of floating point or of a place on earth is one as well."""
 
+PNG, JPEG = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
+NPY, ZIP = b"\x93NUMPY", b"PK\x03\x04"
+"""The first bytes of a PNG, a JPEG, and of .npy and .npz."""
+JPEG_2000 = (b"\0\0\0\x0cjP  ", b"\xff\x4f\xff\x51")
+"""The first bytes of a JPEG 2000, with and without its boxes."""
 ASC = re.compile(rb"\s*ncols\s+\d", re.IGNORECASE)
 """The start of an ESRI ASCII grid."""
 _HEAD = 64
 _PICTURES = (
-    b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"GIF8", b"BM", b"\0\0\0\x0cjP  ", b"\xff\x4f\xff\x51", b"P1", b"P4", *NETPBM
+    PNG, JPEG, b"GIF8", b"BM", *JPEG_2000, b"P1", b"P4", *NETPBM
 )  # fmt: skip
 _VIDEOS = (b"\x1aE\xdf\xa3", b"\0\0\x01\xba", b"\0\0\x01\xb3", b"OggS", b"0&\xb2u")
 _STILL = (b"avif", b"avis", *HEIC)
@@ -39,7 +44,7 @@ def file_kind(path: Path) -> FileKind | None:
     named, head = _kind_by_suffix(path), _first_bytes(path)
     if head[:4] in TIFF:
         return "heights" if holds_heights(path) else "picture"
-    if head[:2] in (b"Pf", b"PF") or head[:6] == b"\x93NUMPY" or ASC.match(head):
+    if head[:2] in (b"Pf", b"PF") or head[:6] == NPY or ASC.match(head):
         return "heights"
     if head[:4] == b"RIFF":
         return "picture" if head[8:12] == b"WEBP" else "video"

@@ -54,6 +54,13 @@ def _is_mark(number: np.floating, known: Float[np.ndarray, "n"], others: Float[n
     return int(np.count_nonzero(known == number)) >= FEWEST_CELLS and np.unique(others).size >= FEWEST_LEVELS
 
 
+def is_nodata(values: np.ndarray, nodata: float) -> np.ndarray:
+    """Return True where a value is the one for no data that a file states; of floating point also in few digits."""
+    if values.dtype.kind != "f":
+        return values == nodata
+    return np.isclose(values, np.array(nodata).astype(values.dtype), rtol=1e-5 if abs(nodata) > 1e30 else 0, atol=0)
+
+
 def number_text(number: np.floating) -> str:
     """Return the shortest text that is this number again at its precision.
 

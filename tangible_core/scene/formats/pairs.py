@@ -7,7 +7,8 @@ import numpy as np
 
 from ...data.pictures import MOST, full_scale, size_in_words
 from ...errors import PictureError
-from .decoding import JPEG, bytes_of, decode, look_at, upright, values_of
+from .decoding import bytes_of, decode, look_at, upright, values_of
+from .kinds import JPEG
 from .multi_picture import Notify, ignore, view_numbers
 from .pictures import NonFinite, picture_of
 

@@ -19,8 +19,9 @@ from jaxtyping import Float32
 from ...data.pictures import size_in_words, to_grey
 from ...errors import PictureError, shown
 from ...runtime.opencv import plain_opencv
-from .decoding import JPEG, bytes_of, decode, look_at, orientation, upright
+from .decoding import bytes_of, decode, look_at, orientation, upright
 from .heif import heif_depth, is_heif
+from .kinds import JPEG
 from .multi_picture import Notify, ignore, multi_pictures
 
 if TYPE_CHECKING:

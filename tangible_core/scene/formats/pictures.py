@@ -11,13 +11,13 @@ from pydantic import Field
 from ...data.pictures import check_finite, check_picture, opaque
 from ...errors import PictureError
 from .decoding import bytes_of, decode_reduced, values_of
+from .kinds import JPEG
 from .label_colours import labels_by_colour
 from .multi_picture import Notify, ignore
 
 TruthScale = Annotated[float, Field(gt=0, allow_inf_nan=False)] | Literal["sintel"]
 NonFinite = Literal["error", "mask"]
 
-JPEG = b"\xff\xd8"
 FEW_PIXELS = 1e-3
 """Share of a JPEG's pixels that most colours have less of where compression made them."""
 MAX_LABELS = 4096

@@ -62,6 +62,17 @@ def axes_of(cameras: StereoRig) -> np.ndarray:
     return np.stack([x, y, np.cross(x, y)])
 
 
+def assert_shared_rows_and_exact_depth(cameras: StereoRig, calibration: Calibration) -> None:
+    points = np.random.default_rng(0).uniform([-0.3, -0.25, 1], [0.3, 0.25, 3], (50, 3))
+    axes, camera = axes_of(cameras), np.diag([calibration.focal_px, calibration.focal_px, 1.0])
+    left = undistort_points(seen(points, cameras.left), cameras.left, axes, camera)
+    theirs = points @ cameras.rotation.T + cameras.translation_m
+    right = undistort_points(seen(theirs, cameras.right), cameras.right, axes @ cameras.rotation.T, camera)
+    assert left[:, 1] == pytest.approx(right[:, 1], abs=1e-3)
+    disparity = (left - right)[:, 0]
+    assert calibration.focal_px * calibration.baseline_m / disparity == pytest.approx(points @ axes[2], rel=1e-3)
+
+
 @pytest.mark.parametrize("lens", LENSES)
 @given(
     turn=st.tuples(*[st.floats(-0.08, 0.08)] * 3),
@@ -71,14 +82,7 @@ def test_rectified_points_share_rows_and_give_exact_depth(lens, turn, move):
     cameras = rig(turn, move, lens)
     calibration = rectify_views(Views(BLANK, BLANK), cameras).views.calibration
     assert calibration is not None
-    points = np.random.default_rng(0).uniform([-0.3, -0.25, 1], [0.3, 0.25, 3], (50, 3))
-    axes, camera = axes_of(cameras), np.diag([calibration.focal_px, calibration.focal_px, 1.0])
-    left = undistort_points(seen(points, cameras.left), cameras.left, axes, camera)
-    theirs = points @ cameras.rotation.T + cameras.translation_m
-    right = undistort_points(seen(theirs, cameras.right), cameras.right, axes @ cameras.rotation.T, camera)
-    assert left[:, 1] == pytest.approx(right[:, 1], abs=1e-3)
-    disparity = (left - right)[:, 0]
-    assert calibration.focal_px * calibration.baseline_m / disparity == pytest.approx(points @ axes[2], rel=1e-3)
+    assert_shared_rows_and_exact_depth(cameras, calibration)
     assert calibration.baseline_m == pytest.approx(np.linalg.norm(move))
 
 
@@ -121,14 +125,7 @@ def test_points_seen_from_below_share_columns_and_give_exact_depth(lens, turn, m
     cameras = rig(turn, (move[0], -0.2, move[1]), lens)
     calibration = rectify_views(Views(BLANK, BLANK), cameras).views.calibration
     assert calibration is not None and calibration.vertical
-    points = np.random.default_rng(0).uniform([-0.3, -0.25, 1], [0.3, 0.25, 3], (50, 3))
-    axes, camera = axes_of(cameras), np.diag([calibration.focal_px, calibration.focal_px, 1.0])
-    left = undistort_points(seen(points, cameras.left), cameras.left, axes, camera)
-    theirs = points @ cameras.rotation.T + cameras.translation_m
-    right = undistort_points(seen(theirs, cameras.right), cameras.right, axes @ cameras.rotation.T, camera)
-    assert left[:, 1] == pytest.approx(right[:, 1], abs=1e-3)
-    disparity = (left - right)[:, 0]
-    assert calibration.focal_px * calibration.baseline_m / disparity == pytest.approx(points @ axes[2], rel=1e-3)
+    assert_shared_rows_and_exact_depth(cameras, calibration)
 
 
 @pytest.mark.parametrize("finest_m", [0, 8e-4])

@@ -1,4 +1,4 @@
-"""What every test stands on: checked shapes, repeatable hypothesis, a cache and plugins of its own."""
+"""What every test stands on: repeatable hypothesis, a cache and plugins of its own."""
 
 import gc
 import os
@@ -16,7 +16,6 @@ import pytest
 from _pytest.doctest import DoctestModule
 from hypothesis import settings
 
-from checked_calls import check
 from distributions import Points, distribution
 
 os.environ["MPLBACKEND"] = "Agg"
@@ -27,16 +26,19 @@ os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [os.environ.get("PYTHONP
 if "PYTEST_XDIST_WORKER" in os.environ:
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # torch's threads spin, and take the processor from the other workers
 
-check()
+if os.environ.get("TANGIBLE_CHECKED_CALLS"):
+    from checked_calls import check
+
+    check()  # before the first of our modules is imported
 
 # Before Python 3.12, dask imports it, and it replaces the standard library's finder: entry points are then of a class
 # that no hint names, and whatever test comes next in this worker fails.
 sys.modules.setdefault("importlib_metadata", metadata)
 
-settings.register_profile("default", deadline=None, max_examples=25)
+settings.register_profile("default", deadline=None, max_examples=10)
 settings.register_profile("ci", settings.get_profile("default"), derandomize=True, print_blob=True)
 settings.register_profile("nightly", settings.get_profile("default"), max_examples=200)
-settings.load_profile("ci" if os.environ.get("CI") else "default")
+settings.load_profile("nightly" if "--nightly" in sys.argv else "ci" if os.environ.get("CI") else "default")
 
 Install = Callable[..., Path]
 OWN = ("cache", "runtime", "config", "log")
@@ -45,22 +47,30 @@ FIRST = ("test_every_processor.py", "test_third_party.py")
 """Files of the tests that take longest, minutes each: at the end, all other workers would wait for them."""
 STANDSTILL_S = 30.0
 """Longer than any machine lets a loop stand still, however busy it is."""
-STARTS_PROCESSES = {"subprocess", "Popen", "Servo", "Program", "UiServer"}
-"""A test module that has one of these names starts processes, and is none of the fast ones."""
-SLOW = set(Path(__file__).with_name("slow.txt").read_text().splitlines())
-"""Tests that took long when they were last measured, as `python -m benchmarks tests` wrote them."""
+RINGS = ("whole", "nightly")
+"""Marks of tests that run when they are asked for: `pytest --whole`, `pytest --whole --nightly`."""
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
     """None beside this process where files are named: a debugger works, nothing is waited for.
 
-    Otherwise one more for two processors: a third of the time, a worker waits for a browser or another process. Tests
-    that are fast wait for none, and each worker spends ten seconds on collecting them.
+    Otherwise one more for two processors: a third of the time, a worker waits for a browser or another process.
     """
     if config.args_source is pytest.Config.ArgsSource.ARGS:
         return 0
     processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return processors if config.option.markexpr == "fast" else processors + processors // 2
+    return processors + processors // 2
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the options that run more than every change needs."""
+    group = parser.getgroup("tangible")
+    group.addoption(
+        "--whole", action="store_true", help="also run what takes long: all browser cases, killed servers, peers"
+    )
+    group.addoption(
+        "--nightly", action="store_true", help="also run what takes hours: millions of ticks, every processor"
+    )
 
 
 class DoctestsWhereThereAreSome:
@@ -93,18 +103,15 @@ def pytest_collection_finish() -> None:
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put first what takes minutes, and mark as `fast` the first case of each quick test that starts no process."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what was not asked for, unless tests are named by their ids; put first what takes minutes."""
+    unasked = {ring for ring in RINGS if not config.getoption(ring)}
+    named = [arg for arg in config.args if "::" in arg]
+    left_out = [item for item in items if unasked & {mark.name for mark in item.iter_markers()} and not named]
+    if left_out:
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if item not in set(left_out)]
     items.sort(key=lambda item: item.path.name not in FIRST)
-    seen: set[str] = set()
-    for item in items:
-        name = item.nodeid.partition("[")[0]
-        names = vars(getattr(item, "module", item)).keys()
-        marks = {mark.name for mark in item.iter_markers()}
-        quick = name not in SLOW and not names & STARTS_PROCESSES
-        if quick and name not in seen and not marks & {"slow", "nightly"}:
-            item.add_marker("fast")
-        seen.add(name)
 
 
 @pytest.fixture(scope="session")

@@ -147,7 +147,6 @@ def test_devices_page_shows_valid_files():
     )
 
 
-@pytest.mark.slow
 def test_video_page_plays_its_examples(tmp_path: Path):
     import cv2
     import numpy as np

@@ -57,7 +57,6 @@ def test_export_page_commands_are_all_tried():
     assert all(any(about in each for about in ("plate.yaml", "left", "hills.yaml")) for each in COMMANDS)
 
 
-@pytest.mark.slow
 def test_museum_photograph_becomes_a_legible_page_and_plate(tmp_path: Path, keep):
     astronaut = drawn("astronaut")
     write_png(tmp_path / "astronaut.png", astronaut.picture)
@@ -71,7 +70,6 @@ def test_museum_photograph_becomes_a_legible_page_and_plate(tmp_path: Path, keep
     keep("portrait", Image.fromarray(pixels(tmp_path / "portrait/plate-swell.svg", 90)))
 
 
-@pytest.mark.slow
 def test_pair_becomes_a_plate(tmp_path: Path, keep):
     views = Scene.builtin("motorcycle").views
     assert views is not None and views.right is not None
@@ -83,7 +81,6 @@ def test_pair_becomes_a_plate(tmp_path: Path, keep):
     keep("pair", seen_from_above(plate))
 
 
-@pytest.mark.slow
 def test_height_map_becomes_a_plate(tmp_path: Path, keep):
     Image.fromarray(hills(300, 400)).save(tmp_path / "hills.tif")
     (tmp_path / "hills.yaml").write_text(MAP)

@@ -7,17 +7,13 @@ import subprocess
 import sys
 import tomllib
 from importlib import import_module
-from importlib.util import find_spec, module_from_spec
 from inspect import isabstract
 from pathlib import Path
 
-import jaxtyping
-import numpy as np
 import pytest
 
 import tangible_core
 from benchmarks.house_words import count_words, share, shipped, turns_of_phrase
-from checked_calls import OURS, UNCHECKED, CheckingLoader
 from tangible_core.data.part_words import name_part
 from tangible_core.plugins import hooks
 from tangible_core.plugins.interfaces import (
@@ -101,29 +97,6 @@ def test_tests_lie_in_the_folder_of_their_house():
     there = {path.relative_to(ROOT / "tests").parts[0] for path in ROOT.joinpath("tests").rglob("test_*.py")}
     assert {name for name in there if not name.endswith(".py")} == {"benchmarks", "core", "plugins", "ui"}
     assert not list(ROOT.joinpath("tests/plugins").glob("test_*.py"))
-
-
-def test_calls_of_every_module_are_checked():
-    """But for modules that say why not; `find_spec` asks who would load one, and loads none."""
-    houses = {
-        each.rpartition("/")[2]: ROOT / each
-        for each in PROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"]
-    }
-    assert set(houses) == set(OURS)
-    files = [path.relative_to(house.parent) for house in houses.values() for path in house.rglob("*.py")]
-    names = {".".join(path.with_suffix("").parts).removesuffix(".__init__") for path in files}
-    assert {name for name in names if not isinstance(find_spec(name).loader, CheckingLoader)} == UNCHECKED.keys()
-
-
-def test_call_with_a_wrong_type_raises():
-    """By a copy, of which nothing was called before: first calls alone are checked."""
-    spec = find_spec("tangible_texture.regions.basins")
-    copy = module_from_spec(spec)
-    spec.loader.exec_module(copy)
-    with pytest.raises(jaxtyping.TypeCheckError, match="Float32"):
-        copy.basins(np.zeros((2, 2)), [0.0], 1)
-    with pytest.raises(jaxtyping.TypeCheckError, match="smallest_px"):
-        copy.basins(np.zeros((2, 2), np.float32), [0.0], "one")
 
 
 def test_texts_never_advise_to_delete_compiled_kernels():

@@ -44,7 +44,6 @@ def coloured(parts: PartMap, by: tuple[int, ...]) -> np.ndarray:
     return distinct_colours(max(by) + 1)[np.array(by)[parts.labels]]
 
 
-@pytest.mark.slow
 def test_colours_of_a_cup_become_legible_parts(keep):
     picture = drawn("coffee").picture
     parts = by_colour(picture)

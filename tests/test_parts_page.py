@@ -38,7 +38,6 @@ def keep(tmp_path: Path) -> Callable[[str, Image.Image], None]:
     return kept
 
 
-@pytest.mark.slow
 def test_photograph_becomes_a_relief_of_named_parts(
     tmp_path: Path, keep: Callable[[str, Image.Image], None], monkeypatch: pytest.MonkeyPatch
 ):

@@ -9,8 +9,6 @@ from benchmarks import by_ear
 from benchmarks.by_ear_pictures import pictures
 from benchmarks.by_ear_rebuild import rebuild
 
-pytestmark = pytest.mark.slow
-
 
 def test_pictures_are_rebuilt_from_what_is_spoken_alone():
     made = pictures()

@@ -58,7 +58,6 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.slow
 def test_feel_in_turn_streams_its_recording_to_disk(folder: Path):
     words = ("a.yaml", "b.yaml", "--each", 1, "--record", "hand.nc", "--json")
     with patch.object(Recording, "load", pytest.fail):
@@ -88,7 +87,6 @@ def test_feel_in_turn_of_unsuitable_files_is_refused(folder: Path, words: tuple[
     assert not list(folder.glob("hand*"))
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
 def test_feel_with_an_unmoved_pointer_warns_once(folder: Path):
     done = tangible("feel", "c.yaml", "--seconds", 2, cwd=folder)
@@ -96,7 +94,6 @@ def test_feel_with_an_unmoved_pointer_warns_once(folder: Path):
     assert done.stderr.count("start `tangible pointer` in another terminal") == 1
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("number", "group"), [(signal.SIGTERM, False), (signal.SIGHUP, True), (signal.SIGQUIT, True)])
 def test_endless_feel_stops_at_a_signal_with_a_complete_recording(folder: Path, number: signal.Signals, group: bool):
     """The signal goes to the program alone, as by `kill`, or to its loop as well, as by systemd or a terminal."""
@@ -112,7 +109,6 @@ def test_endless_feel_stops_at_a_signal_with_a_complete_recording(folder: Path, 
     assert (len(kept.rows) > 500, (np.diff(kept.time_s) > 0).all()) == (True, True)
 
 
-@pytest.mark.slow
 def test_loop_ended_alone_is_a_failure_and_not_an_interruption(folder: Path):
     """Somebody ended the loop's process: the user did not stop the program, and is told what happened."""
     words = ["feel", "a.yaml", "--seconds", "inf", "--record", "hand.nc"]
@@ -125,7 +121,6 @@ def test_loop_ended_alone_is_a_failure_and_not_an_interruption(folder: Path):
     assert "interrupted" not in errors
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
 def test_feel_of_a_video_plays_it_and_reports_its_frames(tmp_path: Path):
     import cv2

@@ -190,7 +190,6 @@ def test_archive_of_many_small_arrays_is_refused_as_too_large(tmp_path: Path):
 
 
 @given(st.data())
-@pytest.mark.slow
 def test_damaged_file_gives_an_array_or_a_printable_reason(data):
     whole = bytearray(
         data.draw(st.sampled_from([ONE, npz_bytes(a=np.arange(6.0).reshape(2, 3)), bytes(archive(a_npy=ONE))]))

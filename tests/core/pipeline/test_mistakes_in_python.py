@@ -119,7 +119,7 @@ def test_method_that_raises_is_named():
     assert caught.value.__notes__ == [f"{__name__}.BrokenDepth failed in estimate"]
 
 
-@pytest.mark.parametrize("in_real_time", [False, pytest.param(True, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("in_real_time", [False, True])
 def test_force_law_that_raises_is_named(in_real_time: bool):
     pipeline = Pipeline(scene(), depth=Luminance(), render=BrokenLaw(), cached=False)
     with pytest.raises(Exception, match="a bug") as caught:

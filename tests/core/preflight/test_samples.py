@@ -44,7 +44,6 @@ def test_sample_passes_preflight(path: Path):
     assert verdicts.sentence.startswith("Safe")
 
 
-@pytest.mark.slow
 def test_first_file_of_the_readme_passes_preflight(tmp_path: Path):
     text = (ROOT / "README.md").read_text(encoding="utf-8").partition("# mine.yaml\n")[2].partition("```")[0]
     left, right = (Scene.builtin("motorcycle").views.left, Scene.builtin("motorcycle").views.right)
@@ -57,7 +56,6 @@ def test_first_file_of_the_readme_passes_preflight(tmp_path: Path):
         assert verdicts.safe
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", BUILTINS)
 def test_builtin_scene_with_defaults_passes_preflight(name: str):
     scene = Scene.builtin(name)

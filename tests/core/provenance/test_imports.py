@@ -38,7 +38,6 @@ def test_import_is_found_in_every_form(text: str, expected: list[Import]):
     assert [each for each in imports(text.encode()) if each.module != "x"] == expected
 
 
-@pytest.mark.slow
 def test_imports_of_every_module_equal_those_of_a_full_parse():
     """About a hundred of these modules are read at the start of a force loop."""
     for path in (file for folder in ("tangible_core", "plugins", "tests") for file in (ROOT / folder).rglob("*.py")):

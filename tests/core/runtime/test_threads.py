@@ -112,7 +112,6 @@ print(inside, outside, again, torch.get_num_threads())
 """
 
 
-@pytest.mark.slow
 def test_thread_limit_holds_for_torch_whenever_it_is_imported():
     """Torch takes its number of threads from the environment, up to the number of processors."""
     variables = {**os.environ, "OMP_NUM_THREADS": "2", "MKL_NUM_THREADS": "2"}

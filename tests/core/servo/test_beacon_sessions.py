@@ -96,7 +96,6 @@ def lateral(servo: Servo) -> float:
     return 0.0 if row is None else float(np.hypot(row[11], row[12]))
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("patient")
 @pytest.mark.parametrize("law", ["proxy", None], ids=["compiled", "plain"])
 def test_beacon_in_loop_process_is_switched_on_and_released_by_a_button(law: str | None, pointer: Any):
@@ -137,7 +136,6 @@ def test_beacon_in_loop_process_is_switched_on_and_released_by_a_button(law: str
         Servo(touch, device).pull_to(beacon)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("patient")
 @pytest.mark.usefixtures("loop_in_thread")
 def test_beacon_of_each_kiosk_scene_pulls_until_a_button_is_pressed():

@@ -56,7 +56,6 @@ def test_recording_prints_the_guard_summary():
     assert "\n" not in repr(held)
 
 
-@pytest.mark.slow
 def test_run_prints_the_guard_summary(folder: Path):
     done = tangible("run", "p.yaml", "--seconds", 0.5, cwd=folder)
     assert done.returncode == 0, done.stderr

@@ -33,7 +33,6 @@ def no_pause(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(kiosk, "FIRST_PAUSE_S", 0.01)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
 def test_kiosk_rotates_scenes_with_their_own_limits() -> None:
     kept: list[np.ndarray] = []
@@ -55,7 +54,6 @@ def test_kiosk_rotates_scenes_with_their_own_limits() -> None:
     np.testing.assert_allclose(found, [(0.05, 0.1), (0.06, 0.08), (0.05, 0.1)], atol=1e-6)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("no_pause")
 def test_kiosk_waits_for_a_lost_device_without_force(tmp_path: Path) -> None:
     """It answers 99 times each time it is opened."""
@@ -90,7 +88,6 @@ def test_kiosk_waits_for_a_lost_device_without_force(tmp_path: Path) -> None:
     assert last.work_j == pytest.approx(0, abs=1e-9)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("no_pause")
 @pytest.mark.usefixtures("loop_in_thread")
 def test_kiosk_waits_for_a_device_that_is_absent_at_first(tmp_path: Path) -> None:
@@ -101,21 +98,18 @@ def test_kiosk_waits_for_a_device_that_is_absent_at_first(tmp_path: Path) -> Non
     assert "in use by another program" in said[0]
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
 def test_kiosk_time_goes_on_without_a_device() -> None:
     last = run_kiosk([Slot(proxy(), AT_ONCE)], Failing(), 0.5, on_wait=lambda _: None)
     assert (last.stopped, last.ticks) == (OVER, 99)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
 def test_kiosk_without_on_wait_ends_with_its_device() -> None:
     last = run_kiosk([Slot(proxy(), AT_ONCE)], Failing())
     assert (last.stopped, last.ticks) == ("the failing device does not answer; plug it in", 99)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
 def test_kiosk_raises_a_plugin_error_at_once(tmp_path: Path) -> None:
     record = tmp_path / "force"
@@ -124,7 +118,6 @@ def test_kiosk_raises_a_plugin_error_at_once(tmp_path: Path) -> None:
     assert float(record.read_text()) == 0
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
 def test_kiosk_ends_on_a_scene_that_cannot_be_sent(tmp_path: Path) -> None:
     class Local(PlainTouch):
@@ -140,7 +133,6 @@ def test_kiosk_ends_on_a_scene_that_cannot_be_sent(tmp_path: Path) -> None:
     assert float(record.read_text()) == 0
 
 
-@pytest.mark.slow
 def test_kiosk_on_ctrl_c_while_waiting_ends() -> None:
     reports: list[ServoReport] = []
     with hearing():

@@ -32,7 +32,6 @@ def touch() -> Touch:
     return load_method("render", "proxy")().touch(HapticSurface.from_heights(np.full((16, 16), 0.002, np.float32)))
 
 
-@pytest.mark.slow
 def test_session_records_every_tick_and_reports_ten_times_a_second(touch: Touch, tmp_path: Path) -> None:
     reports: list[ServoReport] = []
     began_s: list[float] = []
@@ -60,7 +59,6 @@ def test_session_records_every_tick_and_reports_ten_times_a_second(touch: Touch,
 
 
 @pytest.mark.parametrize("name", ["hand.npz", "hand.csv"])
-@pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
 def test_keeping_converts_other_suffixes_at_the_end(touch: Touch, tmp_path: Path, name: str) -> None:
     with keeping(tmp_path / name, About("circling", "proxy", "")) as writer:
@@ -163,7 +161,6 @@ def test_drain_passes_unrecorded_ticks_again(loop_part: Servo) -> None:
     assert [rows[:, 0].tolist() for rows in kept] == [list(range(10))]
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
 def test_session_on_full_disk_ends_without_force(touch: Touch, tmp_path: Path) -> None:
     force = tmp_path / "force"
@@ -185,7 +182,6 @@ def test_session_on_full_disk_ends_without_force(touch: Touch, tmp_path: Path) -
     assert kept.stopped.startswith("the recording ends early")
 
 
-@pytest.mark.slow
 def test_session_on_ctrl_c_ends_without_force_and_keeps_its_ticks(touch: Touch, tmp_path: Path) -> None:
     force = tmp_path / "force"
     reports: list[ServoReport] = []

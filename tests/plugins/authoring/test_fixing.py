@@ -12,8 +12,6 @@ from command_line import tangible
 from tangible_core import load_pipeline
 from tangible_core.preflight import Loop
 
-pytestmark = pytest.mark.slow
-
 STEEP = """\
 # a photograph of mine
 scene: {photo: mine.png}       # beside this file

@@ -50,7 +50,6 @@ def well(done: Done) -> Done:
     return done
 
 
-@pytest.mark.slow
 def test_picture_divided_into_parts_gives_files_that_run(folder: Path):
     done = well(tangible("parts", "still.png", cwd=folder))
     assert "still.png is divided into 3 parts" in done.stdout
@@ -155,7 +154,6 @@ def test_uniform_picture_is_one_part(folder: Path, picture: np.ndarray):
     assert Pipeline.from_yaml(folder / "flat.yaml").surface.names == ("",)
 
 
-@pytest.mark.slow
 def test_pair_has_heights_by_depth(folder: Path):
     wall = np.random.default_rng(5).integers(0, 255, (120, 170), dtype=np.uint8)
     left, right = wall[:, :160].copy(), wall[:, 4:164].copy()
@@ -177,7 +175,6 @@ def test_builtin_scene_is_divided(folder: Path):
     well(tangible("plan", "c/coins.yaml", cwd=folder))
 
 
-@pytest.mark.slow
 def test_painted_parts_are_renumbered_on_request(folder: Path):
     """A person gives names, splits the wall, reads that numbers changed, lets the file follow, and goes on."""
     well(tangible("parts", "still.png", cwd=folder))
@@ -285,7 +282,6 @@ def test_full_disk_leaves_whole_files_or_none(folder: Path):
     assert {name: (folder / name).read_bytes() for name in HERE} == before, "numbers are not moved twice"
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
 def test_names_of_parts_reach_recording_and_replay(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
@@ -311,7 +307,6 @@ def test_names_of_parts_reach_recording_and_replay(folder: Path):
     assert "% of the contact" in table and "material" in table
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
 def test_beacon_by_name_reaches_recording_and_replay(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))

@@ -133,7 +133,6 @@ def test_preflight_cure_is_below_its_verdict_with_plain_brackets():
     ]
 
 
-@pytest.mark.slow
 def test_survey_law_without_stated_stiffness_is_measured():
     """The stiffness is measured."""
     from tangible_core import HapticSurface

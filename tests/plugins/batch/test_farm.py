@@ -27,7 +27,6 @@ from tangible_batch.farm import Farm
 from tangible_core import Pipeline
 from tangible_core.errors import BatchError
 
-pytestmark = pytest.mark.slow
 CONFIG = "scene: builtin/brick\nwant: relief\ndepth: luminance\nworkspace: {width_m: 0.04}\n"
 DEADLY = """
 import os, signal

@@ -29,7 +29,6 @@ def test_sample_comparisons_are_valid(path: Path):
     assert load_comparison(path, default_registry()).methods
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("cells_here")
 def test_command_measures_shows_and_finds_regressions(tmp_path: Path):
     rows = tmp_path / "out" / "results.jsonl"

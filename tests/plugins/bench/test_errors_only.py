@@ -31,7 +31,6 @@ def run_comparison(registry: Registry, folder: Path, without_times: bool, **how)
     return compare(errors_only(comparison) if without_times else comparison, **how)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("cells_here")
 def test_errors_alone_equal_those_of_timed_measurements(registry: Registry, tmp_path: Path):
     timed = run_comparison(registry, tmp_path, False)
@@ -67,7 +66,6 @@ class FarmHere(Here):
         self.started.append((workers, threads))
 
 
-@pytest.mark.slow
 def test_command_with_errors_only_reports_no_times(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("tangible_bench.measuring.side_by_side.Farm", FarmHere)
     monkeypatch.setattr(FarmHere, "started", [])

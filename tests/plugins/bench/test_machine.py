@@ -19,7 +19,6 @@ def test_peak_memory_counts_from_its_start():
     assert peak() == pytest.approx(20_000_000, rel=0.1)
 
 
-@pytest.mark.slow
 def test_held_bytes_are_those_of_the_result():
     assert held_bytes(lambda: np.ones(10_000)) == pytest.approx(80_000, rel=0.01)
     assert held_bytes(lambda: np.ones(10_000).sum()) < 1000

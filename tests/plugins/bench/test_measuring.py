@@ -80,7 +80,6 @@ def test_option_given_by_the_scene_out_of_bounds_is_refused(registry: Registry, 
         wanted.methods[0].method_for({"max_disparity_px": 2000})
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("cells_here")
 def test_fill_is_applied_to_the_named_methods_only(registry: Registry, tmp_path: Path):
     rows = measure_rows(registry, tmp_path / "r.jsonl", "half, {use: half, label: filled}", QUICK + "fill: [filled]\n")
@@ -90,7 +89,6 @@ def test_fill_is_applied_to_the_named_methods_only(registry: Registry, tmp_path:
     ]
 
 
-@pytest.mark.slow
 def test_seconds_and_memory_leave_out_the_process(registry: Registry, tmp_path: Path):
     begun = time.perf_counter()
     rows = measure_rows(registry, tmp_path / "r.jsonl", "{use: constant, seconds: 0.1}, hungry")
@@ -106,7 +104,6 @@ def test_output_of_a_method_does_not_disturb_its_row(registry: Registry, tmp_pat
     assert row.seconds != 1
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("cells_here")
 def test_failing_methods_are_rows_and_stop_no_other(registry: Registry, tmp_path: Path, log_dir: Path):
     methods = "raises, fails, dies, {use: dies, label: leaves, how: exit}, relative, constant"
@@ -298,7 +295,6 @@ def lines(path: Path) -> int:
     return path.read_bytes().count(b"\n") if path.exists() else 0
 
 
-@pytest.mark.slow
 def test_killed_comparison_continues_where_it_stopped(tangible, tmp_path: Path):
     config = write_file(tmp_path, "{use: constant, seconds: 0.2}, half", "repeats: 2\nwarmups: 0\ncalls: 1\n")
     rows = tmp_path / "out" / "results.jsonl"
@@ -325,7 +321,6 @@ def lines_in(text: bytes) -> int:
 
 
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGINT])
-@pytest.mark.slow
 def test_worker_ends_with_the_comparison(tangible, tmp_path: Path, end: signal.Signals):
     pid_file = tmp_path / "pid"
     config = write_file(tmp_path, f"constant, {{use: sleeps, pid_file: {pid_file}}}", QUICK)

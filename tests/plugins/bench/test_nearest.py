@@ -103,7 +103,6 @@ def test_analytic_stroke_own_path_is_unknown_outside_the_surface():
     assert np.isnan(stroke.nearest_m[2:]).all()
 
 
-@pytest.mark.slow
 def test_relief_stroke_nearest_points_are_unknown():
     surface = SURFACES["sine"].known((64, 32)).surface
     stroke = relief_stroke(surface)

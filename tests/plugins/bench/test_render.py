@@ -43,7 +43,6 @@ def parse(text: str, registry: Registry) -> Comparison:
     return parse_comparison(text, Path("c.yaml"), registry)
 
 
-@pytest.mark.slow
 def test_vertical_spring_on_a_slope_has_known_errors(strokes):
     """The error is tan(t), the strength 1 / cos(t), the direction off by t; a loop in and out gives work k d dh."""
     found = measure_method("penalty", strokes["ramp"])
@@ -53,7 +52,6 @@ def test_vertical_spring_on_a_slope_has_known_errors(strokes):
     assert found["loop_work_j"] > 1e-3
 
 
-@pytest.mark.slow
 def test_vertical_spring_around_a_loop_gives_known_work():
     """1 mm deep along a ramp of 0.2, 40 mm up: 800 N/m x 1 mm x 8 mm = 6.4 mJ; back down it is taken again."""
     known = ramp((0.2, 0.0), shape=(CELLS, CELLS))
@@ -69,13 +67,11 @@ def test_vertical_spring_around_a_loop_gives_known_work():
 
 
 @pytest.mark.parametrize("name", ["plane", "ramp", "sphere", "sine", "cone", "ridge"])
-@pytest.mark.slow
 def test_force_law_with_a_potential_gives_no_work(strokes, name: str):
     assert measure_method("penalty-gradient", strokes[name])["loop_work_j"] == pytest.approx(0, abs=5e-5)
 
 
 @pytest.mark.parametrize(("name", "percent"), [("plane", 1e-3), ("ramp", 1e-3), ("sphere", 1e-2), ("sine", 0.1)])
-@pytest.mark.slow
 def test_proxy_equals_the_spring_to_the_nearest_point(strokes, name: str, percent: float):
     found = measure_method("proxy", strokes[name])
     assert found["error_percent"] < percent
@@ -85,7 +81,6 @@ def test_proxy_equals_the_spring_to_the_nearest_point(strokes, name: str, percen
     assert found["loop_work_j"] < 1e-5
 
 
-@pytest.mark.slow
 def test_gradient_spring_on_a_slope_is_too_stiff(strokes):
     """The factor is sqrt(1 + s^2) along the gradient's force, and the same again along the normal."""
     found = measure_method("penalty-gradient", strokes["ramp"])
@@ -94,7 +89,6 @@ def test_gradient_spring_on_a_slope_is_too_stiff(strokes):
     assert found["jnd"] == pytest.approx(RISE**2 / 0.07, rel=1e-3)
 
 
-@pytest.mark.slow
 def test_grey_level_steps_by_its_whole_force(strokes):
     """All of its force at once where the surface is met; a spring of 800 N/m at 20 mm/s steps by 0.016 N."""
     assert measure_method("grey-level", strokes["plane"], force_at_white_n=2.0)["step_n"] == pytest.approx(2)
@@ -102,7 +96,6 @@ def test_grey_level_steps_by_its_whole_force(strokes):
     assert measure_method("penalty", strokes["plane"])["step_n"] <= 800 * fastest
 
 
-@pytest.mark.slow
 def test_friction_makes_the_proxy_lag(strokes):
     """Sliding over a plane a depth d under it, the proxy is mu d behind."""
     circle = np.linspace(0, 2 * np.pi, 8001)
@@ -214,7 +207,6 @@ def recording(count: int = 50) -> Recording:
 
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
-@pytest.mark.slow
 def test_recording_gives_the_path_of_the_scene(tmp_path: Path, registry: Registry, suffix: str):
     recording().save(tmp_path / f"hand{suffix}")
     text = f"compare: render\nmethods: [proxy]\nscenes: [{{analytic: plane, cells: 64, recording: hand{suffix}}}]\n"
@@ -253,7 +245,6 @@ calls: 1
     return Results(TASK, cells(rows, None), None)
 
 
-@pytest.mark.slow
 def test_render_comparison_end_to_end_has_exact_results(comparison_results: Results):
     """The truth of the coins is unknown, so the error is that of the ramp alone."""
     (means,) = tables(comparison_results)

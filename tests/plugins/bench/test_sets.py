@@ -331,7 +331,6 @@ class TestCommand:
     def use_registry(self, registry: Registry, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr("tangible_core.plugins.registry.default_registry", lambda: registry)
 
-    @pytest.mark.slow
     @pytest.mark.usefixtures("cells_here")
     def test_command_measures_a_set_by_its_name(self, registry: Registry, folder: Path):
         methods = "methods=[constant, {use: constant, label: other, value_px: 2}]"

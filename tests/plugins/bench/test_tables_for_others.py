@@ -55,7 +55,6 @@ def test_forecast_is_corrected_by_finished_measurements(tmp_path: Path):
     assert machine_of_half_the_speed.left_s(4, 24.0) == 0.0
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("cells_here")
 def test_comparison_writes_every_figure_as_csv_and_latex(registry: Registry, tmp_path: Path):
     found = compare(shorten(comparison(registry, tmp_path)))

@@ -156,7 +156,6 @@ def test_scaling_down_avoids_aliasing():
     assert transforms.scale(stripes, 0.45).picture.std() < 30
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("cells_here")
 def test_texture_comparison_end_to_end_has_exact_results(registry: Registry, tmp_path: Path):
     """Told the count, `gradient` finds a scene of two greys exactly, turned or not."""

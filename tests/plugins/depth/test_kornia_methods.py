@@ -26,7 +26,6 @@ def test_known_scene_gives_its_disparity(method):
 
 
 @pytest.mark.parametrize("method", METHODS, ids=["zncc", "report"])
-@pytest.mark.slow
 def test_raw_pair_is_rectified_first(method):
     scene = Scene((240, 320), 8.0, 20.0)
     views = Views(scene.left(), scene.right(roll_and_tilt(scene.shape)))

@@ -5,7 +5,6 @@ import re
 from pathlib import Path
 
 import numpy as np
-import pytest
 from PIL import Image
 
 from command_line import tangible
@@ -20,7 +19,6 @@ SECTION = re.findall(r"^## Solids\n(.*?)^## ", PAGES["export"], re.DOTALL | re.M
 MOST_BYTES = 150_000
 
 
-@pytest.mark.slow
 def test_page_example_portrait_becomes_a_plate(tmp_path: Path):
     parts, added = (re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)[0] for text in (PAGES["parts"], SECTION))
     astronaut = drawn("astronaut")

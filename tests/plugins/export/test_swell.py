@@ -28,9 +28,6 @@ ROUNDING_MM = 1e-5
 SIZES_MM = {"a4": (210, 297), "letter": (215.9, 279.4), "a3": (297, 420)}
 
 
-pytestmark = pytest.mark.slow
-
-
 @pytest.fixture(scope="module", params=PICTURES)
 def exported(request, tmp_path_factory) -> tuple[str, tuple[Path, ...], list[str]]:
     swell, folder = Swell(), tmp_path_factory.mktemp("swell")

@@ -107,7 +107,6 @@ class TestFriction:
         at(touch, 0.0, 0.0, 0.009)
         assert at(touch, 0.001, 0.0, 0.009, (0.1, 0.0, -0.05)) == pytest.approx((0, 0, 0.5 + 0.2), abs=1e-5)
 
-    @pytest.mark.slow
     def test_damping_acts_along_the_normal_at_the_proxy(self):
         """The normal is that after the last step, the only one under a slow hand, not that before."""
         known = waves()

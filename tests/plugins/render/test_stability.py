@@ -1,6 +1,6 @@
 """Millions of ticks on surfaces that break a careless law: nothing runs away, gains energy or loses its track.
 
-CI feels four million ticks in all; `pytest -m nightly tests/plugins/render/test_stability.py` forty times as many.
+CI feels four million ticks in all; `pytest --nightly tests/plugins/render/test_stability.py` forty times as many.
 """
 
 import numpy as np

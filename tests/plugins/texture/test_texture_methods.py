@@ -82,7 +82,6 @@ class TestReport:
 
 class TestKorniaGabor:
     @pytest.mark.parametrize("step_px", [3, 4])
-    @pytest.mark.slow
     def test_energies_match_the_fast_bank(self, step_px):
         import torch
 
@@ -114,7 +113,6 @@ class TestKorniaGabor:
         assert len(kmeans(torch.zeros(9, 2), 4).centres) == 1
         assert len(kmeans(torch.eye(3).repeat(5, 1), 7, restarts=2).centres) == 3
 
-    @pytest.mark.slow
     def test_labels_match_the_fast_bank_with_the_same_clustering(self):
         import torch
 
@@ -130,7 +128,6 @@ class TestKorniaGabor:
         ours = kmeans(rows, 4, restarts=10).labels.reshape(64, 64).repeat(4, 0).repeat(4, 1)
         assert rand_index(found.labels, ours) > 0.95
 
-    @pytest.mark.slow
     def test_four_textures_have_no_seams(self):
         grey, truth = quarters(256)
         found = KorniaGabor(segments=4).segment(grey)

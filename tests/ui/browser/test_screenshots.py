@@ -1,6 +1,6 @@
 """The pictures of the page in the docs: made and looked at, one of them daily, the others in the nightly tests.
 
-TANGIBLE_UI_PICTURES=1 pytest tests/ui/browser/test_screenshots.py -m "nightly or not nightly"   # writes them there
+TANGIBLE_UI_PICTURES=1 pytest tests/ui/browser/test_screenshots.py --nightly   # writes them there
 """
 
 import io

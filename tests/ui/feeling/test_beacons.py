@@ -61,7 +61,6 @@ def test_beacon_requested_by_a_tab_is_announced_to_all_tabs(tmp_path: Path, monk
     assert set(shared_folder().glob("*.parcel")) <= before, "nothing is left of what was handed on"
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
 def test_beacon_ends_by_a_button_a_scene_and_a_stop() -> None:
     labels = np.zeros((32, 32), np.int32)

@@ -229,7 +229,6 @@ class TestCurrency:
         assert hook().is_current(tree)
 
 
-@pytest.mark.slow
 class TestNpm:
     """The real one, without a network; it comes with the extra `dev`."""
 
@@ -264,7 +263,6 @@ class TestNpm:
             assert locked[group] == wanted[group]
 
 
-@pytest.mark.slow
 class TestBundler:
     """build.mjs with the page's packages, in a copy."""
 
@@ -365,7 +363,6 @@ class TestPage:
             assert f"{name} {wanted[name]} (" in texts
 
 
-@pytest.mark.slow
 def test_typescript_tests_of_the_page_pass():
     """`npm test`, by node's own test runner."""
     done = node("test/run.mjs", "--test-reporter=tap", cwd=WEB)

@@ -84,7 +84,6 @@ def test_panel_of_the_contributing_page_touches_five_files() -> None:
     assert len(FILES) == 5
 
 
-@pytest.mark.slow
 def test_panel_of_the_contributing_page_passes_the_checks_of_the_page_and_is_built(copy: Path) -> None:
     types, tests, build = "node_modules/typescript/bin/tsc", "test/run.mjs --test-name-pattern=text|circle", "build.mjs"
     for words in (types, tests, build):
@@ -94,7 +93,6 @@ def test_panel_of_the_contributing_page_passes_the_checks_of_the_page_and_is_bui
     assert "From {low} to {high} mm." in built
 
 
-@pytest.mark.slow
 def test_request_of_the_contributing_page_is_answered(copy: Path, tmp_path: Path) -> None:
     folder = tmp_path / "drawn"
     folder.mkdir()

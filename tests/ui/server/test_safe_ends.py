@@ -25,7 +25,6 @@ from tangible_ui.framing import POINTER, POINTER_FRAME
 from ui_server import START, UiServer
 from waiting import LONGEST_S, until
 
-pytestmark = pytest.mark.slow
 LEVEL = """\
 scene: {height: level.npy}
 render: {use: penalty, stiffness_n_per_m: 500}

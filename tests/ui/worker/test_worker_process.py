@@ -18,8 +18,6 @@ from tangible_ui.worker import Worker
 from tangible_ui.worker.handle import WorkerAbsent, WorkerKilled
 from waiting import LONGEST_S, happened
 
-pytestmark = pytest.mark.slow
-
 SLOW = """\
 scene: builtin/motorcycle
 depth: {use: luminance}

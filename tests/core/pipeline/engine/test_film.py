@@ -200,7 +200,6 @@ def test_film_with_a_plugin_fault_ends_the_session(film_pipeline, monkeypatch, i
     assert time.monotonic() - began < 50
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
 def test_film_is_stopped_soon_and_leaves_no_thread(film_pipeline):
     stop, began = threading.Event(), time.monotonic()

@@ -7,8 +7,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).parents[4]
 TABLE = Path("tangible_core/data/products.py")
 STAGE = Path("tangible_core/pipeline/engine/stages/flipped.py")
@@ -36,7 +34,6 @@ print(json.dumps({
 """
 
 
-@pytest.mark.slow
 def test_product_of_the_contributing_page_is_known_everywhere_with_two_files(tmp_path: Path):
     shutil.copytree(ROOT / "tangible_core", tmp_path / "tangible_core", ignore=shutil.ignore_patterns("__pycache__"))
     name, row, stage = _example()

@@ -286,7 +286,6 @@ def true_map(scene, rectified):
     return original, disparity.reshape(rows, columns).astype(np.float32)
 
 
-@pytest.mark.slow
 def test_rolled_and_tilted_picture_is_rectified():
     scene, warp, views = warped_scene()
     rectified = rectify(views)
@@ -300,7 +299,6 @@ def test_rolled_and_tilted_picture_is_rectified():
     assert np.median(np.abs(shift[:, 0] + rectified.offset_px - scene.disparity_px().ravel())) < 0.3
 
 
-@pytest.mark.slow
 def test_map_to_original_hits_the_original_pixels():
     scene, warp, views = warped_scene()
     rectified = rectify(views)

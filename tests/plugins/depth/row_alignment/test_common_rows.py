@@ -71,7 +71,6 @@ def test_rotated_camera_is_detected(degrees: float, correspond: Look):
 
 
 @look
-@pytest.mark.slow
 def test_large_pair_has_a_tolerance_of_a_pixel(correspond: Look):
     assert not correspond(grey_pair(roll_camera(0.5, LARGE), ""))
     assert correspond(grey_pair(known_pair("planes", 960, 720).views, ""))
@@ -112,7 +111,6 @@ def share_right(found: np.ndarray) -> float:
     return float(np.mean(np.abs(found - SCENE.disparity_px())[SCENE.visible()] <= 2))
 
 
-@pytest.mark.slow
 def test_raw_pair_is_matched_nearly_as_well_as_a_rectified_one():
     straight = Zncc().estimate(Views(SCENE.left(), SCENE.right())).disparity_px
     with collected() as notes:

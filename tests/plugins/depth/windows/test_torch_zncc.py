@@ -29,7 +29,6 @@ def test_flat_or_outside_windows_have_no_score():
     assert (scores(flat, flat, 0, 3, 3) == OUTSIDE).all()
 
 
-@pytest.mark.slow
 def test_gradients_of_scores_are_right():
     left, right = random_pair(1, 1, 4, 5)
     torch.autograd.gradcheck(

@@ -54,7 +54,6 @@ class TestHoming:
             each.message for each in caplog.records if "pull its grip all the way out" in each.message
         ].__len__() == 1
 
-    @pytest.mark.slow
     def test_homing_without_a_hand_times_out(self):
         bus, clock = held_bus()
         with pytest.raises(DeviceError, match=r"0 of 3 arms are homed after 0\.2 s; pull its grip"):

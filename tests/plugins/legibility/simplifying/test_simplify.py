@@ -31,7 +31,6 @@ def segments_of_cells(parts: PartMap) -> np.ndarray:
     return np.array(parts.segments)[parts.labels]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "how"),
     [("coffee", "drawn"), ("motorcycle", "drawn"), ("coffee", "colours"), ("motorcycle", "gradient")],
@@ -55,7 +54,6 @@ def test_simplify_picture_passes_and_twice_is_the_same_as_once(name, how):
 
 @given(st.integers(0, 2**32 - 1), st.integers(2, 9), st.sampled_from([0.04, 0.06, 0.1]))
 @settings(max_examples=10, deadline=None)
-@pytest.mark.slow
 def test_simplify_random_parts_pass_or_are_reported(seed, count, width_m):
     rng = np.random.default_rng(seed)
     rows, columns = rng.integers(40, 160, 2)
@@ -81,7 +79,6 @@ def test_simplify_passing_parts_are_unchanged():
     assert np.array_equal(found.labels, labels)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["coffee", "astronaut"])
 def test_simplify_twice_the_pixels_gives_the_same_parts(name):
     drawn = drawn_parts.drawn(name)

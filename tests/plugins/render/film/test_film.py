@@ -125,7 +125,6 @@ class TestSlots:
         steps = np.linalg.norm(np.diff(np.vstack([lost[0], hold(film, 1)]), axis=0), axis=1)
         assert lost and steps.max() < 2.0
 
-    @pytest.mark.slow
     def test_loop_and_host_in_parallel_reach_the_last_frame(self):
         """Frame after frame beside ticks without a pause: nothing jumps, and the last is reached."""
         film, reliefs, forces, done = start(), [relief(0.2 * i) for i in range(60)], [], threading.Event()
@@ -241,7 +240,6 @@ class TestForces:
         hold(film, 1)
         assert moving(film)[RISE_M] > 0.0
 
-    @pytest.mark.slow
     def test_random_films_under_random_hands_gain_no_energy(self):
         """This is short; `python -m benchmarks video` does ten million ticks."""
         worst = stress(100_000)

@@ -74,14 +74,12 @@ def worst(found, expected):
 
 
 @pytest.mark.parametrize("name", ["noise", "photograph"])
-@pytest.mark.slow
 def test_energies_are_within_one_percent_of_the_full_bank(name):
     grey = np.random.default_rng(0).random((160, 200)).astype(np.float32) if name == "noise" else natural((180, 150))
     assert worst(local_energy(grey, OCTAVES), direct(grey, bank(OCTAVES), 4, 4.0)) < 0.01
 
 
 @pytest.mark.parametrize("name", ["gratings", "edge"])
-@pytest.mark.slow
 def test_energies_of_weak_filters_are_within_a_thousandth_of_the_strongest(name):
     edge = np.repeat((np.arange(160) > 70).astype(np.float32)[None], 140, axis=0)
     grey = edge if name == "edge" else np.hstack([grating((150, 80), 5.0, 0.4), grating((150, 90), 11.0, 2.0)])

@@ -12,15 +12,12 @@ from typing import Any, ClassVar, Literal, NamedTuple
 import numpy as np
 from pydantic import ConfigDict
 
-from ..data import (
-    DeviceSpec,
-    DisparityMap,
-    HapticSurface,
-    Kind,
-    SegmentMap,
-    Views,
-    Work,
-)
+from ..data import NO_FORCE as NO_FORCE
+from ..data import DeviceSpec as DeviceSpec
+from ..data import DisparityMap, HapticSurface, Kind, SegmentMap, Views
+from ..data import Outcome as Outcome
+from ..data import Plan as Plan
+from ..data import Work as Work
 from ..data.arguments import as_picture
 from ..data.quantities import Quantities
 from ..errors import wrong_argument

@@ -150,15 +150,18 @@ def _definitions(package: Place) -> frozenset[str]:
 
 @cache
 def _text(here: Place) -> _Text:
-    """Read a module's file, once in a process."""
+    """Read a module's file, once in a process, and a package's stub, which lists names imported on first use."""
+    file, stub = Path(here.file), Path(here.file).with_suffix(".pyi")
+    files = [file, stub] if here.is_package and stub.is_file() else [file]
     try:
-        state, content = Path(here.file).stat(), Path(here.file).read_bytes()
+        settled = max(changed_ns(each.stat()) for each in files) < STARTED_NS
+        contents = [each.read_bytes() for each in files]
     except OSError:  # in an archive, or gone: the running code is not known
         return _Text()
-    settled = changed_ns(state) < STARTED_NS
-    if not here.file.endswith(".py"):
+    content = b"\n".join(contents)
+    if file.suffix != ".py":
         return _Text(content, settled=settled)
     try:
-        return _Text(content, tuple(imports(content)), settled)
+        return _Text(content, tuple(found for each in contents for found in imports(each)), settled)
     except (SyntaxError, ValueError):  # it cannot be imported either
         return _Text(content, settled=settled)

@@ -1,10 +1,5 @@
 """Batches: many scenes through one pipeline (an archive, a dataset, a sweep), on all cores or on many machines."""
 
-from typing import TYPE_CHECKING
+import lazy_loader
 
-from tangible_core.lazily import lazily
-
-if TYPE_CHECKING:
-    from .running import batch as batch
-
-__all__, __getattr__ = lazily(__name__, {"running": ["batch"]})  # pyright: ignore[reportUnsupportedDunderAll]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

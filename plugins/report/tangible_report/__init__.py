@@ -1,11 +1,5 @@
 """Two exporters, each imported on first use: a run as a sheet of pictures, and a surface in words."""
 
-from typing import TYPE_CHECKING
+import lazy_loader
 
-from tangible_core.lazily import lazily
-
-if TYPE_CHECKING:
-    from .sheet import Sheet as Sheet
-    from .text import Text as Text
-
-__all__, __getattr__ = lazily(__name__, {"sheet": ["Sheet"], "text": ["Text"]})  # pyright: ignore[reportUnsupportedDunderAll]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,29 +1,5 @@
 """Texture segmenters: a picture to segments of one texture each. Each method is imported when it is first used."""
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+import lazy_loader
 
-from tangible_core.lazily import lazily
-
-if TYPE_CHECKING:
-    from .gabor import Gabor as Gabor
-    from .gradient import Gradient as Gradient
-    from .hierarchy import Hierarchy as Hierarchy
-    from .histogram import Histogram as Histogram
-    from .kornia_gabor import KorniaGabor as KorniaGabor
-    from .kornia_gradient import KorniaGradient as KorniaGradient
-    from .report import Report as Report
-
-__getattr__: Callable[[str], Any]
-__all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
-    __name__,
-    {
-        "gabor": ["Gabor"],
-        "gradient": ["Gradient"],
-        "hierarchy": ["Hierarchy"],
-        "histogram": ["Histogram"],
-        "kornia_gabor": ["KorniaGabor"],
-        "kornia_gradient": ["KorniaGradient"],
-        "report": ["Report"],
-    },
-)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,1 @@
+from .running import batch as batch

@@ -1,0 +1,11 @@
+from .auto import Auto as Auto
+from .contour import Contour as Contour
+from .kornia_report import KorniaReport as KorniaReport
+from .kornia_zncc import KorniaZNCC as KorniaZNCC
+from .luminance import Luminance as Luminance
+from .onnx import Onnx as Onnx
+from .opencv_sgbm import OpenCVSGBM as OpenCVSGBM
+from .report import Report as Report
+from .semi_global import SemiGlobal as SemiGlobal
+from .ssd import Ssd as Ssd
+from .zncc import Zncc as Zncc

@@ -1,0 +1,10 @@
+from .engraved import Engraved as Engraved
+from .force_shading import ForceShading as ForceShading
+from .grey_level import GreyLevel as GreyLevel
+from .lateral_gradient import LateralGradient as LateralGradient
+from .lateral_shape import LateralShape as LateralShape
+from .penalty import Penalty as Penalty
+from .penalty_gradient import PenaltyGradient as PenaltyGradient
+from .proxy import Proxy as Proxy
+from .tangible_mask import TangibleMask as TangibleMask
+from .with_materials import WithMaterials as WithMaterials

@@ -1,0 +1,2 @@
+from .sheet import Sheet as Sheet
+from .text import Text as Text

@@ -10,7 +10,7 @@ project = "Tangible Images"
 author = "the authors of Tangible Images"
 version = release = version_of("tangible-images")
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.viewcode", "docstrings"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.viewcode", "docstrings", "generated"]
 exclude_patterns = ["_build", "_ext"]
 myst_heading_anchors = 4
 myst_enable_extensions = ["deflist"]

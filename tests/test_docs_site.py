@@ -2,12 +2,7 @@
 
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
-
-import pytest
-
-from tangible_core.plugins.registry import KIND_NAMES
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -40,7 +35,7 @@ def test_docs_site_builds_and_loads_nothing_from_elsewhere(tmp_path: Path):
 def test_docs_site_with_a_dead_link_fails_to_build(tmp_path: Path):
     pages = tmp_path / "docs"
     pages.mkdir()
-    pages.joinpath("conf.py").write_text(DOCS.joinpath("conf.py").read_text("utf-8"))
+    pages.joinpath("conf.py").write_text(DOCS.joinpath("conf.py").read_text("utf-8").replace(', "generated"', ""))
     pages.joinpath("_ext").symlink_to(DOCS / "_ext")
     pages.joinpath("other.md").write_text("# Other\n")
     pages.joinpath("index.md").write_text("# Index\n\n```{toctree}\nother\n```\n\n" + "\n\n".join(FAULTS))
@@ -49,14 +44,3 @@ def test_docs_site_with_a_dead_link_fails_to_build(tmp_path: Path):
     complaints = [line for line in built.stderr.splitlines() if "WARNING" in line]
     assert len(complaints) == len(FAULTS), built.stderr
     assert not [said for said in FAULTS.values() if not any(said in line for line in complaints)], built.stderr
-
-
-def entry_points(kind: str) -> dict[str, str]:
-    return tomllib.loads(ROOT.joinpath("pyproject.toml").read_text("utf-8"))["project"]["entry-points"][kind]
-
-
-@pytest.mark.parametrize("kind", KIND_NAMES)
-def test_reference_has_every_method(kind):
-    page = DOCS.joinpath("reference/methods.md").read_text("utf-8").splitlines()
-    classes = [place.replace(":", ".") for place in entry_points(f"tangible.{kind}").values()]
-    assert not [name for name in classes if f".. autoclass:: {name}" not in page]

@@ -1,12 +1,8 @@
 """Rows of the list of parts, colours and moves of their pictures, and the schema as it is printed."""
 
-import json
-from pathlib import Path
-
 import cv2
 import numpy as np
 
-from command_line import tangible
 from tangible_authoring.listed_parts import MOST_CELLS, ListedPart, list_rows
 from tangible_authoring.renumbering import Moved, moves
 from tangible_core.data import PartMap
@@ -64,11 +60,3 @@ def test_moves_are_those_of_parts_that_the_file_names():
     later = [Before(0, 0), Before(None, 1), Before(1, 1), Before(3, 3)]
     assert moves(written, later) == [Moved(1, 2, "head"), Moved(2, None, ""), Moved(9, None, "old")]
     assert moves(written, []) == []
-
-
-def test_schema_is_printed_as_the_repository_has_it(tmp_path: Path):
-    root = Path(__file__).parents[3]
-    assert tangible("schema", "--markdown", cwd=tmp_path).stdout == (root / "docs/yaml.md").read_text("utf-8")
-    for words, file in (((), "tangible.schema.json"), (("--materials",), "materials.schema.json")):
-        printed = json.loads(tangible("schema", *words, cwd=tmp_path).stdout)
-        assert printed == json.loads((root / "configs" / file).read_text("utf-8"))

@@ -1,30 +1,50 @@
 """The command `schema`: the schema of pipeline files and of material files."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
+LINE = "# yaml-language-server: $schema="
+"""The comment by which an editor finds the schema of a YAML file."""
+
 
 def schema(
+    file: Annotated[
+        Path | None, typer.Argument(help="A pipeline file, beside which the schema is written.", show_default=False)
+    ] = None,
     markdown: Annotated[bool, typer.Option("--markdown", help="A reference page instead of JSON Schema.")] = False,
     installed: Annotated[bool, typer.Option("--installed", help="Include the methods of other plugins.")] = False,
     materials: Annotated[bool, typer.Option("--materials", help="Schema of material files instead.")] = False,
 ) -> None:
-    """Print the JSON Schema of pipeline files.
+    """Print the JSON Schema of pipeline files, or write it beside a file.
 
-    Editors complete and check files by it.
+    Editors complete and check files by it. A file gets the line by which they find it.
     """
-    from tangible_core.cli.show import print_json
+    from tangible_core.cli.show import plain, print_json
     from tangible_core.pipeline.config.schema import json_schema, materials_schema
     from tangible_core.runtime.standard_output import stream
 
     from ..schema_page import schema_page
 
-    if materials:
-        print_json(materials_schema())
-        return
-    schema = json_schema(distribution=None if installed else "tangible-images")
-    if markdown:
+    schema = materials_schema() if materials else json_schema(distribution=None if installed else "tangible-images")
+    if markdown and not materials:
         print(schema_page(schema), end="", file=stream())
-    else:
+    elif file is None:
         print_json(schema)
+    else:
+        plain(f"written: {_write_beside(file, schema, 'materials' if materials else 'tangible')}")
+
+
+def _write_beside(file: Path, schema: object, name: str) -> Path:
+    """Write the schema into the folder of a file, and name it in the file's first line unless it is named there."""
+    from tangible_core.files.json_text import as_json
+    from tangible_core.files.writing import write_text
+    from tangible_core.files.yaml.source import read_text
+
+    text = read_text(file)
+    path = file.with_name(f"{name}.schema.json")
+    write_text(path, f"{as_json(schema)}\n")
+    if LINE not in text:
+        write_text(file, f"{LINE}{path.name}\n{text}")
+    return path

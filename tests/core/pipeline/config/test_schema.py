@@ -162,11 +162,6 @@ def test_default_of_every_option_is_json(kind: str):
         assert json.loads(json.dumps(config.as_data(), allow_nan=False))[kind]["use"] == name
 
 
-def test_page_in_docs_is_current():
-    page = (ROOT / "docs" / "yaml.md").read_text(encoding="utf-8")
-    assert page == schema_page(json_schema()), "run: tangible schema --markdown > docs/yaml.md"
-
-
 @pytest.fixture(scope="module")
 def materials() -> Draft202012Validator:
     schema = materials_schema()
@@ -200,12 +195,6 @@ def test_shipped_material_needs_changes_only_and_a_new_one_all(
     materials: Draft202012Validator, block: dict, right: bool
 ):
     assert materials.is_valid(block) == right
-
-
-def test_schema_of_materials_in_configs_is_current():
-    text = (ROOT / "configs" / "materials.schema.json").read_text(encoding="utf-8")
-    said = "run: tangible schema --materials > configs/materials.schema.json"
-    assert text == json.dumps(materials_schema(), indent=2, ensure_ascii=False) + "\n", said
 
 
 def test_value_of_every_material_has_a_description():

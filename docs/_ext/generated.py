@@ -1,0 +1,52 @@
+"""Pages that are written when the site is built: every key of a pipeline file, and every method with its options."""
+
+from importlib.metadata import entry_points
+from pathlib import Path
+from typing import Any
+
+from sphinx.application import Sphinx
+
+from tangible_authoring.schema_page import schema_page
+from tangible_core.files.writing import write_text
+from tangible_core.pipeline.config.schema import json_schema
+
+DISTRIBUTION = "tangible-images"
+FAMILIES = {
+    "Depth": "tangible.depth",
+    "Texture": "tangible.texture",
+    "Force laws": "tangible.render",
+    "Devices": "tangible.device",
+    "Exporters": "tangible.export",
+}
+"""Headings of the page of methods, and the groups of entry points below them."""
+PREFACE = """# Methods and their options
+
+Each class is what its entry point names; its fields are its options, in Python as in YAML. The same options as tables,
+with their bounds, are in [the pipeline file](../yaml.md).
+"""
+
+
+def methods_page() -> str:
+    """Return the page of the methods that this distribution brings."""
+    sections = [PREFACE]
+    for heading, group in FAMILIES.items():
+        ours = [each for each in entry_points(group=group) if each.dist and each.dist.name == DISTRIBUTION]
+        classes = "\n".join(f".. autoclass:: {each.value.replace(':', '.')}" for each in ours)
+        sections.append(f"## {heading}\n\n```{{eval-rst}}\n{classes}\n```\n")
+    return "\n".join(sections)
+
+
+def write_pages(app: Sphinx) -> None:
+    """Write the pages among the others, which git does not know; a page that is as it was keeps its time."""
+    pages = {"yaml.md": schema_page(json_schema(distribution=DISTRIBUTION)), "reference/methods.md": methods_page()}
+    for name, text in pages.items():
+        path = Path(app.srcdir) / name
+        if not path.exists() or path.read_text("utf-8") != text:
+            path.parent.mkdir(exist_ok=True)
+            write_text(path, text)
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Write the pages before Sphinx looks for them."""
+    app.connect("builder-inited", write_pages)
+    return {"parallel_read_safe": True}

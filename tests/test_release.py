@@ -36,11 +36,11 @@ def group(name: str) -> list[str]:
     ]
 
 
-def test_version_of_a_tree_without_git_is_the_next_release_in_work():
+def test_citation_names_the_version_and_the_licence():
     citation = dict(
         line.split(": ", 1) for line in (ROOT / "CITATION.cff").read_text("utf-8").splitlines() if ": " in line
     )
-    assert PROJECT["tool"]["hatch"]["version"]["fallback-version"] == f"{citation['version']}.dev0"
+    assert PROJECT["project"]["version"] == citation["version"]
     assert PROJECT["project"]["license"] == citation["license"]
 
 

@@ -1,19 +1,17 @@
-"""Measure, and write benchmarks/RESULTS.md: `python -m benchmarks [section ...]`; other sections stay as they are."""
+"""Measure, and write benchmarks/results: `python -m benchmarks [SECTION ...]`; other sections stay as they are.
+
+python -m benchmarks diff [REVISION]                # what is worse or better than it was
+python -m benchmarks mutants --sample 400 --seed 1  # do the tests notice faults?
+"""
 
 import os
-import platform
-import re
+import subprocess
 import sys
-from datetime import date
 from importlib import import_module
-from importlib.metadata import version
-from pathlib import Path
 
-from tangible_bench.measuring.machine import machine
-
+from . import results
 from .figures import MissedError
 
-RESULTS = Path(__file__).with_name("RESULTS.md")
 SECTIONS = {
     "house": "The house itself",
     "depth": "Depth",
@@ -39,15 +37,14 @@ SECTIONS = {
     "tests": "The test run",
     "mutants": "Faults that the tests notice",
 }
-VERSIONS = ("tangible-images", "numpy", "opencv-contrib-python-headless", "scikit-image", "numba", "pydantic", "typer")
-HEAD = """# Results
-
-Written by `python -m benchmarks` (`python -m benchmarks SECTION` for one part). Ratios: side by side, medians.
-"""
 
 
 def main(names: list[str]) -> None:
     """Measure the named sections, or all."""
+    if names[:1] == ["diff"]:
+        sys.exit(differences(*names[1:]))
+    if names[:1] == ["mutants"] and names[1:]:
+        sys.exit(subprocess.call([sys.executable, "-m", "benchmarks.mutants", *names[1:]]))
     if unknown := set(names) - set(SECTIONS):
         sys.exit(f"no section {', '.join(sorted(unknown))}; there are {', '.join(SECTIONS)}")
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # what is installed has its bytecode, and need not be compiled anew
@@ -58,31 +55,19 @@ def main(names: list[str]) -> None:
             section = import_module(f"benchmarks.{name}").section()
         except MissedError as error:
             section, missed = str(error), True
-        keep(name, section)
-    print(RESULTS)
+        print(results.keep(name, SECTIONS[name], section))
     sys.exit(missed)
 
 
-def keep(name: str, section: str) -> None:
-    """Write a section; the others stay."""
-    sections = kept() | {SECTIONS[name]: f"{_machine()}\n\n{section}\n"}
-    text = "\n".join(f"## {title}\n\n{sections[title]}" for title in SECTIONS.values() if title in sections)
-    RESULTS.write_text(f"{HEAD}\n{text}", encoding="utf-8")
-
-
-def kept() -> dict[str, str]:
-    """Return the sections that are there, by title."""
-    text = RESULTS.read_text(encoding="utf-8") if RESULTS.exists() else ""
-    parts = re.split(r"^## (.+)\n\n", text, flags=re.MULTILINE)
-    return {title: body.rstrip("\n") + "\n" for title, body in zip(parts[1::2], parts[2::2], strict=True)}
-
-
-def _machine() -> str:
-    versions = ", ".join(f"{name} {version(name)}" for name in VERSIONS)
-    return (
-        f"{date.today()}, {machine()['processor']}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}, "
-        f"Python {platform.python_version()}, {versions}."
-    )
+def differences(revision: str = "HEAD") -> int:
+    """Print what has changed since a revision; return 1 if something is worse, 2 for an unknown revision."""
+    try:
+        lines = list(results.diff(revision))
+    except subprocess.CalledProcessError:
+        print(f"no revision {revision}; name a commit, a branch or a tag", file=sys.stderr)
+        return 2
+    print("\n".join(lines) or f"every promise is met or missed as at {revision}")
+    return int(any(line.startswith("WORSE") for line in lines))
 
 
 if __name__ == "__main__":

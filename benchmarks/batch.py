@@ -33,7 +33,7 @@ ONE_PAIR = "scene: builtin/motorcycle\nwant: relief\ndepth: semi-global\nworkspa
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     head = (
         f"`tangible batch` over {COUNT:,} photographs of {TINY[1]} x {TINY[0]} pixels, two workers with a thread each, "
         "`luminance`. The client holds the scheduler. Times are processor times."

@@ -41,7 +41,7 @@ class Score(NamedTuple):
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     scores = measure()
     rows = table(
         ("picture", "parts", "neighbours", "precision", "recall", "order", "words spoken"),

@@ -34,7 +34,7 @@ PROTOCOL = (
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     accuracy = part("errors and times", depth_accuracy.figures)
     robustness, by_damage = part("damaged pairs", depth_robustness.measured)
     growth, sizes = part("growth", depth_growth.measured)

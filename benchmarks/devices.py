@@ -5,7 +5,7 @@ from .figures import judged
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     return "\n".join(
         [
             "No hardware was at hand: what is said of the Falcon was measured of its kernels, over a backend of USB "

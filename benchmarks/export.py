@@ -14,7 +14,7 @@ PARTS = {
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a part misses a bound."""
+    """Return the section as Markdown. Raises: MissedError, with it, if a part misses a bound."""
     texts, missed = list[str](), False
     for name, heading in PARTS.items():
         if find_spec(f"benchmarks.{name}") is None:

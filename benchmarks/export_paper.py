@@ -24,7 +24,7 @@ DISPLAYS = {"monarch": 1, "graphiti": 4, "dotpad": 1}
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a bound is missed."""
+    """Return the section as Markdown. Raises: MissedError, with it, if a bound is missed."""
     logging.getLogger("tangible_export").addHandler(logging.NullHandler())  # what it says of each page
     pages, figures = part("pages", _pages)
     pins, kept = part("pins", _pins)

@@ -32,7 +32,7 @@ REPAIRS = ("Degenerate", "Edges fixed", "Facets removed", "Facets added", "Facet
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a bound is missed."""
+    """Return the section as Markdown. Raises: MissedError, with it, if a bound is missed."""
     logging.getLogger("tangible_export").addHandler(logging.NullHandler())  # what it says of each solid
     rows, figures = part("pictures", _pictures)
     figures += part(f"{HUGE} x {HUGE}", lambda: list(_huge()))

@@ -26,7 +26,7 @@ PRODUCTS = ("disparity", "segments", "materials", "surface", "touch")
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     return "\n".join([*structure_rows(), "", *start_rows(), "", *overhead_rows(), "", *cache_rows(), "", *demo_rows()])
 
 

@@ -38,7 +38,7 @@ class Case(NamedTuple):
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     head = (
         f"Pictures that come with scikit-image, {1000 * WIDTH_M:.0f} mm wide, by the rules of swell paper. Drawn: by "
         "hand, in `tests/helpers/drawn_parts.yaml`; colours: six, by k-means; `gradient`: 20 segments. Seconds of one "

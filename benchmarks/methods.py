@@ -29,7 +29,7 @@ ROUNDS = 3
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown; the same figures are written into the program."""
+    """Return the section as Markdown; the same figures are written into the program."""
     found = {kind: part(kind, lambda kind=kind: side_by_side(kind)) for kind in SCENES}
     Path(measured.__file__).with_name(measured.FILE).write_bytes(Kinds.dump_json(found, indent=1) + b"\n")
     return "\n".join(line for kind, each in found.items() for line in (*rows(kind, each), "")).rstrip()

@@ -1,23 +1,20 @@
 """Faults put into the code on purpose, one at a time: do the tests notice? Reasons in docs/decisions/0014-mutants.md.
 
-python -m benchmarks mutants                     # all; its score goes to RESULTS.md
-python -m benchmarks.mutants guard --jobs 2      # those of a list, or whose name has this in it; RESULTS.md stays
-python -m benchmarks.mutants guard ring --keep   # these lists; their lines of RESULTS.md are written anew
-python -m benchmarks.mutants --sample 400 --seed 1  # faults drawn at random; needs the dependency group `nightly`
-python -m benchmarks.mutants study export --sample 40 --seed 1  # in these rooms
+python -m benchmarks mutants                        # all lists; the score goes to benchmarks/results
+python -m benchmarks mutants guard --jobs 2         # those of a list, or whose name has this in it
+python -m benchmarks mutants --sample 400 --seed 1  # faults drawn at random; needs the dependency group `nightly`
+python -m benchmarks mutants study export --sample 40 --seed 1  # in these rooms
 """
 
 import argparse
 import os
-import re
 import shutil
 import signal
 import sys
 import tempfile
-from collections.abc import Generator, Iterable, Mapping, Sequence
+from collections.abc import Generator, Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from contextlib import closing, contextmanager
-from datetime import date
 from enum import StrEnum
 from itertools import groupby
 from pathlib import Path
@@ -26,7 +23,6 @@ from typing import NamedTuple
 
 from tangible_core.servo.ring import shared_folder
 
-from .__main__ import SECTIONS, keep, kept
 from .figures import MissedError, table
 from .mutants_lists import Mutant, StaleError, mutants
 from .mutants_sample import sample
@@ -67,7 +63,7 @@ class UnreadyError(Exception):
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a mutant was not noticed."""
+    """Return the section as Markdown. Raises: MissedError, with it, if a mutant was not noticed."""
     results = complete(ROOT, (), _jobs())
     text = "\n".join(rows(results))
     if any(each.outcome in BAD for each in results):
@@ -75,34 +71,20 @@ def section() -> str:
     return text
 
 
-def rows(results: Iterable[Result], before: Mapping[str, tuple[str, ...]] | None = None) -> list[str]:
-    """Return a table with a line a list, and a line each for what went wrong.
-
-    before: lines of lists that were measured earlier; results of the same list take their place.
-    """
+def rows(results: Iterable[Result]) -> list[str]:
+    """Return a table with a line a list, and a line each for what went wrong."""
     found = sorted(results, key=lambda each: each.mutant.room)
-    by_room = {room: list(group) for room, group in groupby(found, lambda each: each.mutant.room)}
-    measured = dict(before or {}) | {room: _row(group) for room, group in by_room.items()}
-    lines = [(f"`{room}`", *cells) for room, cells in sorted(measured.items())]
-    *sums, _ = zip(*measured.values(), strict=True)
-    lines.append(("all", *(str(sum(map(int, column))) for column in sums), ""))
-    head = (
-        "A fault at a time is put into a copy of the code, and the tests that are named beside it are run. Lists and "
-    )
+    measured = {room: _row(list(group)) for room, group in groupby(found, lambda each: each.mutant.room)}
+    sums = (str(sum(map(int, column))) for column in zip(*measured.values(), strict=True))
+    lines = [*((f"`{room}`", *cells) for room, cells in measured.items()), ("all", *sums)]
     wrong = [f"- {each.mutant.place}: {each.mutant.name}: {each.outcome}" for each in found if each.outcome in BAD]
     return [
-        f"{head}explanations: `benchmarks/mutations`.",
+        "A fault at a time is put into a copy of the code, and the tests that are named beside it are run. Lists and "
+        "explanations: `benchmarks/mutations`.",
         "",
-        *table(("list", "mutants", "killed", "of them hung", "explained", "not noticed", "seconds", "run"), lines),
+        *table(("list", "mutants", "killed", "of them hung", "explained", "not noticed", "seconds"), lines),
         *(["", *wrong] if wrong else []),
     ]
-
-
-def before() -> dict[str, tuple[str, ...]]:
-    """Return the lines of lists that RESULTS.md has."""
-    text = kept().get(SECTIONS["mutants"], "")
-    found = re.findall(r"^\| `([\w-]+)` \| (.+) \|$", text, re.MULTILINE)
-    return {room: tuple(cells.split(" | ")) for room, cells in found}
 
 
 def _row(results: Sequence[Result]) -> tuple[str, ...]:
@@ -113,7 +95,7 @@ def _row(results: Sequence[Result]) -> tuple[str, ...]:
         _count(results, Outcome.EXPLAINED),
         _count(results, *BAD),
     ]
-    return *map(str, counts), f"{sum(each.seconds for each in results):.0f}", str(date.today())
+    return *map(str, counts), f"{sum(each.seconds for each in results):.0f}"
 
 
 def _count(results: Iterable[Result], *outcomes: Outcome) -> int:
@@ -265,13 +247,10 @@ def main() -> None:
     """Run the command line; exit 1 if a mutant was not noticed."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.mutants", description="Do the tests notice faults?")
     parser.add_argument("words", nargs="*", help="names of lists, or parts of names of mutants; all")
-    parser.add_argument("--keep", action="store_true", help="write the lines of whole lists to RESULTS.md")
     parser.add_argument("--jobs", type=int, default=_jobs(), help="so many at a time (%(default)s)")
     parser.add_argument("--sample", type=int, metavar="N", help="draw so many faults at random; the words are rooms")
     parser.add_argument("--seed", type=int, default=1, help="seed of the sample (%(default)s)")
     asked = parser.parse_args()
-    if asked.keep and (parts := set(asked.words) - {each.room for each in mutants(ROOT)}):
-        parser.error(f"--keep is for whole lists, and {', '.join(sorted(parts))} is none")
     for each in (signal.SIGINT, signal.SIGTERM):
         signal.signal(each, signal.default_int_handler)
     try:
@@ -281,10 +260,7 @@ def main() -> None:
         results = complete(ROOT, asked.words, asked.jobs)
     except KeyboardInterrupt:
         sys.exit(130)
-    text = "\n".join(rows(results, before() if asked.keep else None))
-    print(text)
-    if asked.keep:
-        keep("mutants", text)
+    print("\n".join(rows(results)))
     sys.exit(any(each.outcome in BAD for each in results))
 
 

@@ -28,7 +28,7 @@ READY = "() => window.tangible !== undefined && figures.firstMs > 0"
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     found = list(_figures())
     text = "\n".join(
         [

@@ -44,7 +44,7 @@ RELIEF_MS, RUNS = 15, 7
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     head = (
         f"Pictures that come with scikit-image, {1000 * WIDTH_M:.0f} mm wide, {1000 * TALL_M:.0f} mm high. A step is "
         "felt where heights differ by 0.5 mm within 2 mm, after a Gaussian of 0.5 mm. Drawn: by hand, in "

@@ -48,7 +48,7 @@ class Process(NamedTuple):
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     head = (
         f"A JPEG of gradients, shapes and noise, through `luminance`, `gradient` and `proxy`, 80 mm wide. Whole "
         f"processes, kernels compiled, results not kept; medians of {RUNS}. Peak: resident memory."

@@ -42,7 +42,7 @@ with Writer(Path(sys.argv[1])) as writer:
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     head = "A minute of a trembling hand on a rough relief through `proxy` with friction, in netCDF."
     return "\n".join([head, "", *judged(figures())])
 

@@ -33,7 +33,7 @@ MEASURES = {"covering": covering, "PRI": rand_index, "ARI": adjusted_rand_index}
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     given = photographs()
     if not given:
         return "Not measured: TANGIBLE_REGIONS names no folder of photographs."

@@ -57,7 +57,7 @@ Make = Callable[[DisparityMap, Calibration | None], Relief]
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     head = (
         f"Reliefs of disparity that `semi-global` found, {1000 * WIDTH_M:.0f} mm wide, judged by the true disparity. "
         "Found: share of true borders with a step of 0.5 mm within 2 mm, the near side higher, through a skin of "

@@ -6,7 +6,7 @@ from .render_waves import AMPLITUDE_M, DEPTH_M
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     return "\n".join(
         [
             f"Waves of {2000 * AMPLITUDE_M:g} mm every 20 mm on 80 mm, a hand {1000 * DEPTH_M:g} mm under them, 1 kHz. "

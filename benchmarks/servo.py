@@ -8,7 +8,7 @@ from .figures import judged, part
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     figures = [
         *part("ticks", lambda: list(servo_ticks.figures())),
         *part("beside C", lambda: list(servo_loops.beside_c())),

@@ -20,7 +20,7 @@ LIMITS = Safety(ramp_s=0, max_step_n=10)
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     return "\n".join(["A Python law that pushes with 1 N at once; force as the device has it.", "", *judged(figures())])
 
 

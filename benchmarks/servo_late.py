@@ -32,7 +32,7 @@ Rounds = dict[str, list[Round]]
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     recorded, of_recorder = part("recorder", _recorder)
     plain, of_rights = part("without real-time rights", _without_rights)
     head = (

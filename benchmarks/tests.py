@@ -39,7 +39,7 @@ SLOW_S = 0.05
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     head = (
         "README's second command without the installation; kernels that numba compiled before and kept are used. "
         "A room that grows past its processor seconds pays: its tests get quicker, or another room gives up as many."

@@ -29,7 +29,7 @@ PROTOCOL = (
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     figures = part("mosaics", texture_accuracy.figures)
     figures += part("mosaics of two halves", texture_unseen.figures)
     figures += part("colour", texture_colour.figures)

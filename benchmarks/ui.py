@@ -21,7 +21,7 @@ DRAG_S = 8.0
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown."""
+    """Return the section as Markdown."""
     found = [*smoothness(), *start(), *tasks(), *editor(), *size()]
     late, rows = lateness()
     found += [*installing(), *lasting()]  # last: half an hour, in which other work does no harm

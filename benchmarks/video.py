@@ -44,7 +44,7 @@ WIDTH_M = 0.08
 
 
 def section() -> str:
-    """Return the section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a bound is missed."""
+    """Return the section as Markdown. Raises: MissedError, with it, if a bound is missed."""
     parts: dict[str, Callable[[], Iterator[Figure]]] = {
         "frames a second": _rates,
         "lateness": _lateness,

@@ -1,4 +1,4 @@
-"""Pages that are written when the site is built: every key of a pipeline file, and every method with its options."""
+"""Pages that are written when the site is built: keys of a pipeline file, methods with their options, results."""
 
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -6,6 +6,7 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
+from benchmarks import results
 from tangible_authoring.schema_page import schema_page
 from tangible_core.files.writing import write_text
 from tangible_core.pipeline.config.schema import json_schema
@@ -36,9 +37,20 @@ def methods_page() -> str:
     return "\n".join(sections)
 
 
+def results_page() -> str:
+    """Return the page of all that was measured, the newest result of each section."""
+    sections = [results.markdown(each) for each in results.newest().values()]
+    head = "# Results\n\nWritten by `python -m benchmarks SECTION`. Ratios: side by side, medians."
+    return "\n\n".join([head, *sections, ""])
+
+
 def write_pages(app: Sphinx) -> None:
     """Write the pages among the others, which git does not know; a page that is as it was keeps its time."""
-    pages = {"yaml.md": schema_page(json_schema(distribution=DISTRIBUTION)), "reference/methods.md": methods_page()}
+    pages = {
+        "yaml.md": schema_page(json_schema(distribution=DISTRIBUTION)),
+        "reference/methods.md": methods_page(),
+        "results.md": results_page(),
+    }
     for name, text in pages.items():
         path = Path(app.srcdir) / name
         if not path.exists() or path.read_text("utf-8") != text:

@@ -63,14 +63,13 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the options that run more than every change needs."""
+    """Add the options that run more than every change needs, or less."""
     group = parser.getgroup("tangible")
     group.addoption(
-        "--whole", action="store_true", help="also run what takes long: all browser cases, killed servers, peers"
+        "--whole", action="store_true", help="run all browser cases, killed servers, peers, slow variants too"
     )
-    group.addoption(
-        "--nightly", action="store_true", help="also run what takes hours: millions of ticks, every processor"
-    )
+    group.addoption("--nightly", action="store_true", help="run millions of ticks, every processor, 200 examples too")
+    group.addoption("--since", metavar="REVISION", help="run only what changes since then, e.g. origin/main, can break")
 
 
 class DoctestsWhereThereAreSome:
@@ -107,10 +106,15 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Leave out what was not asked for, unless tests are named by their ids; put first what takes minutes."""
     unasked = {ring for ring in RINGS if not config.getoption(ring)}
     named = [arg for arg in config.args if "::" in arg]
-    left_out = [item for item in items if unasked & {mark.name for mark in item.iter_markers()} and not named]
+    left_out = {item for item in items if unasked & {mark.name for mark in item.iter_markers()} and not named}
+    if revision := config.getoption("since"):
+        from since import affected, changed_files
+
+        chosen = affected({item.path for item in items}, changed_files(revision))
+        left_out |= {item for item in items if item.path not in chosen}
     if left_out:
-        config.hook.pytest_deselected(items=left_out)
-        items[:] = [item for item in items if item not in set(left_out)]
+        config.hook.pytest_deselected(items=list(left_out))
+        items[:] = [item for item in items if item not in left_out]
     items.sort(key=lambda item: item.path.name not in FIRST)
 
 

@@ -1,0 +1,56 @@
+"""`pytest --since REVISION`: the tests that import, however indirectly, what has changed since a revision.
+
+A plugin that is loaded by its name is no import: after a change of a method, a plain `pytest` is what tells.
+"""
+
+import subprocess
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+
+from tangible_core.provenance.closure import closure
+from tangible_core.provenance.imports import imports
+
+ROOT = Path(__file__).parents[2]
+EVERYWHERE = ("pyproject.toml", "constraints.txt", "tests/conftest.py")
+"""Files on which every test depends."""
+
+
+def changed_files(revision: str) -> set[str]:
+    """Return what differs from a revision, and what git does not know. Raises: CalledProcessError if there is none."""
+    commands = [["diff", "--name-only", "--merge-base", revision], ["ls-files", "--others", "--exclude-standard"]]
+    outputs = [
+        subprocess.run(["git", *each], cwd=ROOT, check=True, capture_output=True, text=True) for each in commands
+    ]
+    return {line for each in outputs for line in each.stdout.splitlines()}
+
+
+def affected(tests: Iterable[Path], changed: set[str]) -> set[Path]:
+    """Return the test files that one of the changed files may break."""
+    if changed & set(EVERYWHERE):
+        return set(tests)
+    return {path for path in tests if changed & depends_on(path)}
+
+
+@cache
+def depends_on(path: Path) -> frozenset[str]:
+    """Return a test file, the conftest.py files above it, and all of ours that they import; paths from the root."""
+    files = [path, *(folder / "conftest.py" for folder in path.parents if folder.is_relative_to(ROOT / "tests"))]
+    here = [file for file in files if file.is_file()]
+    names = {each.module for file in here for each in imports(file.read_bytes()) if each.module and not each.level}
+    below = {f"{each.module}.{each.name}" for file in here for each in imports(file.read_bytes()) if each.name != "*"}
+    return frozenset(str(file.relative_to(ROOT)) for file in here) | files_of(frozenset(names | below))
+
+
+@cache
+def files_of(names: frozenset[str]) -> frozenset[str]:
+    """Return the files of the modules that these import."""
+    return frozenset(file for module in closure(*sorted(names)).modules for file in _files(module))
+
+
+def _files(module: str) -> Iterable[str]:
+    """Yield the places in which a module of ours may stand."""
+    path = module.replace(".", "/")
+    family = module.partition(".")[0].removeprefix("tangible_")
+    for home in ("", "tests/helpers/", f"plugins/{family}/"):
+        yield from (f"{home}{path}.py", f"{home}{path}/__init__.py", f"{home}{path}/__init__.pyi")

@@ -14,10 +14,10 @@ def localise_help() -> None:
     """Have typer format help in the language of the terminal."""
     owner: Any = next(each for each in typer.Context.__mro__ if "formatter_class" in vars(each))
     if not getattr(owner.formatter_class, "localised", False):
-        owner.formatter_class = _localised(owner.formatter_class)
+        owner.formatter_class = _localise(owner.formatter_class)
 
 
-def _localised(base: Any) -> type:
+def _localise(base: Any) -> type:
     """Return a formatter of help that puts texts into the language before they are folded."""
 
     class Formatter(base):

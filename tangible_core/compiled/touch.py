@@ -87,16 +87,8 @@ def moving_of(touch: Touch) -> Float64[np.ndarray, "2"]:
     return touch.moving if isinstance(touch, CompiledTouch) else _still()
 
 
-def _revive(
-    module: str,
-    name: str,
-    file: str,
-    fixed: tuple[Any, ...],
-    memory: np.ndarray,
-    stiffness: float | None,
-    moving: np.ndarray,
-) -> CompiledTouch:
-    return CompiledTouch(import_from(module, name, file), fixed, memory, stiffness, moving)
+def _revive(module: str, name: str, file: str, *arguments: Any) -> CompiledTouch:
+    return CompiledTouch(import_from(module, name, file), *arguments)
 
 
 class LinkKernels(NamedTuple):

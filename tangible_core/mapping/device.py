@@ -1,8 +1,6 @@
 """A device whose workspace is mapped to the picture, and the path of a scripted one through any mapping."""
 
 import math
-from collections.abc import Callable
-from functools import partial
 from typing import Any, cast, final
 
 import numpy as np
@@ -53,23 +51,31 @@ def placement_of(device: HapticDevice) -> Placement:
 
 
 class _ThroughMapping:
-    """The methods of a link that passes states and forces through a mapping."""
+    """The methods of a link that passes states and forces through a mapping, and remembers the clutch."""
 
-    _link: Link
-    _converter: "_Converter"
+    def _map(self, link: Link, to: Placement) -> None:
+        from . import kernels
+
+        self._link, self._to, self._kernels = link, to, cast(Any, kernels)
+        self._memory = np.zeros(kernels.MEMORY)
 
     def _read(self) -> HapticState:
         """Read the state of the tip, in the picture."""
-        return self._converter.to_picture(self._link.read())
+        state = self._link.read()
+        numbers = np.array([*state.position_m, *state.velocity_m_per_s, state.buttons], np.float64)
+        self._kernels.place(self._to, self._memory, numbers)
+        x, y, z, vx, vy, vz, _ = numbers.tolist()
+        return HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons)
 
     def _send(self, force: Force) -> None:
         """Send a force in the picture's directions."""
-        self._link.write(Force(*self._converter.push(*force)))
+        self._link.write(Force(*self._kernels.push(self._to, self._memory, *force)))
 
     @property
     def applied(self) -> Force:
         """The force that the device holds, in the picture's directions."""
-        return self._converter.force_on_picture(self._link.applied)
+        held = self._link.applied
+        return Force(*self._to.rotate_back(held.x, held.y), held.z)
 
     def _release(self) -> None:
         """Close the device."""
@@ -82,7 +88,7 @@ class MappedLink(_ThroughMapping, Link):
 
     def __init__(self, link: Link, to: Placement) -> None:
         super().__init__(NAME, math.inf)
-        self._link, self._converter = link, _Converter(to)
+        self._map(link, to)
 
 
 @final
@@ -91,12 +97,13 @@ class MappedCompiledLink(_ThroughMapping, CompiledLink):
 
     def __init__(self, link: CompiledLink, to: Placement) -> None:
         super().__init__(NAME, math.inf)
-        self._link, self._device, self._converter = link, link, _Converter(to)
-        self._kernels = self._converter.around(link.kernels())
+        self._map(link, to)
+        self._device = link
+        self._around: LinkKernels = self._kernels.around(link.kernels(), to, self._memory)
 
     def kernels(self) -> LinkKernels:
         """Return the kernels that convert states and forces, and call the device's."""
-        return self._kernels
+        return self._around
 
     @property
     def exchanges(self) -> bool:
@@ -106,31 +113,6 @@ class MappedCompiledLink(_ThroughMapping, CompiledLink):
     def _exchange(self) -> None:
         """Exchange with the device."""
         self._device.exchange()
-
-
-@final
-class _Converter:
-    """A converter of states and forces between hand and picture, which remembers the clutch."""
-
-    def __init__(self, to: Placement) -> None:
-        from . import kernels
-
-        self._to, self._kernels = to, cast(Any, kernels)
-        self._memory = np.zeros(kernels.MEMORY)
-        self.push: Callable[[float, float, float], tuple[float, float, float]]
-        self.push = partial(self._kernels.push, to, self._memory)
-
-    def to_picture(self, state: HapticState) -> HapticState:
-        numbers = np.array([*state.position_m, *state.velocity_m_per_s, state.buttons], np.float64)
-        self._kernels.place(self._to, self._memory, numbers)
-        x, y, z, vx, vy, vz, _ = numbers.tolist()
-        return HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons)
-
-    def force_on_picture(self, force: Force) -> Force:
-        return Force(*self._to.rotate_back(force.x, force.y), force.z)
-
-    def around(self, kernels: LinkKernels) -> LinkKernels:
-        return self._kernels.around(kernels, self._to, self._memory)
 
 
 def over(device: HapticDevice, extent_m: tuple[float, float]) -> HapticDevice:

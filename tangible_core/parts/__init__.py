@@ -8,5 +8,5 @@ from .guess import guess_heights as guess_heights
 from .heights import HeightChoice as HeightChoice
 from .heights import PartChoice as PartChoice
 from .heights import PartHeights as PartHeights
+from .heights import SimplifyChoice as SimplifyChoice
 from .layering import Layering as Layering
-from .simplify_choice import SimplifyChoice as SimplifyChoice

@@ -41,6 +41,18 @@ class PartChoice(Section):
         return {"name": value} if isinstance(value, str) else value
 
 
+class SimplifyChoice(Section):
+    """Parts simplified until fingers can read them, before relief, labels and materials are made of them."""
+
+    gap_m: Length = 0.0032
+    """Smallest width of a part; a narrower place goes to the neighbouring parts."""
+    part_m: Length = 0.0064
+    """Diameter of the disc that each part must hold; a part that holds none goes to its neighbours."""
+    textures: Annotated[int, Field(ge=1, le=100)] = 5
+    """Largest number of textures that a finger must tell apart; of more, the most similar become one. Parts with a
+    name stay separate."""
+
+
 class PartHeights(NamedTuple):
     """A height for every part, and the reason for each in a sentence."""
 

@@ -92,7 +92,7 @@ class Method(Quantities, ABC):
     model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     version: ClassVar[int] = 1
-    """A number to raise when results change: it is part of the cache key."""
+    """A number to raise when a file that the method reads has changed: results are cached under it and the code."""
     expected_failures: ClassVar[Mapping[str, str]] = {}
     """Names of conformance checks that it does not pass, each with the reason; they must then fail."""
     verbs: ClassVar[tuple[Verb, ...]] = ()

@@ -70,11 +70,11 @@ def shape_relief(
     if choice.grain_m:
         height_m = _without_grain(height_m, pitch_m, choice.grain_m)
     if choice.most_accent_m:
-        height_m = _accented(height_m, pitch_m, choice.most_accent_m, size.relief_m)
+        height_m = _accent(height_m, pitch_m, choice.most_accent_m, size.relief_m)
     if size.holes == "cut" and (unknown := np.isnan(disparity.disparity_px)).any():
         height_m[scaling.reduced_mask(unknown, height_m.shape)] = 0
     shaped = geometry.smooth(Relief(limit_slopes(height_m, pitch_m, choice.slope), extent_m), size.smooth_m)
-    return Relief(_enlarged(shaped.height_m, nearness.shape), extent_m)
+    return Relief(_enlarge(shaped.height_m, nearness.shape), extent_m)
 
 
 def _calibration(calibration: Calibration | None, choice: ReliefChoice) -> Calibration | None:
@@ -97,10 +97,10 @@ def _without_grain(height_m: Float32[np.ndarray, "h w"], pitch_m: float, grain_m
     with plain_opencv():
         coarse = np.asarray(cv2.resize(height_m, shape[::-1], interpolation=cv2.INTER_AREA))
         kept, offset = filter_coefficients(coarse * np.float32(1 / GRAIN_HIGH_M), grain_m / (2 * pitch_m), 1)
-    return _enlarged(kept, height_m.shape) * height_m + _enlarged(offset * np.float32(GRAIN_HIGH_M), height_m.shape)
+    return _enlarge(kept, height_m.shape) * height_m + _enlarge(offset * np.float32(GRAIN_HIGH_M), height_m.shape)
 
 
-def _accented(
+def _accent(
     height_m: Float32[np.ndarray, "h w"], pitch_m: float, most_m: float, relief_m: float
 ) -> Float32[np.ndarray, "h w"]:
     """Add the difference from the surroundings, at most `most_m` of it, within 0 and `relief_m`."""
@@ -111,11 +111,11 @@ def _accented(
     with plain_opencv():
         coarse = cv2.resize(height_m, shape[::-1], interpolation=cv2.INTER_AREA)
         around = np.asarray(cv2.GaussianBlur(coarse, (0, 0), max(sigma, 1e-3), borderType=cv2.BORDER_REPLICATE))
-    above = height_m - _enlarged(around, height_m.shape)
+    above = height_m - _enlarge(around, height_m.shape)
     return np.clip(height_m + np.clip(above, -np.float32(most_m), np.float32(most_m)), 0, np.float32(relief_m))
 
 
-def _enlarged(values: Float32[np.ndarray, "r c"], shape: tuple[int, int]) -> Float32[np.ndarray, "h w"]:
+def _enlarge(values: Float32[np.ndarray, "r c"], shape: tuple[int, int]) -> Float32[np.ndarray, "h w"]:
     import cv2
 
     if values.shape == shape:

@@ -5,6 +5,7 @@ import shlex
 import sys
 import traceback
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 
 from ..errors import OutputError
@@ -35,15 +36,12 @@ def keep(error: BaseException) -> Path:
         path.parent.mkdir(0o700, parents=True, exist_ok=True)
         if path.exists() and path.stat().st_size > MOST_BYTES:
             path.replace(path.with_name(OLDER))
-        with open(path, "a", encoding="utf-8", errors="backslashreplace", opener=_private) as file:
+        private = partial(os.open, mode=0o600)
+        with open(path, "a", encoding="utf-8", errors="backslashreplace", opener=private) as file:
             file.write(text)
     except OSError as failed:
         raise OutputError(f"{path}: cannot be written: {failed.strerror}") from failed
     return path
-
-
-def _private(path: str, flags: int) -> int:
-    return os.open(path, flags, 0o600)
 
 
 def where_kept(error: BaseException) -> str:

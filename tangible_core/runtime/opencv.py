@@ -9,8 +9,8 @@ from typing import Any
 from .threads import limiters
 
 _LOCK = Lock()
-_users = 0
-_limits: list[int] = []
+_blocks: list[tuple[int, bool]] = []
+"""The open blocks: the greatest number of threads, and True for one without code for special processors."""
 _before = (True, 1)
 """OpenCV's own setting (is it optimised, number of threads) before the first block."""
 _silent, _log_level = 0, 0
@@ -28,37 +28,32 @@ def plain_opencv() -> Generator[None]:
     switches with it, is switched for one thread only: so the block must be inside the thread that calls OpenCV, and
     OpenCV has no threads of its own meanwhile, some of which would use IPP. A Gaussian takes 15 % longer.
     """
-    global _users
     import cv2
 
     ipp = cv2.ipp.useIPP()
-    with _LOCK:
-        _remember(cv2)
-        _users += 1
-        _switch(cv2)
     try:
-        yield
+        with opencv_at_most(1, plain=True):
+            yield
     finally:
-        with _LOCK:
-            _users -= 1
-            _switch(cv2)
         cv2.ipp.setUseIPP(ipp)
 
 
 @contextmanager
-def opencv_at_most(threads: int) -> Generator[None]:
-    """Limit the threads of OpenCV in this block, for the whole process."""
+def opencv_at_most(threads: int, plain: bool = False) -> Generator[None]:
+    """Limit the threads of OpenCV in this block, for the whole process. plain: as in `plain_opencv`."""
+    global _before
     import cv2
 
     with _LOCK:
-        _remember(cv2)
-        _limits.append(threads)
+        if not _blocks:
+            _before = cv2.useOptimized(), cv2.getNumThreads()
+        _blocks.append((threads, plain))
         _switch(cv2)
     try:
         yield
     finally:
         with _LOCK:
-            _limits.remove(threads)
+            _blocks.remove((threads, plain))
             _switch(cv2)
 
 
@@ -91,14 +86,8 @@ def silent_opencv() -> Generator[None]:
 limiters.append(opencv_at_most)
 
 
-def _remember(cv2: Any) -> None:
-    global _before
-    if not _users and not _limits:
-        _before = cv2.useOptimized(), cv2.getNumThreads()
-
-
 def _switch(cv2: Any) -> None:
     """Set OpenCV to the strictest setting of all open blocks."""
     optimised, threads = _before
-    cv2.setUseOptimized(optimised and not _users)
-    cv2.setNumThreads(1 if _users else min([threads, *_limits]))
+    cv2.setUseOptimized(optimised and not any(plain for _, plain in _blocks))
+    cv2.setNumThreads(min([threads, *(most for most, _ in _blocks)]))

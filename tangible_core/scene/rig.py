@@ -179,19 +179,15 @@ def undistort_points(
     return ahead * camera[[0, 1], [0, 1]] + camera[:2, 2]
 
 
-class _Places(NamedTuple):
-    """The position in the raw picture of each pixel of a rectified one."""
-
-    columns: Float32[np.ndarray, "h w"]
-    rows: Float32[np.ndarray, "h w"]
-
-
-def _places(lens: Camera, axes: np.ndarray, camera: np.ndarray, size: tuple[int, int]) -> _Places:
+def _places(
+    lens: Camera, axes: np.ndarray, camera: np.ndarray, size: tuple[int, int]
+) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
+    """Return the column and the row in the raw picture of each pixel of a rectified one."""
     import cv2
 
     find: Any = cv2.fisheye.initUndistortRectifyMap if lens.model == "equidistant" else cv2.initUndistortRectifyMap
     with plain_opencv():
-        return _Places(*find(lens.matrix, _coefficients(lens), axes, camera, size, cv2.CV_32FC1))
+        return find(lens.matrix, _coefficients(lens), axes, camera, size, cv2.CV_32FC1)
 
 
 def _warp(picture: np.ndarray, columns: np.ndarray, rows: np.ndarray) -> np.ndarray:

@@ -1,6 +1,6 @@
 """Scenes: a pair of views, a photo, a height map or a video, from files, from arrays or builtin."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..data import Calibration, DisparityMap, Record, Relief, SegmentMap, Views
 from ..data.arguments import named_options
-from ..data.short_repr import short_repr
+from ..data.records import short_repr
 from ..errors import ConfigError, GeometryError, PictureError
 from .formats.height_maps import MeasuredSize
 from .formats.multi_picture import Notify, ignore
@@ -102,13 +102,10 @@ class Scene:
         Raises: ConfigError for parts that do not make a scene, PictureError for a part that cannot be read or is not a
         picture, ArgumentError for an argument of a wrong type.
         """
-        views: dict[str, Any] = {"stereo": left} if right is None else {"left": left, "right": right}
-        return cls._load(
-            **views, layout=layout, calibration=calibration, rig=rig, disparity=disparity,
-            disparity_scale=disparity_scale, depth=depth, depth_unit_m=depth_unit_m, near_m=near_m, far_m=far_m,
-            nodata=nodata, segments=segments, truth=truth, truth_scale=truth_scale, crop=crop, non_finite=non_finite,
-            name=name,
-        )  # fmt: skip
+        given = dict(locals())
+        if right is None:
+            given["stereo"] = given.pop("left")
+        return cls._load(given)
 
     @classmethod
     @named_options
@@ -139,12 +136,7 @@ class Scene:
 
         The options are those of `SceneFiles`; pictures and errors are those of `pair`.
         """
-        return cls._load(
-            photo=photo, disparity=disparity, disparity_scale=disparity_scale, depth=depth, depth_unit_m=depth_unit_m,
-            near_m=near_m, far_m=far_m, nodata=nodata, segments=segments, truth=truth, truth_scale=truth_scale,
-            calibration=calibration, photo_depth=photo_depth, crop=crop, rotate=rotate, invert=invert, clip=clip,
-            non_finite=non_finite, name=name,
-        )  # fmt: skip
+        return cls._load(locals())
 
     @classmethod
     @named_options
@@ -166,10 +158,9 @@ class Scene:
 
         The options are those of `SceneFiles`, the errors those of `pair`.
         """
-        return cls._load(
-            height=heights, relief_m=relief_m, nodata=nodata, cell_m=cell_m, segments=segments, crop=crop,
-            rotate=rotate, invert=invert, clip=clip, name=name,
-        )  # fmt: skip
+        given = dict(locals())
+        given["height"] = given.pop("heights")
+        return cls._load(given)
 
     @classmethod
     @named_options
@@ -192,14 +183,12 @@ class Scene:
 
         The options are those of `SceneFiles`, the errors those of `pair`.
         """
-        return cls._load(
-            video=video, layout=layout, fps=fps, repeat=repeat, calibration=calibration, rig=rig,
-            segments=segments, crop=crop, rotate=rotate, invert=invert, name=name,
-        )  # fmt: skip
+        return cls._load(locals())
 
     @classmethod
-    def _load(cls, **arguments: Any) -> Self:
-        return cls(**source_of_arguments(arguments).load())
+    def _load(cls, given: Mapping[str, Any]) -> Self:
+        """Return the scene of the arguments of a constructor: all of its local names."""
+        return cls(**source_of_arguments({name: value for name, value in given.items() if name != "cls"}).load())
 
     @classmethod
     def builtin(cls, name: str) -> Self:

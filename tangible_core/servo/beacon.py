@@ -181,10 +181,11 @@ def beacon_to(surface: HapticSurface, part: str | int) -> Beacon:
     cells, above, left = _coarsen(cells, step, (across_m, down_m))
     across_m, down_m = step * across_m, step * down_m
     width_m, length_m = surface.extent_m
+    distance_m = _distance(cells, across_m, down_m)
     return Beacon(
         part=number,
         name=surface.names[number],
-        potential_j=_potential(_distance(cells, across_m, down_m)),
+        potential_j=np.ascontiguousarray(PULL_N * (np.hypot(distance_m, SOFT_M) - SOFT_M), np.float32),
         left_m=-width_m / 2 + (0.5 - left) * across_m,
         far_m=length_m / 2 - (0.5 - above) * down_m,
         pitch_m=(across_m, down_m),
@@ -230,10 +231,6 @@ def _distance(cells: np.ndarray, across_m: float, down_m: float) -> Float64[np.n
     exact: np.ndarray = filters.distance_transform_edt(~cells, sampling=(down_m, across_m))
     smooth: np.ndarray = filters.gaussian_filter(exact, (ROUNDED_M / down_m, ROUNDED_M / across_m), mode="nearest")
     return np.maximum(np.minimum(exact, smooth) - 1.0001 * np.hypot(across_m, down_m), 0.0)
-
-
-def _potential(distance_m: Float64[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
-    return np.ascontiguousarray(PULL_N * (np.hypot(distance_m, SOFT_M) - SOFT_M), np.float32)
 
 
 def _list_parts(names: tuple[str, ...]) -> str:

@@ -19,6 +19,8 @@ AT = {name: column for column, name in enumerate(TICK_COLUMNS)}
 """Column of each name in a row of ticks."""
 NOTHING_YET = np.array([np.nan if name == "frame" else 0.0 for name in TICK_COLUMNS])
 """The row of a loop before its first tick."""
+GREATEST = ("peak_force_n", "most_late_s", "longest_s")
+"""Totals of several loops that are the greatest of theirs; the others are sums."""
 Counts = Int64[np.ndarray, "n"]
 """A histogram of a ring."""
 
@@ -55,18 +57,9 @@ class LoopTotals(NamedTuple):
 
     def plus(self, later: Self) -> Self:
         """Return the totals of both."""
-        return self._replace(
-            ticks=self.ticks + later.ticks,
-            overruns=self.overruns + later.overruns,
-            peak_force_n=max(self.peak_force_n, later.peak_force_n),
-            work_j=self.work_j + later.work_j,
-            most_late_s=max(self.most_late_s, later.most_late_s),
-            longest_s=max(self.longest_s, later.longest_s),
-            late=self.late + later.late,
-            period=self.period + later.period,
-            contact=self.contact + later.contact,
-            flagged=self.flagged + later.flagged,
-        )
+        summed = {name: getattr(self, name) + getattr(later, name) for name in self._fields}
+        greatest = {name: max(getattr(self, name), getattr(later, name)) for name in GREATEST}
+        return self._replace(**summed | greatest)
 
 
 def report(ring: Ring, stopped: str = "", before: LoopTotals | None = None, since_s: float = 0.0) -> ServoReport:

@@ -11,7 +11,7 @@ from typing import Any, final
 
 import numpy as np
 
-from ..data import UNTOUCHED, FilmFelt, ServoReport, TickFlag
+from ..data import UNTOUCHED, ServoReport, TickFlag
 from ..plugins.interfaces import Film, HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Beacon, Safety, Servo
@@ -137,6 +137,7 @@ def keeping(path: Path, about: About) -> Generator[Writer]:
 def figures(report: ServoReport) -> dict[str, float]:
     """Return the figures of a loop, by name."""
     times = {"period": report.period_us, "late": report.late_us}
+    film = {} if report.film is None else report.film._asdict()
     return {
         "ticks": report.ticks,
         "seconds": report.time_s,
@@ -152,12 +153,8 @@ def figures(report: ServoReport) -> dict[str, float]:
         },
         "overruns": report.overruns,
         **{name.lower(): report.flagged.get(name, 0) for name in LIMITS},
-        **({} if report.film is None else _of_film(report.film)),
+        **{f"frames_{name}": value for name, value in film.items() if value is not None},
     }
-
-
-def _of_film(film: FilmFelt) -> dict[str, float]:
-    return {f"frames_{name}": value for name, value in film._asdict().items() if value is not None}
 
 
 LIMITS = [flag.name or "" for flag in TickFlag if not flag & UNTOUCHED]

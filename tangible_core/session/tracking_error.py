@@ -67,8 +67,13 @@ class TickSampler:
 
 def tracking_error(seen: Recording, wanted_m: Places | None, surface: HapticSurface) -> TrackingError:
     """Return the tracking error of a hand. wanted_m: the place on its path at each tick; None if it is not known."""
-    beside = _held_off(seen, surface)
+    beside, share, farthest_m, says = _held_off(seen, surface), 0.0, 0.0, ""
     beside_share = float(beside.mean()) if beside.size else 0.0
+    if beside_share > REPORTED_SHARE:
+        says = (
+            f"The hand came in by the side of the surface, under its rim, and was held off there for "
+            f"{100 * beside_share:.0f} % of the time. Begin above the surface, and stay over its {_size(surface)}."
+        )
     if wanted_m is not None and beside.size:
         away_m, most_m = _distance(seen, wanted_m), min(OFF_M, min(surface.extent_m) / OFF_PART)
         share, farthest_m = float((away_m > most_m).mean()), float(away_m.max())
@@ -77,19 +82,8 @@ def tracking_error(seen: Recording, wanted_m: Places | None, surface: HapticSurf
                 f"The hand did not follow its path: for {100 * share:.0f} % of the time it was more than "
                 f"{1000 * most_m:.2g} mm off, {1000 * farthest_m:.0f} mm at most. Likely cause: "
             )
-            cause = _cause(seen, wanted_m, surface, away_m, most_m)
-            return TrackingError(share, farthest_m, beside_share, says + cause)
-    else:
-        share = farthest_m = 0.0
-    if beside_share <= REPORTED_SHARE:
-        return TrackingError(share, farthest_m, beside_share, "")
-    return TrackingError(
-        share,
-        farthest_m,
-        beside_share,
-        f"The hand came in by the side of the surface, under its rim, and was held off there for "
-        f"{100 * beside_share:.0f} % of the time. Begin above the surface, and stay over its {_size(surface)}.",
-    )
+            says += _cause(seen, wanted_m, surface, away_m, most_m)
+    return TrackingError(share, farthest_m, beside_share, says)
 
 
 def _distance(seen: Recording, wanted_m: Places) -> Float64[np.ndarray, " n"]:

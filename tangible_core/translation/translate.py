@@ -30,11 +30,11 @@ def localise_marked(text: str) -> str:
     if language() == LANGUAGES[0]:
         return text
     return "".join(
-        each if number % 2 else _escaped(localise(each.replace(r"\[", "[")))
+        each if number % 2 else _escape(localise(each.replace(r"\[", "[")))
         for number, each in enumerate(MARKS.split(text))
     )
 
 
-def _escaped(text: str) -> str:
+def _escape(text: str) -> str:
     """Return a text whose brackets are not taken for marks."""
     return re.sub(r"\[(?=[a-z/#@])", r"\\[", text)

@@ -18,7 +18,7 @@ from ruamel.yaml.representer import SafeRepresenter
 from ...data.products import Product
 from ...errors import ConfigError, quoted
 from ...files.paths import CONTROLS, without_folders
-from ...files.yaml.source import Source
+from ...files.yaml.source import Location, Source
 from ...mapping import WorkspaceMapping, map_device
 from ...parts import HeightChoice, PartChoice, SimplifyChoice
 from ...plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Segmenter
@@ -42,8 +42,9 @@ from .keys import (
 from .keys.key import keys_of
 from .material_choice import MaterialChoice, check_material_names
 from .methods import NamedMethod
-from .part_names import Wrong
 
+Wrong = tuple[Location, str]
+"""A complaint: the keys that it is about, and a sentence."""
 MOST_TITLE = 200
 """The most characters of a title: what a person reads at a glance, and what fits a line of braille or two."""
 LANGUAGE_TAG = "^[A-Za-z]{2,8}(-[A-Za-z0-9]{1,8})*$"

@@ -15,8 +15,7 @@ from ...scene.scene_files import SceneFiles
 from .keys import MethodList, Reading
 from .keys.method import index_of
 from .model import KEYS, PipelineConfig, without_places
-from .part_checks import wrong_of_parts
-from .scale_checks import wrong_of_scale
+from .part_checks import wrong_of_parts, wrong_of_scale
 
 EXPECTED = "a configuration is a mapping that starts with `scene:`"
 """The complaint about a file that is not a mapping."""

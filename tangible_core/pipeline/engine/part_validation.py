@@ -13,9 +13,8 @@ from ...errors import PictureError
 from ...materials.rules import MaterialRule
 from ...parts import find_parts, part_sizes
 from ...plugins.notes import note
-from ..config.model import PipelineConfig
-from ..config.part_checks import ROUNDING_M
-from ..config.part_names import Wrong, names_of, numbers_of
+from ..config.model import PipelineConfig, Wrong
+from ..config.part_checks import ROUNDING_M, names_of, numbers_of
 
 log: logging.Logger = logging.getLogger(__name__)
 

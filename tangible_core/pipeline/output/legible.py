@@ -13,7 +13,7 @@ from ...preflight.verdict import Change, Verdict
 from ...scene.workspace import Workspace
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
-from ..config.part_names import names_of
+from ..config.part_checks import names_of
 from ..engine.engine import Engine
 from ..engine.legibility import judge_function
 from ..engine.working_grid import WorkingGrid

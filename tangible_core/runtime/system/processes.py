@@ -46,13 +46,6 @@ if sys.platform == "win32":
         """Start a process that receives no Ctrl-C of the console. Raises: OSError."""
         return subprocess.Popen(words, creationflags=subprocess.CREATE_NEW_PROCESS_GROUP, stdin=stdin, stdout=stdout)
 
-    def processors() -> int:
-        """Return the number of processors that this process may use."""
-        return os.cpu_count() or 1
-
-    def lower_priority(_threads: "set[int] | None" = None, _niceness: int = 10) -> None:
-        """Leave the priority as it is: Windows schedules by the foreground window."""
-
 else:
     import signal
 
@@ -80,26 +73,21 @@ else:
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         return subprocess.Popen(words, stdin=stdin, stdout=stdout)
 
+
+def processors() -> int:
+    """Return the number of processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
+
+
+def lower_priority(threads: set[int] | None = None, niceness: int = 10) -> None:
+    """Give threads of this process a niceness; all of them if None. Only in Linux each thread has its own.
+
+    Elsewhere the priority stays: a niceness would lower the whole process, also what somebody waits for.
+    """
     if sys.platform == "linux":
-
-        def processors() -> int:
-            """Return the number of processors that this process may use."""
-            return len(os.sched_getaffinity(0))
-
-        def lower_priority(threads: "set[int] | None" = None, niceness: int = 10) -> None:
-            """Give threads of this process a niceness; all of them if None. In Linux each thread has its own."""
-            for thread in all_threads() if threads is None else threads:
-                with suppress(OSError):  # the thread has ended
-                    os.setpriority(os.PRIO_PROCESS, thread, niceness)
-
-    else:
-
-        def processors() -> int:
-            """Return the number of processors that this process may use."""
-            return os.cpu_count() or 1
-
-        def lower_priority(_threads: "set[int] | None" = None, _niceness: int = 10) -> None:
-            """Leave the priority as it is: a niceness would lower the whole process, also what somebody waits for."""
+        for thread in all_threads() if threads is None else threads:
+            with suppress(OSError):  # the thread has ended
+                os.setpriority(os.PRIO_PROCESS, thread, niceness)
 
 
 def all_threads() -> set[int]:

@@ -136,8 +136,7 @@ def _reduced_bands(path: Path, data: bytes, notify: Notify) -> np.ndarray | None
     times = _times(*shape)
     if times is None:
         return None
-    from .large.bands import WholePieceError, reduced
-    from .large.png_bands import png_bands
+    from .bands import WholePieceError, png_bands, reduced
 
     _notify_reduced(path, *shape, times, notify)
     try:
@@ -147,9 +146,9 @@ def _reduced_bands(path: Path, data: bytes, notify: Notify) -> np.ndarray | None
                     return None
                 bands = (_meaning(band, "picture", picture.nodata) for band in picture.bands)
                 return np.ascontiguousarray(upright(reduced(bands, *shape, times), picture.orientation))
-        whole = png_bands(data)
-        pictures = (_decode(path, band, "picture", ignore, 0) for band in whole.files)
-        return np.ascontiguousarray(upright(reduced(pictures, *shape, times), whole.orientation))
+        orientation, files = png_bands(data)
+        pictures = (_decode(path, band, "picture", ignore, 0) for band in files)
+        return np.ascontiguousarray(upright(reduced(pictures, *shape, times), orientation))
     except WholePieceError as error:
         raise PictureError(f"{path}: {TOO_MANY_PIXELS} and cannot be reduced while it is read; {error}") from error
 

@@ -2,7 +2,7 @@
 # pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false, reportUnknownVariableType=false
 # (the extra may be missing, and has no types for its depth images)
 
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -12,13 +12,6 @@ from .tiff import UnreadableError
 HEIC = (b"heic", b"heix", b"hevc", b"heim", b"heis", b"mif1", b"msf1")
 """Brands of ISO's media files that are HEIC pictures, at the ninth byte of a file."""
 _DEPTH = 2  # representation of distances; the others are of nearness
-
-
-class HeifDepth(NamedTuple):
-    """A depth map, grey, as upright as the picture."""
-
-    grey: np.ndarray
-    near_is_light: bool
 
 
 def is_heif(data: bytes) -> bool:
@@ -33,12 +26,15 @@ def read_heif(data: bytes) -> np.ndarray:
     return np.asarray(picture)
 
 
-def heif_depth(data: bytes) -> HeifDepth | None:
-    """Read the first depth map beside the picture; None if there is none. Raises: as `read_heif`."""
+def heif_depth(data: bytes) -> tuple[np.ndarray, bool] | None:
+    """Read the first depth map, grey and as upright as the picture, and True if near is light; None if there is none.
+
+    Raises: as `read_heif`.
+    """
     for depth in _open(data).info.get("depth_images") or ():
         check_size((depth.size[1], depth.size[0]), 2)
         kind = (depth.info.get("metadata") or {}).get("representation_type", 1)
-        return HeifDepth(np.asarray(depth.to_pillow().convert("L")), kind != _DEPTH)
+        return np.asarray(depth.to_pillow().convert("L")), kind != _DEPTH
     return None
 
 

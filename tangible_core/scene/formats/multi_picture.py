@@ -4,7 +4,7 @@
 
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -48,25 +48,15 @@ def _pages(image: "Image") -> int:
     return pages
 
 
-class Part(NamedTuple):
-    """A picture of a Multi-Picture file: its type, and its bytes."""
-
-    kind: str
-    data: bytes
-
-
-def multi_pictures(image: "Image", data: bytes) -> list[Part]:
-    """Return the pictures of a Multi-Picture file (CIPA DC-007), the first one included; none for another file."""
+def multi_pictures(image: "Image", data: bytes) -> list[bytes]:
+    """Return the bytes of all pictures of a Multi-Picture file (CIPA DC-007); none for another file."""
     if image.format != "MPO":
         return []
     head = _MP_HEAD.search(data)
     start = head.end() - 4 if head else 0
     entries = cast(Any, image).mpinfo[_MP_ENTRIES]
     starts = [start + each["DataOffset"] if each["DataOffset"] else 0 for each in entries]
-    return [
-        Part(str(each["Attribute"]["MPType"]), data[at : at + each["Size"]])
-        for each, at in zip(entries, starts, strict=True)
-    ]
+    return [data[at : at + each["Size"]] for each, at in zip(entries, starts, strict=True)]
 
 
 def view_numbers(image: "Image") -> list[int]:

@@ -5,7 +5,6 @@ Sources: netpbm.sourceforge.net, pgm(5), ppm(5); pauldebevec.com, Portable Float
 
 import re
 from math import isfinite, prod
-from typing import NamedTuple
 
 import numpy as np
 
@@ -17,15 +16,11 @@ _GAP = rb"(?:\s|#[^\n\r]*[\n\r])+"
 _HEAD = re.compile(rb"P([2356Ff])" + _GAP + _GAP.join([rb"(\d{1,9})"] * 2) + _GAP + rb"([-+.\deE]{1,40})\s")
 
 
-class Netpbm(NamedTuple):
-    """The numbers of a map, (h, w) or (h, w, 3), and the number of white; None for floating point."""
+def read_netpbm(data: bytes) -> tuple[np.ndarray, int | None]:
+    """Read the numbers as they are stored, (h, w) or (h, w, 3), and that of white; None for floating point.
 
-    values: np.ndarray
-    white: int | None
-
-
-def read_netpbm(data: bytes) -> Netpbm:
-    """Read the numbers as they are stored. Raises: ValueError if damaged; TooLargeError."""
+    Raises: ValueError if damaged; TooLargeError.
+    """
     head = _HEAD.match(data)
     if head is None:
         raise ValueError("its header is damaged")
@@ -35,7 +30,7 @@ def read_netpbm(data: bytes) -> Netpbm:
         raise ValueError("its header is damaged")
     if head[1] in b"Ff":
         values = _binary_numbers(data, head, shape, "<f4" if white < 0 else ">f4")
-        return Netpbm(values[::-1].astype(np.float32), None)  # the lowest row is the first
+        return values[::-1].astype(np.float32), None  # the lowest row is the first
     if not 1 <= white <= 0xFFFF:
         raise ValueError(f"its number for white is {white:g}")
     values = (
@@ -45,7 +40,7 @@ def read_netpbm(data: bytes) -> Netpbm:
     )
     if values.max() > white:
         raise ValueError(f"it holds {values.max()}, and white is {white:g}")
-    return Netpbm(values.astype(np.uint8 if white < 256 else np.uint16), int(white))
+    return values.astype(np.uint8 if white < 256 else np.uint16), int(white)
 
 
 def _binary_numbers(data: bytes, head: re.Match[bytes], shape: tuple[int, ...], dtype: str) -> np.ndarray:

@@ -75,7 +75,7 @@ def _jpeg_depth(path: Path, data: bytes) -> tuple[Float32[np.ndarray, "h w"], Ph
 
 def _heic_depth(data: bytes) -> tuple[Float32[np.ndarray, "h w"], PhoneDepth] | None:
     found = heif_depth(data)
-    return None if found is None else (to_grey(found.grey), PhoneDepth(b"", found.near_is_light, "HEIC"))
+    return None if found is None else (to_grey(found[0]), PhoneDepth(b"", found[1], "HEIC"))
 
 
 def _nearness(
@@ -107,8 +107,8 @@ def phone_depth(image: "Image", data: bytes) -> PhoneDepth | None:
     if item := _depth_item(xmp, data):
         return PhoneDepth(item, False, "Dynamic Depth")
     for part in multi_pictures(image, data)[1:]:
-        if found := _AUXILIARY.search(_xmp(part.data)):
-            return PhoneDepth(part.data, found[1] == b"disparity", "an iPhone's")
+        if found := _AUXILIARY.search(_xmp(part)):
+            return PhoneDepth(part, found[1] == b"disparity", "an iPhone's")
     return None
 
 

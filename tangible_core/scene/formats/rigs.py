@@ -24,13 +24,8 @@ OPENCV: Mapping[str, tuple[str, ...]] = {
 }
 """Keys of each part in files of OpenCV's stereoCalibrate."""
 LENSES: Mapping[str, Distortion] = {
-    "radtan": "radial-tangential",
-    "plumb_bob": "radial-tangential",
-    "equidistant": "equidistant",
-    "equi": "equidistant",
-    "fisheye": "equidistant",
-    "rational_polynomial": "radial-tangential",
-    "none": "radial-tangential",
+    **dict[str, Distortion].fromkeys(("radtan", "plumb_bob", "rational_polynomial", "none"), "radial-tangential"),
+    **dict[str, Distortion].fromkeys(("equidistant", "equi", "fisheye"), "equidistant"),
 }
 """Lens models of Kalibr and ROS."""
 PARTNERS = {"left": "right", "intrinsics": "extrinsics", "intrinsic": "extrinsic"}

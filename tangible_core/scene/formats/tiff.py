@@ -57,8 +57,6 @@ class TiffRaster(NamedTuple):
 class TiffPicture(NamedTuple):
     """A picture of a TIFF: its bands of rows from top to bottom, and what its tags say."""
 
-    rows: int
-    columns: int
     bands: Iterator[TiffRaster]
     orientation: int
     """Orientation of the camera by EXIF, 1 to 8."""
@@ -117,8 +115,6 @@ def tiff_picture(data: bytes, whole: bool = True) -> "Generator[TiffPicture | No
             bands = (_raster(page, values, None) for values in _bands(page, data))
         orientation = page.tags.get(_ORIENTATION)
         yield TiffPicture(
-            page.imagelength,
-            page.imagewidth,
             bands,
             orientation.value if orientation else 1,
             _nodata(page),
@@ -225,7 +221,7 @@ def _divide_by_alpha(values: np.ndarray, alpha: np.ndarray, white: int) -> np.nd
 
 def _bands(page: "TiffPage", data: bytes) -> Iterator[np.ndarray]:
     """Yield the stored numbers of a page in bands of rows, (planes, 1, rows, columns, samples)."""
-    from .large.bands import BAND_PIXELS, WholePieceError
+    from .bands import BAND_PIXELS, WholePieceError
 
     planes, _, rows, columns, samples = page.shaped
     dtype = cast("np.dtype[Any]", page.dtype)

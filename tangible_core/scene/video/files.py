@@ -88,7 +88,7 @@ def read_video(source: Path | int, files: SceneFiles, rig: StereoRig | None, not
     Raises: PictureError if it is not a video, or cannot be played.
     """
     name = _name(source)
-    with _open(source, files.fps, False, cast(ViewsOf, _as_stored)) as frames:
+    with _open(source, files.fps, False, cast(ViewsOf, np.asarray)) as frames:
         first = frames.next()
         if first is None or (isinstance(frames, FileFrames) and _is_picture(source, frames)):
             raise PictureError(f"{source}: is a picture, not a video; write `photo:` instead of `video:`")
@@ -124,10 +124,6 @@ def _open(
     if isinstance(source, int):
         return CameraFrames(source, fps, views_of)
     return (FolderFrames if source.is_dir() else FileFrames)(source, fps, repeat, views_of)
-
-
-def _as_stored(picture: np.ndarray) -> np.ndarray:
-    return picture
 
 
 def _name(source: Path | int) -> str:

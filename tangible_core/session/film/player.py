@@ -6,7 +6,6 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import replace
 from typing import final
 
@@ -116,13 +115,10 @@ class Player:
         return self._screen.counts(self._skipped, per_s, age_ms)
 
     def _run(self) -> None:
-        _lower_priority()
+        lower_priority({threading.get_native_id()}, NICENESS)
         try:
             with stoppable(self._ending), limited_threads(self._threads):
-                while not self._ending.is_set():
-                    with suppress(_Unopened):
-                        self._play()
-                        return
+                while not self._ending.is_set() and not self._play():
                     self._ending.wait(OPEN_AGAIN_S)
         except (Stopped, DeviceError):  # the loop has ended, and its owner knows why
             return
@@ -130,17 +126,19 @@ class Player:
             if not self._ending.is_set():
                 self._fault = error
 
-    def _play(self) -> None:
+    def _play(self) -> bool:
+        """Play the film until it ends; return False if the source could not be opened yet."""
         try:
             reliefs = self._reliefs.__enter__()
         except TangibleError as error:
             self._screen.skip(error)
-            raise _Unopened from error
+            return False
         self._began_s = None
         try:
             self._show_all(reliefs)
         finally:
             reliefs.__exit__(None, None, None)
+        return True
 
     def _show_all(self, reliefs: Reliefs) -> None:
         frame_s, again_s = 1 / reliefs.frames.fps, 0.0
@@ -232,12 +230,3 @@ class ByClock:
         except TangibleError as error:
             self._screen.skip(error)
             return None
-
-
-class _Unopened(Exception):
-    """The source could not be opened yet."""
-
-
-def _lower_priority() -> None:
-    """Lower the priority of this thread; only on Linux does each thread have its own niceness."""
-    lower_priority({threading.get_native_id()}, NICENESS)

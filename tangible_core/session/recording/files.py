@@ -1,5 +1,6 @@
 """Recordings on disk: .nc, .npz and .csv."""
 
+from collections.abc import Callable
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -81,10 +82,6 @@ def _check_bits(rows: Float64[np.ndarray, "n columns"]) -> None:
             raise ValueError(f"its {name} do not all fit into 32 bits")
 
 
-def _from_nc(path: Path) -> RecordingContents:
-    return RecordingContents(*tick_file.read(path))
-
-
 def _from_npz(path: Path) -> RecordingContents:
     with path.open("rb") as file:
         archive = Archive(file)
@@ -118,4 +115,8 @@ def _numbers(line: int, names: list[str], cells: dict[str, str]) -> list[float]:
     return values
 
 
-READERS = {".nc": _from_nc, ".npz": _from_npz, ".csv": _from_csv}
+READERS: dict[str, Callable[[Path], RecordingContents]] = {
+    ".nc": lambda path: RecordingContents(*tick_file.read(path)),
+    ".npz": _from_npz,
+    ".csv": _from_csv,
+}

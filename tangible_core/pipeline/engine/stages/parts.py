@@ -9,7 +9,20 @@ from ..part_validation import check_parts, parts_of, warn_small_parts
 from ..stage import Context, Inputs, Stage
 
 
-class PartsStage(Stage):
+class OfPartsStage(Stage):
+    """The base of a stage whose product is a map of parts."""
+
+    def finish(self, value: PartMap) -> PartMap:
+        if self.config.by_parts:
+            check_parts(self.config, value, self.context.scene.shape[1])
+        return value
+
+    @cached_property
+    def skip(self) -> str | None:
+        return missing_segments(self.context)
+
+
+class PartsStage(OfPartsStage):
     """Divide segments into connected parts, numbered by their first pixels."""
 
     product = "parts"
@@ -36,15 +49,6 @@ class PartsStage(Stage):
 
     def full_size(self, value: PartMap) -> PartMap:
         return self.grid.full_parts(value)
-
-    def finish(self, value: PartMap) -> PartMap:
-        if self.config.by_parts:
-            check_parts(self.config, value, self.context.scene.shape[1])
-        return value
-
-    @cached_property
-    def skip(self) -> str | None:
-        return missing_segments(self.context)
 
     @cached_property
     def refusal(self) -> ConfigError | None:

@@ -4,14 +4,13 @@ from functools import cached_property
 
 from ....data import PartMap
 from ....parts import SimplifyChoice
-from ...config.part_names import names_of
+from ...config.part_checks import names_of
 from ..legibility import legibility_point, simplify_function
-from ..part_validation import check_parts
-from ..stage import Inputs, Stage
-from .parts import missing_segments
+from ..stage import Inputs
+from .parts import OfPartsStage
 
 
-class SimplifiedStage(Stage):
+class SimplifiedStage(OfPartsStage):
     """Make the parts legible for fingers."""
 
     product = "simplified"
@@ -36,15 +35,6 @@ class SimplifiedStage(Stage):
         picture = self.grid.views.left if self.grid.views else None
         simplify = simplify_function(self.context.registry)
         return simplify(parts, self.config.size.width_m, self._choice, names, picture)
-
-    def finish(self, value: PartMap) -> PartMap:
-        if self.config.by_parts:
-            check_parts(self.config, value, self.context.scene.shape[1])
-        return value
-
-    @cached_property
-    def skip(self) -> str | None:
-        return missing_segments(self.context)
 
     @property
     def in_outcomes(self) -> bool:

@@ -1,18 +1,24 @@
-"""A large PNG as bands of rows. Source: PNG, third edition, sections 5 (chunks), 8 (interlacing) and 9 (filters)."""
+"""A large picture as bands of rows, a PNG also as small picture files, and the reduction of bands.
+
+Source: PNG, third edition, sections 5 (chunks), 8 (interlacing) and 9 (filters).
+"""
 
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple, cast
 
 import cv2
 import numpy as np
 
-from ....files.reading import check_size
-from ....runtime.opencv import silent_opencv
-from .bands import BAND_PIXELS, Bands, WholePieceError
+from ...files.reading import check_size
+from ...runtime.opencv import plain_opencv, silent_opencv
 
-SIGNATURE = b"\x89PNG\r\n\x1a\n"
+BAND_PIXELS = 4_000_000
+"""The pixels of a band, about: what is in memory next to the file and the reduced picture."""
+_AVERAGED = ("uint8", "uint16", "float32")
+"""Types of numbers that OpenCV averages without another copy."""
+PNG = b"\x89PNG\r\n\x1a\n"
 _ORIENTATION = 0x0112  # tag of EXIF
 _GREY, _RGB, _RGBA = 0, 2, 6
 _CHANNELS = {_GREY: 1, _RGB: 3, 3: 1, 4: 2, _RGBA: 4}
@@ -21,6 +27,43 @@ _STAND_IN = {1: (8, _GREY), 2: (16, _GREY), 3: (8, _RGB), 4: (8, _RGBA), 6: (16,
 """Bits and kind of colour of a picture with this many bytes a pixel, whose filters are the same."""
 
 Chunk = tuple[bytes, bytes | memoryview]
+
+
+class WholePieceError(ValueError):
+    """A large picture is stored so that its rows cannot be decoded one after another; the message names the cure."""
+
+
+def reduced(bands: Iterable[np.ndarray], rows: int, columns: int, times: int) -> np.ndarray:
+    """Return the mean of each square of `times` x `times` pixels, the squares at the right and lower rim cut short.
+
+    bands: (any, columns[, channels]) of one dtype, `rows` rows together. Raises: ValueError if there are fewer.
+    """
+    small, rest, filled = np.empty(0), np.empty(0), 0
+    for band in bands:
+        together = np.concatenate([rest, band]) if rest.size else band
+        if not small.size:
+            small = np.empty((-(-rows // times), -(-columns // times), *band.shape[2:]), band.dtype)
+        whole = len(together) // times * times
+        filled += _fill(small[filled:], together[:whole], times)
+        rest = together[whole:]
+    filled += _fill(small[filled:], rest, times)
+    if filled < -(-rows // times):
+        raise ValueError("its rows end early")
+    return small
+
+
+def _fill(small: np.ndarray, band: np.ndarray, times: int) -> int:
+    """Write the means of a band to the first rows of `small`; return how many rows these are."""
+    filled = min(-(-len(band) // times), len(small))
+    if not filled:
+        return 0
+    down, right = filled * times - len(band), small.shape[1] * times - band.shape[1]
+    numbers = band if band.dtype.name in _AVERAGED else band.astype(np.float64)
+    with plain_opencv():
+        padded = cv2.copyMakeBorder(numbers, 0, down, 0, right, cv2.BORDER_REPLICATE) if down or right else numbers
+        mean = cv2.resize(padded, (small.shape[1], filled), interpolation=cv2.INTER_AREA)
+    small[:filled] = mean.reshape(small[:filled].shape)
+    return filled
 
 
 class _Header(NamedTuple):
@@ -33,8 +76,11 @@ class _Header(NamedTuple):
     interlaced: int = 0
 
 
-def png_bands(data: bytes) -> Bands:
-    """Cut a PNG into bands. Raises: WholePieceError if it is interlaced; ValueError or struct.error if damaged."""
+def png_bands(data: bytes) -> tuple[int, Iterator[bytes]]:
+    """Return the orientation of a PNG by EXIF, 1 to 8, and its bands from top to bottom, each the bytes of a PNG.
+
+    Raises: WholePieceError if it is interlaced; ValueError or struct.error if damaged.
+    """
     from PIL.Image import Exif
 
     chunks = _chunks(data)
@@ -52,12 +98,12 @@ def png_bands(data: bytes) -> Bands:
             colours.append((name, content))
         elif name == b"eXIf":
             exif.load(bytes(content))
-    return Bands(header.rows, header.columns, exif.get(_ORIENTATION, 1), _bands(header, colours, packed))
+    return exif.get(_ORIENTATION, 1), _bands(header, colours, packed)
 
 
 def _chunks(data: bytes) -> Iterator[tuple[bytes, memoryview]]:
     """Yield the name and the content of each chunk up to the end."""
-    at, view = len(SIGNATURE), memoryview(data)
+    at, view = len(PNG), memoryview(data)
     while at + 8 <= len(data):
         length, name = struct.unpack_from(">I4s", data, at)
         yield name, view[at + 8 : at + 8 + length]
@@ -70,7 +116,7 @@ def _bands(header: _Header, colours: list[Chunk], packed: list[memoryview]) -> I
     most = max(8, BAND_PIXELS // header.columns)
     check_size((most, header.columns, _CHANNELS[header.colour]), -(-header.bits // 8))
     lines = np.zeros((1, line), np.uint8)
-    unpacked = _unpacked(packed, line * most)
+    unpacked = _unpack(packed, line * most)
     for first in range(0, header.rows, most):
         rows = min(most, header.rows - first)
         filtered = np.frombuffer(next(unpacked, b"")[: rows * line], np.uint8)
@@ -98,7 +144,7 @@ def _without_filters(lines: np.ndarray, step: int) -> np.ndarray:
     return np.pad(whole.reshape(rows, line - 1), ((0, 0), (1, 0)))
 
 
-def _unpacked(packed: list[memoryview], most: int) -> Iterator[bytes]:
+def _unpack(packed: list[memoryview], most: int) -> Iterator[bytes]:
     """Yield the decompressed bytes, `most` at a time; the last are fewer."""
     stream, ready = zlib.decompressobj(), bytearray()
     for piece in (*packed, b""):
@@ -116,7 +162,7 @@ def _unpacked(packed: list[memoryview], most: int) -> Iterator[bytes]:
 def _file(header: _Header, lines: np.ndarray, colours: list[Chunk]) -> bytes:
     pixels = zlib.compress(lines.tobytes(), 0)
     chunks = [(b"IHDR", struct.pack(">IIBBBBB", *header)), *colours, (b"IDAT", pixels), (b"IEND", b"")]
-    return SIGNATURE + b"".join(
+    return PNG + b"".join(
         struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(content, zlib.crc32(name)))
         for name, content in chunks
     )

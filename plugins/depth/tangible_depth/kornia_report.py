@@ -22,7 +22,6 @@ class KorniaReport(DepthEstimator):
     """
 
     needs_pair: ClassVar[bool] = True
-    version: ClassVar[int] = 3
 
     window_px: Literal[5, 7, 9, 11, 13, 15, 17, 19, 21] = 9
     """Side of the square correlation window."""
@@ -46,11 +45,8 @@ class KorniaReport(DepthEstimator):
         """
         need("torch")
         need("kornia")
-        parts = Parts(self._response, kornia_eight_point, self._match_rows)
+        parts = Parts(lambda grey: kornia_response(grey, self.torch_device), kornia_eight_point, self._match_rows)
         return disparity_by_features(views, parts, self.least_contrast, self.least_score, self.max_disparity_px)
-
-    def _response(self, grey: Grey) -> Grey:
-        return kornia_response(grey, self.torch_device)
 
     def _match_rows(
         self, left: Grey, right: Grey, points: Int64[np.ndarray, "n 2"], low: int, high: int

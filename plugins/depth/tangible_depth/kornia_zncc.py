@@ -25,7 +25,6 @@ class KorniaZNCC(DepthEstimator):
     """
 
     needs_pair: ClassVar[bool] = True
-    version: ClassVar[int] = 3
 
     window_px: Literal[3, 5, 7, 9, 11, 13, 15] = 7
     """Side of the square correlation window."""

@@ -14,8 +14,7 @@ from tangible_core.plugins.interfaces import DepthEstimator, Skippable
 from tangible_core.plugins.notes import note
 
 from .network.card import PRESETS, Card, check_file, read_card
-from .network.conversion import to_disparity
-from .network.fitting import Colours, Map, fit_size, map_in_strips, restore_size, tensor
+from .network.fitting import Colours, Map, fit_size, map_in_strips, restore_size, tensor, to_disparity
 from .network.runtimes import Runtime, run
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -72,14 +71,15 @@ class Onnx(DepthEstimator, Skippable):
             )
         card = self._card(self.model)
         check_file(self.model, card)
-        if card.is_stereo and views.right is None:
+        right = views.right if card.is_stereo else None
+        if card.is_stereo and right is None:
             raise PictureError(
                 f"{card.title or self.model.name} compares two views, and this scene has one; give a right view, or "
                 "use a network for one picture"
             )
         if not card.verified:
             note(log, f"the card of {card.title} was never tested with its network: check that near is high")
-        values, sure = self._maps(self.model, card, to_rgb(views.left), _right(views, card))
+        values, sure = self._maps(self.model, card, to_rgb(views.left), None if right is None else to_rgb(right))
         return to_disparity(values, sure, card.output.means, views)
 
     def _maps(self, model: Path, card: Card, left: Colours, right: Colours | None) -> tuple[Map, Map | None]:
@@ -144,7 +144,3 @@ def _note_size(size: tuple[int, int], trained_px: tuple[int, int] | None) -> Non
             f"the network was trained with pictures of {trained_px[0]} x {trained_px[1]} pixels and sees this one at "
             f"{size[0]} x {size[1]}; if near and far are confused, try `most_px: {trained_px[0] * trained_px[1]}`",
         )
-
-
-def _right(views: Views, card: Card) -> Colours | None:
-    return to_rgb(views.right) if card.is_stereo and views.right is not None else None

@@ -26,7 +26,6 @@ class Report(DepthEstimator):
     """
 
     needs_pair: ClassVar[bool] = True
-    version: ClassVar[int] = 3
 
     window_px: Literal[5, 7, 9, 11, 13, 15, 17, 19, 21] = 9
     """Side of the square correlation window."""

@@ -26,7 +26,6 @@ class SemiGlobal(DepthEstimator, Following):
     """
 
     needs_pair: ClassVar[bool] = True
-    version: ClassVar[int] = 10
 
     max_disparity_px: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
     """Upper end of the search range, exclusive; auto: estimated from a few bands of the pair."""

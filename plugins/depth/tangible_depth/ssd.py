@@ -1,20 +1,16 @@
 """Dense sums of squared differences."""
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
-
-from pydantic import Field
+from typing import TYPE_CHECKING
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.plugins.interfaces import DepthEstimator, Following
 
-from .windows.odd import WindowSide
+from .matching.methods import WindowMatcher
 
 if TYPE_CHECKING:
     from .matching.chain import Matcher, Search
 
 
-class Ssd(DepthEstimator, Following):
+class Ssd(WindowMatcher):
     """Window matching by squared differences, with sub-pixel refinement, left-right check and filling.
 
     The simplest measure, for pairs of equal exposure; `zncc` allows for different ones.
@@ -22,21 +18,6 @@ class Ssd(DepthEstimator, Following):
     Memory above the pictures: about 25 bytes a pixel, and 8 bytes a column and disparity for each thread.
     Source: the report "Tangible Images", ch. 2.
     """
-
-    needs_pair: ClassVar[bool] = True
-    version: ClassVar[int] = 5
-
-    window_px: WindowSide = 7
-    """Side of the square matching window; odd."""
-    max_disparity_px: Annotated[int, Field(ge=1, le=512)] | Literal["auto"] = "auto"
-    """Upper end of the search range, exclusive; auto: estimated from a few bands of the pair."""
-    min_disparity_px: int | Literal["auto"] = "auto"
-    """Lower end of the search range; auto: 0 if the upper end is given, otherwise estimated with it, of either sign."""
-    rectify: Literal["auto", "never"] = "auto"
-    """auto: rectify a pair whose rows do not correspond; never: take every pair as rectified."""
-    fill: bool = True
-    """Fill pixels without a match with the disparity that both views and the picture's edges suggest; if false they are
-    NaN."""
 
     def estimate(self, views: Views) -> DisparityMap:
         """Estimate disparity in pixels, float32 (h, w), and its confidence; a filled map is finite if anything matched.
@@ -46,20 +27,9 @@ class Ssd(DepthEstimator, Following):
         0 where nothing changes along the rows.
         Raises: PictureError if there is no right view or the range is empty.
         """
-        from .matching.chain import disparity_map
+        return self._estimate(views)
 
-        return disparity_map(views, "ssd", *self._search_and_matcher())
-
-    def follow(self, views: Views) -> Callable[[Views], DisparityMap]:
-        """Return `estimate` for a film: it rectifies by these views and follows the range of recent frames."""
-        from .matching.film import FilmMatcher
-
-        return FilmMatcher(views, "ssd", *self._search_and_matcher())
-
-    def _search_and_matcher(self) -> "tuple[Search, Matcher]":
-        """Return the options of the chain, and the matcher."""
-        from .matching.chain import Search
+    def _named_search_and_matcher(self) -> "tuple[str, Search, Matcher]":
         from .matching.window_matching import match_by_difference
 
-        search = Search(self.min_disparity_px, self.max_disparity_px, self.rectify, self.fill)
-        return search, lambda pair, span: match_by_difference(pair, span, self.window_px)
+        return self._named("ssd", match_by_difference)

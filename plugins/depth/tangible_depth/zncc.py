@@ -1,20 +1,16 @@
 """Dense zero-mean normalised cross-correlation."""
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
-
-from pydantic import Field
+from typing import TYPE_CHECKING
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.plugins.interfaces import DepthEstimator, Following
 
-from .windows.odd import WindowSide
+from .matching.methods import WindowMatcher
 
 if TYPE_CHECKING:
     from .matching.chain import Matcher, Search
 
 
-class Zncc(DepthEstimator, Following):
+class Zncc(WindowMatcher):
     """Window matching by normalised cross-correlation, with sub-pixel refinement, left-right check and filling.
 
     Local, so that it does not guess without texture; independent of gain and offset of the exposure.
@@ -23,21 +19,6 @@ class Zncc(DepthEstimator, Following):
     Source: the report "Tangible Images", ch. 2, matching value (2.14).
     """
 
-    needs_pair: ClassVar[bool] = True
-    version: ClassVar[int] = 5
-
-    window_px: WindowSide = 7
-    """Side of the square matching window; odd."""
-    max_disparity_px: Annotated[int, Field(ge=1, le=512)] | Literal["auto"] = "auto"
-    """Upper end of the search range, exclusive; auto: estimated from a few bands of the pair."""
-    min_disparity_px: int | Literal["auto"] = "auto"
-    """Lower end of the search range; auto: 0 if the upper end is given, otherwise estimated with it, of either sign."""
-    rectify: Literal["auto", "never"] = "auto"
-    """auto: rectify a pair whose rows do not correspond; never: take every pair as rectified."""
-    fill: bool = True
-    """Fill pixels without a match with the disparity that both views and the picture's edges suggest; if false they are
-    NaN."""
-
     def estimate(self, views: Views) -> DisparityMap:
         """Estimate disparity in pixels, float32 (h, w), and its confidence; a filled map is finite if anything matched.
 
@@ -45,20 +26,9 @@ class Zncc(DepthEstimator, Following):
         by a neighbour; less in either range next to depth steps and in gaps; 0 where nothing changes along the rows.
         Raises: PictureError if there is no right view or the range is empty.
         """
-        from .matching.chain import disparity_map
+        return self._estimate(views)
 
-        return disparity_map(views, "zncc", *self._search_and_matcher())
-
-    def follow(self, views: Views) -> Callable[[Views], DisparityMap]:
-        """Return `estimate` for a film: it rectifies by these views and follows the range of recent frames."""
-        from .matching.film import FilmMatcher
-
-        return FilmMatcher(views, "zncc", *self._search_and_matcher())
-
-    def _search_and_matcher(self) -> "tuple[Search, Matcher]":
-        """Return the options of the chain, and the matcher."""
-        from .matching.chain import Search
+    def _named_search_and_matcher(self) -> "tuple[str, Search, Matcher]":
         from .matching.window_matching import match_by_correlation
 
-        search = Search(self.min_disparity_px, self.max_disparity_px, self.rectify, self.fill)
-        return search, lambda pair, span: match_by_correlation(pair, span, self.window_px)
+        return self._named("zncc", match_by_correlation)

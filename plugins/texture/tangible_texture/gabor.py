@@ -1,18 +1,17 @@
 """Segments by texture: Gabor energies and binary patterns, clustered without chance."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from tangible_core.data import SegmentMap, Views
+from tangible_core.data import SegmentMap
 from tangible_core.data.pictures import check_picture
-from tangible_core.plugins.interfaces import Segmenter, Skippable
 
-from .signal.skipping import one_segment, reason_to_skip
+from .signal.skipping import Dividing, one_segment
 
 
-class Gabor(Segmenter, Skippable):
+class Gabor(Dividing):
     """Clusters of Gabor energies: one texture per segment, whatever its brightness, in one place or several.
 
     The features are local energies in a bank of Gabor filters and frequencies of local binary patterns, in cells of
@@ -29,8 +28,6 @@ class Gabor(Segmenter, Skippable):
     (patterns); Su & Dy, ICTAI 2004 (division); Ward, J. Am. Stat. Ass. 58, 1963 (joining).
     """
 
-    version: ClassVar[int] = 9
-
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
     """Largest number of textures; `auto`: an estimate, at most 16, told with its confidence and the next best."""
     effort: Literal["fast", "balanced"] = "balanced"
@@ -41,10 +38,6 @@ class Gabor(Segmenter, Skippable):
     """Longest wavelength of the filters, which are octaves from 2.8 pixels."""
     least_energy: Annotated[float, Field(ge=0, lt=1)] = 1e-3
     """Filters with less than this fraction of the total energy are dropped; 0 keeps all of them."""
-
-    def skip(self, views: Views) -> str | None:
-        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
-        return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Divide the picture by texture; one segment if the texture is the same everywhere but for single pixels.

@@ -1,20 +1,19 @@
 """Segments by gradient: flat basins, flooded up to the edges between them."""
 
 import logging
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 import numpy as np
 from jaxtyping import Float32, Int32
 from pydantic import Field, model_validator
 
-from tangible_core.data import SegmentMap, Views
-from tangible_core.plugins.interfaces import Segmenter, Skippable
+from tangible_core.data import SegmentMap
 from tangible_core.plugins.notes import note
 
-from .signal.skipping import one_segment, reason_to_skip
+from .signal.skipping import Dividing, one_segment
 
 if TYPE_CHECKING:
-    from .regions.landscape import Landscape
+    from .regions.borders import Landscape
 
 log: logging.Logger = logging.getLogger(__name__)
 
@@ -22,7 +21,7 @@ NOTHING = 1e-6
 """The largest slope per pixel that rounding can produce in a picture of one colour, when white is 1."""
 
 
-class Gradient(Segmenter, Skippable):
+class Gradient(Dividing):
     """Regions between edges: a watershed of the gradient and Canny edges; for smooth things rather than textures.
 
     The picture is smoothed; the slope is that of its steepest channel, in units of the local noise. Connected flat
@@ -37,8 +36,6 @@ class Gradient(Segmenter, Skippable):
     Sources: Canny, A computational approach to edge detection, 1986; Meyer, Un algorithme optimal pour la ligne de
     partage des eaux, 1991.
     """
-
-    version: ClassVar[int] = 2
 
     segments: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
     """Largest number of segments: the least separated ones are merged; `auto`: as many as edges separate, at most 64,
@@ -69,10 +66,6 @@ class Gradient(Segmenter, Skippable):
             )
         return self
 
-    def skip(self, views: Views) -> str | None:
-        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
-        return reason_to_skip(views.left, self.segments)
-
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Divide the picture at its edges; one segment if it holds nothing but noise.
 
@@ -80,7 +73,7 @@ class Gradient(Segmenter, Skippable):
         Raises: PictureError as `check_picture`.
         """
         from .features.channels import channels
-        from .regions.landscape import landscape
+        from .regions.borders import landscape
         from .regions.merging import number_in_reading_order
         from .regions.refining import refine_labels
         from .signal.slopes import slopes
@@ -105,8 +98,7 @@ class Gradient(Segmenter, Skippable):
     def _regions(self, land: "Landscape", step: int) -> Int32[np.ndarray, "h w"] | None:
         """Return labels of every step-th pixel; None where there is only one region."""
         from .regions.basins import MOST_SEGMENTS, STEEPER, basins
-        from .regions.borders import borders
-        from .regions.landscape import canny_edges
+        from .regions.borders import borders, canny_edges
         from .regions.merging import merge, weakest_border
         from .regions.watershed import watershed
 

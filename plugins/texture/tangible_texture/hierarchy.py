@@ -6,12 +6,12 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from tangible_core.data import SegmentMap, SegmentTree, Views
+from tangible_core.data import SegmentMap, SegmentTree
 from tangible_core.data.pictures import check_picture
-from tangible_core.plugins.interfaces import Hierarchical, Segmenter, Skippable
+from tangible_core.plugins.interfaces import Hierarchical
 from tangible_core.plugins.notes import note
 
-from .signal.skipping import one_segment, reason_to_skip
+from .signal.skipping import Dividing, one_segment
 
 log: logging.Logger = logging.getLogger(__name__)
 
@@ -19,7 +19,7 @@ LEAST_LEVEL = 0.12
 """The level of a border that chance makes: such regions are joined, however many segments are requested."""
 
 
-class Hierarchy(Segmenter, Skippable, Hierarchical):
+class Hierarchy(Dividing, Hierarchical):
     """Regions that people would draw in a photograph: small ones, joined pair by pair into a tree.
 
     The picture is reduced to 40,000 cells. How strongly it changes at a cell is a weighted sum of the changes in
@@ -42,10 +42,6 @@ class Hierarchy(Segmenter, Skippable, Hierarchical):
     level: Annotated[float, Field(ge=0.02, lt=1)] = 0.5
     """Lowest level of a border under `auto`: the share of people who would draw it. Less gives more and finer segments.
     """
-
-    def skip(self, views: Views) -> str | None:
-        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
-        return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Divide the picture along the borders of highest level.
@@ -72,10 +68,10 @@ class Hierarchy(Segmenter, Skippable, Hierarchical):
         from tangible_core.compiled.elementary import exponentials
 
         from .features.channels import channels
+        from .regions.refining import refine_regions
         from .tree.cells import opponent_colours, reduce_to_cells, shares
         from .tree.cues import tensors, weighted_strength
         from .tree.joining import join_regions
-        from .tree.refining import refine_regions
         from .tree.regions import measure_regions, small_regions
         from .tree.weights import CONSTANT, TERMS, border_weights, cell_weights
 

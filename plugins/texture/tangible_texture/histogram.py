@@ -7,11 +7,10 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int32
 from pydantic import Field
 
-from tangible_core.data import SegmentMap, Views
-from tangible_core.plugins.interfaces import Segmenter, Skippable
+from tangible_core.data import SegmentMap
 from tangible_core.plugins.notes import note
 
-from .signal.skipping import one_segment, reason_to_skip
+from .signal.skipping import Dividing, one_segment
 
 if TYPE_CHECKING:
     from .clusters.otsu import OtsuClasses
@@ -31,7 +30,7 @@ NOTHING = 1e-6
 log: logging.Logger = logging.getLogger(__name__)
 
 
-class Histogram(Segmenter, Skippable):
+class Histogram(Dividing):
     """Grey levels, divided by the optimal thresholds of the histogram; a segment may lie in many places.
 
     The picture is reduced to grey and smoothed; the 256 grey levels of its flattest four fifths are divided so that the
@@ -56,10 +55,6 @@ class Histogram(Segmenter, Skippable):
     smallest_px: Annotated[int, Field(ge=1)] = 50
     """Connected parts with fewer flat pixels are merged into their neighbours; limited to 1/16 of a small picture's
     area. 1 leaves every pixel in the class of its own grey level."""
-
-    def skip(self, views: Views) -> str | None:
-        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
-        return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Divide the picture by grey level; one segment where all of it has the same grey.

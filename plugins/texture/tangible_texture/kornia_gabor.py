@@ -1,17 +1,16 @@
 """Method `kornia-gabor`: Gabor energies and k-means in torch."""
 
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from jaxtyping import Float32, Int32
 from pydantic import Field
 
-from tangible_core.data import SegmentMap, Views
+from tangible_core.data import SegmentMap
 from tangible_core.data.pictures import to_grey
-from tangible_core.plugins.interfaces import Segmenter, Skippable
 from tangible_core.runtime.torch_extra import TorchDevice, need, pick_device
 
-from .signal.skipping import one_segment, reason_to_skip
+from .signal.skipping import Dividing, one_segment
 
 if TYPE_CHECKING:
     from torch import Tensor
@@ -22,7 +21,7 @@ MORE = 3
 """The number of extra clusters to try while some of the requested ones turn out to be seams."""
 
 
-class KorniaGabor(Segmenter, Skippable):
+class KorniaGabor(Dividing):
     """Amplitudes in a bank of Gabor filters, one octave and 30 degrees apart, clustered by k-means; all of it in torch.
 
     Amplitudes are the roots of the energy in Gaussian windows, standardised over the picture. kornia's `fft_conv`
@@ -32,8 +31,6 @@ class KorniaGabor(Segmenter, Skippable):
     a seam.
     Source: Jain & Farrokhnia 1991; Riba et al., Kornia, WACV 2020; Arthur & Vassilvitskii, k-means++, SODA 2007.
     """
-
-    version: ClassVar[int] = 2
 
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
     """Number of textures; fewer if there are fewer distinct features. auto: an estimate, at most 8."""
@@ -57,10 +54,6 @@ class KorniaGabor(Segmenter, Skippable):
     torch_device: TorchDevice = "auto"
     """Device to compute on; `auto` uses a GPU if there is one."""
 
-    def skip(self, views: Views) -> str | None:
-        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
-        return reason_to_skip(views.left, self.segments)
-
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Divide the picture by texture, labels in the order of their first pixels.
 
@@ -69,9 +62,8 @@ class KorniaGabor(Segmenter, Skippable):
         """
         need("torch")
         need("kornia")
-        from .energies.filter_choice import needed_filters
+        from .energies.filter_choice import is_flat, needed_filters
         from .energies.gabor_bank import bank, octaves
-        from .energies.noise_floor import is_flat
 
         grey = to_grey(picture)
         if is_flat(grey):
@@ -81,7 +73,7 @@ class KorniaGabor(Segmenter, Skippable):
         return self._segments(grey, needed_filters(grey, wanted, self.skip_weak, self.skip_octaves), most_px)
 
     def _segments(self, grey: Float32[np.ndarray, "h w"], filters: "list[Gabor]", most_px: float) -> SegmentMap:
-        from .energies.noise_floor import is_one_texture
+        from .energies.filter_choice import is_one_texture
         from .kmeans.labelling import choose_segments, label_map_of_cells
         from .kornia_gabor_kernels import energies, standardise_roots
 
@@ -99,9 +91,9 @@ class KorniaGabor(Segmenter, Skippable):
         self, rows: "Tensor", shape: tuple[int, ...], count: int, radius: int
     ) -> tuple[Int32[np.ndarray, "rows columns"], Float32[np.ndarray, "n"]]:
         """Return labels and confidence of the cells; seams are replaced by up to MORE extra clusters."""
-        from .features.seams import remove_seams
         from .kmeans.labelling import margins
         from .kornia_gabor_kernels import kmeans
+        from .regions.small_parts import remove_seams
 
         features, clusters = rows.cpu().numpy(), count
         most = count if self.segments == "auto" else count + MORE

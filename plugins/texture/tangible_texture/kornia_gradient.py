@@ -7,12 +7,11 @@ import numpy as np
 from jaxtyping import Float32, Int32
 from pydantic import Field, model_validator
 
-from tangible_core.data import SegmentMap, Views
+from tangible_core.data import SegmentMap
 from tangible_core.data.pictures import to_grey
-from tangible_core.plugins.interfaces import Segmenter, Skippable
 from tangible_core.runtime.torch_extra import TorchDevice, need, pick_device
 
-from .signal.skipping import one_segment, reason_to_skip
+from .signal.skipping import Dividing, one_segment
 
 QUIET = 0.25
 """The share of the slopes taken as noise; the largest of these is that quantile of a Rayleigh distribution."""
@@ -20,7 +19,7 @@ SOBEL = 8
 """The factor between the sums of kornia's Canny, which leaves Sobel's unnormalised, and slopes per pixel."""
 
 
-class KorniaGradient(Segmenter, Skippable):
+class KorniaGradient(Dividing):
     """Regions between edges, by kornia: for smooth things rather than textures.
 
     The picture is reduced to grey and smoothed; Canny edges and slopes are in units of the noise, and the slope is
@@ -50,10 +49,6 @@ class KorniaGradient(Segmenter, Skippable):
             raise ValueError(f"canny_low {self.canny_low:g} is above canny_high {self.canny_high:g}; swap them")
         return self
 
-    def skip(self, views: Views) -> str | None:
-        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
-        return reason_to_skip(views.left, self.segments)
-
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Divide the picture at its edges, labels in the order of their first pixels.
 
@@ -62,7 +57,7 @@ class KorniaGradient(Segmenter, Skippable):
         """
         need("torch")
         need("kornia")
-        from .energies.noise_floor import is_flat
+        from .energies.filter_choice import is_flat
         from .regions.merging import number_in_reading_order
         from .regions.watershed import watershed
 

@@ -2,18 +2,17 @@
 
 import logging
 from math import ceil
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from jaxtyping import Float32
 from pydantic import Field
 
-from tangible_core.data import SegmentMap, Views
+from tangible_core.data import SegmentMap
 from tangible_core.data.pictures import to_grey
-from tangible_core.plugins.interfaces import Segmenter, Skippable
 from tangible_core.plugins.notes import note
 
-from .signal.skipping import one_segment, reason_to_skip
+from .signal.skipping import Dividing, one_segment
 
 if TYPE_CHECKING:
     from .energies.gabor_bank import Gabor
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 log: logging.Logger = logging.getLogger(__name__)
 
 
-class Report(Segmenter, Skippable):
+class Report(Dividing):
     """Gabor filters, a bounded non-linearity, mean magnitude in Gaussian windows, and k-means from a random start.
 
     Even filters respond to grey levels of 0..255 and keep the amplitude of a wave of their own frequency. The printed
@@ -31,8 +30,6 @@ class Report(Segmenter, Skippable):
     Confidence is 1 - a / b, where a and b are a pixel's distances from the nearest centre and the second nearest.
     Source: Jain & Farrokhnia, Unsupervised texture segmentation using Gabor filters, Pattern Recognition 24 (1991).
     """
-
-    version: ClassVar[int] = 2
 
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
     """Number of textures; fewer if there are fewer distinct features. auto: an estimate, at most 8."""
@@ -60,17 +57,12 @@ class Report(Segmenter, Skippable):
     memory_mb: Annotated[int, Field(ge=16)] = 1024
     """Memory for the features; where all pixels would exceed it, every second or third is used."""
 
-    def skip(self, views: Views) -> str | None:
-        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
-        return reason_to_skip(views.left, self.segments)
-
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Divide the picture by texture, labels in the order of their first pixels.
 
         Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1. Raises: PictureError as `check_picture`.
         """
-        from .energies.filter_choice import needed_filters
-        from .energies.noise_floor import is_flat, is_one_texture
+        from .energies.filter_choice import is_flat, is_one_texture, needed_filters
         from .kmeans.labelling import segment_by_kmeans
 
         grey = to_grey(picture)
@@ -101,7 +93,7 @@ class Report(Segmenter, Skippable):
         """Compute mean |tanh(alpha r)| every step_px pixels, over its maximum: k-means ignores a common scale."""
         from tangible_core.compiled.elementary import hyperbolic_tangents
 
-        from .energies.responses import even_responses
+        from .energies.local_energy import even_responses
         from .signal.smoothing import gaussian
 
         rows, columns = (-(-side // step_px) for side in grey.shape)

@@ -14,8 +14,14 @@ from numba import int64
 from tangible_core.compiled.compiling import KERNEL, inner, njit
 from tangible_core.compiled.threads import in_blocks
 
-from .margins import slices_with_margin
 from .span import UNKNOWN
+
+
+def slices_with_margin(y0: int, y1: int, rows: int) -> tuple[slice, slice]:
+    """Slice rows y0..y1-1 with a margin of `rows` on either side, where there are; and y0..y1-1 within that slice."""
+    first = max(0, y0 - rows)
+    return slice(first, y1 + rows), slice(y0 - first, y1 - first)
+
 
 ISLAND_PX = 60
 """Default size, in pixels, up to which an island is removed."""

@@ -14,10 +14,8 @@ import numpy as np
 from jaxtyping import Float64
 
 from ..sparse.matches import Matches
-from .epipolar import epipoles, product
-from .homographies import transform
 from .least_squares import least_squares, robust_pull
-from .lenses import undistort
+from .projective import epipoles, product, transform, undistort
 
 _PRIOR = np.array([0.5, 0.2, 0.5, 0.2, 0.2, 0.5, 0.5])
 """Standard deviations of the parameters about the start: left roll and tilt along x; right roll, tilts along x and y,

@@ -1,6 +1,6 @@
 """The fundamental matrix from matches: normalised eight-point, robust estimation, and degenerate cases.
 
-Convention: left^T F right = 0 (see `epipolar`).
+Convention: left^T F right = 0 (see `projective`).
 """
 
 from collections.abc import Callable
@@ -12,8 +12,8 @@ from jaxtyping import Bool, Float64
 
 from tangible_core.errors import GeometryError
 
-from .epipolar import homogeneous, product, sampson_distance
 from .parallax import Plane, best_plane, fundamental_from_plane
+from .projective import homogeneous, product, sampson_distance
 
 Degeneracy = Literal["not finite", "too few", "duplicate", "collinear", "homography", "outliers"]
 Fit = Callable[[np.ndarray, np.ndarray, np.ndarray | None], Float64[np.ndarray, "3 3"]]

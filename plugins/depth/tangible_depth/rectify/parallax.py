@@ -1,6 +1,6 @@
 """Dominant planes: matches that one homography explains, the parallax of the others, and purely rotated cameras.
 
-Convention: left^T F right = 0 (see `epipolar`); homographies lead from the right picture to the left one.
+Convention: left^T F right = 0 (see `projective`); homographies lead from the right picture to the left one.
 """
 
 from math import exp, log
@@ -9,9 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float64
 
-from .epipolar import homogeneous, product
-from .homographies import camera_matrix, inverse, rotation, transform
 from .least_squares import least_squares, robust_pull
+from .projective import camera_matrix, homogeneous, inverse, product, rotation, transform
 
 MOST_SAMPLED = 100
 """Largest number of matches off a plane whose pairs are tried for an epipole."""

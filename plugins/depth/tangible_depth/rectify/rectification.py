@@ -7,19 +7,19 @@ import logging
 from collections.abc import Callable
 
 import numpy as np
-from jaxtyping import Float64
+from jaxtyping import Bool, Float32, Float64
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.data.pictures import to_grey
 from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import note
+from tangible_core.runtime.opencv import plain_opencv
 
-from ..sparse.matches import Matches, flow_matches, sift_matches
-from ..sparse.off_plane_matches import match_off_plane
-from .epipolar import homogeneous, product
+from ..sparse.harris import corners, harris_response, least_response
+from ..sparse.matches import Matches, corner_matches, flow_matches, inverse_lengths, sift_matches
 from .fundamental import Fit, eight_point
-from .homographies import inverse, transform
 from .parallax import Plane, best_plane, is_pure_rotation
+from .projective import homogeneous, inverse, product, transform
 from .rectified_pair import RectifiedPair, unchanged_pair, warp_pair
 from .rectifying_rotation import (
     LEAST_TRUSTED,
@@ -29,6 +29,49 @@ from .rectifying_rotation import (
     unique_matches,
     verified_range,
 )
+
+WINDOW_PX = 7
+"""Side of the matched windows, in pixels, small enough for small objects."""
+MOST_CORNERS = 1000
+"""Largest number of corners of each picture that are matched all against all."""
+LEAST_ALIKE = 0.7
+"""Lowest correlation of windows at the same place that lie on the plane."""
+LEAST_SCORE = 0.85
+"""Lowest correlation of a match."""
+
+
+def match_off_plane(
+    left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h w"], homography: np.ndarray
+) -> Matches:
+    """Match corners that a homography (3, 3), from right to left, does not explain, as `corner_matches` does.
+
+    Right points are returned in the left picture's frame, mapped by the homography.
+    """
+    import cv2
+
+    size = left.shape[::-1]
+    with plain_opencv():
+        moved = cv2.warpPerspective(right, homography, size)
+        shown = cv2.warpPerspective(np.ones_like(right), homography, size, flags=cv2.INTER_NEAREST) > 0
+    off = shown & ~_correlating(left, moved)
+    seen = [
+        corners(np.where(off, harris_response(grey), 0), least_response(0.005), MOST_CORNERS) for grey in (left, moved)
+    ]
+    return corner_matches(left, moved, seen[0], seen[1], WINDOW_PX, LEAST_SCORE)
+
+
+def _correlating(one: Float32[np.ndarray, "h w"], other: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+    """Find the pixels at which windows of two pictures at the same place correlate."""
+    import cv2
+
+    side, half = (WINDOW_PX, WINDOW_PX), WINDOW_PX // 2
+    with plain_opencv():
+        mean, its, both = (
+            cv2.boxFilter(each, cv2.CV_64F, side, borderType=cv2.BORDER_REPLICATE) for each in (one, other, one * other)
+        )
+    spread = (both - mean * its) * WINDOW_PX**2
+    return spread * inverse_lengths(one, half) * inverse_lengths(other, half) >= LEAST_ALIKE
+
 
 logger: logging.Logger = logging.getLogger(__name__)
 
@@ -119,7 +162,7 @@ def _all_negative(disparity_px: Float64[np.ndarray, "n"]) -> bool:
 
 
 def _median_offset(matches: Matches) -> float:
-    return float(np.median(np.abs(matches.row_offset_px)))
+    return float(np.median(np.abs(matches.right_px[:, 1] - matches.left_px[:, 1])))
 
 
 def _rotate(views: Views, matches: Matches, before: float, fit: Fit) -> RectifiedPair:

@@ -9,9 +9,7 @@ from tangible_core.data import DisparityMap, Record, Views
 from tangible_core.errors import PictureError
 from tangible_core.runtime.opencv import plain_opencv
 
-from .epipolar import product
-from .homographies import inverse, transform
-from .lenses import distort, undistort
+from .projective import distort, inverse, product, transform, undistort
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +17,7 @@ class RectifiedPair(Record):
     """A pair whose matches lie on common rows, with the homographies back to the original pictures.
 
     left_homography, right_homography: (3, 3), from a point of the original picture, free of its lens's distortion, to
-    its place in `views`; left_radial, right_radial: that distortion (see `lenses`), 0 for none.
+    its place in `views`; left_radial, right_radial: that distortion (see `projective`), 0 for none.
     offset_px: added to a disparity of `views`; `rectify` moves the right view so that none is negative.
     skipped: whether the pair is unchanged. why: a message about what was done, or why nothing was.
     verified_px: lowest and highest disparity, in `views`, of the matches used; None if skipped.

@@ -11,9 +11,8 @@ from tangible_core.errors import GeometryError
 from ..sparse.matches import Matches
 from .alignment import aligning_homographies, aligning_lenses, epipole_roll
 from .fundamental import DegenerateMatches, Fit, robust_fundamental
-from .homographies import transform
-from .lenses import undistort
 from .parallax import Plane, best_plane
+from .projective import transform, undistort
 
 logger: logging.Logger = logging.getLogger(__name__)
 

@@ -1,14 +1,14 @@
 """The decision whether the rows of a pair correspond: the entry to this room.
 
-`align_rows` takes three tests, in this order: row profiles (`profile_check`), edges of the bands that were matched for
-the search range anyway (`row_offset`), and tracked corners (`corner_check`). A pair that fails is rectified
-(`rectify.rectification`). A rectified pair pays next to nothing.
+`align_rows` takes three tests, in this order: row profiles (`rows_match_elsewhere`), edges of the bands that were
+matched for the search range anyway (`row_offset`), and tracked corners (`corners_correspond`). A pair that fails is
+rectified (`rectify.rectification`). A rectified pair pays next to nothing.
 """
 
 import logging
 
 import numpy as np
-from jaxtyping import Bool, Float32
+from jaxtyping import Bool, Float, Float32, Float64, UInt8
 
 from tangible_core.plugins.notes import note
 from tangible_core.runtime.opencv import plain_opencv
@@ -16,9 +16,141 @@ from tangible_core.runtime.opencv import plain_opencv
 from ..dense.span import UNKNOWN
 from ..search.bands import Bands
 from ..search.pairs import Pair
-from .corner_check import corners_correspond
-from .profile_check import rows_match_elsewhere
+from ..sparse.matches import track
 from .row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, LEAST_VOTES, row_votes, shift_rows
+
+Points = Float32[np.ndarray, "n 1 2"]
+
+LOOK_PX = 160
+"""Longer side, in pixels, of the copies in which corners are detected and tracked."""
+POINTS, APART_PX = 32, 6
+"""Largest number of corners, and their smallest distance in pixels of the copy."""
+WINDOW_PX = 11
+"""Side, in pixels, of the windows that are tracked."""
+PATCH_PX = 48
+"""Side, in pixels, of the full-size patches in which corners are tracked again."""
+FINE_ENOUGH = 1 / 3
+"""Scale of the copies from which a tenth of their pixel is precise enough, without tracking at full size."""
+FEWEST = 12
+"""Fewest corners that decide; with fewer, the pair is taken as rectified."""
+TOLERANCE_PX = 0.5
+"""Largest median vertical offset of a pair whose rows correspond, in pixels; at least 1/4000 of the longer side."""
+
+
+def corners_correspond(pair: Pair, most_row_offset_px: float = 0.0) -> bool:
+    """Test whether half of the corners, tracked into the right view, stay within TOLERANCE_PX of their rows.
+
+    most_row_offset_px: largest common offset, up or down, that is accepted.
+    Returns: True with too few corners to decide; False if over half of them get lost, as when a camera was rotated far:
+    the whole picture must decide then.
+    """
+    longer = max(pair.left.shape)
+    scale = min(1.0, LOOK_PX / longer)
+    if min(pair.left.shape) * scale < PATCH_PX / 2:
+        return True
+    row_offsets_px = _row_offsets(pair, scale)
+    if row_offsets_px is None:
+        return True
+    if len(row_offsets_px) < FEWEST:
+        return False
+    corrected_px = float(np.clip(np.median(row_offsets_px), -most_row_offset_px, most_row_offset_px))
+    return float(np.median(np.abs(row_offsets_px - corrected_px))) <= max(TOLERANCE_PX, longer / 4000)
+
+
+@plain_opencv()
+def _row_offsets(pair: Pair, scale: float) -> Float64[np.ndarray, "n"] | None:
+    """Return the row offsets of tracked corners, in pixels; empty if over half got lost; None with too few corners."""
+    import cv2
+
+    small = [cv2.resize(each, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA) for each in pair]
+    # Optical flow assumes constant brightness; equal histograms allow another exposure or gamma.
+    small = [cv2.equalizeHist(each) for each in small]
+    start = cv2.goodFeaturesToTrack(small[0], POINTS, 0.02, APART_PX)
+    if start is None or len(start) < FEWEST:
+        return None
+    there = track(small[0], small[1], start, start, 3, WINDOW_PX)
+    # A corner that is not tracked back to its start was lost or occluded.
+    kept = np.linalg.norm(track(small[1], small[0], there, start, 3, WINDOW_PX) - start, axis=2)[:, 0] < 0.5
+    if np.count_nonzero(kept) < len(start) / 2:
+        return np.empty(0)
+    start, there = ((each[kept] + 0.5) / scale - 0.5 for each in (start, there))
+    row_offsets_px = (there - start if scale >= FINE_ENOUGH else _track_at_full_size(pair, start, there))[:, 0, 1]
+    return row_offsets_px[np.isfinite(row_offsets_px)].astype(np.float64)
+
+
+def _track_at_full_size(pair: Pair, start: Points, guess: Points) -> Float[np.ndarray, "inside 1 2"]:
+    """Return shifts (x, y) of points tracked again at full size, in a column of patches instead of large pyramids."""
+    import cv2
+
+    at = [np.rint(each[:, 0]).astype(int) - PATCH_PX // 2 for each in (start, guess)]
+    most = np.array(pair.left.shape[::-1]) - PATCH_PX
+    inside = np.all([((each >= 0) & (each <= most)).all(axis=1) for each in at], axis=0)
+    if not inside.any():
+        return start[:0]
+    at = [each[inside] for each in at]
+    patches = [
+        cv2.equalizeHist(np.vstack([view[y : y + PATCH_PX, x : x + PATCH_PX] for x, y in corners]))
+        for view, corners in zip(pair, at, strict=True)
+    ]
+    down = PATCH_PX * np.arange(len(at[0]))[:, None] * [0, 1]
+    local = (start[inside][:, 0] - at[0] + down).astype(np.float32)[:, None]
+    return track(patches[0], patches[1], local, local, 2, WINDOW_PX) - local + (at[1] - at[0])[:, None]
+
+
+REACH = 1 / 6
+"""Largest shift tried up and down, as a share of the picture's height."""
+NEAR = 1 / 200
+"""Largest accepted shift, as a share of the picture's height and at least 2 px: other tests correct it."""
+LEAST_BETTER = 0.05
+"""Smallest gain in correlation of another height that fails the test."""
+LESS_LEFT = 0.6
+"""Share of the unexplained part at the own height below which another height fails the test too: courses repeat."""
+NO_BETTER = 0.995
+"""Correlation at the own height that always passes."""
+SLOW = 1 / 8
+"""Wavelength, as a share of the height, from which changes of grey are ignored: light, and the views' borders."""
+
+
+def rows_match_elsewhere(pair: Pair) -> bool:
+    """Test whether the rows as a whole correlate better with rows at another height of the right view.
+
+    Matching along rows may take one course of bricks for the next; their profiles lie at different heights.
+    """
+    height = pair.left.shape[0]
+    reach, near = int(REACH * height), max(2, round(NEAR * height))
+    if reach <= near:
+        return False
+    left, right = (_profile(view) for view in pair)
+    scores = _correlations(left, right, reach)
+    best, own = float(scores.max()), float(scores[reach - near : reach + near + 1].max())
+    return own < NO_BETTER and (best > own + LEAST_BETTER or 1 - best < LESS_LEFT * (1 - own))
+
+
+def _profile(view: UInt8[np.ndarray, "h w"]) -> Float64[np.ndarray, "h"]:
+    """Return the mean grey of each row, without slow changes."""
+    import cv2
+
+    means = cv2.reduce(view, 1, cv2.REDUCE_SUM, dtype=cv2.CV_32S)[:, 0] / view.shape[1]
+    half = max(3, int(SLOW * len(means)))
+    sums = np.concatenate([[0.0], np.cumsum(np.pad(means, half, mode="edge"))])
+    return means - (sums[2 * half + 1 :] - sums[: -2 * half - 1]) / (2 * half + 1)
+
+
+def _correlations(
+    left: Float64[np.ndarray, "h"], right: Float64[np.ndarray, "h"], reach: int
+) -> Float64[np.ndarray, "shifts"]:
+    """Correlate the left profile with the right one -reach to reach rows further down, over their common rows."""
+    nothing = np.zeros(reach)
+    windows = np.lib.stride_tricks.sliding_window_view(np.concatenate([nothing, right, nothing]), len(left))
+    both = np.einsum("sh,h->s", windows, left)
+    # Downwards the lowest left rows and the uppermost right rows have no partner; upwards it is the other way round.
+    ours, theirs = (np.cumsum(each**2) for each in (left, right))
+    steps = np.arange(1, reach + 1)
+    down = ours[-1 - steps] * (theirs[-1] - theirs[steps - 1])
+    up = theirs[-1 - steps] * (ours[-1] - ours[steps - 1])
+    energy = np.concatenate([up[::-1], [ours[-1] * theirs[-1]], down])
+    return both / np.sqrt(np.maximum(energy, np.finfo(np.float64).tiny))
+
 
 log: logging.Logger = logging.getLogger(__name__)
 

@@ -13,8 +13,8 @@ from tangible_core.compiled.threads import in_blocks
 from tangible_core.runtime.opencv import plain_opencv
 
 from ..dense.span import UNKNOWN
-from ..dense.subpixel import parabola
 from ..search.pairs import Pair
+from ..windows.correlation import parabola
 
 CELL_PX = 12
 """Width of a cell, in columns; the strongest edge of a cell has a vote."""

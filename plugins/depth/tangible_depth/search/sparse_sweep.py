@@ -14,8 +14,7 @@ from numba import uint8
 from tangible_core.compiled.compiling import KERNEL, inner, njit
 
 from ..dense.span import UNKNOWN, Span
-from ..dense.subpixel import equiangular
-from ..sgm.aggregation import WORST, begin_path, shift_codes
+from ..sgm.aggregation import WORST, begin_path, equiangular, shift_codes
 from ..sgm.census import PLANES
 from ..sgm.costs import Penalties
 from ..sgm.paths import add_horizontal_paths, jump_penalties, jump_penalties_along, step

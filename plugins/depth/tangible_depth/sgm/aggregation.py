@@ -22,7 +22,6 @@ from numba import uint8, uint64
 from tangible_core.compiled.compiling import KERNEL, inner, njit
 
 from ..dense.span import UNKNOWN
-from ..dense.subpixel import equiangular
 from ..simd.lane_reductions import first_equal, first_lane, lowest
 from ..simd.lanes import load, minimum, saturating_add, shift_down, splat, store, width
 from .paths import add_horizontal_paths, jump_penalties, jump_penalties_along, step_vertical_path
@@ -94,6 +93,18 @@ def _decide(lanes, total, path, finals, best, beside, sums, right_sums):
     for i in range(n - 1):
         right_sums[w + i] = first_lane(seen)
         seen = shift_down(seen, wall)
+
+
+@inner()
+def equiangular(before, at, after):
+    """Return the tip of the symmetric V through three equally spaced costs; 0 if they are equal.
+
+    Costs that count differing bits grow linearly round their minimum: the parabola would pull towards whole numbers.
+    Within +-0.5 if `at` is the smallest.
+    Source: Shimizu & Okutomi, Precise sub-pixel estimation on area-based matching, ICCV 2001.
+    """
+    rise = max(before, after) - at
+    return (before - after) / (rise + rise) if rise != 0 else rise
 
 
 @inner()

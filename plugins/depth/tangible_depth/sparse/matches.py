@@ -28,11 +28,6 @@ class Matches(NamedTuple):
     left_px: Float64[np.ndarray, "n 2"]
     right_px: Float64[np.ndarray, "n 2"]
 
-    @property
-    def row_offset_px(self) -> Float64[np.ndarray, "n"]:
-        """The row offset of each match, right minus left; all zero in a rectified pair."""
-        return self.right_px[:, 1] - self.left_px[:, 1]
-
 
 NO_MATCHES = Matches(np.empty((0, 2)), np.empty((0, 2)))
 
@@ -194,21 +189,23 @@ def flow_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h
     start = cv2.goodFeaturesToTrack(small[0], most, 0.01, 8)
     if start is None:
         return NO_MATCHES
-    there = _track(small[0], small[1], start, start, levels=5)
-    kept = np.linalg.norm(_track(small[1], small[0], there, there, levels=5) - start, axis=2).ravel() < 0.5
+    there = track(small[0], small[1], start, start, levels=5)
+    kept = np.linalg.norm(track(small[1], small[0], there, there, levels=5) - start, axis=2).ravel() < 0.5
     found = Matches(*(_to_full_size(points[kept].reshape(-1, 2), scale) for points in (start, there)))
     return found if scale == 1 else _track_at_full_size(found, full)
 
 
-def _track(first: np.ndarray, second: np.ndarray, start: np.ndarray, guess: np.ndarray, levels: int) -> np.ndarray:
-    """Track `start` into the second picture from `guess` (Lucas-Kanade); NaN for a lost point."""
+def track(
+    first: np.ndarray, second: np.ndarray, start: np.ndarray, guess: np.ndarray, levels: int, window_px: int = 15
+) -> np.ndarray:
+    """Track `start` into the second picture from `guess` (pyramidal Lucas-Kanade); NaN for a lost point."""
     import cv2
 
     flags = cv2.OPTFLOW_USE_INITIAL_FLOW
     there, seen, _ = cv2.calcOpticalFlowPyrLK(
-        first, second, start, guess.copy(), winSize=(15, 15), maxLevel=levels, flags=flags
+        first, second, start, guess.copy(), winSize=(window_px, window_px), maxLevel=levels, flags=flags
     )
-    return np.where(seen[..., None] > 0, there, np.nan)
+    return np.where(seen[..., None] > 0, there, np.float32(np.nan))
 
 
 def _track_at_full_size(matches: Matches, pictures: tuple[np.ndarray, np.ndarray]) -> Matches:
@@ -216,7 +213,7 @@ def _track_at_full_size(matches: Matches, pictures: tuple[np.ndarray, np.ndarray
     if not len(matches.left_px):
         return matches
     start, guess = (points.astype(np.float32)[:, None] for points in matches)
-    there = _track(*pictures, start, guess, levels=2)[:, 0]
+    there = track(*pictures, start, guess, levels=2)[:, 0]
     kept = np.isfinite(there).all(axis=1)
     return Matches(matches.left_px[kept], there[kept].astype(np.float64))
 

@@ -17,7 +17,6 @@ from numba import float32, int32
 from tangible_core.compiled.compiling import inner, njit
 
 from ..dense.span import UNKNOWN
-from ..dense.subpixel import parabola
 from ..simd.lane_reductions import first_equal, first_lane, highest
 from ..simd.lanes import add, larger, load, multiply, shift_down, splat, store, subtract, to_float, widen, width
 
@@ -40,6 +39,16 @@ class Windows(NamedTuple):
     total: np.ndarray
     scale: np.ndarray
     offset: np.ndarray
+
+
+@inner()
+def parabola(before, at, after):
+    """Return the vertex of the parabola through three equally spaced samples, (a - c) / (2 (a - 2 b + c)).
+
+    Within +-0.5 if `at` is the best of the three, whether best means smallest or largest; 0 if they lie on a line.
+    """
+    bend = (before - at) + (after - at)
+    return (before - after) / (bend + bend) if bend != 0 else bend
 
 
 @inner()

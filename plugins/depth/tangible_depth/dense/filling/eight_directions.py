@@ -12,9 +12,8 @@ from tangible_core.compiled.compiling import KERNEL, inner, njit
 from tangible_core.compiled.threads import in_blocks, in_turns
 
 from ..span import UNKNOWN
-from .candidates import GEODESIC_SCORE, known_or_nearest, project_to_right, score_candidate
+from .candidates import GEODESIC_SCORE, geodesic_candidates, known_or_nearest, project_to_right, score_candidate
 from .four_directions import fill_from_four_directions
-from .geodesic import geodesic_candidates
 
 DIAGONAL_SCORE = -0.9
 """Term of a diagonal candidate in its score."""

@@ -16,8 +16,15 @@ from tangible_core.compiled.compiling import KERNEL, inner, njit
 from tangible_core.compiled.threads import in_blocks
 
 from ..span import UNKNOWN
-from .candidates import GEODESIC_SCORE, NEAREST, SAME_SURFACE, known_or_nearest, project_to_right, score_candidate
-from .geodesic import geodesic_candidates
+from .candidates import (
+    GEODESIC_SCORE,
+    NEAREST,
+    SAME_SURFACE,
+    geodesic_candidates,
+    known_or_nearest,
+    project_to_right,
+    score_candidate,
+)
 
 LEFT, RIGHT, ABOVE, BELOW, GEODESIC = range(5)
 """Indices of the candidates."""

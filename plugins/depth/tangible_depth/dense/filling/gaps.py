@@ -1,11 +1,11 @@
 """Gaps of a disparity map, pixels without a match, filled from the surfaces next to them: the entry to this room.
 
 `dense.refinement` calls `fill_gaps` after the speckle filter and before the median; with `effort: best`, gaps that the
-matches of the right view close were closed before, by `dense.both_views`. To change the filling, read
+matches of the right view close were closed before, by its `reconcile`. To change the filling, read
 
 1. this module: which filling an effort takes;
 2. `candidates`: how a neighbour's disparity is scored, by both views and by the picture;
-3. `geodesic`: the candidate at the left border, where no known pixel may lie straight ahead;
+3. `geodesic_candidates`: the candidate at the left border, where no known pixel may lie straight ahead;
 4. `four_directions` for `effort: balanced`, or `eight_directions` and `planes` for `effort: best`.
 """
 

@@ -1,16 +1,23 @@
-"""The installed devices, their connected units and the problems of each; none is opened."""
+"""The installed devices, their connected units and the problems of each; and how fast one can be read and written."""
 
+import time
+from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
-from tangible_core.data import Finding, Unit
+from tangible_core.data import NO_FORCE, Finding, Unit
 from tangible_core.errors import TangibleError
 from tangible_core.files.yaml.source import parse_source
 from tangible_core.plugins.failures import sentence
 from tangible_core.plugins.interfaces import HapticDevice, Serviceable
 from tangible_core.plugins.registry import Listing, Registry
+
+WARM_UP = 100
+"""Number of cycles before the measurement."""
+MOST_CYCLES = 10_000_000
+"""Greatest number of cycles, as all of their times are in memory."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +73,35 @@ def examine_device(registry: Registry, name: str, sets: Sequence[str] = ()) -> t
     except Exception as error:  # noqa: BLE001 - a device's own failure is a finding
         findings.append(Finding("plugin", "failed", _message(error)))
     return tuple(findings)
+
+
+def stress_device(device: HapticDevice, seconds: float) -> dict[str, Any]:
+    """Measure the rate, and percentiles of the time of one read and one write. Raises: DeviceError as the device."""
+    import numpy as np
+
+    spent_ns = array("q")
+    with device.open() as link:
+        for _ in range(WARM_UP):
+            link.read()
+            link.write(NO_FORCE)
+        start = last = time.perf_counter_ns()
+        end = start + round(seconds * 1e9)
+        while last < end and len(spent_ns) < MOST_CYCLES:
+            link.read()
+            link.write(NO_FORCE)
+            now = time.perf_counter_ns()
+            spent_ns.append(now - last)
+            last = now
+    spent_us = np.array(spent_ns) / 1e3
+    p50, p99, p999 = np.percentile(spent_us, (50, 99, 99.9)).tolist()
+    return {
+        "cycles": spent_us.size,
+        "rate_hz": 1e9 * spent_us.size / (last - start),
+        "p50_us": p50,
+        "p99_us": p99,
+        "p99_9_us": p999,
+        "max_us": float(spent_us.max()),
+    }
 
 
 def _look_for(listing: Listing, registry: Registry) -> InstalledDevice:

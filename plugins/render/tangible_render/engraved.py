@@ -11,7 +11,7 @@ from tangible_core.data import HapticSurface, Relief
 from tangible_core.plugins.interfaces import ForceRenderer, Reshaping, Touch
 from tangible_core.plugins.notes import note
 
-from .borders.distance import border_distance
+from .borders import border_distance
 from .effects.inner_law import Law, build_law, complete_options
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -33,7 +33,7 @@ class Engraved(ForceRenderer, Reshaping):
     The heights become h - D (1 + cos(2 pi d / W)) / 2 where the distance d to the nearest border is less than W / 2,
     with D the depth and W the width of the groove: a valley without edges. Only the surface changes, so that the result
     is as conservative as the inner force law. The borders are smooth lines within half a cell of those of the labels
-    (see `borders.lines`), so that a surface with twice the cells feels the same.
+    (see `borders`), so that a surface with twice the cells feels the same.
 
     No height may be less than 0: where the ground is too low for a groove, the whole surface is raised by the missing
     height, at most D, and a note reports it. Of several near borders the nearest counts: a part narrower than W is all

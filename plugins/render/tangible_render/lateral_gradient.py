@@ -20,7 +20,6 @@ class LateralGradient(ForceRenderer):
     Source: Minsky, Ouh-young, Steele, Brooks & Behensky, Feeling and seeing: issues in force display, I3D 1990.
     """
 
-    version: ClassVar[int] = 2
     uses_materials: ClassVar[bool] = False
     is_lateral: ClassVar[bool] = True
 

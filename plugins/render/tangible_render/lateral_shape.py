@@ -22,7 +22,6 @@ class LateralShape(ForceRenderer):
     touch, Nature 412 (2001).
     """
 
-    version: ClassVar[int] = 2
     uses_materials: ClassVar[bool] = False
     is_lateral: ClassVar[bool] = True
 

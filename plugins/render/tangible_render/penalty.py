@@ -23,8 +23,6 @@ class Penalty(ForceRenderer):
     Source: Massie & Salisbury, The PHANToM haptic interface, ASME Winter Annual Meeting 1994.
     """
 
-    version: ClassVar[int] = 2
-
     expected_failures: ClassVar[Mapping[str, str]] = {
         "springs_are_exact": "its spring acts along z alone, on slopes too, where the normal leans away from z"
     }

@@ -50,7 +50,6 @@ class Proxy(ForceRenderer, Filming):
     rendering for multi-finger manipulation using friction cone based god-objects, Eurohaptics 2002.
     """
 
-    version: ClassVar[int] = 3
     renders_materials: ClassVar[bool] = True
 
     stiffness_n_per_m: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 800.0

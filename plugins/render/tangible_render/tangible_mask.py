@@ -9,7 +9,7 @@ from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import HapticSurface
 from tangible_core.plugins.interfaces import ForceRenderer, Touch
 
-from .surface.grey_levels import grey_levels
+from .surface.dequantise import grey_levels
 
 
 def _odd(count: int) -> int:

@@ -46,7 +46,6 @@ class WithMaterials(ForceRenderer):
     computational model of friction applied to haptic rendering, Experimental Robotics VI, 2000.
     """
 
-    version: ClassVar[int] = 2
     renders_materials: ClassVar[bool] = True
     why_still: ClassVar[str] = (
         "no force law without materials supports moving surfaces; `proxy` does, and renders materials"

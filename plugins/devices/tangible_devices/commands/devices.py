@@ -11,7 +11,7 @@ from tangible_core.cli.options import FAILED, Json, is_listing
 from tangible_core.errors import ConfigError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from tangible_core.data import Finding
     from tangible_core.plugins.interfaces import Adjustable
@@ -41,13 +41,12 @@ def devices(context: typer.Context, as_json: Json = False) -> None:
     from tangible_core.plugins.registry import default_registry
 
     from ..installed import installed_devices
-    from . import sentences
 
     rows = [asdict(each) for each in installed_devices(default_registry())]
     if as_json:
         show.print_json(rows)
         return
-    show.sentence(sentences.devices_summary(rows))
+    show.sentence(_devices_summary(rows))
     cells = [(row["name"], *map(escape, cell)) for row in rows for cell in _cells(row)]
     show.table(("device", "connected", "serial", "where", "to do"), cells)
 
@@ -70,8 +69,6 @@ def doctor(
     from tangible_core.cli import show
     from tangible_core.plugins.registry import default_registry
 
-    from . import sentences
-
     if name is None and sets:
         raise ConfigError("--set: name the device that has this option")
     names = [name] if name else [each.name for each in default_registry().listings if each.kind == "device"]
@@ -80,7 +77,7 @@ def doctor(
     if as_json:
         show.print_json({each: [asdict(finding) for finding in findings] for each, findings in results.items()})
     else:
-        show.sentence(sentences.doctor_summary(name, verdicts))
+        show.sentence(_doctor_summary(name, verdicts))
         _print_findings(results)
     if "failed" in verdicts or (name and "not asked" in verdicts):
         raise typer.Exit(FAILED)
@@ -125,9 +122,7 @@ def stress(
     from tangible_core.cli import show
     from tangible_core.plugins.registry import default_registry
 
-    from ..installed import make_device
-    from . import sentences
-    from .stress import stress_device
+    from ..installed import make_device, stress_device
 
     if not 0 < seconds <= 3600:
         raise ConfigError(f"--seconds {seconds}: must be above 0 and at most 3600")
@@ -136,7 +131,7 @@ def stress(
         show.print_json(figures)
     else:
         texts = [(key, f"{value:.1f}" if isinstance(value, float) else str(value)) for key, value in figures.items()]
-        show.sentence(sentences.stress_summary(figures))
+        show.sentence(_stress_summary(figures))
         show.table(("figure", "value"), texts)
 
 
@@ -205,3 +200,32 @@ def _ask(text: str) -> str:
         return input("> ").strip()
     except EOFError as error:
         raise ConfigError("the calibration ended without an answer; nothing was saved") from error
+
+
+def _devices_summary(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return which devices can be felt now."""
+    from tangible_core.cli.sentences import listing
+
+    real = [row["name"] for row in rows if row["units"]]
+    simulated = [row["name"] for row in rows if row["simulated"]]
+    text = f"{listing(real)} {'is' if len(real) == 1 else 'are'} connected" if real else "No real device is connected"
+    return f"{text}; {listing(simulated)} need none." if simulated else f"{text}."
+
+
+def _doctor_summary(name: str | None, verdicts: Sequence[str]) -> str:
+    """Return the number of problems that keep a device, or any device, from working."""
+    failed, unasked = verdicts.count("failed"), verdicts.count("not asked")
+    if failed:
+        return f"{_number(failed, 'check')} failed; each has its cure below."
+    text = f"Nothing was found that keeps {name or 'a device'} from working"
+    return f"{text}, but {_number(unasked, 'check')} could not be made." if unasked else f"{text}."
+
+
+def _stress_summary(figures: Mapping[str, Any]) -> str:
+    """Return the rate at which a device can be read and written, next to that of a force loop."""
+    rate = f"{figures['device']} can be read and written {figures['rate_hz']:.0f} times a second"
+    return f"{rate}; a force loop does so 1000 times."
+
+
+def _number(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"

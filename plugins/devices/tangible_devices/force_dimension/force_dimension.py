@@ -48,8 +48,7 @@ class ForceDimension(HapticDevice, Serviceable):
 
     def open(self) -> Link:
         """Open the device. Raises: DeviceAbsent if it or the library is missing, DeviceError if in use or failing."""
-        from .library import OPENED, check_result, library
-        from .link import ForceDimensionLink
+        from .link import ForceDimensionLink, check_result, library, take
 
         dhd = library()
         if dhd.getDeviceCount() < 1:
@@ -57,13 +56,13 @@ class ForceDimension(HapticDevice, Serviceable):
         number = dhd.openID(self.index) if self.serial is None else dhd.openSerial(self.serial)
         which = f"device {self.index}" if self.serial is None else f"the device of serial {self.serial}"
         check_result(dhd, number, f"opening {which}", FREE_IT)
-        if not OPENED.take(number):
+        if not take(number):
             raise DeviceError(f"Force Dimension: this program has {which} open already; close it first")
         return ForceDimensionLink(dhd, number, self.spec().max_force_n)
 
     def connected(self) -> tuple[Unit, ...]:
         """Open each device for a moment and return its name. Raises: DeviceAbsent if the library is missing."""
-        from .library import library
+        from .link import library
 
         dhd = library()
         return tuple(_unit(dhd, index) for index in range(max(0, dhd.getDeviceCount())))
@@ -84,7 +83,7 @@ class ForceDimension(HapticDevice, Serviceable):
 
 
 def _unit(dhd: Any, index: int) -> Unit:
-    from .library import OPENED
+    from .link import OPENED
 
     place, number = f"index {index}", dhd.openID(index)
     if number < 0:

@@ -1,16 +1,50 @@
-"""A Force Dimension device in use."""
+"""A Force Dimension device in use, through `forcedimension_core.dhd`, the bindings to the maker's library."""
 
+import io
 import math
 import time
+from contextlib import redirect_stderr
+from importlib import import_module
+from threading import Lock
 from typing import Any, final
 
 from tangible_core.data import NO_FORCE, Force, HapticState
-from tangible_core.errors import DeviceError
+from tangible_core.errors import DeviceAbsent, DeviceError
 from tangible_core.plugins.interfaces import Link
 
-from .library import OPENED, check_result
-
+INSTALL = (
+    "install the Force Dimension SDK 3.16 or newer (forcedimension.com), then pip install "
+    "forcedimension-core with Python 3.12 or older; FDSDK in the environment may name the SDK's folder"
+)
 REPLUG = "check its plug and its power, then open it again"
+OPENED: set[int] = set()
+"""The devices that this program has open; the library itself would open the same one twice."""
+_taking = Lock()
+
+
+def library() -> Any:
+    """Return the bindings. Raises: DeviceAbsent that names what to install."""
+    try:
+        with redirect_stderr(io.StringIO()):  # its output is less specific than the message below
+            return import_module("forcedimension_core.dhd")
+    except ImportError as error:
+        first = str(error).split(". ")[0]
+        raise DeviceAbsent(f"device force-dimension: {first}; {INSTALL}") from error
+
+
+def check_result(dhd: Any, result: int, doing: str, cure: str) -> int:
+    """Return a result that is not an error. Raises: DeviceError with the library's message and the cure otherwise."""
+    if result < 0:
+        raise DeviceError(f"Force Dimension, {doing}: {dhd.errorGetLastStr()}; {cure}")
+    return result
+
+
+def take(number: int) -> bool:
+    """Mark a device as open; return False if it was open already."""
+    with _taking:
+        free = number not in OPENED
+        OPENED.add(number)
+        return free
 
 
 @final
@@ -56,4 +90,4 @@ class ForceDimensionLink(Link):
     def _release(self) -> None:
         """Close the device."""
         self._dhd.close(self._number)
-        OPENED.give_back(self._number)
+        OPENED.discard(self._number)

@@ -44,8 +44,7 @@ class Haply(HapticDevice, Serviceable):
 
     def open(self) -> Link:
         """Connect to the arm. Raises: DeviceAbsent if service, arm or websockets is missing; DeviceError on failure."""
-        from .link import HaplyLink
-        from .service import Session
+        from .service import HaplyLink, Session
 
         session = Session(self.uri, self.timeout_s)
         return HaplyLink(session, session.choose(self.device_id), self.centre_m, self.max_force_n)

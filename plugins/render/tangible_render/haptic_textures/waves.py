@@ -84,25 +84,18 @@ def _smooth(material: Material, random: np.random.Generator) -> Spread:
     return none, none, none, none
 
 
-def _stochastic(material: Material, random: np.random.Generator) -> Spread:
+def _noise(material: Material, random: np.random.Generator) -> Spread:
     """Return noise of one octave around the grain's wavelength, in directions over the half circle, or a part of it.
 
     Lengths and directions are stratified, one in each stratum, so that every seed has the same spectrum: a triangle in
-    octaves with its tip at the grain.
+    octaves with its tip at the grain. Beside friction, which dominates, there are fewer waves: both must fit into a
+    tick.
     """
-    return _noise(WAVES, material.anisotropy, random)
-
-
-def _stick_slip(material: Material, random: np.random.Generator) -> Spread:
-    """Return the same noise of fewer waves: friction dominates, and both must fit into a tick."""
-    return _noise(BESIDE_FRICTION, material.anisotropy, random)
-
-
-def _noise(count: int, anisotropy: float, random: np.random.Generator) -> Spread:
+    count = BESIDE_FRICTION if material.texture == "stick-slip" else WAVES
     strata = (np.arange(count) + 0.5) / count
     octaves = 0.5 * np.sign(strata - 0.5) * (1 - np.sqrt(1 - np.abs(2 * strata - 1)))
     fan = (random.permutation(count) + random.random(count)) / count - 0.5
-    return octaves, 180 * (1 - anisotropy) * fan, np.full(count, 1 / count), random.random(count)
+    return octaves, 180 * (1 - material.anisotropy) * fan, np.full(count, 1 / count), random.random(count)
 
 
 def _periodic(material: Material, random: np.random.Generator) -> Spread:
@@ -137,7 +130,7 @@ def _random(material: Material) -> np.random.Generator:
 _MAKE: dict[Texture, Callable[[Material, np.random.Generator], Spread]] = {
     "smooth": _smooth,
     "periodic": _periodic,
-    "stochastic": _stochastic,
-    "stick-slip": _stick_slip,
-    "drag": _stochastic,
+    "stochastic": _noise,
+    "stick-slip": _noise,
+    "drag": _noise,
 }

@@ -1,9 +1,9 @@
-"""Dequantisation: smoothing of heights in equal steps, such as from 8-bit pictures, within half a step."""
+"""Heights in equal steps, such as from 8-bit pictures: their smoothing within half a step, and grey levels."""
 
 from typing import Annotated, Literal
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Float32, UInt8
 from pydantic import Field
 
 from tangible_core.runtime.opencv import plain_opencv
@@ -59,6 +59,12 @@ def lattice_step(height_m: Float32[np.ndarray, "h w"]) -> float:
     places = np.outer(steps, (levels - levels[0]) / span)
     fits = np.abs(places - np.rint(places)).max(axis=1) <= 0.01  # the rounding of float32
     return float(span / steps[fits.argmax()]) if fits.any() else 0.0
+
+
+def grey_levels(height_m: Float32[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w"]:
+    """Return heights in 256 steps: 0 on the base plane, 255 at the highest point; all 0 for a surface of height 0."""
+    highest = height_m.max()
+    return np.rint(height_m / highest * 255).astype(np.uint8) if highest > 0 else np.zeros(height_m.shape, np.uint8)
 
 
 def _low_pass(values: Float32[np.ndarray, "h w"], sigma: float) -> Float32[np.ndarray, "h w"]:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from typing import final
 
-from .clock import Clock
+from .clock import SimulatedClock
 from .processor import Processor
 
 FRAME_S = 0.001
@@ -22,22 +22,19 @@ class StallError(Exception):
 class Chip:
     """The chip between USB and the processor.
 
-    Faults: `spoil(bytes_before, data)` changes a reply, `delay(replies_before)` delays a reply by its result in
-    seconds, and payload_bytes makes all packets short.
+    Faults: `spoil(bytes_before, data)` changes a reply; `delay(replies_before)` delays one, s.
     """
 
     def __init__(
         self,
         processor: Processor,
-        clock: Clock,
+        clock: SimulatedClock,
         spoil: Spoil = lambda _, data: data,
         delay: Callable[[int], float] = lambda _: 0.0,
-        payload_bytes: int = PAYLOAD_BYTES,
     ) -> None:
         self.processor = processor
         self._clock = clock
         self._spoil, self._delay = spoil, delay
-        self._payload_bytes = payload_bytes
         self._divisor, self._latency_s, self._dtr, self._event = 0, 0.016, False, -1
         self._line_free_s = 0.0
         self._waiting: list[tuple[float, bytes]] = []
@@ -82,11 +79,8 @@ class Chip:
         timer_s = self._latency_s * (math.floor(now_s / self._latency_s + 1e-9) + 1)
         first_s = min((ready_s for ready_s, _ in self._waiting), default=timer_s)
         self._clock.wait_until(min(first_s, timer_s))
-        payload = self._ready(most // PACKET_BYTES * self._payload_bytes)
-        parts = [payload[at : at + self._payload_bytes] for at in range(0, len(payload), self._payload_bytes)]
-        if self._payload_bytes < PAYLOAD_BYTES:  # a packet that is not full ends the transfer
-            self._waiting[:0] = [(0.0, part) for part in parts[1:]]
-            parts = parts[:1]
+        payload = self._ready(most // PACKET_BYTES * PAYLOAD_BYTES)
+        parts = [payload[at : at + PAYLOAD_BYTES] for at in range(0, len(payload), PAYLOAD_BYTES)]
         return b"".join(STATUS + part for part in parts) or STATUS
 
     def _ready(self, most: int) -> bytes:

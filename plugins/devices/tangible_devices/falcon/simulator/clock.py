@@ -1,25 +1,10 @@
 """Clocks of a simulation: as fast as it can be computed, or real time."""
 
 import time
-from abc import ABC, abstractmethod
-from typing import final
 
 
-class Clock(ABC):
-    """A clock of seconds since the start that never goes back."""
-
-    @abstractmethod
-    def __call__(self) -> float:
-        """Return the time."""
-
-    @abstractmethod
-    def wait_until(self, moment_s: float) -> None:
-        """Return at this moment, at once if it has passed."""
-
-
-@final
-class SimulatedClock(Clock):
-    """A clock that advances only when it is waited for."""
+class SimulatedClock:
+    """A clock of seconds since the start, which advances only when it is waited for."""
 
     def __init__(self) -> None:
         self._now_s = 0.0
@@ -29,12 +14,11 @@ class SimulatedClock(Clock):
         return self._now_s
 
     def wait_until(self, moment_s: float) -> None:
-        """Set the time to this moment."""
+        """Set the time to this moment, unless it has passed."""
         self._now_s = max(self._now_s, moment_s)
 
 
-@final
-class RealClock(Clock):
+class RealClock(SimulatedClock):
     """A clock of real time."""
 
     def __init__(self) -> None:

@@ -11,7 +11,7 @@ from ..usb.image import KEY, RESERVED_WORDS
 from .body import Body
 from .bus import Unit
 from .chip import Chip
-from .clock import Clock
+from .clock import SimulatedClock
 from .processor import Processor
 from .scripted_hand import ScriptedHand
 
@@ -21,7 +21,9 @@ IMAGE_BLOCKS = ((1821, 0x3F8002), (120, 0x3F8E3D), (168, 0x93A2), (2, 0x3F8000))
 """Length in words and destination of each block; together half as long as in a real image."""
 
 
-def simulated_falcon(clock: Clock, stroke: Stroke, lift_m: float, hand: VirtualHand, serial: str = "SIM0001") -> Unit:
+def simulated_falcon(
+    clock: SimulatedClock, stroke: Stroke, lift_m: float, hand: VirtualHand, serial: str = "SIM0001"
+) -> Unit:
     """Return a Falcon without firmware, held by a hand that homes it, then starts above the path and follows it."""
     holder = ScriptedHand(stroke, lift_m, Calibration().frame(), hand.press_n / hand.stiffness_n_per_m)
     feel = (TIP_KG + hand.mass_kg, VISCOUS_N_S_PER_M, COULOMB_N, hand.stiffness_n_per_m, hand.damping_n_s_per_m)

@@ -16,11 +16,10 @@ SLOW, LOADING, FAST = 0x4138, 0x0015, 0x0002
 class Processor:
     """A processor with the states of TI's boot ROM: after a reset it greets, locks the rate, loads and runs code."""
 
-    def __init__(self, body: Body, swallowed: int = 0, leading_zero: bool = False) -> None:
+    def __init__(self, body: Body, swallowed: int = 0) -> None:
         self.body = body
         self.mode: Mode = "idle"
         self._swallowed = swallowed
-        self._leading_zero = leading_zero
         self._heard = b""
 
     def reset(self) -> None:
@@ -57,7 +56,7 @@ class Processor:
             self._swallowed -= 1
             return b""
         self.mode = "autobaud"
-        return b"\0" * self._leading_zero + READY
+        return READY
 
     def _lock(self) -> bytes:
         heard, self._heard = self._heard, b""

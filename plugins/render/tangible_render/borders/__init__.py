@@ -1,1 +1,0 @@
-"""The borders between labels as smooth lines, and the distance to them."""

@@ -56,7 +56,7 @@ class Job:
 
 def make_scene(job: Job) -> Row:
     """Make the scene, write its files, and return its row, with the error if anything fails."""
-    start_s, row = perf_counter(), _row(job, "ok", None)
+    start_s, row = perf_counter(), row_of(job, "ok")
     try:
         with limited_threads(job.threads), naming_scene(job.id):
             row |= _make(job)
@@ -93,12 +93,8 @@ def naming_scene(name: str) -> Generator[None]:
 _scene: ContextVar[str] = ContextVar("tangible_scene", default="")
 
 
-def dead_row(job: Job, death: str) -> Row:
-    """Return the row of a scene whose worker died."""
-    return _row(job, "failed", death)
-
-
-def _row(job: Job, outcome: str, error: str | None) -> Row:
+def row_of(job: Job, outcome: str, error: str | None = None) -> Row:
+    """Return the row of a scene without figures, as it is for one whose worker died."""
     return {"id": job.id, "key": job.key, "outcome": outcome, "error": error, "seconds": None, "folder": job.folder}
 
 

@@ -56,7 +56,8 @@ def rows_of(over: str | Sequence[str], besides: Path | None = None) -> Iterator[
     several = () if isinstance(over, str) else tuple(over)
     over = over if isinstance(over, str) else ", ".join(several)
     if len(several) > 1:
-        yield from _check_names(_pictures(_existing_pictures(several), _common(several)), "--over: ")
+        base = Path(commonpath([Path(name).absolute().parent for name in several]))
+        yield from _check_names(_pictures(_existing_pictures(several), base), "--over: ")
         return
     path = as_path(over, "--over")
     known = next((place for place in (path, *path.parents) if place.exists()), path)
@@ -86,11 +87,6 @@ def _existing_pictures(names: Iterable[str]) -> list[Path]:
         why = "there is no such file" if not odd.exists() else "is not a picture or a video"
         raise BatchError(f"{odd}: {why}; after --over stand pictures, or one folder, glob, .csv or .parquet file")
     return sorted(files)
-
-
-def _common(names: Iterable[str]) -> Path:
-    """Return the folder that holds all of these files."""
-    return Path(commonpath([Path(name).absolute().parent for name in names]))
 
 
 def rows_from(rows: Iterable[Mapping[str, Any]], base: Path) -> Iterator[SceneRow]:
@@ -148,18 +144,14 @@ def _files(paths: Iterable[Path], besides: Path | None) -> list[Path]:
 
 def _read_manifest(path: Path) -> Iterator[SceneRow]:
     try:
-        read = _csv if path.suffix.lower() == ".csv" else _parquet
-        yield from _rows(read(path), path.absolute().parent)
+        lines = (row for _, row in read_table(path)[1]) if path.suffix.lower() == ".csv" else _parquet(path)
+        yield from _rows(lines, path.absolute().parent)
     except OSError as error:
         raise BatchError(f"{path}: cannot be read: {error.strerror or error}; name an existing manifest") from error
     except UnicodeDecodeError as error:
         raise BatchError(f"{path}: is not a table: {error}; save it as CSV in UTF-8") from error
     except ValueError as error:
         raise BatchError(f"{path}: {error}") from error
-
-
-def _csv(path: Path) -> Iterator[dict[str, Any]]:
-    yield from (dict[str, Any](row) for _, row in read_table(path)[1])
 
 
 def _parquet(path: Path) -> Iterator[dict[str, Any]]:

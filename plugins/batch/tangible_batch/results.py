@@ -103,16 +103,19 @@ def write_index(out: Path, names: Iterable[str]) -> Path:
     """Write the rows of these scenes as a table, a column for each figure. Raises: BatchError, OutputError."""
     arrow, parquet = need("pyarrow"), need("pyarrow.parquet")
     names = list(names)
-    types: dict[str, Any] = {}
+    columns, texts = dict[str, None](), set[str]()
     for row in rows_of_scenes(out, names):
         for name, value in _flatten("", row):
-            is_text = isinstance(value, str) or types.get(name) == arrow.string()
-            types[name] = arrow.string() if is_text else arrow.float64()
-    schema = arrow.schema(list(types.items()))
+            columns[name] = None
+            texts |= {name} if isinstance(value, str) else set()
+    schema = arrow.schema([(name, arrow.string() if name in texts else arrow.float64()) for name in columns])
     rows = (dict(_flatten("", row)) for row in rows_of_scenes(out, names))
     with atomic_write(out / INDEX) as file, parquet.ParquetWriter(file, schema, compression="zstd") as writer:
         while part := list(islice(rows, PER_PART)):
-            lines = ({name: _cell(value, types[name] == arrow.string()) for name, value in row.items()} for row in part)
+            lines = (
+                {name: str(value) if name in texts and value is not None else value for name, value in row.items()}
+                for row in part
+            )
             writer.write_table(_table("\n".join(map(json.dumps, lines)).encode(), schema))
     return out / INDEX
 
@@ -147,11 +150,6 @@ def _flatten(name: str, value: Any) -> Iterator[tuple[str, Any]]:
         yield name, None if value is None else float(min(max(value, -HUGE), HUGE))  # a damaged count may be any
 
 
-def _cell(value: Any, text: bool) -> Any:
-    """Return a value for a column of text, or else of numbers."""
-    return str(value) if text and value is not None else value
-
-
 def printable(text: str) -> str:
     """Return a text that UTF-8 can encode: file names may contain bytes that are not characters."""
     return text.encode(errors="replace").decode()
@@ -182,14 +180,10 @@ def _figure(row: Row) -> str:
             f'alt="{shows}"></a>'
         )
     caption = f'<a href="{folder}/">{name}</a>' if image else name
-    caption += "".join(f' · <a href="{folder}/{quote(page)}">{escape(page)}</a>' for page in _pages(row))
+    pages = [printable(file) for file in row.get("files", ()) if file.endswith(".html")]
+    caption += "".join(f' · <a href="{folder}/{quote(page)}">{escape(page)}</a>' for page in pages)
     line = f"<em>{found}</em>" if row["outcome"] != "ok" else found
     return f'<figure class="{row["outcome"]}">{image}<figcaption>{caption} <br>{line}</figcaption></figure>'
-
-
-def _pages(row: Row) -> list[str]:
-    """Return the exported files that a browser shows, such as pages to send and descriptions."""
-    return [printable(file) for file in row.get("files", ()) if file.endswith(".html")]
 
 
 def _product(row: Row) -> str:

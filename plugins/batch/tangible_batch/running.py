@@ -16,7 +16,7 @@ from tangible_core.runtime.threads import check_threads
 
 from .extra import need_all
 from .farm import LONGEST_S, Farm
-from .job import FULL, Job, Row, dead_row, make_scene
+from .job import FULL, Job, Row, make_scene, row_of
 from .job_maker import BatchOptions, JobMaker
 from .manifest import SceneRow, rows_from
 from .results import ROWS, last_rows
@@ -147,4 +147,4 @@ def _make_rows(jobs: list[Job], workforce: Workforce, options: BatchOptions) -> 
         chunk = max(1, min(options.chunk, len(jobs) // (4 * farm.workers)))
         for done in farm.map(make_scene, jobs, chunk, options.timeout_s):
             check_stopped()
-            yield done.result or dead_row(done.job, done.death)
+            yield done.result or row_of(done.job, "failed", done.death)

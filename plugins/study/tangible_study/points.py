@@ -7,14 +7,14 @@ from tangible_core.plugins.registry import Listing
 
 GROUP = "tangible.procedure"
 OURS = {
-    "constant": "constant:Constant",
-    "2afc": "two_afc:TwoAfc",
-    "oddity": "oddity:Oddity",
-    "same-different": "same_different:SameDifferent",
+    "constant": "pairs:Constant",
+    "2afc": "pairs:TwoAfc",
+    "oddity": "pairs:Oddity",
+    "same-different": "pairs:SameDifferent",
     "quest": "quest:Quest",
     "adjustment": "adjustment:Adjustment",
-    "naming": "naming:Naming",
-    "rating": "rating:Rating",
+    "naming": "single:Naming",
+    "rating": "single:Rating",
 }
 """Our own procedures below `procedures/`, which no other package can replace."""
 

@@ -64,9 +64,9 @@ class StudyFile:
         return ("comparisons", index, "standard")
 
 
-def load_study(path: Path, registry: Registry | None = None) -> StudyFile:
+def load_study(path: Path) -> StudyFile:
     """Read and check a study file; its pipelines are relative to its folder. Raises: ConfigError with all mistakes."""
-    return parse_study(read_text(path), path, registry)
+    return parse_study(read_text(path), path)
 
 
 def read_design(path: Path) -> Study:
@@ -74,22 +74,15 @@ def read_design(path: Path) -> Study:
 
     Raises: ConfigError with all mistakes.
     """
-    source = parse_source(read_text(path), path, EXPECTED)
-    study: Study | None = source.model((), Study, _expand(source.tree))
-    source.settle()
-    assert study is not None
-    return study.model_copy(update={"comparisons": tuple(map(_with_conditions(study), study.comparisons))})
+    return _design(parse_source(read_text(path), path, EXPECTED))
 
 
-def parse_study(text: str, path: Path, registry: Registry | None = None) -> StudyFile:
+def parse_study(text: str, path: Path) -> StudyFile:
     """Check the text of a study file, as `load_study` does. path: the file that complaints name."""
     source = parse_source(text, path, EXPECTED)
-    study: Study | None = source.model((), Study, _expand(source.tree))
-    source.settle()
-    assert study is not None
+    study = _design(source)
     if not study.comparisons:
         source.complain(("comparisons",), "asks nothing; write `comparisons:`, each with a `name:` and a `question:`")
-    study = study.model_copy(update={"comparisons": tuple(map(_with_conditions(study), study.comparisons))})
     names = [each.name for each in study.comparisons]
     for index, name in enumerate(names):
         if name in names[:index]:
@@ -104,7 +97,7 @@ def parse_study(text: str, path: Path, registry: Registry | None = None) -> Stud
     }
     source.settle()
     file = StudyFile(path, text, study, procedures, source)
-    _check_pipelines(file, registry or default_registry())
+    _check_pipelines(file, default_registry())
     source.settle()
     return file
 
@@ -133,11 +126,14 @@ def _expand(tree: Any) -> Any:
     return block
 
 
-def _with_conditions(study: Study):  # noqa: ANN202 - a function of a comparison
-    def fill(each: Comparison) -> Comparison:
-        return each.model_copy(update={"conditions": each.conditions or tuple(study.conditions)})
-
-    return fill
+def _design(source: Source) -> Study:
+    """Return the keys of the file; a comparison that names no conditions has all. Raises: ConfigError."""
+    study: Study | None = source.model((), Study, _expand(source.tree))
+    source.settle()
+    assert study is not None
+    everything = {"conditions": tuple(study.conditions)}
+    filled = (each if each.conditions else each.model_copy(update=everything) for each in study.comparisons)
+    return study.model_copy(update={"comparisons": tuple(filled)})
 
 
 def _procedure(source: Source, index: int, comparison: Comparison, study: Study) -> Procedure | None:

@@ -13,10 +13,9 @@ from tangible_core.cli.options import FAILED, Json, Sets
 from tangible_core.cli.verbosity import is_quiet
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
     from ..job import Row
-    from ..manifest import SceneRow
     from ..running import Tally
 
 
@@ -84,8 +83,8 @@ def batch(
     text = with_overrides(read_text(config), config, sets or [])
     tally, workforce = Tally(), Workforce(workers, threads, scheduler)
     options = BatchOptions(retry, sheets, cache, chunk, timeout_s)
-    wanted: list[str] = []
-    scenes = _collect_names(rows_of(pictures, besides=place), wanted)
+    scenes = list(rows_of(pictures, besides=place))
+    wanted = [scene.id for scene in scenes]
     rows = run_batch(text, config.absolute(), scenes, place, workforce, options, tally)
     try:
         for row in _show_progress(rows, tally, name):
@@ -104,12 +103,6 @@ def _divide(files: Sequence[Path], over: Sequence[str]) -> tuple[Path, list[str]
     """Return the pipeline file, and what it runs over: a shell makes many words of `--over *.jpg`."""
     configs = [each for each in files if each.suffix.lower() in (".yaml", ".yml")] or list(files[:1])
     return configs[0], [*over, *(str(each) for each in files if each != configs[0])]
-
-
-def _collect_names(scenes: Iterable[SceneRow], names: list[str]) -> Iterator[SceneRow]:
-    for scene in scenes:
-        names.append(scene.id)
-        yield scene
 
 
 def _show_progress(rows: Iterator[Row], tally: Tally, name: str) -> Iterator[Row]:

@@ -1,7 +1,11 @@
 """The measurements of a comparison, in order: rounds over all scenes and perturbations, methods side by side."""
 
+import platform
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 from tangible_core.data import digest_of
@@ -13,7 +17,6 @@ from tangible_core.provenance.versions import versions
 from tangible_core.runtime.child_process import Place, place
 
 from ..config.reading import Comparison, Damage, Entry
-from .machine import machine
 from .rows import Row
 from .worker import Job
 
@@ -96,3 +99,19 @@ def _side_by_side(
 def _code(chosen: NamedMethod[Method]) -> str:
     cls = type(chosen.method)
     return f"{cls.__module__}:{cls.__qualname__} v{cls.version} {closure(cls.__module__).digest}"
+
+
+@cache
+def machine() -> dict[str, str | int]:
+    """Return the processor, the number of cores that this process may use, and the system."""
+    from tangible_core.compiled.threads import thread_count
+
+    return {"processor": _processor(), "cores": thread_count(), "system": f"{platform.system()} {platform.machine()}"}
+
+
+def _processor() -> str:
+    try:
+        model = re.search(r"model name\s*: (.+)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))
+    except OSError:
+        model = None
+    return model[1] if model else platform.processor() or platform.machine()

@@ -73,8 +73,4 @@ def visible_pixels(truth_px: Float[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"
 
 
 def _percent(flags: np.ndarray) -> float:
-    return 100 * _mean(flags)
-
-
-def _mean(values: np.ndarray) -> float:
-    return float(values.mean()) if values.size else float("nan")
+    return 100 * float(flags.mean()) if flags.size else float("nan")

@@ -3,7 +3,6 @@
 import numpy as np
 from jaxtyping import Bool, Float64
 
-from tangible_core.errors import GeometryError
 from tangible_core.metrics.forces import Vectors
 
 
@@ -24,17 +23,14 @@ def proxy_lag(position_m: Vectors, proxy_m: Vectors, nearest_m: Vectors) -> floa
     The mean is over the ticks in contact (p* is not the hand itself) at which the hand moves; v is the central
     difference of its positions. Sideways offsets on the way up and on the way down cancel: delay or friction is left.
     NaN without such a tick.
-    Raises: GeometryError if the three differ in length.
     """
-    _same_length(position_m, proxy_m)
-    _same_length(position_m, nearest_m)
     if len(position_m) < 2:
         return float("nan")
     motion = np.gradient(position_m, axis=0)
     speed = np.linalg.norm(motion, axis=1)
     offset = ((proxy_m - nearest_m) * motion).sum(axis=1)
     counts = np.isfinite(offset) & (nearest_m != position_m).any(axis=1) & (speed > 0)
-    return abs(_mean(offset[counts] / speed[counts]))
+    return abs(float((offset[counts] / speed[counts]).mean())) if counts.any() else float("nan")
 
 
 def loop_works(force_n: Vectors, position_m: Vectors, free: Bool[np.ndarray, "n"]) -> Float64[np.ndarray, "loops"]:
@@ -43,20 +39,8 @@ def loop_works(force_n: Vectors, position_m: Vectors, free: Bool[np.ndarray, "n"
     Free ticks can be joined by a path through the air without force: so each loop is closed, and work above 0 is
     energy given away. The trapezoidal rule is exact for a spring: the energy of sampling and holding is not part of a
     force law. Ticks before the first free one and after the last belong to no loop.
-    Raises: GeometryError if the three differ in length.
     """
-    _same_length(force_n, position_m)
-    _same_length(force_n, free)
     work = ((force_n[1:] + force_n[:-1]) / 2 * np.diff(position_m, axis=0)).sum(axis=1)
     at = np.flatnonzero(free)
     total = np.concatenate([[0.0], np.cumsum(work)])[at]
     return np.diff(total)[np.diff(at) > 1]
-
-
-def _same_length(first: np.ndarray, second: np.ndarray) -> None:
-    if len(first) != len(second):
-        raise GeometryError(f"one has {len(first)} ticks and the other {len(second)}; they must be of one path")
-
-
-def _mean(values: np.ndarray) -> float:
-    return float(values.mean()) if values.size else float("nan")

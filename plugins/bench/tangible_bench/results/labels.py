@@ -4,12 +4,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from itertools import pairwise, product
 from typing import TYPE_CHECKING
 
 import numpy as np
+from jaxtyping import Float64
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,9 +20,8 @@ TURNS = 16
 POINT_PT = 5
 """Half the side of the free square around a point, points."""
 
-Point = tuple[float, float]
-Box = tuple[float, float, float, float]
-"""A rectangle: left, bottom, right, top, pixels of the canvas."""
+Boxes = Float64[np.ndarray, "n 4"]
+"""Rectangles: left, bottom, right, top, pixels of the canvas."""
 
 
 def place_labels(
@@ -35,88 +33,40 @@ def place_labels(
     A label without a free place takes the place that covers the least. The axes must have been drawn before.
     """
     from matplotlib import patheffects
+    from matplotlib.text import Text
 
     from tangible_report.style import INK
 
     per_point = axes.figure.dpi / 72
-    left, bottom, right, top = axes.bbox.extents
-    points = [_on_canvas(axes, x, y) for _, x, y in named]
-    taken: list[Box] = [_square(point, POINT_PT * per_point) for point in points]
-    taken += _step_boxes([_on_canvas(axes, x, y) for x, y in steps], per_point)
-    for (name, x, y), point in sorted(zip(named, points, strict=True), key=lambda pair: -pair[1][1]):
-        size = _size(axes, name)
-        places = [_box_at(point, offset, size) for offset in _offsets(per_point, size)]
-        box = min(places, key=lambda place: _overlap(place, taken, (left, bottom, right, top)))
-        far = _distance(point, box) > 1.5 * RINGS_PT[0] * per_point
-        taken.append(box)
-        axes.annotate(
-            name,
-            (x, y),
-            ((box[0] - point[0]) / per_point, (box[1] - point[1]) / per_point),
-            textcoords="offset points",
-            ha="left",
-            va="bottom",
-            fontsize=8,
-            color=INK,
-            zorder=4,
+    points = axes.transData.transform([each[1:] for each in named])
+    corners = axes.transData.transform(list(steps)) if steps else np.empty((0, 2))
+    level = np.column_stack([corners[:-1], corners[1:, 0], corners[:-1, 1]])
+    upright = np.column_stack([corners[1:, 0], corners[1:, 1], corners[1:, 0], corners[:-1, 1]])
+    around = np.array([-1, -1, 1, 1]) * per_point
+    taken = np.vstack([np.tile(points, 2) + POINT_PT * around, level + around, upright + around])
+    angles = np.tile(2 * np.pi * np.arange(TURNS) / TURNS, len(RINGS_PT))
+    turns = np.column_stack([np.cos(angles), np.sin(angles)])
+    away = turns * per_point * np.repeat(RINGS_PT, TURNS)[:, None]
+    for index in np.argsort(-points[:, 1], kind="stable").tolist():
+        (name, x, y), point = named[index], points[index]
+        label = axes.annotate(
+            name, (x, y), (0, 0), textcoords="offset points", ha="left", va="bottom", fontsize=8, color=INK, zorder=4,
             path_effects=[patheffects.withStroke(linewidth=2, foreground="white")],
-            arrowprops={"arrowstyle": "-", "linewidth": 0.4, "color": INK, "shrinkB": 4} if far else None,
-        )
+            arrowprops={"arrowstyle": "-", "linewidth": 0.4, "color": INK, "shrinkB": 4},
+        )  # fmt: skip
+        size = np.array(Text.get_window_extent(label).size)
+        starts = point + away + (turns - 1) / 2 * size
+        places = np.column_stack([starts, starts + size])
+        covered = _common_area(places, taken).sum(axis=1) - _common_area(places, np.array([axes.bbox.extents]))[:, 0]
+        box = places[int(covered.argmin())]
+        taken = np.vstack([taken, box])
+        label.set_position((box[:2] - point) / per_point)
+        gap = np.maximum(np.maximum(box[:2] - point, point - box[2:]), 0)
+        assert label.arrow_patch is not None
+        label.arrow_patch.set_visible(np.hypot(*gap) > 1.5 * RINGS_PT[0] * per_point)
 
 
-def _on_canvas(axes: Axes, x: float, y: float) -> Point:
-    across, up = axes.transData.transform((x, y))
-    return float(across), float(up)
-
-
-def _size(axes: Axes, name: str) -> tuple[float, float]:
-    text = axes.text(0, 0, name, fontsize=8)
-    box = text.get_window_extent()
-    text.remove()
-    return box.width, box.height
-
-
-def _offsets(per_point: float, size: tuple[float, float]) -> list[tuple[float, float]]:
-    """Return the offsets from a point to the lower left corner of its label, in rings, the nearest first."""
-    angles = 2 * np.pi * np.arange(TURNS) / TURNS
-    return [
-        (
-            ring * per_point * np.cos(angle) + (np.cos(angle) - 1) / 2 * size[0],
-            ring * per_point * np.sin(angle) + (np.sin(angle) - 1) / 2 * size[1],
-        )
-        for ring, angle in product(RINGS_PT, angles)
-    ]
-
-
-def _overlap(box: Box, taken: Sequence[Box], frame: Box) -> float:
-    """Return the area of a box that other boxes cover, plus the area outside of the frame."""
-    outside = (box[2] - box[0]) * (box[3] - box[1]) - _intersection(box, frame)
-    return outside + sum(_intersection(box, each) for each in taken)
-
-
-def _intersection(one: Box, other: Box) -> float:
-    width = min(one[2], other[2]) - max(one[0], other[0])
-    height = min(one[3], other[3]) - max(one[1], other[1])
-    return max(0.0, width) * max(0.0, height)
-
-
-def _step_boxes(corners: Sequence[Point], half: float) -> list[Box]:
-    """Return boxes around the level and the upright piece of each step."""
-    boxes: list[Box] = []
-    for (left, high), (right, low) in pairwise(corners):
-        boxes += [(left, high - half, right, high + half), (right - half, low, right + half, high)]
-    return boxes
-
-
-def _distance(point: Point, box: Box) -> float:
-    across = max(box[0] - point[0], point[0] - box[2], 0.0)
-    return math.hypot(across, max(box[1] - point[1], point[1] - box[3], 0.0))
-
-
-def _square(point: Point, half: float) -> Box:
-    return point[0] - half, point[1] - half, point[0] + half, point[1] + half
-
-
-def _box_at(point: Point, offset: tuple[float, float], size: tuple[float, float]) -> Box:
-    left, bottom = point[0] + offset[0], point[1] + offset[1]
-    return left, bottom, left + size[0], bottom + size[1]
+def _common_area(some: Boxes, others: Boxes) -> Float64[np.ndarray, "n m"]:
+    """Return the area that each of some boxes has in common with each of others."""
+    low, high = np.maximum(some[:, None, :2], others[:, :2]), np.minimum(some[:, None, 2:], others[:, 2:])
+    return np.maximum(high - low, 0).prod(axis=2)

@@ -6,13 +6,12 @@ from pathlib import Path
 from typing import Any
 
 from ..design.study import Comparison
-from .cells import ByParticipant
 from .curves import analyse_levels
 from .pairs import analyse_pairs
 from .quantities import analyse_adjustments, analyse_ratings
 from .results_folder import Kept, read_results
-from .right_answers import analyse_differences, analyse_names, analyse_odd
-from .rows import Result, as_record
+from .right_answers import analyse_choices, analyse_differences
+from .rows import ByParticipant, Result, as_record
 from .sentences import sentences
 
 ANALYSES: Mapping[tuple[str, bool], Callable[[Comparison, ByParticipant], Result]] = {
@@ -20,12 +19,12 @@ ANALYSES: Mapping[tuple[str, bool], Callable[[Comparison, ByParticipant], Result
     ("rougher", True): analyse_levels,
     ("higher", False): analyse_pairs,
     ("higher", True): analyse_levels,
-    ("same", False): analyse_odd,
+    ("same", False): analyse_choices,
     ("same", True): analyse_levels,
     ("different", False): analyse_differences,
     ("equal", True): analyse_adjustments,
-    ("name", False): analyse_names,
-    ("name", True): analyse_names,
+    ("name", False): analyse_choices,
+    ("name", True): analyse_choices,
     ("rating", False): analyse_ratings,
     ("rating", True): analyse_ratings,
 }

@@ -7,9 +7,8 @@ from tangible_core.errors import TangibleError
 from ..design.study import Comparison
 from ..statistics.psychometric import JND, Blocks, Curve, fit_choice, fit_difference
 from ..trials import Answer
-from .cells import ByParticipant, grouped, together
 from .pairs import note_on_order
-from .rows import Result, Row, What, contrasts, over_participants
+from .rows import ByParticipant, Result, Row, What, contrasts, grouped, over_participants, together
 
 EQUALITY = "point of equality"
 THRESHOLD = "threshold"

@@ -6,9 +6,8 @@ from jaxtyping import Float64
 from ..design.study import Comparison
 from ..statistics.bradley_terry import fit_scale
 from ..trials import Answer
-from .cells import ByParticipant, grouped, together
 from .right_answers import with_dprime
-from .rows import ALL, Result, Row, What, over_participants, proportion_row
+from .rows import ALL, ByParticipant, Result, Row, What, grouped, over_participants, proportion_row, together
 
 CHOSEN = "proportion chosen"
 SCALE = "scale value"

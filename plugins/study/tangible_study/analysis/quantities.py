@@ -10,8 +10,7 @@ from ..design.study import Comparison
 from ..statistics import intervals
 from ..statistics.intervals import Estimate
 from ..trials import Answer
-from .cells import ByParticipant, grouped, label
-from .rows import Result, Row, What, contrasts, over_participants
+from .rows import ByParticipant, Result, Row, What, contrasts, grouped, label, over_participants
 
 ERROR = "constant error"
 RATING = "mean rating"

@@ -8,21 +8,26 @@ from ..procedures.procedure import DIFFERENT, SAME
 from ..statistics import sensitivity
 from ..statistics.intervals import Estimate
 from ..trials import Answer
-from .cells import ByParticipant, grouped, label, together
-from .rows import Result, Row, What, contrasts, over_participants, proportion_row
+from .rows import (
+    ByParticipant,
+    Result,
+    Row,
+    What,
+    contrasts,
+    grouped,
+    label,
+    over_participants,
+    proportion_row,
+    together,
+)
 
 CORRECT = "proportion correct"
 DPRIME = "d'"
 
 
-def analyse_odd(comparison: Comparison, answers: ByParticipant) -> Result:
-    """Analyse how often the odd one of three was named, for each pair of conditions."""
-    return _analyse(comparison, answers, 1 / 3)
-
-
-def analyse_names(comparison: Comparison, answers: ByParticipant) -> Result:
-    """Analyse how often parts were named rightly in each condition, and how conditions differ."""
-    return _analyse(comparison, answers, 1 / len(comparison.names))
+def analyse_choices(comparison: Comparison, answers: ByParticipant) -> Result:
+    """Analyse how often the odd one of three, or a part, was named rightly."""
+    return _analyse(comparison, answers, 1 / (len(comparison.names) if comparison.question == "name" else 3))
 
 
 def analyse_differences(comparison: Comparison, answers: ByParticipant) -> Result:

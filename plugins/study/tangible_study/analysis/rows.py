@@ -1,17 +1,21 @@
 """The rows of a result: a measure, of whom, its estimate, and what it would be by chance."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 from math import isfinite, isnan, nan
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from ..statistics import intervals
 from ..statistics.intervals import Estimate
 from ..statistics.psychometric import Blocks, Curve
+from ..trials import Answer
 
 ALL = "all"
 """Participant of a row about all participants."""
+Key = TypeVar("Key", bound=Hashable)
+ByParticipant = Mapping[str, Sequence[Answer]]
+"""Answers of one comparison by participant."""
 
 
 class What(NamedTuple):
@@ -151,3 +155,21 @@ def as_record(row: Row) -> dict[str, Any]:
         "chance": row.chance,
         "p": row.p,
     }
+
+
+def grouped(answers: Sequence[Answer], key: Callable[[Answer], Key]) -> dict[Key, list[Answer]]:
+    """Return answers by a key, in the order of the first of each."""
+    groups: dict[Key, list[Answer]] = {}
+    for answer in answers:
+        groups.setdefault(key(answer), []).append(answer)
+    return groups
+
+
+def label(answer: Answer) -> str:
+    """Return the condition of an answer, with its level if one varies."""
+    return answer.condition if answer.level is None else f"{answer.condition} at {answer.level:g}"
+
+
+def together(answers: ByParticipant) -> list[Answer]:
+    """Return the answers of all participants."""
+    return [each for one in answers.values() for each in one]

@@ -62,7 +62,7 @@ def simulate(
     from ..analysis.analysing import analyse as analyse_folder
     from ..simulation.observers import observer_of
     from ..simulation.power import plan
-    from ..simulation.writing import write_folder
+    from ..simulation.simulating import write_folder
     from ..study_file import load_study
 
     study = load_study(file)

@@ -89,14 +89,13 @@ def run(
     from tangible_core.cli import show
 
     from ..desks.desk import Left
-    from ..presenting.stimuli import folder_of
     from ..session.start import begin
 
     hand = _own_hand(sets) if page and device is None else None
     stimuli = _open(file, device, sets, () if hand is None else hand.device)
     if hand is not None and stimuli.has_film:
         raise ConfigError(f"{file}: has a film, which is not felt on the page; name a device with --device")
-    root = out or folder_of(file)
+    root = out or Path("out", file.stem)
     with ExitStack() as stack:
         desk = _open_page(stimuli.file.study, hand, stack) if page else _terminal(stimuli.file.study)
         try:

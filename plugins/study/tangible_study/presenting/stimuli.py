@@ -1,13 +1,12 @@
 """All stimuli of a study, made before the first trial: so that no trial waits, and none fails for what was known."""
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
 
 from tangible_core.errors import ConfigError, TangibleError
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.plugins.registry import Registry, default_registry
-from tangible_core.preflight import Hand, Loop, Preflight, Verdict
+from tangible_core.plugins.registry import default_registry
+from tangible_core.preflight import Loop, Preflight
 
 from ..procedures.procedure import Stimulus
 from ..study_file import Recipe, StudyFile, config_of_recipe
@@ -21,16 +20,14 @@ NOT_RENDERED = frozenset(("clipping", "contact", "workspace"))
 class Stimuli:
     """The surfaces of a study on a device, by comparison and stimulus; equal ones are made once."""
 
-    def __init__(
-        self, file: StudyFile, device: tuple[str, ...] = (), registry: Registry | None = None, cached: bool = True
-    ) -> None:
+    def __init__(self, file: StudyFile, device: tuple[str, ...] = ()) -> None:
         """Read all pipelines; nothing is made yet.
 
         device: changes of each pipeline that choose the device, `key.key=value` each.
         Raises: ConfigError for a pipeline without a device or a force law, or devices that differ.
         """
         self.file = file
-        registry = registry or default_registry()
+        registry = default_registry()
         self._pipelines: dict[Recipe, Pipeline] = {}
         self.recipes: Mapping[tuple[str, Stimulus], Recipe] = {
             key: Recipe(each.pipeline, (*each.sets, *device)) for key, each in file.recipes().items()
@@ -42,14 +39,7 @@ class Stimuli:
                     if getattr(config, missing) is None:
                         file.source.complain(file.place(*key), str(config.missing(missing)))
                 like = next(iter(self._pipelines.values()), None)
-                made = (
-                    Pipeline.from_config(config, registry, like=like)
-                    if like
-                    else Pipeline.from_config(config, registry)
-                )
-                if not cached:
-                    made.engine.cache = None
-                self._pipelines[recipe] = made
+                self._pipelines[recipe] = Pipeline.from_config(config, registry, like=like)
         file.source.settle()
         devices = {each.config.device.name for each in self._pipelines.values() if each.config.device}
         if len(devices) > 1:
@@ -91,7 +81,7 @@ class Stimuli:
         self._check_names()
         self.file.source.settle()
 
-    def check(self, hand: Hand | None = None) -> None:
+    def check(self) -> None:
         """Check by preflight that the device renders everything; no device is opened.
 
         Raises: ConfigError with a sentence for each condition or level that it does not, and its place.
@@ -100,7 +90,7 @@ class Stimuli:
         for key, recipe in self.recipes.items():
             if recipe not in checked:
                 checked.add(recipe)
-                if problem := _problem(self.feeling(*key).preflight(hand, QUICK)):
+                if problem := _problem(self.feeling(*key).preflight(None, QUICK)):
                     self.file.source.complain(self.file.place(*key), f"{self.device} cannot render this: {problem}")
         self.file.source.settle()
 
@@ -123,14 +113,7 @@ class Stimuli:
 
 def _problem(verdicts: Preflight) -> str:
     """Return why a device does not render what was requested; "" if it does."""
-    wrong = [each for each in verdicts if each.verdict == "unsafe" or _alters(each)]
+    wrong = (
+        each for each in verdicts if each.verdict == "unsafe" or (each.verdict != "ok" and each.check in NOT_RENDERED)
+    )
     return next((f"{each.says} ({each.cure})" if each.cure else each.says for each in wrong), "")
-
-
-def _alters(verdict: Verdict) -> bool:
-    return verdict.verdict != "ok" and verdict.check in NOT_RENDERED
-
-
-def folder_of(path: Path) -> Path:
-    """Return the folder of the results of a study if none is named."""
-    return Path("out", path.stem)

@@ -24,7 +24,10 @@ class Adjustment(Procedure):
         """Return all trials in rounds."""
 
         def make(name: str, number: int) -> Trial:
-            return _from(comparison, name, comparison.levels[-(number % 2)])
+            start, standard = comparison.levels[-(number % 2)], comparison.standard
+            names = comparison.name, comparison.question, "adjustment"
+            intervals, choices = (Stimulus(name, standard), Stimulus(name, start)), tuple(map(repr, comparison.levels))
+            return Trial(*names, intervals, choices, name, level=start, standard=standard)
 
         return Listed(in_rounds(comparison.conditions, comparison.repetitions, generator, make))
 
@@ -32,17 +35,3 @@ class Adjustment(Procedure):
         """Return all levels and the standard, in each condition."""
         levels = (comparison.standard, *comparison.levels)
         return tuple(dict.fromkeys(Stimulus(name, level) for name in comparison.conditions for level in levels))
-
-
-def _from(comparison: Comparison, name: str, start: float) -> Trial:
-    return Trial(
-        comparison.name,
-        comparison.question,
-        "adjustment",
-        (Stimulus(name, comparison.standard), Stimulus(name, start)),
-        tuple(map(repr, comparison.levels)),
-        name,
-        None,
-        start,
-        comparison.standard,
-    )

@@ -52,22 +52,6 @@ def comparison_trial(comparison: Comparison, procedure: str, cell: Cell, positio
     )
 
 
-def one_interval(
-    comparison: Comparison, procedure: str, stimulus: Stimulus, choices: tuple[str, ...], target: str | None = None
-) -> Trial:
-    """Return a trial of one interval."""
-    return Trial(
-        comparison.name,
-        comparison.question,
-        procedure,
-        (stimulus,),
-        choices,
-        stimulus.condition,
-        level=stimulus.level,
-        target=target,
-    )
-
-
 def in_rounds(
     things: Sequence[T], repetitions: int, generator: np.random.Generator, make: Callable[[T, int], Trial]
 ) -> list[Trial]:

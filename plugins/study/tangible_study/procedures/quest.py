@@ -9,7 +9,7 @@ from pydantic import Field
 from ..design.study import Comparison
 from ..extra import need
 from .cells import Cell, asks, cells_of, comparison_trial, stimuli_of, without_levels
-from .oddity import odd_one
+from .pairs import odd_one, standard_among_levels
 from .procedure import Course, Procedure, Stimulus, Trial, score
 
 
@@ -26,9 +26,8 @@ class Quest(Procedure):
 
     def refusal(self, comparison: Comparison) -> str:
         """Return what is missing: levels, a standard, or the question."""
-        if comparison.question == "same" and comparison.standard in comparison.levels:
-            return "cannot tell the standard from itself; leave the `standard:` out of the `levels:`"
-        return asks(comparison, "rougher", "higher", "same") or without_levels(comparison)
+        itself = standard_among_levels(comparison) if comparison.question == "same" else ""
+        return itself or asks(comparison, "rougher", "higher", "same") or without_levels(comparison)
 
     def course(self, comparison: Comparison, generator: np.random.Generator) -> Course:
         """Begin one track a condition."""
@@ -84,31 +83,29 @@ class _Track:
     def _quest(self) -> Any:
         levels = np.array(_intensities(self._comparison))
         span = float(np.ptp(levels)) or abs(float(levels[0])) or 1.0
-        widths = np.geomspace(span / 30, 2 * span, 12)
-        plus: Any = need("questplus").QuestPlus
         if self._comparison.question == "same":
-            return plus(
-                stim_domain={"intensity": levels},
-                param_domain={
+            function, domain = (
+                "weibull",
+                {
                     "threshold": np.geomspace(span / 30, 2 * max(span, float(levels.max())), 30),
                     "slope": [1.0, 2.0, 4.0],
                     "lower_asymptote": [1 / 3],
-                    "lapse_rate": list(self._lapses),
                 },
-                outcome_domain={"response": [1, 0]},
-                func="weibull",
-                stim_scale="linear",
             )
-        return plus(
+        else:
+            function, domain = (
+                "norm_cdf",
+                {
+                    "mean": np.linspace(levels.min(), levels.max(), 31),
+                    "sd": np.geomspace(span / 30, 2 * span, 12),
+                    "lower_asymptote": list(self._lapses[:1]),
+                },
+            )
+        return need("questplus").QuestPlus(
             stim_domain={"intensity": levels},
-            param_domain={
-                "mean": np.linspace(levels.min(), levels.max(), 31),
-                "sd": widths,
-                "lower_asymptote": list(self._lapses[:1]),
-                "lapse_rate": list(self._lapses),
-            },
+            param_domain={**domain, "lapse_rate": list(self._lapses)},
             outcome_domain={"response": [1, 0]},
-            func="norm_cdf",
+            func=function,
             stim_scale="linear",
         )
 

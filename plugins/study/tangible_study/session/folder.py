@@ -3,8 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import cache
 from hashlib import sha256
-from json import loads
+from importlib.resources import files
+from json import dumps, loads
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,7 +21,6 @@ from tangible_core.provenance.versions import versions
 from ..design.study import Study
 from ..study_file import StudyFile
 from ..trials import MISSING
-from .columns import describe_answers, describe_participants
 
 BIDS = "1.10.0"
 """Version of the Brain Imaging Data Structure that the folder follows."""
@@ -129,7 +130,7 @@ def _prepare(root: Path, file: StudyFile, digest: str) -> None:
         "Versions": versions("questplus", "psignifit"),
     }
     write_figures(there, description)
-    write_figures(root / "participants.json", describe_participants())
+    write_figures(root / "participants.json", _columns()["participants"])
     write_text(root / "study.yaml", file.text)
 
 
@@ -221,4 +222,18 @@ def write_sidecar(place: Place, file: StudyFile, facts: Mapping[str, Any]) -> No
         "Versions": versions("questplus", "psignifit"),
         **facts,
     }
-    write_figures(place.sidecar, {**describe_answers(units), **about})
+    write_figures(place.sidecar, {**_describe_answers(units), **about})
+
+
+def _describe_answers(units: Mapping[str, str]) -> dict[str, Any]:
+    """Return the description of each column of the table of answers. units: of the levels, by comparison."""
+    unit = next(iter(units.values())) if len(set(units.values())) == 1 else dumps(dict(units))
+    described = {"Units": unit} if units else {}
+    answers = _columns()["answers"]
+    return answers | {name: answers[name] | described for name in ("level", "standard")}
+
+
+@cache
+def _columns() -> dict[str, dict[str, Any]]:
+    """Return the descriptions of the columns of all tables, as BIDS wants them next to a table."""
+    return loads(files("tangible_study.session").joinpath("columns.json").read_text(encoding="utf-8"))

@@ -1,6 +1,6 @@
 """The course of a participant through a whole study: comparisons in balanced order, training first."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import final
 
@@ -14,6 +14,10 @@ from ..trials import Answer
 
 TRAINING, TEST = 1, 2
 """Streams of chance for training and for test."""
+SHARED = (
+    "phase", "comparison", "question", "procedure", "condition", "other", "level", "standard", "position", "target",
+)  # fmt: skip
+"""Fields that a trial and its answer have in common."""
 
 
 def latin_square(count: int, row: int) -> list[int]:
@@ -103,27 +107,11 @@ def replay(course: Course, answers: Iterable[Answer]) -> int:
 
 
 def _same(trial: Trial, answer: Answer) -> bool:
-    fields: Sequence[str] = ("phase", "comparison", "condition", "other", "level", "standard", "position", "target")
-    return all(getattr(trial, each) == getattr(answer, each) for each in fields)
+    return all(getattr(trial, each) == getattr(answer, each) for each in {*SHARED} - {"question", "procedure"})
 
 
 def answer_of(trial: Trial, number: int, response: str, seconds: float) -> Answer:
     """Return the line of the table for a response to a trial. number: of the trial, from 1."""
     chosen, correct = score(trial, response)
-    return Answer(
-        number,
-        trial.phase,
-        trial.comparison,
-        trial.question,
-        trial.procedure,
-        trial.condition,
-        trial.other,
-        trial.level,
-        trial.standard,
-        trial.position,
-        response,
-        chosen,
-        correct,
-        round(seconds, 4),
-        target=trial.target,
-    )
+    told = {"response": response, "chosen": chosen, "correct": correct, "response_time": round(seconds, 4)}
+    return Answer(number, **{each: getattr(trial, each) for each in SHARED}, **told)

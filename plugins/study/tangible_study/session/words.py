@@ -5,28 +5,24 @@ from ..procedures.procedure import Trial
 
 MORE, LESS, EQUAL = "1", "2", "3"
 """Keys of an adjustment."""
+QUESTIONS = {
+    "rougher": "Which interval was rougher?",
+    "higher": "Which interval was higher?",
+    "same": "Which interval was not the same as the others?",
+    "different": "Were the two intervals the same, or different?",
+    "equal": "Was interval 2 equal to interval 1?",
+    "name": "Which part was this?",
+}
+"""Sentences of all questions but that for a rating."""
 NAMED = ("name", "different")
 """Questions whose responses are words, each with a number as its key, in the order of the choices."""
 
 
 def question(trial: Trial, comparison: Comparison) -> str:
     """Return the question after a trial."""
-    match trial.question:
-        case "rougher":
-            return "Which interval was rougher?"
-        case "higher":
-            return "Which interval was higher?"
-        case "same":
-            return "Which interval was not the same as the others?"
-        case "different":
-            return "Were the two intervals the same, or different?"
-        case "equal":
-            return "Was interval 2 equal to interval 1?"
-        case "name":
-            return "Which part was this?"
-        case _:
-            of = comparison.scale.of
-            return f"How would you rate {of}?" if of else "Which number fits best?"
+    if trial.question in QUESTIONS:
+        return QUESTIONS[trial.question]
+    return f"How would you rate {comparison.scale.of}?" if comparison.scale.of else "Which number fits best?"
 
 
 def choices(trial: Trial, comparison: Comparison) -> dict[str, str]:

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from ..design.study import Comparison
 from ..procedures.procedure import Stimulus, Trial
-from .observer import Observer, decide, number_of
+from .observer import Observer, decide
 
 
 @final
@@ -41,6 +41,6 @@ class Detection(Observer):
         def magnitude(stimulus: Stimulus) -> float:
             if stimulus.level is not None:
                 return stimulus.level / noise
-            return self.difference * number_of(comparison, stimulus.condition)
+            return self.difference * comparison.conditions.index(stimulus.condition)
 
         return decide(trial, magnitude, self.base, generator)

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from ..design.study import Comparison
 from ..procedures.procedure import Stimulus, Trial
-from .observer import Observer, decide, number_of
+from .observer import Observer, decide
 
 JND_FORCE = 0.07
 """Just noticeable difference of force, as a share of it (Pang, Tan & Durlach 1991, Percept. Psychophys. 49:531)."""
@@ -49,7 +49,7 @@ class Hand(Observer):
         jnd = self.jnd or (JND_FORCE if self.quantity == "force" else JND_HEIGHT_M)
 
         def magnitude(stimulus: Stimulus) -> float:
-            amount = self.first + self.difference * number_of(comparison, stimulus.condition)
+            amount = self.first + self.difference * comparison.conditions.index(stimulus.condition)
             amount = amount if stimulus.level is None else stimulus.level
             if self.quantity == "height":
                 return NOTICED * (amount - self.first) / jnd

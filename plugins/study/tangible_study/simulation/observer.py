@@ -76,8 +76,3 @@ def decide(trial: Trial, magnitude: Callable[[Stimulus], float], base: float, ge
 def nearest(wanted: float, trial: Trial, scale: Callable[[float], float] = float) -> str:
     """Return the level that can be set that is nearest to what is wanted, on a scale of its own."""
     return min(trial.choices, key=lambda each: abs(scale(float(each)) - wanted))
-
-
-def number_of(comparison: Comparison, condition: str) -> int:
-    """Return the number of a condition in its comparison, from 0."""
-    return comparison.conditions.index(condition)

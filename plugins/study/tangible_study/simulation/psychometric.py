@@ -9,7 +9,7 @@ from scipy import stats
 from ..design.study import Comparison
 from ..procedures.procedure import Trial
 from ..statistics.psychometric import GAUSSIAN
-from .observer import Observer, nearest, number_of
+from .observer import Observer, nearest
 
 
 @final
@@ -47,7 +47,7 @@ class Psychometric(Observer):
         """Return a response by the function of the condition."""
         levels, standard = np.array(comparison.levels), comparison.standard or 0.0
         width = self.width or 0.5 * float(np.ptp(levels)) or 1.0
-        step = self.difference * number_of(comparison, trial.condition) + self.shift * width
+        step = self.difference * comparison.conditions.index(trial.condition) + self.shift * width
         level = trial.level or 0.0
         if trial.question == "same":
             farthest = float(np.abs(levels - standard).max())

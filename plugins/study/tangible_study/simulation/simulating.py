@@ -1,13 +1,15 @@
 """Participants who are models: their answers, by the same procedures as those of people."""
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
 from ..analysis.results_folder import Kept
+from ..session import folder
 from ..session.order import StudyCourse, answer_of
 from ..study_file import StudyFile
-from ..trials import Answer
+from ..trials import Answer, AnswerFile
 from .observer import Observer
 
 MEDIAN_S = 1.2
@@ -40,3 +42,24 @@ def kept_of(file: StudyFile, answers: Sequence[Sequence[Answer]]) -> Kept:
     }
     training = sum(each.phase == "training" for some in answers for each in some)
     return Kept(file.study, tests, training, 0)
+
+
+def write_folder(root: Path, file: StudyFile, observer: Observer, participants: int, seed: int) -> int:
+    """Simulate participants, write the folder that `tangible study run` writes, and return the number of answers.
+
+    Raises: OutputError if the folder holds another study, or cannot be written; ConfigError if it has participants.
+    """
+    folder.prepare(root, file)
+    count = 0
+    for name in names_of(participants):
+        number = folder.enrol(root, name, file.study, resume=False)
+        place = folder.Place(root, name, file.study.study)
+        options = observer.model_dump(mode="json")
+        folder.write_sidecar(place, file, {"Observer": {"Model": type(observer).__name__, "Seed": seed, **options}})
+        answers = simulate(file, observer, number, seed)
+        with AnswerFile(place.answers) as table:
+            for answer in answers:
+                table.add(answer)
+        folder.finish(root, name)
+        count += len(answers)
+    return count

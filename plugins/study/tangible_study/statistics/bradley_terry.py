@@ -33,9 +33,7 @@ class Scale(NamedTuple):
         """Return how far one is above another, with its interval."""
         weights = np.zeros(len(self.values))
         weights[one], weights[other] = 1.0, -1.0
-        return self._estimate(
-            float(np.einsum("i,i", weights, self.values)), float(np.einsum("i,ij,j", weights, self.covariance, weights))
-        )
+        return self._estimate(float(weights @ self.values), float(weights @ self.covariance @ weights))
 
     def _estimate(self, value: float, variance: float) -> Estimate:
         half = float(stats.t.ppf((1 + LEVEL) / 2, self.degrees)) * max(variance, 0.0) ** 0.5
@@ -57,17 +55,17 @@ def fit_scale(wins: Sequence[Float64[np.ndarray, "n n"]]) -> Scale:
     centre = np.eye(count) - 1 / count
     for _ in range(100):
         score, information = _derivatives(total, values)
-        step = np.einsum("ij,j->i", np.linalg.pinv(information), score)
+        step = np.linalg.pinv(information) @ score
         values = values + step / max(1.0, float(np.abs(step).max()))
         if np.abs(step).max() < 1e-10:
             break
     inverse = np.linalg.pinv(_derivatives(total, values)[1])
-    covariance = np.einsum("ij,jk,kl->il", centre, inverse, centre)
+    covariance = centre @ inverse @ centre
     degrees = np.inf
     if len(wins) >= FEWEST:
         scores = np.array([_derivatives(each, values)[0] for each in wins])
-        spread = np.einsum("ni,nj->ij", scores, scores) * len(wins) / (len(wins) - 1)
-        robust = np.einsum("ij,jk,kl->il", covariance, spread, covariance)
+        spread = scores.T @ scores * len(wins) / (len(wins) - 1)
+        robust = covariance @ spread @ covariance
         if np.trace(robust) > np.trace(covariance):
             covariance, degrees = robust, len(wins) - 1.0
     return Scale(values - values.mean(), covariance, degrees, not strongly)

@@ -45,10 +45,8 @@ def proportion(count: int, trials: int) -> Estimate:
     """
     if trials < 1:
         return Estimate(nan)
-    tail = (1 - LEVEL) / 2
-    low = float(stats.beta.ppf(tail, count, trials - count + 1)) if count else 0.0
-    high = float(stats.beta.ppf(1 - tail, count + 1, trials - count)) if count < trials else 1.0
-    return Estimate(count / trials, low, high)
+    low, high = stats.binomtest(count, trials).proportion_ci(LEVEL)
+    return Estimate(count / trials, float(low), float(high))
 
 
 def mean(values: Sequence[float]) -> Estimate:

@@ -75,7 +75,7 @@ def same_different(hits: int, differing: int, alarms: int, equal: int) -> Estima
 
 def _likelihood(counts: Float64[np.ndarray, "4"]) -> Float64[np.ndarray, "d"]:
     """Return the logarithm of the likelihood of each d', with the best criterion."""
-    return np.einsum("i,ijk->jk", counts, _same_different_logs()).max(axis=1)
+    return np.tensordot(counts, _same_different_logs(), 1).max(axis=1)
 
 
 @cache
@@ -93,13 +93,13 @@ def oddity_correct(dprime: float) -> float:
     """Return the proportion correct of an observer who names the odd one of three."""
     shift = dprime * sqrt(2 / 3)
     shares = stats.norm.cdf(shift - sqrt(3) * _HALF) + stats.norm.cdf(-shift - sqrt(3) * _HALF)
-    return float(np.einsum("i,i", _HALF_WEIGHTS, shares))
+    return float(_HALF_WEIGHTS @ shares)
 
 
 @cache
 def naming_correct(dprime: float, choices: int) -> float:
     """Return the proportion correct of an observer who names the one of n choices with the most evidence."""
-    return float(np.einsum("i,i", _WEIGHTS, stats.norm.cdf(_NODES + dprime) ** (choices - 1)))
+    return float(_WEIGHTS @ stats.norm.cdf(_NODES + dprime) ** (choices - 1))
 
 
 def _inverse(correct: Callable[[float], float], proportion: float) -> float:

@@ -1,0 +1,115 @@
+"""Procedures whose trials compare two things: a level and the standard, or two conditions."""
+
+from abc import abstractmethod
+from dataclasses import replace
+from functools import partial
+from typing import final
+
+import numpy as np
+
+from ..design.study import Comparison
+from .cells import Cell, asks, cells_of, comparison_trial, in_rounds, stimuli_of, without_levels
+from .procedure import DIFFERENT, SAME, Course, Listed, Procedure, Stimulus, Trial
+
+
+class Pairs(Procedure):
+    """A procedure whose trials are known from the start: each pair equally often, in rounds."""
+
+    @abstractmethod
+    def trial(self, comparison: Comparison, cell: Cell, number: int) -> Trial:
+        """Return one of the arrangements of a pair, by a number."""
+
+    def course(self, comparison: Comparison, generator: np.random.Generator) -> Course:
+        """Return all trials in rounds, in which the arrangements of a pair take turns."""
+        make = partial(self.trial, comparison)
+        return Listed(in_rounds(cells_of(comparison), comparison.repetitions, generator, make))
+
+    def stimuli(self, comparison: Comparison) -> tuple[Stimulus, ...]:
+        """Return both of each pair."""
+        return stimuli_of(cells_of(comparison))
+
+    def trials(self, comparison: Comparison) -> int:
+        """Return the number of trials."""
+        return comparison.repetitions * len(cells_of(comparison))
+
+
+@final
+class TwoAfc(Pairs):
+    """Two-interval forced choice: each pair of conditions, or each level and the standard, equally often."""
+
+    def refusal(self, comparison: Comparison) -> str:
+        """Return what is missing: a question about more."""
+        return asks(comparison, "rougher", "higher")
+
+    def trial(self, comparison: Comparison, cell: Cell, number: int) -> Trial:
+        """Return the pair in either order."""
+        return comparison_trial(comparison, "2afc", cell, 1 + number % 2)
+
+
+@final
+class Constant(Pairs):
+    """Constant stimuli: each level is compared with the standard equally often, in two intervals."""
+
+    def refusal(self, comparison: Comparison) -> str:
+        """Return what is missing: levels, a standard, or a question about more."""
+        return asks(comparison, "rougher", "higher") or without_levels(comparison)
+
+    def trial(self, comparison: Comparison, cell: Cell, number: int) -> Trial:
+        """Return the level first or second."""
+        return comparison_trial(comparison, "constant", cell, 1 + number % 2)
+
+
+@final
+class Oddity(Pairs):
+    """Three-interval oddity: two intervals are equal, and the participant names the third.
+
+    Each of a pair is the odd one equally often in each interval; `condition` and `level` are those of the pair's first,
+    whichever is odd.
+    """
+
+    def refusal(self, comparison: Comparison) -> str:
+        """Return what is missing: the question, or two things that may differ."""
+        return standard_among_levels(comparison) or asks(comparison, "same")
+
+    def trial(self, comparison: Comparison, cell: Cell, number: int) -> Trial:
+        """Return one of six arrangements."""
+        return odd_one(comparison, "oddity", cell, number)
+
+
+@final
+class SameDifferent(Pairs):
+    """Same or different: two intervals, of which half of the trials have the same twice.
+
+    It needs fewer intervals than `oddity`, but participants differ in how readily they say that something is different;
+    d' takes that into account.
+    """
+
+    def refusal(self, comparison: Comparison) -> str:
+        """Return what is missing: the question; or that levels vary."""
+        if comparison.levels:
+            return "compares conditions and no levels; for levels, ask `same` or `higher`"
+        return asks(comparison, "different")
+
+    def trial(self, comparison: Comparison, cell: Cell, number: int) -> Trial:
+        """Return both in one of two orders, or one of them twice."""
+        one, other = cell
+        intervals = ((one, other), (one, one), (other, one), (other, other))[number % 4]
+        target = SAME if number % 2 else DIFFERENT
+        names = comparison.name, comparison.question, "same-different"
+        return Trial(*names, intervals, (SAME, DIFFERENT), one.condition, other.condition, target=target)
+
+
+def odd_one(comparison: Comparison, procedure: str, cell: Cell, number: int) -> Trial:
+    """Return one of the six arrangements of a pair in three intervals, by a number."""
+    trial = comparison_trial(comparison, procedure, cell, 1 + number % 3, intervals=3)
+    if number // 3 % 2 == 0:
+        return trial
+    others = {cell.test: cell.against, cell.against: cell.test}
+    return replace(trial, intervals=tuple(others[each] for each in trial.intervals))
+
+
+def standard_among_levels(comparison: Comparison) -> str:
+    """Return a complaint about a standard that is one of the levels; "" if it is not."""
+    if comparison.levels and comparison.standard in comparison.levels:
+        return "cannot tell the standard from itself; leave the `standard:` out of the `levels:`"
+    return ""

@@ -1,31 +1,23 @@
 """Losses of a surface by the corrections of its pipeline file, in words."""
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 from tangible_core.data.quantities import unit_of
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.preflight.verdict import Change
 from tangible_core.preflight.wording import quantity
 
-
-class _Loss(NamedTuple):
-    """A text for a greater value, and one for a smaller one; `{times}` is the ratio."""
-
-    more: str
-    less: str
-
-
-LOSSES: Mapping[str, _Loss] = {
-    "workspace.smooth_m": _Loss("blurs {times} as much", "blurs less"),
-    "workspace.relief_m": _Loss("is {times} as high", "is {times} as high"),
-    "workspace.width_m": _Loss("is {times} as wide", "is {times} as wide"),
-    "relief.slope": _Loss("may be steeper", "has no slope above {new}, so that steep edges become ramps"),
-    "render.stiffness_n_per_m": _Loss("is {times} as stiff", "is {times} as stiff"),
-    "render.damping_n_s_per_m": _Loss("is damped {times} as much", "is damped {times} as much"),
-    "safety.stiffness_margin": _Loss("may be {times} as stiff", "may be only {times} as stiff"),
+LOSSES: Mapping[str, tuple[str, str]] = {
+    "workspace.smooth_m": ("blurs {times} as much", "blurs less"),
+    "workspace.relief_m": ("is {times} as high", "is {times} as high"),
+    "workspace.width_m": ("is {times} as wide", "is {times} as wide"),
+    "relief.slope": ("may be steeper", "has no slope above {new}, so that steep edges become ramps"),
+    "render.stiffness_n_per_m": ("is {times} as stiff", "is {times} as stiff"),
+    "render.damping_n_s_per_m": ("is damped {times} as much", "is damped {times} as much"),
+    "safety.stiffness_margin": ("may be {times} as stiff", "may be only {times} as stiff"),
 }
-"""The effect of a changed number on the surface, by key."""
+"""The effect of a greater number on the surface, and of a smaller one, by key; `{times}` is the ratio."""
 WORDS: Mapping[str, str] = {
     "materials.fit": "has materials that are felt more gently than they are, where the device cannot do better",
     "safety.coupling": "is felt through a spring, which makes hard things softer",
@@ -45,10 +37,10 @@ def _loss(config: PipelineConfig, key: str, new: Any) -> str:
     written = f"`{key}: {_in_words(key, new)}`"
     if key not in LOSSES or not isinstance(new, int | float):
         return f"{WORDS.get(key, 'is changed')} ({written})"
-    before = _value(config, key)
+    (more, less), before = LOSSES[key], _value(config, key)
     if before is None:
-        return f"{LOSSES[key].less.format(times='less', new=f'{new:g}')} ({written})"
-    loss = LOSSES[key].more if new > before else LOSSES[key].less
+        return f"{less.format(times='less', new=f'{new:g}')} ({written})"
+    loss = more if new > before else less
     text = loss.format(times=_ratio(new / before), new=f"{new:g}") if before else "blurs what was sharp"
     return f"{text} ({written} in place of {_in_words(key, before)})"
 

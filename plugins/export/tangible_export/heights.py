@@ -40,6 +40,8 @@ class Heights(Exporter):
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
         """Write the three files; the JSON is first in the list, as it is the one to read back."""
+        from PIL import Image
+
         png, tiff, text = (stem.with_name(f"{stem.name}-heights.{end}") for end in ("png", "tif", "json"))
         numbers, low_mm, step_mm = levels(work.relief)
         description = _describe(work, png.name).model_copy(
@@ -51,7 +53,8 @@ class Heights(Exporter):
                 f"{png.name} holds heights in steps of {1e3 * step_mm:.2g} um, as 16 bits have no finer ones for "
                 f"{description.high_mm - low_mm:.3g} mm; {tiff.name} holds them exactly",
             )
-        _write_png(png, numbers)
+        with atomic_write(png) as file:
+            Image.fromarray(numbers).save(file, "PNG")
         _write_tiff(tiff, work.relief, _describe(work, tiff.name))
         write_text(text, description.model_dump_json(indent=2) + "\n")
         return text, png, tiff
@@ -64,13 +67,6 @@ def _describe(work: Work, file: str) -> HeightsMetadata:
         width_mm=width_m * MM, length_mm=length_m * MM,
         high_mm=float(work.relief.height_m.max()) * MM, low_mm=0, step_mm=1,
     )  # fmt: skip
-
-
-def _write_png(path: Path, numbers: np.ndarray) -> None:
-    from PIL import Image
-
-    with atomic_write(path) as file:
-        Image.fromarray(numbers).save(file, "PNG")
 
 
 def _write_tiff(path: Path, relief: Relief, description: HeightsMetadata) -> None:

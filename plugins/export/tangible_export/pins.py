@@ -12,7 +12,7 @@ from tangible_core.errors import PictureError, shown
 from tangible_core.plugins.interfaces import Exporter, Medium, Previewing
 from tangible_core.plugins.notes import note
 
-from .labels import first_labels, label_of
+from .paper.named_parts import first_labels, label_of
 from .pin_display.displays import DISPLAYS, HEXADECIMAL, PITCH_M, Display, Named
 
 if TYPE_CHECKING:

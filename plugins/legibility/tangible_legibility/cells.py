@@ -1,4 +1,4 @@
-"""Operations on the cells of a label map: the nearest cell of a mask, boxes, filling and voting."""
+"""Operations on the cells of a label map: the nearest cell of a mask, boxes, discs, filling and voting."""
 # scipy has no types.
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownMemberType=false
 # pyright: reportUnknownArgumentType=false
@@ -13,17 +13,11 @@ from tangible_core.runtime.opencv import plain_opencv
 Box = tuple[slice, slice]
 
 
-class Nearest(NamedTuple):
-    """The nearest cell of a mask, for each cell."""
+def nearest(mask: Bool[np.ndarray, "h w"]) -> tuple[Float32[np.ndarray, "h w"], Int64[np.ndarray, "h w"]]:
+    """Return, for each cell, the distance to the nearest cell of a mask, in cells to 2 %, and its flat index.
 
-    far: Float32[np.ndarray, "h w"]
-    """Distance in cells, to 2 %."""
-    at: Int64[np.ndarray, "h w"]
-    """Flat index of the nearest cell."""
-
-
-def nearest(mask: Bool[np.ndarray, "h w"]) -> Nearest:
-    """Find the nearest cell of a mask, which must not be empty, for each cell."""
+    The mask must not be empty.
+    """
     import cv2
 
     with plain_opencv():
@@ -33,7 +27,7 @@ def nearest(mask: Bool[np.ndarray, "h w"]) -> Nearest:
     labels = np.asarray(label, np.int32)
     at = np.zeros(int(labels.max()) + 1, np.int64)
     at[labels[mask]] = np.flatnonzero(mask)
-    return Nearest(np.asarray(far, np.float32), at[labels])
+    return np.asarray(far, np.float32), at[labels]
 
 
 def boxes(labels: Int32[np.ndarray, "h w"]) -> list[Box | None]:
@@ -41,6 +35,12 @@ def boxes(labels: Int32[np.ndarray, "h w"]) -> list[Box | None]:
     from scipy.ndimage import find_objects
 
     return [None if box is None else (box[0], box[1]) for box in find_objects(labels)]
+
+
+def resampled(values: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    """Return the values under the centres of the cells of another grid, of the same extent."""
+    index = [((np.arange(new) + 0.5) * old / new).astype(int) for new, old in zip(shape, values.shape, strict=True)]
+    return values[np.ix_(*index)]
 
 
 FEW = 1e-3
@@ -85,4 +85,32 @@ def fill(labels: Labels, removed: Cells) -> Labels:
     """Give removed cells the label of the nearest remaining cell; change nothing if none remains."""
     if removed.all() or not removed.any():
         return labels.copy()
-    return labels.reshape(-1)[nearest(~removed).at]
+    return labels.reshape(-1)[nearest(~removed)[1]]
+
+
+ALIKE = 0.95
+"""The share of the largest disc's radius from which on a disc may be chosen, if it is closer to its part's middle."""
+
+
+class Disc(NamedTuple):
+    """A disc in pixels."""
+
+    column: float
+    row: float
+    radius_px: float
+
+
+def largest_disc(part: Bool[np.ndarray, "h w"]) -> Disc | None:
+    """Return the largest disc within a part and the picture; None for a part that is too small to be drawn."""
+    import cv2
+
+    if not part.any():
+        return None
+    rows, columns = (np.flatnonzero(part.any(axis=axis)) for axis in (1, 0))
+    top, left = int(rows[0]), int(columns[0])
+    cut = part[top : int(rows[-1]) + 1, left : int(columns[-1]) + 1]
+    with plain_opencv():
+        depth = cv2.distanceTransform(np.pad(cut, 1).astype(np.uint8), cv2.DIST_L2, 5)
+    widest = np.argwhere(depth >= ALIKE * depth.max())
+    row, column = widest[np.square(widest - np.argwhere(np.pad(cut, 1)).mean(axis=0)).sum(axis=1).argmin()].tolist()
+    return Disc(left + column - 1.0, top + row - 1.0, float(depth[row, column]))

@@ -1,6 +1,7 @@
 """The checks of legibility, one a topic: each yields verdicts by the rules of a medium."""
 
 from collections.abc import Callable, Iterator
+from itertools import chain
 from math import ceil
 
 import numpy as np
@@ -26,17 +27,17 @@ NEARLY_LEVEL = "more pairs of named neighbours are of nearly the same height"
 """The faults of steps of pairs that are not listed one by one, after their number."""
 
 
-def _widen(data: LegibilityInput, times: float) -> list[str | Change]:
-    """Return the cure that everything is enlarged by a factor; empty if it would exceed WIDEST_M."""
-    if times * data.width_m > WIDEST_M:
-        return []
-    return [Change("workspace.width_m", over(times * data.width_m), "at least"), ", "]
-
-
 def _widen_or_leave_out(data: LegibilityInput, bound: float, simplified: str = "") -> Callable[[float], Cure]:
     """Return the cure of a length below the bound. simplified: the key of a simplification that cures it as well."""
-    first = [Change(simplified, over(bound), "at least"), ", "] if simplified else []
-    return lambda length_m: [*first, *_widen(data, bound / max(length_m, 1e-9)), FEWER_PARTS]
+
+    def cure(length_m: float) -> Cure:
+        width_m = data.width_m * bound / max(length_m, 1e-9)
+        wider = [("workspace.width_m", width_m)] if width_m <= WIDEST_M else []
+        bounds = [(simplified, bound), *wider] if simplified else wider
+        changes = [[Change(key, over(value), "at least"), ", "] for key, value in bounds]
+        return [*chain.from_iterable(changes), FEWER_PARTS]
+
+    return cure
 
 
 def parts(data: LegibilityInput) -> Iterator[Verdict]:
@@ -78,7 +79,8 @@ def shape(data: LegibilityInput) -> Iterator[Verdict]:
     """Check that pieces large enough to be felt are long enough for their shape to be recognised."""
     wide, rule = data.widths, data.profile.rules["shape"]
     large = np.flatnonzero(wide.disc_m >= data.profile.rules["part"].bound * (1 - 1e-6))
-    sides_m = data.pitch_m * _longer_sides(wide.pieces, wide.part.size)
+    longer = [max(each.stop - each.start for each in box) if box else 0 for box in boxes(wide.pieces + 1)]
+    sides_m = data.pitch_m * np.array(longer, np.float64)
     measured = _measure_pieces(data, large[sides_m[large] < rule.bound], sides_m)
     least = float(sides_m[large].min(initial=np.inf))
     cure = _widen_or_leave_out(data, rule.bound)
@@ -101,14 +103,6 @@ def _measure_pieces(data: LegibilityInput, pieces: np.ndarray, values: np.ndarra
     ]
 
 
-def _longer_sides(pieces: np.ndarray, count: int) -> np.ndarray:
-    """Return the longer side of the box of each piece, in cells."""
-    sides = np.zeros(count)
-    for piece, box in enumerate(boxes(pieces + 1)):
-        sides[piece] = max(each.stop - each.start for each in box) if box else 0
-    return sides
-
-
 def textures(data: LegibilityInput) -> Iterator[Verdict]:
     """Check that there are no more textures than fingers tell apart."""
     rule = data.profile.rules["textures"]
@@ -126,11 +120,7 @@ def steps(data: LegibilityInput) -> Iterator[Verdict]:
     long = np.flatnonzero((steps.length_m > rules["gap"].bound) & np.isfinite(steps.step_m))
     if "step" in rules:
         yield from _judge_steps(data, "step", long, "is hardly higher or lower than it", LEVEL)
-        named = [
-            each
-            for each in long.tolist()
-            if data.has_name(int(steps.low[each])) and data.has_name(int(steps.high[each]))
-        ]
+        named = [each for each in long.tolist() if data.has_name(steps.low[each]) and data.has_name(steps.high[each])]
         passed = [each for each in named if steps.step_m[each] >= rules["step"].bound]
         if named:
             pairs = np.array(passed, np.int64)
@@ -200,18 +190,13 @@ def pins(data: LegibilityInput) -> Iterator[Verdict]:
         for number, count, (row, column) in display.parts
     ]
 
-    def cure(pins: float) -> Cure:
-        return [Change("simplify.part_m", over(2 * PIN_PITCH_M * 1.5), "at least"), ", ", FEWER_PARTS]
-
+    cure: Cure = [Change("simplify.part_m", over(2 * PIN_PITCH_M * 1.5), "at least"), ", ", FEWER_PARTS]
     worse, others = "has hardly a pin or two", "more parts have hardly a pin or two"
-    yield from data.judge("pins", measured, cure, none=0, of="parts", worse=worse, others=others)
+    yield from data.judge("pins", measured, lambda _: cure, none=0, of="parts", worse=worse, others=others)
     borders = [Measurement("the borders of parts", display.kept)]
-
-    def finer(share: float) -> Cure:
-        return [Change("simplify.gap_m", over(2 * PIN_PITCH_M), "at least"), ", a larger display, " + FEWER_PARTS]
-
+    finer: Cure = [Change("simplify.gap_m", over(2 * PIN_PITCH_M), "at least"), ", a larger display, " + FEWER_PARTS]
     worse = "are partly not shown by any pin"
-    yield from data.judge("kept borders", borders, finer, none=1, of="the borders of parts", worse=worse)
+    yield from data.judge("kept borders", borders, lambda _: finer, none=1, of="the borders of parts", worse=worse)
 
 
 Check = Callable[[LegibilityInput], Iterator[Verdict]]

@@ -92,13 +92,11 @@ class LegibilityInput:
         wrong = [each for each in measurements if not _meets(each.value, rule.relation, rule.bound)]
         wrong.sort(key=lambda each: each.value, reverse=rule.relation == "<=")
         worst = max if rule.relation == "<=" else min
-        if not wrong:
-            value = worst((each.value for each in measurements), default=none)
-            return [self._verdict(check, of, value, cure, "", ())]
         single = wrong if len(wrong) <= MOST_EACH + 1 else wrong[:MOST_EACH]
-        verdicts = [
-            self._verdict(
-                *(check, ", ".join(filter(None, [each.of, each.place])), each.value, cure),
+        found: list[tuple[str, float, str, tuple[tuple[float, float], ...]]] = [
+            (
+                ", ".join(filter(None, [each.of, each.place])),
+                each.value,
                 " ".join(filter(None, [each.of, worse, each.place])),
                 (each.at,) if each.at else (),
             )
@@ -106,29 +104,14 @@ class LegibilityInput:
         ]
         if rest := wrong[len(single) :]:
             places = tuple(dict.fromkeys(each.at for each in rest if each.at))[:MOST_PLACES]
-            number = len(rest)
-            verdicts.append(
-                self._verdict(check, f"{number} more {of}", rest[0].value, cure, f"{number} {others}", places)
-            )
-        return verdicts
-
-    def _verdict(
-        self,
-        check: str,
-        of: str,
-        value: float,
-        cure: Callable[[float], Cure],
-        says: str,
-        at: tuple[tuple[float, float], ...],
-    ) -> Verdict:
-        rule = self.profile.rules[check]
-        verdict = check_bound(
-            *(check, of, float(value), rule.relation, rule.bound, rule.unit, rule.citation),
-            cure=cure(float(value)),
-            says=says,
-            worse=rule.worse,
-        )
-        return replace(verdict, at=at)
+            found.append((f"{len(rest)} more {of}", rest[0].value, f"{len(rest)} {others}", places))
+        if not found:
+            found = [(of, float(worst((each.value for each in measurements), default=none)), "", ())]
+        bound = rule.relation, rule.bound, rule.unit, rule.citation
+        return [
+            replace(check_bound(check, name, value, *bound, cure=cure(value), says=says, worse=rule.worse), at=at)
+            for name, value, says, at in found
+        ]
 
 
 @dataclass(frozen=True)

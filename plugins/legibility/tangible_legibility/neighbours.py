@@ -8,6 +8,8 @@ from jaxtyping import Float64, Int64
 
 from tangible_core.data import Material, PartMap, Relief
 
+from .cells import resampled
+
 BESIDE_M = 0.001
 """Distance from a border, on either side, at which the heights of a step are taken."""
 NOTICEABLE = {"stiffness_n_per_m": 0.45, "dynamic_friction": 0.2, "roughness_m": 0.1, "grain_m": 0.1}
@@ -34,10 +36,7 @@ def sample_relief(relief: Relief, shape: tuple[int, int]) -> Relief:
     """Sample a relief on a grid of another size: the heights nearest to its cells."""
     if relief.height_m.shape == shape:
         return relief
-    index = [
-        ((np.arange(new) + 0.5) * old / new).astype(int) for new, old in zip(shape, relief.height_m.shape, strict=True)
-    ]
-    return Relief(np.ascontiguousarray(relief.height_m[np.ix_(*index)]), relief.extent_m)
+    return Relief(np.ascontiguousarray(resampled(relief.height_m, shape)), relief.extent_m)
 
 
 def steps_between(parts: PartMap, pitch_m: float, relief: Relief | None) -> Steps:

@@ -10,7 +10,6 @@ from typing import Literal, NamedTuple
 
 from tangible_core.plugins.interfaces import Medium
 from tangible_core.preflight.verdict import Grade, Unit
-from tangible_core.preflight.wording import quantity
 
 DOT_DIAMETER_M = 0.00144
 """The diameter of a dot at its base."""
@@ -157,13 +156,3 @@ PROFILES: dict[Medium, Profile] = {
     ),
 }  # fmt: skip
 """The rules by medium."""
-
-
-def table() -> str:
-    """Return the rules as a table in Markdown, which the page on legibility shows."""
-    rows = ["| medium | what | value | if not | source |", "|---|---|---|---|---|"]
-    for profile in PROFILES.values():
-        for rule in profile.rules.values():
-            bound = f"{'at most' if rule.relation == '<=' else 'at least'} {quantity(rule.bound, rule.unit)}"
-            rows.append(f"| `{profile.medium}` | {rule.says} | {bound} | {rule.worse} | {rule.citation} |")
-    return "\n".join(rows)

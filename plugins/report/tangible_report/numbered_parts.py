@@ -11,13 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from jaxtyping import Bool, Int32, UInt8
+from jaxtyping import Int32, UInt8
 
 from tangible_core.data.part_words import shown_number
 from tangible_core.data.pictures import to_rgb8
 from tangible_core.data.records import digest_of
 from tangible_core.data.views import PartMap
 from tangible_core.runtime.opencv import plain_opencv
+from tangible_legibility.cells import Disc, largest_disc, resampled
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -29,8 +30,6 @@ SHORTEST_PX, LONGEST_PX = 1200, 2400
 on a screen."""
 LARGE, SMALL = 1 / 32, 1 / 52
 """The height of a number with and without enough room in its part, as a share of the longer side."""
-ALIKE = 0.95
-"""The share of the largest disc's radius from which on a disc may be chosen, if it is closer to its part's middle."""
 DRAWN, NUMBERS = "tangible parts", "tangible numbers"
 """The PNG's text chunks: the digest of the drawn pixels, and the numbers of the parts, which later show changes."""
 COARSE = 256
@@ -55,7 +54,7 @@ def numbered_parts(picture: np.ndarray, parts: PartMap, names: Sequence[str] = (
         name = names[number] if number < len(names) else ""
         number_text = str(shown_number(number))
         texts = [f"{number_text} {name}", number_text] if name else [number_text]
-        _write(draw, _largest_disc(labels == number), texts, longer)
+        _write(draw, largest_disc(labels == number), texts, longer)
     info = PngInfo()
     info.add_text(DRAWN, _digest(image))
     info.add_text(NUMBERS, _encode(_coarse(parts.labels, COARSE)), zip=True)
@@ -115,9 +114,7 @@ def _digest(image: Image) -> str:
 def _coarse(labels: Int32[np.ndarray, "h w"], longest: int) -> Int32[np.ndarray, "r c"]:
     """Return the labels at the middles of a grid, whose longer side is at most `longest`."""
     scale = min(1.0, longest / max(labels.shape))
-    rows, columns = (max(1, round(scale * side)) for side in labels.shape)
-    places = ((np.arange(new) * old + old // 2) // new for new, old in zip((rows, columns), labels.shape, strict=True))
-    return labels[np.ix_(*places)]
+    return resampled(labels, tuple(max(1, round(scale * side)) for side in labels.shape))
 
 
 def _encode(numbers: Int32[np.ndarray, "r c"]) -> str:
@@ -156,29 +153,7 @@ def _draw_borders(shown: UInt8[np.ndarray, "h w 3"], labels: Int32[np.ndarray, "
         shown[cv2.dilate(border, np.ones((width, width), np.uint8)) > 0] = colour
 
 
-class _Disc(NamedTuple):
-    column: float
-    row: float
-    radius_px: float
-
-
-def _largest_disc(part: Bool[np.ndarray, "h w"]) -> _Disc | None:
-    """Return the largest disc within a part and the picture; None for a part that is too small to be drawn."""
-    import cv2
-
-    if not part.any():
-        return None
-    rows, columns = (np.flatnonzero(part.any(axis=axis)) for axis in (1, 0))
-    top, left = int(rows[0]), int(columns[0])
-    cut = part[top : int(rows[-1]) + 1, left : int(columns[-1]) + 1]
-    with plain_opencv():
-        depth = cv2.distanceTransform(np.pad(cut, 1).astype(np.uint8), cv2.DIST_L2, 5)
-    widest = np.argwhere(depth >= ALIKE * depth.max())
-    row, column = widest[np.square(widest - np.argwhere(np.pad(cut, 1)).mean(axis=0)).sum(axis=1).argmin()].tolist()
-    return _Disc(left + column - 1.0, top + row - 1.0, float(depth[row, column]))
-
-
-def _write(draw: ImageDraw, disc: _Disc | None, texts: Sequence[str], longer: int) -> None:
+def _write(draw: ImageDraw, disc: Disc | None, texts: Sequence[str], longer: int) -> None:
     """Write the first of these texts that fits into the disc, or else the last one, small."""
     if disc is None:
         return

@@ -13,7 +13,7 @@ from tangible_core.data import Work
 from tangible_core.files.writing import write_text
 from tangible_core.plugins.interfaces import Exporter
 from tangible_core.plugins.notes import note
-from tangible_export.braille import Cells, as_ascii, width_m, wrapped, written_by
+from tangible_export.braille import as_ascii, width_m, wrapped, written_by
 from tangible_legibility.words.languages import Language, spoken_language
 
 from .description import PartFacts, describe_at_length, facts, page_of
@@ -85,10 +85,6 @@ class Text(Exporter):
     def _emboss(self, lines: Sequence[str], language: Language) -> str:
         """Return lines and pages of braille for embossers, in plain ASCII."""
         line_m = width_m((0,) * self.cells)
-        cells = chain.from_iterable(_paragraph(line, language, line_m) for line in lines)
+        cells = chain.from_iterable(wrapped(line, language, line_m, RUNOVER_CELLS) or [()] for line in lines)
         rows = [f"{as_ascii(line).rstrip()}\r\n" for line in cells]
         return "\f".join("".join(rows[at : at + self.lines]) for at in range(0, len(rows), self.lines))
-
-
-def _paragraph(line: str, language: Language, line_m: float) -> list[Cells]:
-    return wrapped(line, language, line_m, RUNOVER_CELLS) or [()]

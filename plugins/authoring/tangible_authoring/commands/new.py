@@ -9,6 +9,8 @@ import typer
 
 from tangible_core.cli.verbosity import is_quiet
 
+from .schema import LINE
+
 
 def new(
     pictures: Annotated[
@@ -31,7 +33,8 @@ def new(
     file = out or Path(f"{pictures[0].stem}.yaml")
     if file.exists() and not force:
         raise OutputError(f"{file}: is there already; --out FILE writes another one, --force writes over it")
-    write_text(file, starter(pictures, file).text)
+    schema = file.with_name("tangible.schema.json")
+    write_text(file, f"{LINE}{schema.name}\n" * schema.exists() + starter(pictures, file).text)
     if is_quiet():
         return
     show.plain(f"written: {file}\n\nNext:")

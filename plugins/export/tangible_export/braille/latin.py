@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
+from itertools import groupby
 from typing import Any
 
 from tangible_core.errors import BrailleError
@@ -183,9 +184,7 @@ def _capitals(text: str, code: Code) -> dict[int, Cells]:
 
 def _runs(text: str) -> Iterator[tuple[int, int]]:
     """Yield start and end of each run of capitals."""
-    start = 0
-    for place in range(len(text) + 1):
-        if place == len(text) or not text[place].isupper():
-            if place > start:
-                yield start, place
-            start = place + 1
+    for is_upper, run in groupby(range(len(text)), lambda place: text[place].isupper()):
+        if is_upper:
+            places = [*run]
+            yield places[0], places[-1] + 1

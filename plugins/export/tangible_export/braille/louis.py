@@ -48,7 +48,8 @@ class Louis(NamedTuple):
             raise BrailleError(missing_character(character, place, text, f"liblouis's table {TABLES[language]}"))
 
     def _call(self, text: str, table: str, mode: int) -> Cells:
-        units = [unit for each in text for unit in _units(each, ctypes.sizeof(self.character))]
+        size = ctypes.sizeof(self.character)
+        units = memoryview(text.encode(f"utf-{8 * size}", "surrogatepass")).cast("H" if size == 2 else "I")[1:]
         source = (self.character * (len(units) + 1))(*units)
         target = (self.character * (16 * len(units) + 64))()
         read, written = ctypes.c_int(len(units)), ctypes.c_int(len(target))
@@ -67,13 +68,6 @@ def missing_character(character: str, place: int, text: str, table: str) -> str:
         f"{quoted(text)}: character {place}, {quoted(character)} (U+{ord(character):04X}), is not in {table}; "
         "spell it with other letters"
     )
-
-
-def _units(character: str, size: int) -> list[int]:
-    if size == 4 or ord(character) < 0x10000:
-        return [ord(character)]
-    pair = character.encode("utf-16-le")
-    return [int.from_bytes(pair[:2], "little"), int.from_bytes(pair[2:], "little")]
 
 
 @cache

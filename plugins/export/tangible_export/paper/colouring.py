@@ -1,7 +1,7 @@
 """Fills for parts so that neighbours differ, by colouring the graph of neighbours."""
 
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 MOST_STEPS = 1000
 """Largest number of steps of the search with backtracking; then the first colouring is taken as it is."""
@@ -21,22 +21,15 @@ def choose_fills(
     least used one. So no fill is used twice if there are no more vertices than fills.
     Source: Brelaz, New methods to color the vertices of a graph, 1979.
     """
-    neighbours = [_with_a_choice(vertex, others, allowed) for vertex, others in enumerate(neighbours)]
-    fills = _colour_greedily(neighbours, allowed, sizes)
-    if alike := list(_alike(neighbours, fills)):
-        fills = _search(neighbours, allowed, sizes) or fills
-        alike = list(_alike(neighbours, fills))
+    neighbours = [
+        [other for other in others if len({*allowed[vertex], *allowed[other]}) > 1]  # others are bound to be alike
+        for vertex, others in enumerate(neighbours)
+    ]
+    fills = _search(neighbours, allowed, sizes) or _colour_greedily(neighbours, allowed, sizes)
+    alike = [
+        (one, other) for one in sorted(fills) for other in neighbours[one] if one < other and fills[one] == fills[other]
+    ]
     return [fills[each] for each in range(len(neighbours))], alike
-
-
-def _with_a_choice(vertex: int, others: Collection[int], allowed: Allowed) -> list[int]:
-    """Return the neighbours, without those that are bound to have the same fill as the vertex."""
-    return [other for other in others if len({*allowed[vertex], *allowed[other]}) > 1]
-
-
-def _alike(neighbours: Neighbours, fills: Mapping[int, str]) -> Iterator[tuple[int, int]]:
-    for one in sorted(fills):
-        yield from ((one, other) for other in neighbours[one] if one < other and fills[one] == fills[other])
 
 
 def _colour_greedily(neighbours: Neighbours, allowed: Allowed, sizes: Sequence[float]) -> dict[int, str]:

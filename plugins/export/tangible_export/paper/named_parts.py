@@ -1,6 +1,6 @@
-"""Parts grouped by name, and a letter for each name."""
+"""Labels of parts in files and notes; parts grouped by name, and a letter for each name."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from string import ascii_lowercase
 from unicodedata import normalize
@@ -8,13 +8,27 @@ from unicodedata import normalize
 import numpy as np
 
 from tangible_core.data import PartMap, Work
+from tangible_legibility.words.languages import part_label
 
-from ..labels import label_of
-
+MOST_LISTED = 6
+"""Largest number of labels in a note."""
 LETTERS = ascii_lowercase[1:] + ascii_lowercase[0]
 """Letters in the order of their use. The last, `a`, is a single dot, which a finger takes for a stray one."""
 MOST_NAMES = 100
 """Largest number of names on a page: their key has nine pages, and nobody remembers more. A convention of ours."""
+
+
+def label_of(number: int, work: Work) -> str:
+    """Return the name of a part, or "part" and its number in the work's language."""
+    named = work.names[number].strip() if number < len(work.names) else ""
+    return part_label(named or number, work.language)
+
+
+def first_labels(labels: Iterable[str]) -> str:
+    """Return the first labels, each once, and the number of the others."""
+    each = list(dict.fromkeys(labels))
+    more = f" and {len(each) - MOST_LISTED} more" if len(each) > MOST_LISTED else ""
+    return ", ".join(each[:MOST_LISTED]) + more
 
 
 @dataclass(frozen=True)

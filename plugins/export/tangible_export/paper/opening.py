@@ -5,14 +5,15 @@ import logging
 import cv2
 import numpy as np
 from jaxtyping import Bool, Float64, Int32, Integer
-from scipy.ndimage import distance_transform_edt, find_objects
+from scipy.ndimage import find_objects
 
 from tangible_core.data import PartMap, SegmentMap, Work
 from tangible_core.parts import find_parts, reduced_parts
 from tangible_core.plugins.notes import note
+from tangible_legibility.cells import vote
 from tangible_legibility.widths import measure
 
-from ..labels import first_labels, label_of
+from .named_parts import first_labels, label_of
 from .sheet import GAP_MM, LINE_MM
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -88,20 +89,8 @@ def _reassign(
     assigned, reach = labels.copy(), int(4 * sigma) + 2
     for box in find_objects(cv2.connectedComponents(away.astype(np.uint8), connectivity=8)[1]):
         window = tuple(slice(max(0, each.start - reach), each.stop + reach) for each in box)
-        assigned[window] = _vote(labels[window], away[window], sigma)
+        assigned[window] = vote(labels[window], away[window], ~away[window], sigma)
     return assigned
-
-
-def _vote(labels: Int32[np.ndarray, "h w"], away: Bool[np.ndarray, "h w"], sigma: float) -> Int32[np.ndarray, "h w"]:
-    numbers = np.unique(labels[~away])
-    if not numbers.size:
-        return labels
-    votes = np.stack(
-        [cv2.GaussianBlur(((labels == each) & ~away).astype(np.float32), (0, 0), sigma) for each in numbers]
-    )
-    nearest = np.asarray(distance_transform_edt(away, return_distances=False, return_indices=True))
-    winners = np.where(votes.max(axis=0) > 1e-4, numbers[votes.argmax(axis=0)], labels[nearest[0], nearest[1]])
-    return np.where(away, winners, labels).astype(np.int32)
 
 
 def _without_crumbs(labels: Int32[np.ndarray, "h w"], pitch_m: float) -> Int32[np.ndarray, "h w"]:

@@ -17,7 +17,6 @@ from tangible_core.errors import shown as shown_text
 from tangible_core.plugins.notes import note
 
 from ..braille import Cells, height_m, title_in_braille, translate, written_by
-from ..labels import first_labels
 from .colouring import choose_fills
 from .fills import BLANK, KINDS, fill_shape
 from .key import Entry, key_pages
@@ -25,7 +24,7 @@ from .lettering import around, place_letter, title_at, title_lines, words
 from .marks.gaps import Near, narrow_places, too_near
 from .marks.reading import read
 from .marks.svg import NO_DOTS, Area, Braille, Drawing, svg
-from .named_parts import LETTERS, MOST_NAMES, NamedParts, group_by_name, key_letters
+from .named_parts import LETTERS, MOST_NAMES, NamedParts, first_labels, group_by_name, key_letters
 from .opening import open_at
 from .sheet import CLEAR_MM, GAP_MM, Page, Sheet
 from .smoothing import smooth_borders

@@ -59,7 +59,8 @@ def sheet_for(page: Page, aspect: float, width_m: float | None) -> Sheet:
     """
     size, wide = _largest(page, aspect)
     wide = wide if width_m is None else 1000 * width_m
-    return _centre(size, (wide, wide / aspect))
+    spare_mm = _room(size)[1] - wide / aspect
+    return Sheet(size[0], size[1], (size[0] - wide) / 2, _top_mm(), (wide, wide / aspect), spare_mm)
 
 
 def check_readable(page: Page, sheet: Sheet) -> None:
@@ -102,9 +103,3 @@ def _room(size: tuple[float, float]) -> tuple[float, float]:
     """Return width and length of the largest picture, to the middle of its outline."""
     width, length = size
     return width - 2 * MARGIN_MM - LINE_MM, length - _top_mm() - MARGIN_MM - LINE_MM / 2
-
-
-def _centre(size: tuple[float, float], picture: tuple[float, float]) -> Sheet:
-    """Return a sheet with the picture centred from left to right, directly below the title."""
-    left = (size[0] - picture[0]) / 2
-    return Sheet(size[0], size[1], left, _top_mm(), picture, spare_mm=_room(size)[1] - picture[1])

@@ -58,10 +58,7 @@ class SolidExporter(Exporter, Previewing):
 
         Raises: GeometryError for a flat relief, BrailleError or OutputError for a title that cannot be written.
         """
-        from .making import PlateOptions, make_solid
-
-        options = PlateOptions(**{name: getattr(self, name) for name in PlateOptions._fields})
-        solid, layout = make_solid(options, work)
+        solid, layout = self._make(work)
         path = stem.with_name(f"{stem.name}.{self.ending}")
         with path.open("wb") as file:
             self.write_solid(file, solid, layout, work)
@@ -69,12 +66,15 @@ class SolidExporter(Exporter, Previewing):
 
     def preview(self, work: Work) -> UInt8[np.ndarray, "h w"]:
         """Return the solid, of coarser triangles, in light from the upper left. Raises: as `write`."""
-        from .making import PlateOptions, make_solid
         from .shading import COARSE_M, coarse_work, shaded
 
+        return shaded(self._make(coarse_work(work), COARSE_M)[0])
+
+    def _make(self, work: Work, least_error_m: float = 0.0) -> "tuple[Solid, Layout]":
+        from .making import PlateOptions, make_solid
+
         options = PlateOptions(**{name: getattr(self, name) for name in PlateOptions._fields})
-        solid, _ = make_solid(options._replace(error_m=max(options.error_m, COARSE_M)), coarse_work(work))
-        return shaded(solid)
+        return make_solid(options._replace(error_m=max(options.error_m, least_error_m)), work)
 
     @abstractmethod
     def write_solid(self, file: IO[bytes], solid: "Solid", layout: "Layout", work: Work) -> None:

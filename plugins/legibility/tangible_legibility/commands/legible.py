@@ -77,7 +77,7 @@ def legible(
 class Found(NamedTuple):
     """The verdicts on a picture of a width on a medium."""
 
-    medium: str
+    medium: Medium
     width_m: float
     simplified: bool
     """True if the parts that are drawn there, and judged, are simplified ones."""
@@ -100,9 +100,8 @@ def _heading(scene: str, found: Found) -> str:
 
     from ..rules import PROFILES
 
-    where = next(profile.text for name, profile in PROFILES.items() if name == found.medium)
+    where, width = PROFILES[found.medium].text, quantity(found.width_m, "m")
     sentence = f"[{COLOURS[found.verdicts.grade]}]{escape(found.verdicts.sentence)}[/]"
-    width = quantity(found.width_m, "m")
     if found.simplified:
         return f"{escape(scene)}, its parts simplified, {width} wide, {where}: {sentence}"
     return f"{escape(scene)}, {width} wide, {where}: {sentence}"

@@ -4,6 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float, Int, UInt8
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from tangible_core.data import SegmentMap
 from tangible_core.data.pictures import check_same_shape, to_rgb8
@@ -80,18 +82,8 @@ def _join_specks(
     cost = np.where(specks[first], unlike * rim[first] / sides, np.inf)
     order = np.lexsort((cost, first))
     chosen = order[np.searchsorted(first[order], np.flatnonzero(specks))]
-    root = np.arange(parts.count)
-    for speck, neighbour in zip(first[chosen].tolist(), second[chosen].tolist(), strict=True):
-        one, other = _root(root, speck), _root(root, neighbour)
-        root[max(one, other)] = min(one, other)
-    return np.array([_root(root, number) for number in range(parts.count)])
-
-
-def _root(root: Int[np.ndarray, "n"], number: int) -> int:
-    while (above := int(root[number])) != number:
-        root[number] = root[above]
-        number = above
-    return number
+    joined = coo_array((np.ones(chosen.size), (first[chosen], second[chosen])), (parts.count, parts.count))
+    return connected_components(joined, directed=False)[1]
 
 
 def _join_similar(parts: PartMap, colours: UInt8[np.ndarray, "h w 3"], most: int) -> Int[np.ndarray, "n"]:

@@ -156,22 +156,19 @@ class Opening(NamedTuple):
 
     def _windows(self, changed: Bool[np.ndarray, "h w"]) -> list[Box]:
         """Return boxes around changes, with a margin of the larger bound; boxes that touch become one."""
+        import cv2
+
         margin = ceil(max(self.choice.gap_m, self.choice.part_m) / self.pitch_m)
         near, windows = changed, list[Box]()
         while True:
             before = len(windows)
-            windows = [_grow(box, margin, near.shape) for box in boxes(_components(near)) if box is not None]
+            pieces = cv2.connectedComponents(near.view(np.uint8), connectivity=8)[1]
+            windows = [_grow(box, margin, near.shape) for box in boxes(pieces) if box is not None]
             if len(windows) == before:
                 return windows
             near, margin = np.zeros_like(changed), 0
             for box in windows:
                 near[box] = True
-
-
-def _components(cells: Bool[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
-    import cv2
-
-    return cv2.connectedComponents(cells.view(np.uint8), connectivity=8)[1]
 
 
 def _grow(box: Box, margin: int, shape: tuple[int, ...]) -> Box:

@@ -1,6 +1,7 @@
-"""A long description of a surface: its size, its heights, and its parts one by one from near to far."""
+"""A long description of a surface: its size, its heights, and its parts from near to far; as lines and as HTML."""
 
 from collections.abc import Callable, Sequence
+from html import escape
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +25,16 @@ MOST_NEIGHBOURS = 4
 """The number of neighbours of a part that are named, those with the longest borders."""
 SHARES = (0.5, 0.25, 0.08, 0.0)
 """The shares of the picture from which on another word describes the size of a part."""
+
+_STYLE = """
+:root { color-scheme: light dark; }
+body { background: Canvas; color: CanvasText; font: 125%/1.6 system-ui, sans-serif; margin: 2rem auto; max-width: 40em;
+  padding: 0 1rem; }
+h1, h2 { line-height: 1.25; }
+li { margin: 0 0 0.75em; padding-left: 0.25em; }
+@media print { body { font-size: 14pt; margin: 0; max-width: none; } h2 { break-after: avoid; }
+  li { break-inside: avoid; } }
+""".strip()
 
 
 class ToldPart(NamedTuple):
@@ -68,6 +79,47 @@ def describe_at_length(
         lines += ["", told.heading]
     lines += [f"- {end_sentence(each.label)} {' '.join(each.sentences)}" for each in told.parts]
     return (*lines, told.left_out) if told.left_out else tuple(lines)
+
+
+def page_of(
+    surface: HapticSurface,
+    title: str,
+    language: Language = "en",
+    parts: Sequence[PartFacts] = (),
+    kind: SceneKind | None = None,
+    *,
+    named_in: str | None = None,
+) -> str:
+    """Return `describe_at_length` as HTML: headings, an ordered list of parts, the system's colours, no script.
+
+    named_in: the tag of the language of the title and names, if it differs from the language of the words.
+    """
+    other = named_in if named_in and named_in != language else ""
+    told = tell(surface, title, language, parts, kind, lambda text: _quote(text, other))
+    items = "".join(
+        f"<li><strong>{end_sentence(each.label)}</strong> {' '.join(each.sentences)}</li>\n" for each in told.parts
+    )
+    listed = f"<h2>{told.heading}</h2>\n<ul>\n{items}</ul>\n" if told.parts else ""
+    left = f"<p>{told.left_out}</p>\n" if told.left_out else ""
+    return f"""<!doctype html>
+<html lang="{language}">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'">
+<title>{escape(one_line(title)) or told.title}</title>
+<style>
+{_STYLE}
+</style>
+</head>
+<body>
+<main>
+<h1>{told.title}</h1>
+<p>{" ".join(told.overview)}</p>
+{listed}{left}</main>
+</body>
+</html>
+"""
 
 
 def tell(
@@ -137,3 +189,9 @@ def _percent(share: float, say: Words) -> str:
 def end_sentence(text: str) -> str:
     """Add a full stop, unless the text ends like a sentence."""
     return text if text.endswith((".", "!", "?")) else f"{text}."
+
+
+def _quote(text: str, language: str) -> str:
+    """Return a custom name as HTML, marked with its language if that is not the page's."""
+    html = escape(one_line(text))
+    return f'<span lang="{escape(language)}" dir="auto">{html}</span>' if language else html

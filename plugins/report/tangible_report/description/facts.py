@@ -8,6 +8,7 @@ from jaxtyping import Float32, Float64, Int32, Int64
 
 from tangible_core.data import HapticSurface, MaterialMap, PartMap
 from tangible_core.parts.neighbours import neighbours
+from tangible_legibility.cells import resampled
 from tangible_legibility.words.places import place_of_counts
 
 MOST_CELLS = 512
@@ -58,7 +59,7 @@ def facts(
     numbers: list[int] = unique.tolist()
     count = len(numbers)
     dense = dense.reshape(labels.shape).astype(np.int32)
-    height_m = median_heights_m(dense, _resample(surface.height_m, labels.shape), count)
+    height_m = median_heights_m(dense, resampled(surface.height_m, labels.shape), count)
     share = np.bincount(dense.ravel()) / dense.size
     down, across = _count_cells(dense, count, 0), _count_cells(dense, count, 1)
     material_of, neighbours_of = _materials(surface, materials, dense, count), _neighbours(dense, count)
@@ -93,15 +94,6 @@ def median_heights_m(
     return np.array([np.median(part) if part.size else np.nan for part in parts])
 
 
-def _resample(values: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-    """Return the values under the centres of the cells of another grid."""
-    rows, columns = (
-        ((np.arange(wanted) + 0.5) * had / wanted).astype(np.intp)
-        for had, wanted in zip(values.shape, shape, strict=True)
-    )
-    return values[np.ix_(rows, columns)]
-
-
 def _count_cells(dense: Int32[np.ndarray, "h w"], count: int, axis: int) -> Int64[np.ndarray, "n k"]:
     """Return the number of cells that each part has in every row (axis 0) or column (axis 1)."""
     size = dense.shape[axis]
@@ -122,7 +114,7 @@ def _materials(
     known = surface.materials or (materials.materials if materials else ())
     if surface.labels is None or int(surface.labels.max()) >= len(known):
         return [""] * count
-    label = _resample(surface.labels, dense.shape)
+    label = resampled(surface.labels, dense.shape)
     pairs, cells = np.unique(dense.astype(np.int64) * len(known) + label, return_counts=True)
     by_size = pairs[np.argsort(cells, kind="stable")].tolist()
     most: dict[int, int] = dict(divmod(pair, len(known)) for pair in by_size)  # the last pair stays: the largest

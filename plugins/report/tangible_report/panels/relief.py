@@ -3,10 +3,9 @@
 # (matplotlib leaves its keywords without types)
 
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from jaxtyping import Float64
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
@@ -59,39 +58,28 @@ def draw_relief(axes: Axes, relief: Relief) -> str:
 
 
 def draw_surface(axes: Axes, relief: Relief) -> str:
-    """Draw the relief without normals, for a fine texture."""
-    drawn = _draw_heights(axes, drawn_size(relief, CELLS))
-    return f"Surface{drawn.note if relief.height_m.max() > FLAT_M else ', smooth'}"
-
-
-class _StretchedRelief(NamedTuple):
-    """A relief as it is drawn, and the note on its factor for the headline."""
-
-    relief: Relief
-    note: str
-
-
-def _draw_heights(axes: Axes, relief: Relief) -> _StretchedRelief:
-    stretch = _stretch(relief)
-    heights = ScalarMappable(Normalize(0, 1000 * max(float(relief.height_m.max()), FLAT_M)), VIRIDIS)
+    """Draw the relief as a block without normals, for a fine texture."""
+    relief = drawn_size(relief, CELLS)
+    highest_m, stretch = float(relief.height_m.max()), _stretch(relief)
+    heights = ScalarMappable(Normalize(0, 1000 * max(highest_m, FLAT_M)), VIRIDIS)
     stretched = replace(relief, height_m=np.float32(stretch) * relief.height_m)
     _draw_block(axes, stretched, heights.to_rgba(np.pad(1000 * relief.height_m, 1, "edge"))[..., :3])
     _leave_room(axes, stretched)
-    _draw_scales(axes, *relief.extent_m)
+    width_m, length_m = relief.extent_m
+    _draw_scale(axes, "x [mm]", np.array([0, -length_m / 2, 0]), np.array([1.0, 0, 0]), width_m / 2)
+    _draw_scale(axes, "y [mm]", np.array([width_m / 2, 0, 0]), np.array([0, 1.0, 0]), length_m / 2)
     axes.set_axis_off()
     colour_bar(axes, heights, "height [mm]")
-    return _StretchedRelief(stretched, f", heights x {stretch}" if stretch > 1 else "")
-
-
-def _corners(extent_m: tuple[float, float], top_m: float) -> Float64[np.ndarray, "8 2"]:
-    """Return the corners of the block on paper."""
-    x_m, y_m = (side / 2 for side in extent_m)
-    return on_paper(np.array([(x, y, z) for x in (-x_m, x_m) for y in (-y_m, y_m) for z in (0.0, top_m)]))
+    if highest_m <= FLAT_M:
+        return "Surface, smooth"
+    return f"Surface, heights x {stretch}" if stretch > 1 else "Surface"
 
 
 def _leave_room(axes: Axes, stretched: Relief) -> None:
     """Set the limits of the axes: true proportion, with the block centred in the room that the scales leave."""
-    corners = _corners(stretched.extent_m, float(stretched.height_m.max()))
+    x_m, y_m = (side / 2 for side in stretched.extent_m)
+    heights_m = 0.0, float(stretched.height_m.max())
+    corners = on_paper(np.array([(x, y, z) for x in (-x_m, x_m) for y in (-y_m, y_m) for z in heights_m]))
     least, most = corners.min(axis=0), corners.max(axis=0)
     shares, (left_in, right_in, low_in, high_in) = np.array(inches(axes)), ROOM_IN
     free_in = 1 / shares - [left_in + right_in, low_in + high_in]
@@ -139,12 +127,6 @@ def _draw_normals(axes: Axes, relief: Relief) -> None:
         *base_mm[:, :2].T, *normal[:, :2].T, units="inches", width=0.012, minlength=0.6,
         angles="xy", scale_units="xy", scale=1 / (1000 * ARROW * max(relief.extent_m)), color=INK,
     )  # fmt: skip
-
-
-def _draw_scales(axes: Axes, width_m: float, length_m: float) -> None:
-    """Draw scales in mm along the near and the right edge of the base."""
-    _draw_scale(axes, "x [mm]", np.array([0, -length_m / 2, 0]), np.array([1.0, 0, 0]), width_m / 2)
-    _draw_scale(axes, "y [mm]", np.array([width_m / 2, 0, 0]), np.array([0, 1.0, 0]), length_m / 2)
 
 
 def _draw_scale(axes: Axes, name: str, middle_m: np.ndarray, along: np.ndarray, half_m: float) -> None:

@@ -3,7 +3,7 @@
 # (matplotlib leaves its keywords without types)
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float, Int
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
@@ -11,6 +11,8 @@ from matplotlib.patheffects import withStroke
 from tangible_core.data import HapticSurface, MaterialMap, PartMap, SegmentMap, Views
 from tangible_core.data.part_words import name_part, shown_number
 from tangible_core.data.pictures import to_grey
+from tangible_core.data.views import border_pixels
+from tangible_legibility.cells import largest_disc
 
 from ..style import INK, bare, colours, inches, thin_out
 
@@ -101,40 +103,21 @@ def _draw_regions(
     axes: Axes, grey: Float[np.ndarray, "h w"], labels: Int[np.ndarray, "h w"], kind_of: Int[np.ndarray, "h w"]
 ) -> None:
     picture = (1 - TINT) * grey[..., None] + TINT * colours(int(kind_of.max()) + 1)[kind_of]
-    picture[_borders(labels)] *= 0.2
+    picture[border_pixels(labels)] *= 0.2
     axes.imshow(picture, interpolation="antialiased")
-
-
-def _borders(labels: Int[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
-    """Return the pixels with a neighbour (right, left, above or below) of another label."""
-    borders = np.zeros(labels.shape, bool)
-    across, down = labels[:, 1:] != labels[:, :-1], labels[1:] != labels[:-1]
-    borders[:, 1:] |= across
-    borders[:, :-1] |= across
-    borders[1:] |= down
-    borders[:-1] |= down
-    return borders
 
 
 def _write_names(axes: Axes, labels: Int[np.ndarray, "h w"], names: list[str]) -> None:
     """Write names, or numbers where only those fit, each in the middle of the largest disc in its segment."""
     point_px = inches(axes)[0] / 72 * labels.shape[1]
     for label in np.argsort(-np.bincount(labels.ravel()), kind="stable")[:NAMED].tolist():
-        column, row, radius_px = _largest_disc(labels == label)
+        if (disc := largest_disc(labels == label)) is None:
+            continue
         for text in (names[label], str(shown_number(label))):
-            if 2 * radius_px > point_px * max(10.0, 4.2 * len(text)):
+            if 2 * disc.radius_px > point_px * max(10.0, 4.2 * len(text)):
                 halo = withStroke(linewidth=2, foreground="white")
-                axes.text(column, row, text, fontsize=8, ha="center", va="center", path_effects=[halo])
+                axes.text(disc.column, disc.row, text, fontsize=8, ha="center", va="center", path_effects=[halo])
                 break
-
-
-def _largest_disc(region: Bool[np.ndarray, "h w"]) -> tuple[float, float, float]:
-    """Return column, row and radius of the largest disc inside a region; the picture's border is outside."""
-    import cv2
-
-    depth = cv2.distanceTransform(np.pad(region, 1).astype(np.uint8), cv2.DIST_L2, 3)
-    row, column = np.unravel_index(np.argmax(depth), depth.shape)
-    return float(column) - 1, float(row) - 1, float(depth[row, column])
 
 
 def _short(name: str) -> str:

@@ -24,8 +24,8 @@ LETTERS_MM = 4.0
 """Size of the letters: as large as print in a book for children."""
 ABOVE_MM = 2.4
 """Distance from the dots of a text in braille to the same text in ink above it."""
-SCALE_MM = 50.0
-"""Length of the scale bar."""
+SCALE_MM = MARGIN_MM, MARGIN_MM + 50.0
+"""Left and right end of the scale bar."""
 SCALE = "5 cm"
 WIDE = 0.56
 """Mean width of a letter, as a share of its size."""
@@ -43,7 +43,7 @@ class Label:
 
 def ink_svg(drawing: Drawing, note: str, named: bool) -> str:
     """Return a page in ink as SVG. note: a sentence at its foot. named: True if its areas are parts, with names."""
-    y, (left, right) = _foot_mm(drawing), _scale_mm()
+    y, (left, right) = _foot_mm(drawing), SCALE_MM
     bar = f'<path data-mark="scale" stroke="#000" stroke-width="0.5" d="M{left:g} {y:g}L{right:g} {y:g}"/>'
     return svg(drawing, GREY, [bar, *map(_text, labels(drawing, note, named))])
 
@@ -57,11 +57,11 @@ def write_ink_pdf(path: Path, pages: Sequence[Drawing], note: str) -> None:
 
 def labels(drawing: Drawing, note: str, named: bool) -> list[Label]:
     """Return the texts of a page in ink: those of its braille, the names of its parts, the scale and the note."""
-    foot, (left, right) = _foot_mm(drawing) + LETTERS_MM / 3, _scale_mm()
+    foot, (_, right) = _foot_mm(drawing) + LETTERS_MM / 3, SCALE_MM
     found = [_above(each) for each in drawing.texts if len(each.dots_mm)]
     found += [_at_part(each, drawing.sheet.width_mm) for each in _one_of_each(drawing.areas)] if named else []
     found = [replace(label, text=visible(label.text)) for label in found]  # a font has nothing for what cannot be seen
-    return [*found, Label(SCALE, right + 2, foot), Label(note, left + SCALE_MM + 20, foot)]
+    return [*found, Label(SCALE, right + 2, foot), Label(note, right + 20, foot)]
 
 
 def _above(text: Braille) -> Label:
@@ -92,10 +92,6 @@ def _foot_mm(drawing: Drawing) -> float:
     return drawing.sheet.length_mm - MARGIN_MM / 2
 
 
-def _scale_mm() -> tuple[float, float]:
-    return MARGIN_MM, MARGIN_MM + SCALE_MM
-
-
 def _text(label: Label) -> str:
     anchor = ' text-anchor="middle"' if label.middle else ""
     return (
@@ -110,7 +106,7 @@ def _figure(drawing: Drawing, note: str, named: bool) -> Figure:
     width, length = page.size_mm
     figure = figure_of(page, page.marks, colour=GREY)
     y = 1 - _foot_mm(drawing) / length
-    ends = [each / width for each in _scale_mm()]
+    ends = [each / width for each in SCALE_MM]
     figure.add_artist(Line2D(ends, [y, y], color="black", linewidth=0.5 * POINTS_PER_MM, transform=figure.transFigure))
     for each in labels(drawing, note, named):
         figure.text(

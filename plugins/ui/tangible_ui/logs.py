@@ -2,7 +2,8 @@
 
 import logging
 import time
-from typing import Protocol, final
+from collections.abc import Callable
+from typing import final
 
 OWN = ("tangible_core", "tangible_depth", "tangible_texture", "tangible_render", "tangible_devices", "tangible_ui")
 """Packages whose information pages get too; from others, warnings and errors."""
@@ -11,11 +12,8 @@ KNOWN = "tangible_core.plugins.observers.log"
 MOST_A_SECOND = 50
 
 
-class Tell(Protocol):
-    """A function that sends a log line to all pages, from any thread. level: detail, warning or error."""
-
-    def __call__(self, *, level: str, logger: str, text: str) -> None:
-        """Send the line without waiting."""
+Tell = Callable[..., None]
+"""A function that sends a line to all pages without waiting: `level` (detail, warning, error), `logger` and `text`."""
 
 
 @final

@@ -11,7 +11,7 @@ from tangible_core.servo import Packed, Safety, Servo, null_touch
 from tangible_devices.pointer import PointerClient
 from tangible_devices.pointer.pointer import Pointer
 
-from .ending import end_loop
+from .feeling import end_loop
 
 NOTHING: Vector = (0.0, 0.0, 0.0)
 STALE_AFTER_S = 0.3

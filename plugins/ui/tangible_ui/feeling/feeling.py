@@ -8,14 +8,14 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, NamedTuple, final
 
-from tangible_core.errors import DeviceError
+from tangible_core.errors import DeviceError, TangibleError
 from tangible_core.mapping import MappedDevice, WorkspaceMapping, placement_of
+from tangible_core.plugins.failures import sentence
 from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.servo import Beacon, Packed, Safety, Servo, null_touch
 from tangible_core.servo.ring import STOP
 
 from ..framing import BUTTON_BITS
-from .ending import end_loop
 from .hand import Hand
 from .state_frame import ALONE, OtherLaw, frame_of, frame_without_loop
 
@@ -26,6 +26,16 @@ FOLLOW_S = 0.012
 """Time constant with which the loop follows the mouse, s: mice move 60 times a second, the loop ticks 1000 times."""
 BUTTONS, PRESSED = (1 << BUTTON_BITS) - 1, 1
 """Bits of a device's buttons; and the button by which the page's own hand is pressed down, which ends no beacon."""
+
+
+def end_loop(servo: Servo) -> str:
+    """End a loop if it still runs, and return why it ended."""
+    try:
+        return servo.stop("stopped").stopped
+    except TangibleError as error:
+        return str(error)
+    except Exception as error:  # noqa: BLE001 - what a plugin raised in the loop is no failure of stopping it
+        return sentence(error)
 
 
 class LoopInput(NamedTuple):
@@ -47,17 +57,15 @@ class LoopInput(NamedTuple):
     def of(cls, made: dict[str, Any], channel: str) -> "LoopInput":
         """Build it from the worker's answer. channel: of the page's own pointer."""
         touch = Packed(Path(made["parcel"]), made["stiffness_n_per_m"])
-        parts = (pickle.loads(made[name]) for name in ("device", "mapping", "safety"))
-        device, mapping, safety = parts
-        own_hand = getattr(without_mapping(device), "channel", None) == channel
-        return cls(
-            touch, made["law"], made["device_name"], device, own_hand, mapping, safety, made.get("materials", "")
-        )
+        device, mapping, safety = (pickle.loads(made[name]) for name in ("device", "mapping", "safety"))
+        names = made["law"], made["device_name"]
+        found = cls(touch, *names, device, False, mapping, safety, made.get("materials", ""))
+        return found._replace(own_hand=getattr(found.unmapped_device, "channel", None) == channel)
 
     @property
     def unmapped_device(self) -> HapticDevice:
         """The device without the mapping."""
-        return without_mapping(self.device)
+        return self.device.device if isinstance(self.device, MappedDevice) else self.device
 
 
 class LoopEnd(NamedTuple):
@@ -256,8 +264,3 @@ class Feeling:
             self._starting = None
         if own_hand and self.running:
             self.hand.open(placement_of(device))
-
-
-def without_mapping(device: HapticDevice) -> HapticDevice:
-    """Return the device itself."""
-    return device.device if isinstance(device, MappedDevice) else device

@@ -9,7 +9,10 @@ from ..feeling.choice import Choice
 from ..feeling.doctor import figures
 from ..state.session import Session, Tab
 from .making import make
-from .table import request
+from .table import forward, request
+
+forward("examine", name=str)
+forward("reach", document=True)
 
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 8.0
 """First and longest pause before a device is looked for again, s; each doubles the last, as a look starts a process."""
@@ -20,12 +23,6 @@ KINDS = ("hand", "document", "other")
 async def devices(session: Session, tab: Tab | None) -> dict[str, Any]:
     """List the installed devices, and the chosen one; none is opened."""
     return {"devices": await session.worker.ask("devices"), "kind": session.choice.kind, "name": session.choice.name}
-
-
-@request()
-async def examine(session: Session, tab: Tab | None, name: str) -> list[dict[str, Any]]:
-    """Return what keeps a device from working, and the cure."""
-    return await session.worker.ask("examine", name=name)
 
 
 @request()
@@ -86,12 +83,6 @@ async def _wait(session: Session) -> None:
                 session.tell("loop", running=False, why=told, lost=True, waiting=True)
             await asyncio.sleep(pause_s)
             pause_s = min(2 * pause_s, LONGEST_PAUSE_S)
-
-
-@request()
-async def reach(session: Session, tab: Tab) -> dict[str, Any]:
-    """Return the name of the document's device, and its workspace in metres; None without a device."""
-    return await session.worker.quick("reach", **session.document())
 
 
 @request()

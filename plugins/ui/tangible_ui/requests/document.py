@@ -10,7 +10,11 @@ from tangible_core.files.paths import as_path
 from ..state.session import Session, Tab
 from ..state.texts import Text
 from .making import foresee, make
-from .table import request
+from .table import forward, request
+
+forward("schema")
+forward("library", document=True)
+forward("examples")
 
 
 @request()
@@ -74,18 +78,6 @@ async def redo(session: Session, tab: Tab | None, apply: bool = False) -> dict[s
     return await _step(session, back=False, apply=apply)
 
 
-@request()
-async def schema(session: Session, tab: Tab | None) -> dict[str, Any]:
-    """Return the JSON Schema, from which the page builds its forms."""
-    return await session.worker.quick("schema")
-
-
-@request()
-async def library(session: Session, tab: Tab | None) -> list[dict[str, Any]]:
-    """List the materials that the document can name."""
-    return await session.worker.quick("library", **session.document())
-
-
 async def take(session: Session, text: Text) -> dict[str, Any]:
     """Replace text and path of the document, and send it to all tabs. The caller holds `session.texts.lock`."""
     return _put(session, text, await _check(session, text))
@@ -145,12 +137,6 @@ async def open_batch(session: Session, tab: Tab | None, batch: str) -> dict[str,
     """Open the files of an uploaded batch together."""
     files = await asyncio.to_thread(session.uploads.keep, batch)
     return await begin(session, tab, [str(each) for each in files])
-
-
-@request()
-async def examples(session: Session, tab: Tab | None) -> list[str]:
-    """List the built-in scenes."""
-    return await session.worker.quick("examples")
 
 
 @request()

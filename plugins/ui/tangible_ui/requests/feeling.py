@@ -16,7 +16,9 @@ from ..state.laws import Choice, Tally
 from ..state.session import Session, Tab
 from ..state.uploads import user_folder
 from .making import make
-from .table import request
+from .table import forward, request
+
+forward("law_names")
 
 
 @request()
@@ -64,12 +66,6 @@ def _tell(session: Session, part: int | None, name: str) -> dict[str, Any]:
 
 NAMES = ("a", "b")
 MOST_QUESTION = 200
-
-
-@request()
-async def law_names(session: Session, tab: Tab | None) -> list[str]:
-    """List the force laws to compare with."""
-    return await session.worker.quick("law_names")
 
 
 @request()

@@ -4,7 +4,9 @@ from pathlib import Path
 from typing import Any
 
 from ..state.session import Session, Tab
-from .table import request
+from .table import forward, request
+
+forward("ask_panel", document=True, panel=str, request=str, arguments=(dict[str, Any], None))
 
 
 @request()
@@ -14,12 +16,3 @@ async def panels(session: Session, tab: Tab | None) -> list[dict[str, Any]]:
     modules = {each["name"]: Path(each["module"]) for each in found}
     session.panel_folders = {name: module.parent for name, module in modules.items()}
     return [{**each, "module": f"/panels/{each['name']}/{modules[each['name']].name}"} for each in found]
-
-
-@request()
-async def ask_panel(
-    session: Session, tab: Tab | None, panel: str, request: str, arguments: dict[str, Any] | None = None
-) -> Any:
-    """Have a plugin answer a request of its panel, about the current document. Raises: whatever the plugin raises."""
-    told = {"panel": panel, "request": request, "arguments": arguments or {}}
-    return await session.worker.quick("ask_panel", **session.document(), **told)

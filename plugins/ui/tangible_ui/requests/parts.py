@@ -8,7 +8,10 @@ from ..state.texts import Text
 from ..state.uploads import user_folder
 from .document import take
 from .making import foresee
-from .table import request
+from .table import forward, request
+
+forward("parts_first", document=True)
+forward("parts_snap", document=True, points=list[list[float]], reach_px=float)
 
 
 @request()
@@ -16,12 +19,6 @@ async def parts_open(session: Session, tab: Tab | None) -> dict[str, Any]:
     """Return what the editor begins with: the document's picture and parts, its file, and where a new one may lie."""
     told = {"opened": session.drafts.opened_text, "uploads": user_folder("")}
     return await session.worker.quick("parts_open", **session.document(), **told)
-
-
-@request()
-async def parts_first(session: Session, tab: Tab | None) -> dict[str, Any]:
-    """Propose all parts of a picture that nobody has divided yet, as `tangible parts` does. Raises: TangibleError."""
-    return await session.worker.quick("parts_first", **session.document())
 
 
 @request()
@@ -79,12 +76,6 @@ async def parts_propose(
     """
     told = {"points": points, "width_px": width_px, "kind": kind, "within": within, "level": level}
     return await session.strokes.run(lambda: session.worker.quick("parts_propose", **session.document(), **told))
-
-
-@request()
-async def parts_snap(session: Session, tab: Tab | None, points: list[list[float]], reach_px: float) -> dict[str, Any]:
-    """Move a closed outline to the picture's edges within this reach. Raises: ConfigError."""
-    return await session.worker.quick("parts_snap", **session.document(), points=points, reach_px=reach_px)
 
 
 @request()

@@ -1,6 +1,7 @@
-"""The table of all requests by name, filled by the decorator at each."""
+"""The table of all requests by name, filled by the decorator at each, or by `forward`."""
 
 from collections.abc import Awaitable, Callable
+from inspect import Parameter, Signature
 from typing import Any, TypeVar
 
 Request = Callable[..., Awaitable[Any]]
@@ -25,3 +26,21 @@ def request(name: str = "") -> Callable[[R], R]:
         return function
 
     return register
+
+
+def forward(job: str, *, document: bool = False, **types: Any) -> None:
+    """Register the worker's quick job of this name as a request.
+
+    document: the job takes the document too. types: of the tab's arguments; those with a default are a tuple of both.
+    """
+
+    async def ask(session: Any, tab: Any, **told: Any) -> Any:
+        return await session.worker.quick(job, **(session.document() if document else {}), **told)
+
+    ask.__name__ = job
+    ask.__annotations__ = {name: told[0] if isinstance(told, tuple) else told for name, told in types.items()}
+    defaults = {name: told[1] for name, told in types.items() if isinstance(told, tuple)}
+    taken = [Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in ("session", "tab")]
+    taken += [Parameter(name, Parameter.KEYWORD_ONLY, default=defaults.get(name, Parameter.empty)) for name in types]
+    ask.__dict__["__signature__"] = Signature(taken)
+    request()(ask)

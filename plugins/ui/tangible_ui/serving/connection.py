@@ -5,7 +5,7 @@ from asyncio import BaseTransport, TimerHandle
 from collections.abc import Callable
 from functools import partial
 from threading import Lock
-from typing import Any, Protocol, final
+from typing import Any, final
 
 import h11
 from starlette.requests import HTTPConnection
@@ -23,13 +23,6 @@ PING_S = 5.0
 """Interval of pings, s; a tab whose browser does not answer for twice as long is gone."""
 
 
-class Abortable(Protocol):
-    """A connection that can be cut off."""
-
-    def abort(self) -> None:
-        """End it at once, without waiting."""
-
-
 @final
 class Strangers:
     """The connections that have not shown the key; of too many, the one that has been open longest is cut off.
@@ -39,20 +32,20 @@ class Strangers:
     """
 
     def __init__(self) -> None:
-        self._open: dict[Abortable, float] = {}
+        self._open: dict[Any, float] = {}
         self._lock = Lock()
 
-    def add(self, connection: Abortable) -> None:
-        """Add a new connection."""
+    def add(self, transport: Any) -> None:
+        """Add the transport of a new connection."""
         with self._lock:
-            self._open[connection] = time.monotonic()
+            self._open[transport] = time.monotonic()
             if len(self._open) > MOST_STRANGERS:
                 self._cut(1)
 
-    def remove(self, connection: Abortable) -> None:
+    def remove(self, transport: Any) -> None:
         """Remove a connection that has shown the key, or is closed."""
         with self._lock:
-            self._open.pop(connection, None)
+            self._open.pop(transport, None)
 
     def cut_late(self) -> None:
         """Cut off those that have been open for HEAD_S; meant to be polled where nothing else limits the head."""

@@ -8,20 +8,8 @@ from typing import Any, final
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from ..error_text import describe_error
-from ..framing import (
-    ACK,
-    ACK_FRAME,
-    HOLDING,
-    POINTER,
-    POINTER_FRAME,
-    RECORDING,
-    RELEASE,
-    RELEASE_FRAME,
-    RUNNING,
-    VERSION,
-)
-from ..state.session import Session
+from .. import framing
+from ..state.session import Session, describe_error
 from .connection import cut_off
 from .parsing import BadRequest, ParsedRequest, parse
 from .translating import in_language, language_of
@@ -71,7 +59,14 @@ class LiveTab:
         await self._socket.accept()
         session = self._session
         known = {"history": session.history, "scene": session.scene}
-        self.say({"event": "hello", "version": VERSION, **known, "empty": session.waits_for_file and not session.text})
+        self.say(
+            {
+                "event": "hello",
+                "version": framing.VERSION,
+                **known,
+                "empty": session.waits_for_file and not session.text,
+            }
+        )
         session.enter(self)
         try:
             with suppress(WebSocketDisconnect):
@@ -94,13 +89,13 @@ class LiveTab:
     def _handle_frame(self, body: bytes) -> None:
         """Handle a binary frame; one that is incomplete or of an unknown kind is ignored."""
         kind, hand = body[0], self._session.feeling.hand
-        if kind == ACK and len(body) == ACK_FRAME.size:
-            self._drawn = max(self._drawn, min(ACK_FRAME.unpack(body)[1], self._seq))
+        if kind == framing.ACK and len(body) == framing.ACK_FRAME.size:
+            self._drawn = max(self._drawn, min(framing.ACK_FRAME.unpack(body)[1], self._seq))
             self._acked.set()
-        elif kind == POINTER and len(body) == POINTER_FRAME.size and self._session.holder is self:
-            _, buttons, tag, _, x, y, z = POINTER_FRAME.unpack(body)
+        elif kind == framing.POINTER and len(body) == framing.POINTER_FRAME.size and self._session.holder is self:
+            _, buttons, tag, _, x, y, z = framing.POINTER_FRAME.unpack(body)
             hand.point((x, y, z), buttons, tag)
-        elif kind == RELEASE and len(body) == RELEASE_FRAME.size and self._session.holder is self:
+        elif kind == framing.RELEASE and len(body) == framing.RELEASE_FRAME.size and self._session.holder is self:
             hand.release()
 
     def _begin_request(self, text: str) -> None:
@@ -157,7 +152,9 @@ class LiveTab:
         recorder = self._session.recorder
         recording = recorder is not None and recorder.recording
         return (
-            RUNNING * self._session.feeling.running | HOLDING * (self._session.holder is self) | RECORDING * recording
+            framing.RUNNING * self._session.feeling.running
+            | framing.HOLDING * (self._session.holder is self)
+            | framing.RECORDING * recording
         )
 
 

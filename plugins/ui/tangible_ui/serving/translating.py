@@ -30,10 +30,10 @@ def language_of(tag: str) -> str:
 
 def in_language(message: dict[str, Any], language: str) -> dict[str, Any]:
     """Return a message with its texts in a language; itself in English."""
-    return message if language == LANGUAGES[0] else _translated(message, language)
+    return message if language == LANGUAGES[0] else _translate(message, language)
 
 
-def _translated(value: Any, language: str) -> Any:
+def _translate(value: Any, language: str) -> Any:
     if isinstance(value, dict):
         texts = TEXTS | {"text"} if value.get("event") in SPOKEN or not NOTED.isdisjoint(value) else TEXTS
         found: dict[str, Any] = {}
@@ -41,12 +41,12 @@ def _translated(value: Any, language: str) -> Any:
             if isinstance(each, str):
                 found[key] = translate(each, language) if key in texts and each not in KNOWN else each
             else:
-                found[key] = each if key in VALUES else _translated(each, language)
+                found[key] = each if key in VALUES else _translate(each, language)
         if value.get("notes") and isinstance(value.get("why"), str):
             found["why"] = _with_notes(value["why"], value["notes"], found["notes"], language)
         return found
     if isinstance(value, list | tuple) and value and not isinstance(value[0], int | float):
-        return [_translated(each, language) for each in value]
+        return [_translate(each, language) for each in value]
     return value
 
 

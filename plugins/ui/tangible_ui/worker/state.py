@@ -1,10 +1,10 @@
 """The worker's state, and the progress of a long job."""
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Event, Lock
-from typing import Any, Protocol, final
+from typing import Any, final
 from weakref import WeakKeyDictionary
 
 from tangible_core.errors import Stopped
@@ -35,11 +35,8 @@ def stamp_of(config: PipelineConfig) -> Stamp:
     return tuple(found)
 
 
-class Tell(Protocol):
-    """A function that sends an event to all pages."""
-
-    def __call__(self, event: str, **told: Any) -> None:
-        """Send the event with its fields."""
+Tell = Callable[..., None]
+"""A function that sends an event to all pages: its name, and its fields by name."""
 
 
 @final

@@ -6,7 +6,6 @@ import shutil
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
-from time import perf_counter
 from typing import Any
 from zipfile import ZIP_DEFLATED, ZipFile
 
@@ -23,7 +22,7 @@ from tangible_core.plugins.notes import silently
 from ..state import WorkerState
 from ..view.files import leave, write_whole
 from .document import digest_of
-from .making import plan_data, stage_reporter
+from .making import announced, plan_data
 from .table import job
 
 FOLDER = "export-"
@@ -44,24 +43,17 @@ def export(
     exports: as `export:` of a pipeline file has them. Raises: ConfigError for invalid ones; TangibleError as
     `Pipeline.export`.
     """
-    begun_s = perf_counter()
     pipeline = state.pipeline_of(text, path, [*sets, f"export={json_in_yaml(exports)}"])
     at = state.folder / f"{FOLDER}{secrets.token_hex(8)}"
     try:
-        with state.work(pipeline, number) as work:
-            state.tell("making", want="export", digest=digest_of(text))
+        with announced(state, number, pipeline, text, "export") as (work, report):
             _sweep(state.folder)
-            done = pipeline.export(at, None, stage_reporter(state, work), work.stop)
-        found = {
-            "digest": digest_of(text),
-            "folder": at.name,
-            "exports": [_outcome_data(each) for each in done.exports],
-        }
+            outcomes = [_outcome_data(each) for each in pipeline.export(at, None, report, work.stop).exports]
+            found = {"digest": digest_of(text), "folder": at.name, "exports": outcomes}
+            state.tell("exported", **found)
     except BaseException:
         shutil.rmtree(at, ignore_errors=True)
         raise
-    state.tell("exported", **found)
-    state.tell("made", want="export", digest=digest_of(text), outcome="made", why="", seconds=perf_counter() - begun_s)
     return found
 
 

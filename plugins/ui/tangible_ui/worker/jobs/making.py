@@ -1,5 +1,7 @@
 """Jobs that make products and show them on the way; and the plan of making."""
 
+from collections.abc import Generator
+from contextlib import contextmanager
 from dataclasses import asdict, replace
 from pathlib import Path
 from time import perf_counter
@@ -60,30 +62,32 @@ def make(state: WorkerState, number: int, text: str, path: Path, sets: list[str]
 
     Returns: the loop's input, if a touch was wanted.
     """
-    begun_s = perf_counter()
     pipeline = state.pipeline_of(text, path, sets)
-    with state.work(pipeline, number) as work:
-        state.tell("making", want=want, digest=digest_of(text))
+    with announced(state, number, pipeline, text, want) as (work, report):
         state.tell("plan", **plan_data(pipeline, text, want))
-        report = stage_reporter(state, work)
         product = TO_SEE.get(want, want)
         pipeline.make(product, report, work.stop)
         _show(state, pipeline, product)
         work.worth = True
-        made = loop_input_of(pipeline, report, work.stop) if want == "touch" else None
-    state.tell("made", want=want, digest=digest_of(text), outcome="made", why="", seconds=perf_counter() - begun_s)
-    return made
+        return loop_input_of(pipeline, report, work.stop) if want == "touch" else None
 
 
-def stage_reporter(state: WorkerState, work: Work) -> Progress:
-    """Return a function that sends the events of stages to pages."""
+@contextmanager
+def announced(
+    state: WorkerState, number: int, pipeline: Pipeline, text: str, want: str
+) -> Generator[tuple[Work, Progress]]:
+    """Send pages begin, stages and end of a long job. Yields: the job's progress, and who reports a stage to pages."""
+    begun_s, digest = perf_counter(), digest_of(text)
 
     def report(stage: StageEvent) -> None:
         done = {} if stage.outcome is None else asdict(stage.outcome)
         state.tell("stage", product=stage.product, method=stage.method, done=done)
         work.follow(stage)
 
-    return report
+    with state.work(pipeline, number) as work:
+        state.tell("making", want=want, digest=digest)
+        yield work, report
+    state.tell("made", want=want, digest=digest, outcome="made", why="", seconds=perf_counter() - begun_s)
 
 
 @job(quick=True)

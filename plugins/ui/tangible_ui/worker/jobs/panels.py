@@ -27,7 +27,7 @@ def ask_panel(
     sets: list[str],
     panel: str,
     request: str,
-    arguments: dict[str, Any],
+    arguments: dict[str, Any] | None = None,
 ) -> Any:
     """Have a plugin answer a request of its panel. Raises: ConfigError if there is none; whatever the plugin raises."""
     found = installed_panels().get(panel)
@@ -36,4 +36,4 @@ def ask_panel(
     if request not in found.requests:
         hint = did_you_mean(request, found.requests)
         raise ConfigError(f"the panel {panel} answers no request {quoted(request)}{hint}")
-    return found.requests[request](state.pipeline_of(text, path, sets), **arguments)
+    return found.requests[request](state.pipeline_of(text, path, sets), **(arguments or {}))

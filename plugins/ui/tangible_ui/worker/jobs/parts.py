@@ -20,35 +20,11 @@ from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.notes import silently
 
 from ..loop_input import parcel_of
+from ..parts import opening, saving
 from ..parts.heights import Kept, coarse, kept_of, known_heights, materials_of, of_parts, validate
 from ..parts.label_files import as_png, unpack
-from ..parts.opening import (
-    FOLDER,
-    config_heights,
-    config_parts,
-    digest,
-    edited_of,
-    leave_files,
-    opened_of,
-    part_entries,
-    texture_of_first_parts,
-    tree_of,
-)
 from ..parts.outlines import snap
 from ..parts.proposals import Kind, as_points, propose, propose_region, runs
-from ..parts.saving import (
-    compact,
-    document_with_parts,
-    folder_of_photograph,
-    is_in_file,
-    keep_replaced,
-    new_file,
-    number_parts,
-    place_next_to,
-    undo_framing,
-    warn_of_numbers,
-    write,
-)
 from ..state import WorkerState
 from ..view.files import show
 from ..view.surface_view import view_parts
@@ -66,22 +42,22 @@ def parts_open(
     Raises: ConfigError for a wrong document; PictureError for a scene that cannot be read, or has too many parts;
     OutputError if the files cannot be written.
     """
-    pipeline = edited_of(state, text, path, sets)
-    edited, config = opened_of(state, pipeline), pipeline.config
-    at = f"{FOLDER}{digest_of((edited.picture, edited.parts))}"
-    leave_files(edited, state.folder / at)
-    in_file, beside = is_in_file(path, opened), folder_of_photograph(config, uploads)
-    by_parts = config.with_values(heights=config_heights(config))
+    pipeline = opening.edited_of(state, text, path, sets)
+    edited, config = opening.opened_of(state, pipeline), pipeline.config
+    at = f"{opening.FOLDER}{digest_of((edited.picture, edited.parts))}"
+    opening.leave_files(edited, state.folder / at)
+    in_file, beside = saving.is_in_file(path, opened), saving.folder_of_photograph(config, uploads)
+    by_parts = config.with_values(heights=opening.config_heights(config))
     rows, columns = edited.parts.labels.shape
     return {
         "columns": columns,
         "rows": rows,
         "picture": f"{at}/picture.jpg",
         "labels": f"{at}/labels.u16",
-        "digest": digest(edited.parts, config),
-        "parts": part_entries(edited.parts, config_parts(config)),
+        "digest": opening.digest(edited.parts, config),
+        "parts": opening.part_entries(edited.parts, config.parts or {}),
         "divided": edited.scene.segments is not None or edited.parts.count > 1,
-        "heights": config_heights(config).model_dump(mode="json"),
+        "heights": opening.config_heights(config).model_dump(mode="json"),
         "top_m": max(0.0, by_parts.top_m),
         "widthM": by_parts.size.width_m,
         "file": str(path) if in_file else "",
@@ -98,17 +74,18 @@ def parts_first(state: WorkerState, text: str, path: Path, sets: list[str]) -> d
     Returns: the file of the number of each pixel's part, and the height of each part in metres; no parts for a scene
     without a picture. Raises: TangibleError as `Pipeline.make`; OutputError if the file cannot be written.
     """
-    from tangible_authoring.first_parts import proposed_heights, proposed_parts
+    from tangible_authoring.first_parts import proposed_heights, proposed_parts, segments_for
 
-    opened = opened_of(state, edited_of(state, text, path, sets))
+    opened = opening.opened_of(state, opening.edited_of(state, text, path, sets))
     if opened.scene.views is None:
         return {"labels": "", "heights_m": []}
-    divided = state.pipeline_of(text, path, [*sets, texture_of_first_parts()])
+    joined = f"texture={{use: {opening.TREES}, segments: {segments_for()}}}"
+    divided = state.pipeline_of(text, path, [*sets, joined])
     found, config = proposed_parts(divided), divided.config
-    by_parts = config.with_values(heights=config_heights(config))
+    by_parts = config.with_values(heights=opening.config_heights(config))
     heights = proposed_heights(divided, found, max(0.0, by_parts.top_m))
-    at = f"{FOLDER}{digest_of((opened.picture, found))}"
-    leave_files(opened._replace(parts=found), state.folder / at)
+    at = f"{opening.FOLDER}{digest_of((opened.picture, found))}"
+    opening.leave_files(opened._replace(parts=found), state.folder / at)
     return {"labels": f"{at}/labels.u16", "heights_m": list(heights.heights_m)}
 
 
@@ -128,10 +105,10 @@ def parts_propose(
 
     Raises: ConfigError for a stroke outside of the picture; otherwise as `parts_open`.
     """
-    opened = opened_of(state, edited_of(state, text, path, sets))
+    opened = opening.opened_of(state, opening.edited_of(state, text, path, sets))
     stroke = as_points(points, opened.picture.shape)
     if kind == "regions":
-        box, mask = propose_region(tree_of(state, opened), stroke, width_px, level, within)
+        box, mask = propose_region(opening.tree_of(state, opened), stroke, width_px, level, within)
     else:
         box, mask = propose(opened.picture, stroke, width_px, kind, within)
     return {"box": list(box), "runs": runs(mask)}
@@ -142,7 +119,7 @@ def parts_snap(
     state: WorkerState, text: str, path: Path, sets: list[str], points: Sequence[Sequence[float]], reach_px: float
 ) -> dict[str, Any]:
     """Move a closed outline to the strongest edges within reach. Raises: as `parts_propose`."""
-    picture = opened_of(state, edited_of(state, text, path, sets)).picture
+    picture = opening.opened_of(state, opening.edited_of(state, text, path, sets)).picture
     outline = as_points(points, picture.shape)
     return {"points": np.round(snap(picture, outline, reach_px), 2).tolist()}
 
@@ -174,26 +151,26 @@ def parts_save(
     Raises: ConfigError for invalid labels, parts that were changed elsewhere meanwhile, and invalid entries;
     OutputError; then nothing is changed.
     """
-    pipeline = edited_of(state, text, path, sets)
-    if of and of != digest(opened_of(state, pipeline).parts, pipeline.config):
+    pipeline = opening.edited_of(state, text, path, sets)
+    if of and of != opening.digest(opening.opened_of(state, pipeline).parts, pipeline.config):
         raise ConfigError("the parts were changed elsewhere meanwhile, as in another tab; open the editor again")
     labels = unpack(sent, pipeline.scene.shape)
-    known, segments = compact(labels)
+    known, segments = saving.compact(labels)
     found = find_parts(SegmentMap(segments))
-    choices, numbers = number_parts(parts, [int(known[each]) for each in found.segments], found.labels)
-    file = path if is_in_file(path, opened) else new_file(pipeline.config, path, drawn, beside)
-    picture = as_png(undo_framing(found.labels, pipeline.config), file.name)
-    place = place_next_to(file)
+    choices, numbers = saving.number_parts(parts, [int(known[each]) for each in found.segments], found.labels)
+    file = path if saving.is_in_file(path, opened) else saving.new_file(pipeline.config, path, drawn, beside)
+    picture = as_png(saving.undo_framing(found.labels, pipeline.config), file.name)
+    place = saving.place_next_to(file)
     text_there = relocate_text(text, path, parse_config(text, path, state.registry), file)
-    changed = document_with_parts(text_there, file, place, choices, heights, words)
+    changed = saving.document_with_parts(text_there, file, place, choices, heights, words)
     if pipeline.config.materials.by == "roughness":
         changed = edit_text(changed, file, {("materials", "by"): "rules"})  # parts are of what they are said to be of
     config = parse_config(changed, file, state.registry, sets)
     check_parts(config, found, labels.shape[1])
-    moved = keep_replaced(place, picture, store, [*earlier, text], path)
-    write(place, picture, file, changed)
-    warn_of_numbers(config, opened_of(state, pipeline), found)
-    of = digest(found, config)
+    moved = saving.keep_replaced(place, picture, store, [*earlier, text], path)
+    saving.write(place, picture, file, changed)
+    saving.warn_of_numbers(config, opening.opened_of(state, pipeline), found)
+    of = opening.digest(found, config)
     return {"text": changed, "path": str(place), "file": file, "numbers": numbers, "digest": of, "moved": moved}
 
 
@@ -214,8 +191,8 @@ def parts_heights(
     Raises: ConfigError for a height above the workspace, an unknown part, a depth that is not made yet, a document
     without a law or a device; MaterialError; TangibleError as `Pipeline.make`.
     """
-    pipeline = edited_of(state, text, path, sets)
-    opened_of(state, pipeline)
+    pipeline = opening.edited_of(state, text, path, sets)
+    opening.opened_of(state, pipeline)
     config = coarse(of_parts(pipeline.config, heights), pipeline.scene.shape)
     if config.render is None:
         raise config.missing("render")
@@ -225,7 +202,7 @@ def parts_heights(
     said = {number: validate(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
     part_validation.check_parts(config.with_values(parts=said), kept.parts, kept.grid.scene.shape[1])
     part_validation.check_numbers(config, kept.parts.count)
-    known = known_heights(kept, heights_m, (heights or {}).get("by", config_heights(pipeline.config).by))
+    known = known_heights(kept, heights_m, (heights or {}).get("by", opening.config_heights(pipeline.config).by))
     relief = working_grid.relief_of_layers(kept.layering, known, config.size, kept.grid.opaque_mask)
     own = part_validation.own_materials(config) if materials is None else dict(enumerate(materials))
     products: dict[str, Record] = {config.felt_parts: kept.parts, "relief": relief}

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from pathlib import Path
-from time import perf_counter
 from typing import Any
 
 from tangible_authoring.fixing import AT_ONCE, cure
@@ -16,7 +15,7 @@ from tangible_core.runtime.stopping import stoppable
 from ..messages import Late
 from ..state import WorkerState
 from .document import digest_of
-from .making import stage_reporter
+from .making import announced
 from .table import job
 
 
@@ -29,20 +28,15 @@ def preflight(
     own: the page's hand, as `--set` takes it. late: of the running loop; without one this process takes a sample.
     Raises: ConfigError if there is no law; TangibleError as `Pipeline.make`.
     """
-    begun_s = perf_counter()
     pipeline, is_own = _pipeline_to_judge(state, text, path, sets, own)
-    with state.work(pipeline, number) as work:
-        state.tell("making", want="preflight", digest=digest_of(text))
-        pipeline.make("touch", stage_reporter(state, work), work.stop)
+    with announced(state, number, pipeline, text, "preflight") as (work, report):
+        pipeline.make("touch", report, work.stop)
         with stoppable(work.stop):
             flight = Feeling(pipeline).flight(loop=_loop(late))
-    if late is not None:
-        flight = replace(flight, lateness=Lateness(*late))
-    found = _verdict_data(judge(flight), text, pipeline, is_own, late)
-    state.tell("preflight", **found)
-    state.tell(
-        "made", want="preflight", digest=found["digest"], outcome="made", why="", seconds=perf_counter() - begun_s
-    )
+        if late is not None:
+            flight = replace(flight, lateness=Lateness(*late))
+        found = _verdict_data(judge(flight), text, pipeline, is_own, late)
+        state.tell("preflight", **found)
     return found
 
 
@@ -52,13 +46,11 @@ def fix(
 ) -> dict[str, Any]:
     """Return the changes with which the document passes, by key, and the verdicts then. Raises: as `preflight`."""
     pipeline, is_own = _pipeline_to_judge(state, text, path, sets, own)
-    with state.work(pipeline, number) as work:
-        state.tell("making", want="preflight", digest=digest_of(text))
-        pipeline.make("touch", stage_reporter(state, work), work.stop)
+    with announced(state, number, pipeline, text, "preflight") as (work, report):
+        pipeline.make("touch", report, work.stop)
         lateness = None if late is None else Lateness(*late)
         with stoppable(work.stop):
             found = cure(text, path, pipeline, Hand(), _loop(late), [*sets, own] if is_own else sets, lateness)
-    state.tell("made", want="preflight", digest=digest_of(text), outcome="made", why="", seconds=0.0)
     settings = {key: change.setting for key, change in found.changes.items()}
     return {"changes": settings, "safe": found.verdicts.safe, "sentence": found.verdicts.sentence}
 
@@ -96,16 +88,14 @@ def legible(
 
     Raises: TangibleError as `Pipeline.legible`.
     """
-    begun_s, digest = perf_counter(), digest_of(text)
     pipeline = state.pipeline_of(text, path, sets)
-    with state.work(pipeline, number) as work:
-        state.tell("making", want="legible", digest=digest)
-        pipeline.make("parts", stage_reporter(state, work), work.stop)
+    with announced(state, number, pipeline, text, "legible") as (work, report):
+        pipeline.make("parts", report, work.stop)
         with stoppable(work.stop):
             feeling = Feeling(pipeline)
             width_m = feeling.width_on(medium) if width_m is None else width_m
             judged, simplified = feeling.legible(medium, width_m), feeling.is_simplified_on(medium)
-    found = {"digest": digest, "medium": medium, "width_m": width_m, "simplified": simplified, **judged.as_data()}
-    state.tell("legible", **found)
-    state.tell("made", want="legible", digest=digest, outcome="made", why="", seconds=perf_counter() - begun_s)
+        told = {"medium": medium, "width_m": width_m, "simplified": simplified}
+        found = {"digest": digest_of(text), **told, **judged.as_data()}
+        state.tell("legible", **found)
     return found

@@ -110,24 +110,19 @@ def kept_of(state: WorkerState, pipeline: Pipeline) -> Kept:
     parts = working_grid.parts_on_grid(made.engine.make_on_grid(bare.felt_parts), grid.shape, bare.felt_parts)
     uses = bare.render is None or bare.render.method.uses_materials
     chosen = made.make("materials") if uses else None
-    layering = None if before is None else _same_layering(before, bare, parts, grid)
-    if layering is None:
+    if before and _has_layering(before, bare, parts, grid):
+        layering = before.layering
+    else:
         assert bare.heights is not None
         layering = Layering(parts, bare.size.width_m, bare.heights, grid.views.left if grid.views else None)
     state.kept = kept = Kept(made.scene, bare, made, grid, parts, chosen, layering)
     return kept
 
 
-def _same_layering(
-    before: Kept, config: PipelineConfig, parts: PartMap, grid: working_grid.WorkingGrid
-) -> Layering | None:
-    """Return the kept layering if it is of the same parts."""
+def _has_layering(before: Kept, config: PipelineConfig, parts: PartMap, grid: working_grid.WorkingGrid) -> bool:
+    """Return True if the kept layering is of these parts."""
     same = before.config.heights == config.heights and before.config.size == config.size
-    return (
-        before.layering
-        if same and before.grid.scene is grid.scene and np.array_equal(before.parts.labels, parts.labels)
-        else None
-    )
+    return same and before.grid.scene is grid.scene and np.array_equal(before.parts.labels, parts.labels)
 
 
 def materials_of(

@@ -70,22 +70,10 @@ def tree_of(state: WorkerState, opened: Opened) -> SegmentTree:
     return state.tree[1]
 
 
-def texture_of_first_parts() -> str:
-    """Return the texture method whose segments `tangible parts` joins to parts, as a change of a document."""
-    from tangible_authoring.first_parts import segments_for
-
-    return f"texture={{use: {TREES}, segments: {segments_for()}}}"
-
-
 def digest(parts: PartMap, config: PipelineConfig) -> str:
     """Return the digest of the parts and of the document's entries for them."""
-    choices = tuple((number, repr(each)) for number, each in sorted(config_parts(config).items()))
+    choices = tuple((number, repr(each)) for number, each in sorted((config.parts or {}).items()))
     return digest_of((parts.labels, choices, repr(config_heights(config))))
-
-
-def config_parts(config: PipelineConfig) -> Mapping[int, PartChoice]:
-    """Return the document's entries for its parts, by number."""
-    return config.parts or {}
 
 
 def config_heights(config: PipelineConfig) -> HeightChoice:

@@ -204,17 +204,12 @@ def place_next_to(path: Path) -> Path:
     return next(each for each in places if not os.path.lexists(each) or is_ours(each, path.name))
 
 
-def in_store(store: Path, picture: bytes) -> Path:
-    """Return the path of a label picture in the store, named by its content."""
-    return store / hashlib.sha256(picture).hexdigest()[:16] / NAME
-
-
 def keep_replaced(place: Path, picture: bytes, store: Path, texts: Sequence[str], path: Path) -> dict[str, str]:
-    """Keep the picture that is about to be replaced, for texts that name it: undo finds it in the store."""
+    """Keep the picture that is about to be replaced, for texts that name it: undo finds it by content in the store."""
     before = place.read_bytes() if place.is_file() else picture
     if before == picture:
         return {}
-    kept = in_store(store, before)
+    kept = store / hashlib.sha256(before).hexdigest()[:16] / NAME
     moved: dict[str, str] = {}
     for text in dict.fromkeys(texts):
         scene = read_values(text, path).get("scene") if place.name in text else None

@@ -1,4 +1,4 @@
-"""Views as pages fetch them: raw arrays in files, in a folder named by content."""
+"""Views as pages fetch them: raw arrays in files at every level of detail, in a folder named by content."""
 
 import json
 import shutil
@@ -10,13 +10,13 @@ from tempfile import mkdtemp
 from typing import Any
 
 import numpy as np
+from jaxtyping import Float32, Shaped
 from PIL import Image
 
 from tangible_core.data import Material
 from tangible_core.data.pictures import to_grey
 from tangible_core.errors import OutputError
 
-from . import levels
 from .surface_view import SurfaceView
 
 KEPT = 3
@@ -26,6 +26,11 @@ MOST_PREVIEW = 1_000_000
 """Maximum number of pixels of the picture that is drawn first."""
 MOST_FINE_SIDE = 16_384
 """Greatest side of a picture that browsers decode, pixels."""
+
+MOST_CELLS = 350_000
+"""Size limit of the coarsest level, cells: software draws it in a fraction of a second; 640 x 480 is drawn as it is."""
+MOST_SIDE = 4096
+"""Greatest side of a level: every WebGL 2 has textures of this size."""
 
 
 def show(seen: SurfaceView, folder: Path) -> dict[str, Any]:
@@ -75,7 +80,7 @@ def label_type(labels: np.ndarray) -> str:
 
 def _about(seen: SurfaceView) -> dict[str, Any]:
     rows, columns = seen.relief.height_m.shape
-    steps = [2**level for level in range(levels.count((rows, columns)))]
+    steps = [2**level for level in range(count_levels((rows, columns)))]
     return {
         "digest": seen.digest,
         "name": seen.name,
@@ -121,11 +126,11 @@ def _put(part: Path, at: Path) -> None:
 
 
 def _write_arrays(seen: SurfaceView, count: int, part: Path) -> None:
-    for level, height_m in enumerate(levels.means(seen.relief.height_m, count)):
+    for level, height_m in enumerate(means(seen.relief.height_m, count)):
         _raw(part / f"height-{level}.f32", height_m, "<f4")
     if seen.labels is not None:
         kind = label_type(seen.labels)
-        for level, labels in enumerate(levels.middles(seen.labels, count)):
+        for level, labels in enumerate(middles(seen.labels, count)):
             _raw(part / f"labels-{level}.u", labels, kind)
     _raw(part / "materials.u16", material_of(seen.materials)[1], "<u2")
     for name, layer in seen.layers.items():
@@ -139,7 +144,7 @@ def _raw(path: Path, values: np.ndarray, kind: str) -> None:
 def _fine_size(picture: np.ndarray) -> tuple[int, int] | None:
     """Return width and height of the fine picture; None if the preview is as large."""
     rows, columns = picture.shape[:2]
-    if rows * columns <= MOST_PREVIEW and max(rows, columns) <= levels.MOST_SIDE:
+    if rows * columns <= MOST_PREVIEW and max(rows, columns) <= MOST_SIDE:
         return None
     return _size((columns, rows), rows * columns, MOST_FINE_SIDE)
 
@@ -155,7 +160,7 @@ def _write_picture(picture: np.ndarray, part: Path) -> None:
     whole = image_of(picture)
     if (fine := _fine_size(picture)) is not None:
         _save(whole, fine, part / "photo-fine.jpg")
-    _save(whole, _size(whole.size, MOST_PREVIEW, levels.MOST_SIDE), part / "photo.jpg")
+    _save(whole, _size(whole.size, MOST_PREVIEW, MOST_SIDE), part / "photo.jpg")
 
 
 def image_of(picture: np.ndarray) -> Image.Image:
@@ -181,3 +186,45 @@ def _sweep(folder: Path) -> None:
     shown = sorted(folder.glob(f"*/{ABOUT}"), key=lambda path: path.stat().st_mtime_ns)
     for path in shown[:-KEPT]:
         shutil.rmtree(path.parent, ignore_errors=True)
+
+
+def count_levels(shape: tuple[int, int]) -> int:
+    """Return the number of levels of a grid of (rows, columns)."""
+    levels = 1
+    while shape[0] * shape[1] > MOST_CELLS or max(shape) > MOST_SIDE:
+        shape, levels = (-(-shape[0] // 2), -(-shape[1] // 2)), levels + 1
+    return levels
+
+
+def means(values: Float32[np.ndarray, "h w"], levels: int) -> list[Float32[np.ndarray, "..."]]:
+    """Return the levels of values: level k is the mean over blocks of 2^k x 2^k cells, smaller at the end."""
+    found = [values]
+    rows, columns = (np.ones(side) for side in values.shape)
+    for _ in range(levels - 1):
+        half = _halve_rows(_halve_rows(found[-1], rows).T, columns).T
+        found.append(np.ascontiguousarray(half))
+        rows, columns = _pair_weights(rows), _pair_weights(columns)
+    return found
+
+
+def middles(labels: Shaped[np.ndarray, "h w"], levels: int) -> list[Shaped[np.ndarray, "..."]]:
+    """Return the levels of labels: level k has the label at the middle of each block of 2^k x 2^k cells."""
+    found = [labels]
+    for level in range(1, levels):
+        step = 2**level
+        places = (np.minimum(np.arange(0, side, step) + step // 2, side - 1) for side in labels.shape)
+        found.append(labels[np.ix_(*places)])
+    return found
+
+
+def _halve_rows(values: Float32[np.ndarray, "h w"], weights: np.ndarray) -> Float32[np.ndarray, "n w"]:
+    """Return weighted means of rows in pairs; a last row without a partner stays."""
+    pairs = len(values) // 2
+    found = values[0::2].copy()
+    share = weights[1::2] / (weights[0::2][:pairs] + weights[1::2])
+    found[:pairs] += (values[1::2] - values[0::2][:pairs]) * share[:, None].astype(np.float32)
+    return found
+
+
+def _pair_weights(weights: np.ndarray) -> np.ndarray:
+    return np.add.reduceat(weights, np.arange(0, len(weights), 2))

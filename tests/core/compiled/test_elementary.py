@@ -1,4 +1,4 @@
-"""Elementary functions against those of NumPy in double precision."""
+"""Elementary functions against those of NumPy in double precision: what depth and textures are computed with."""
 
 import numpy as np
 import pytest

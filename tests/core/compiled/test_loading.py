@@ -1,4 +1,4 @@
-"""Loading of compiled kernels from the disk, without the parts of numba for compiling."""
+"""Loading of compiled kernels from the disk: each start is a second late if it prepares numba to compile."""
 
 import os
 import subprocess
@@ -59,13 +59,8 @@ def test_kernel_on_disk_is_loaded_without_preparing_numba_to_compile(use):
     assert use(code) == ["6.0", "0", "False"]
 
 
+@pytest.mark.whole
 def test_kernel_compiled_after_another_was_loaded_gives_its_result(use):
     use("double(values)")
     code = "double(values); halve(values); report(values[0], double); report(values[0], halve)"
     assert use(code) == ["3.0", "0", "True", "3.0", "1", "True"]
-
-
-def test_function_that_uses_the_runtime_is_loaded_after_preparing_numba(use):
-    code = "double(values); report(ones(3).sum(), ones)"
-    assert use(code) == ["3.0", "1", "True"]
-    assert use(code) == ["3.0", "0", "True"]

@@ -1,4 +1,4 @@
-"""Sharing of work among threads."""
+"""Sharing of work among threads: a row that is left out is a hole in a map."""
 
 from collections.abc import Iterable
 from threading import Barrier, Event, get_ident
@@ -47,10 +47,6 @@ def test_run_all_raises_the_interrupt_before_errors_it_causes():
     assert ended.is_set()
     with pytest.raises(RuntimeError, match="half done"):
         run_all([lambda: None, fail])
-
-
-def test_in_turns_without_tasks_calls_no_work():
-    in_turns([], lambda share: pytest.fail("there is nothing to do"))
 
 
 @pytest.mark.parametrize("length", [0, 1, 15, 16, 100])

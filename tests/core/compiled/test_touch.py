@@ -1,4 +1,4 @@
-"""Touches made of kernels: pickling for another process, and calls."""
+"""Touches made of kernels: a loop in another process must feel the surface that was made here."""
 
 import pickle
 import subprocess
@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from tangible_core import HapticSurface, load_method
-from tangible_core.compiled.kernels import Address
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.materials.assignment import library
 
@@ -23,7 +22,7 @@ def _touch(name: str) -> CompiledTouch:
     return touch
 
 
-@pytest.mark.parametrize("name", ["proxy", "penalty", "tangible-mask", "with-materials"])
+@pytest.mark.parametrize("name", ["proxy", "with-materials"])
 class TestPickling:
     def test_pickled_touch_gives_the_same_forces(self, name: str) -> None:
         touch = _touch(name)
@@ -50,11 +49,6 @@ def test_pickled_touch_memory_is_still_a_fixed_argument() -> None:
     assert np.isnan(touch.memory[2])
 
 
-def test_address_has_the_signature_of_its_kernel() -> None:
-    touch = _touch("proxy")
-    assert [str(Address(touch.tick).signature)] == [str(each) for each in touch.tick.nopython_signatures]
-
-
 LAW_AROUND_A_LAW = """
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled import kernels
@@ -66,6 +60,7 @@ print(felt.any(), *(len(kernel.stats.cache_misses) for kernel in (touch.tick, ke
 """
 
 
+@pytest.mark.whole
 def test_kernel_compiled_for_a_nested_law_is_loaded_by_another_process() -> None:
     outputs = [
         subprocess.run([sys.executable, "-c", LAW_AROUND_A_LAW], capture_output=True, text=True, check=True).stdout

@@ -1,27 +1,23 @@
-"""Pictures as arrays, and the files they come from."""
+"""If one of these fails, a picture is felt with other numbers than it has, or a hostile file is not refused."""
 
 import io
 import os
 import struct
-import zipfile
 import zlib
+from itertools import product
 
 import cv2
 import numpy as np
 import pytest
 import tifffile
-from hypothesis import given
-from hypothesis import strategies as st
 from PIL import Image
 
 from hostile import SIDE, npy_header, npz_bomb, tiff
-from tangible_core import Scene
 from tangible_core.data import Views, digest_of
-from tangible_core.data.pictures import check_picture, fill_non_finite, full_scale, to_grey, to_rgb8
+from tangible_core.data.pictures import fill_non_finite, full_scale, to_grey, to_rgb8
 from tangible_core.errors import PictureError, shown
-from tangible_core.scene.formats import decoding
+from tangible_core.scene.formats import bands, decoding
 from tangible_core.scene.formats import tiff as tiff_format
-from tangible_core.scene.formats.large import bands, png_bands
 from tangible_core.scene.formats.pictures import MAX_LABELS, read_labels, read_map, read_picture
 
 NAN = np.nan
@@ -51,48 +47,10 @@ def save_by_opencv(folder, name, array):
     return put(folder, name, cv2.imencode(f".{name.rsplit('.')[-1]}", array)[1].tobytes())
 
 
-# Arrays
-
-
-@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float16, np.float32, np.float64, np.bool_])
-@pytest.mark.parametrize("shape", [(1, 1), (3, 4), (3, 4, 3), (3, 4, 4)])
-def test_picture_of_any_allowed_shape_and_type_is_accepted(dtype, shape):
-    picture = np.ones(shape, dtype)
-    assert check_picture(picture) is picture
-
-
-@pytest.mark.parametrize(
-    ("array", "complaint"),
-    [
-        (np.zeros((2, 2, 2), np.uint8), r"\(h, w\) or \(h, w, 3\|4\), not \(2, 2, 2\)"),
-        (np.zeros(3, np.uint8), r"not \(3,\)"),
-        (np.zeros((0, 4), np.uint8), "empty"),
-        (
-            np.int64([[-3, 70_000]]),
-            "the view: holds whole numbers from -3 to 70000; those of a picture run from 0 to 255,",
-        ),
-        (np.zeros((2, 2), np.complex64), "not complex64"),
-        (np.array([[0, 1], [NAN, np.inf]]), "the view: 2 values are NaN or infinite, the first at row 1, column 0"),
-    ],
-)
-def test_array_that_is_not_a_picture_is_refused_with_the_reason(array, complaint):
-    with pytest.raises(PictureError, match=complaint):
-        check_picture(array, "the view")
-
-
-@pytest.mark.parametrize(
-    ("white", "scale"),
-    [
-        (np.uint8(255), 255),
-        (np.uint16(65535), 65535),
-        (np.float32(0.5), 1),
-        (np.float64(4), 4),
-        (np.float32(40), 255),
-        (np.bool_(1), 1),
-    ],
-)
-def test_full_scale_is_the_maximum_of_the_type_or_of_a_float_picture(white, scale):
-    assert full_scale(np.full((2, 2), white)) == scale
+def test_full_scale_is_the_maximum_of_the_type_or_of_a_float_picture():
+    floats = [(np.float32(0.5), 1), (np.float64(4), 4), (np.float32(40), 255)]
+    for white, scale in [(np.uint8(255), 255), (np.uint16(65535), 65535), (np.bool_(1), 1), *floats]:
+        assert full_scale(np.full((2, 2), white)) == scale
 
 
 @pytest.mark.parametrize(
@@ -105,14 +63,6 @@ def test_picture_of_other_numbers_is_that_of_8_or_16_bits(dtype: type, white: in
     np.testing.assert_allclose(to_grey(other), to_grey(plain), atol=1e-6)
     assert not other.flags.writeable
     assert other.dtype == (dtype if np.dtype(dtype).kind == "f" else plain.dtype)
-
-
-def test_grey_of_any_type_is_the_luma_of_rec_601():
-    grey = [[0.299, 0.587, 0.114]]
-    primaries = np.eye(3)[None]
-    for picture in (primaries, primaries.astype(bool), np.uint8(primaries * 255), np.uint16(primaries * 65535)):
-        assert to_grey(picture).dtype == np.float32
-        np.testing.assert_allclose(to_grey(picture), grey, atol=1e-6)
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float32, np.float64])
@@ -144,19 +94,11 @@ def test_picture_of_any_type_converts_to_eight_bits():
     assert to_rgb8(np.float32([[-1, 0.5, 1]]))[..., 0].tolist() == [[0, 128, 255]]
 
 
-# Files that hold a picture
-
-
 @pytest.mark.parametrize("form", ["PNG", "TIFF", "BMP", "PPM", "GIF"])
 def test_lossless_picture_file_is_read_unchanged(tmp_path, form):
     flat = COLOURS // 64 * 64
     path = put(tmp_path, "picture", encode(Image.fromarray(flat), form))
     np.testing.assert_array_equal(read_picture(path), flat)
-
-
-def test_jpeg_is_read_in_its_size(tmp_path):
-    path = put(tmp_path, "a.jpg", encode(Image.new("RGB", (9, 6), (200, 10, 30)), "JPEG"))
-    assert read_picture(path).shape == (6, 9, 3)
 
 
 def test_palette_png_becomes_rgb_or_rgba(tmp_path):
@@ -174,60 +116,12 @@ def test_picture_file_of_any_mode_becomes_grey_rgb_or_rgba(tmp_path, mode, chann
     assert picture.dtype == np.uint8
 
 
-def test_cmyk_jpeg_becomes_rgb(tmp_path):
-    path = put(tmp_path, "a.jpg", encode(Image.new("CMYK", (5, 3)), "JPEG"))
-    assert read_picture(path).shape == (3, 5, 3)
-
-
-@pytest.mark.parametrize("name", ["a.png", "a.tif", "a.pgm"])
-def test_sixteen_bit_grey_file_keeps_its_values(tmp_path, name):
-    deep = np.arange(54, dtype=np.uint16).reshape(6, 9) * 1200
-    picture = read_picture(save_by_opencv(tmp_path, name, deep))
-    assert picture.dtype == np.uint16
-    np.testing.assert_array_equal(picture, deep)
-
-
-@pytest.mark.parametrize("name", ["a.png", "a.tif"])
-@pytest.mark.parametrize("channels", [3, 4])
-def test_sixteen_bit_colour_file_keeps_its_values(tmp_path, name, channels):
-    deep = np.random.default_rng(0).integers(0, 65536, (4, 5, channels), dtype=np.uint16)
-    swapped = deep[..., [2, 1, 0, 3][:channels]]
-    np.testing.assert_array_equal(read_picture(save_by_opencv(tmp_path, name, swapped)), deep)
-
-
-@pytest.mark.parametrize(
-    ("orientation", "upright"),
-    [
-        (1, [[1, 2, 3], [4, 5, 6]]),
-        (2, [[3, 2, 1], [6, 5, 4]]),
-        (3, [[6, 5, 4], [3, 2, 1]]),
-        (4, [[4, 5, 6], [1, 2, 3]]),
-        (5, [[1, 4], [2, 5], [3, 6]]),
-        (6, [[4, 1], [5, 2], [6, 3]]),
-        (7, [[6, 3], [5, 2], [4, 1]]),
-        (8, [[3, 6], [2, 5], [1, 4]]),
-        (99, [[1, 2, 3], [4, 5, 6]]),
-    ],
-)
-def test_picture_file_is_turned_upright_by_its_exif_orientation(tmp_path, orientation, upright):
-    tags = Image.Exif()
-    tags[0x0112] = orientation
-    image = Image.fromarray(np.uint8([[1, 2, 3], [4, 5, 6]]))
-    path = put(tmp_path, "a.png", encode(image, "PNG", exif=tags))
-    assert read_picture(path).tolist() == upright
-    assert read_picture(path).flags.c_contiguous
-
-
-def test_npy_file_is_read_as_a_picture(tmp_path):
-    np.testing.assert_array_equal(read_picture(save_npy(tmp_path, "a.npy", COLOURS)), COLOURS)
-
-
-def test_npy_file_that_is_not_a_picture_is_refused_with_its_name(tmp_path):
-    with pytest.raises(PictureError, match=r"a\.npy: .*not complex64"):
-        read_picture(save_npy(tmp_path, "a.npy", np.zeros((2, 2), np.complex64)))
-
-
-# Files that are not pictures
+@pytest.mark.parametrize(("name", "channels"), [*product(["a.png", "a.tif"], [1, 3, 4]), ("a.pgm", 1)])
+def test_sixteen_bit_file_keeps_its_values(tmp_path, name, channels):
+    deep = np.random.default_rng(0).integers(0, 65536, (4, 5, channels), dtype=np.uint16).squeeze()
+    swapped = deep if channels == 1 else deep[..., [2, 1, 0, 3][:channels]]
+    picture = read_picture(save_by_opencv(tmp_path, name, swapped))
+    np.testing.assert_array_equal(picture, deep, strict=True)
 
 
 def refusal(path, read=read_picture):
@@ -246,58 +140,31 @@ def test_missing_picture_file_is_refused_with_a_similar_name(tmp_path, read, nam
     assert f"no such file (did you mean 'lefft{name[4:]}'?)" in refusal(tmp_path / name, read)
 
 
-def test_missing_folder_is_refused_with_its_name(tmp_path):
-    assert f"no folder {tmp_path / 'nowhere'}" in refusal(tmp_path / "nowhere" / "a.png")
+@pytest.mark.parametrize("place", [".", os.devnull, "nowhere/a.png", "n" * 300, "a\0b"])
+def test_place_without_a_file_is_refused(tmp_path, place):
+    refusal(tmp_path / place)
 
 
-@pytest.mark.parametrize("place", [".", os.devnull])
-def test_folder_or_device_as_a_picture_is_refused(tmp_path, place):
-    assert "not a file but a folder or a device" in refusal(tmp_path / place)
+@pytest.mark.parametrize(
+    ("name", "data", "word"),
+    [
+        *((name, b"", "empty") for name in ("a.png", "a.npy", "a.npz")),
+        *(("a.png", data, "use PNG") for data in (b"hello", b"%PDF-1.7 x", b"%!PS-Adobe-3.0 EPSF-3.0\n", b"\0" * 500)),
+        ("a.pgm", b"P5 60000 60000 255\n", "89 megapixels"),
+        ("a.pgm", b"P5 89200 1000 255\n", "89 megapixels"),  # Pillow's own limit is slightly higher
+        ("a.pgm", b"P5 89000 1000 255\n", "cut short"),
+    ],
+)
+def test_file_that_holds_no_picture_is_refused_with_the_reason(tmp_path, name, data, word):
+    assert word in refusal(put(tmp_path, name, data))
 
 
-@pytest.mark.parametrize("name", ["n" * 300, "a\0b"])
-def test_impossible_file_name_is_refused(tmp_path, name):
-    refusal(tmp_path / name)
-
-
-def test_unreadable_picture_file_is_refused_with_the_reason(tmp_path, monkeypatch):
-    path = put(tmp_path, "a.png", b"x")
-
-    def deny(*_):
-        raise PermissionError(13, "Permission denied")
-
-    monkeypatch.setattr(type(path), "open", deny)
-    assert "Permission denied; check the path and its permissions" in refusal(path)
-
-
-@pytest.mark.parametrize("name", ["a.png", "a.npy", "a.npz"])
-def test_empty_picture_file_is_refused_with_the_reason(tmp_path, name):
-    assert "the file is empty; copy or download it again" in refusal(put(tmp_path, name, b""))
-
-
-@pytest.mark.parametrize("data", [b"hello", b"%PDF-1.7 whatever", b"%!PS-Adobe-3.0 EPSF-3.0\n", b"\0" * 500])
-def test_file_of_another_kind_is_refused_with_the_formats_to_use(tmp_path, data):
-    assert "not a picture that this program can read; use PNG" in refusal(put(tmp_path, "a.png", data))
-
-
-@pytest.mark.parametrize(("form", "name"), [("PNG", "a.png"), ("JPEG", "a.jpg"), ("TIFF", "a.tif"), ("WEBP", "a.webp")])
-@pytest.mark.parametrize("share", [0.5, 0.95])
-def test_truncated_picture_file_is_refused_with_the_reason(tmp_path, form, name, share):
+@pytest.mark.parametrize("name", ["a.png", "a.jpg", "a.tif", "a.webp", "deep.png"])
+def test_truncated_picture_file_is_refused(tmp_path, name):
     noise = np.random.default_rng(0).integers(0, 256, (64, 64, 3), dtype=np.uint8)
-    data = encode(Image.fromarray(noise), form)
-    assert "again" in refusal(put(tmp_path, name, data[: int(len(data) * share)]))
-
-
-def test_truncated_sixteen_bit_picture_is_refused_with_the_reason(tmp_path):
-    noise = np.random.default_rng(0).integers(0, 65536, (64, 64, 3), dtype=np.uint16)
-    data = save_by_opencv(tmp_path, "a.png", noise).read_bytes()
-    assert "damaged or cut short" in refusal(put(tmp_path, "a.png", data[: len(data) // 2]))
-
-
-def test_picture_file_announcing_too_many_pixels_is_refused(tmp_path):
-    for side in (12_000, 60_000):
-        path = put(tmp_path, "a.pgm", f"P5 {side} {side} 255\n".encode())
-        assert "larger than 89 megapixels; make it smaller first" in refusal(path)
+    deep = noise.astype(np.uint16) * 257
+    data = save_by_opencv(tmp_path, name, deep if name == "deep.png" else noise).read_bytes()
+    assert "again" in refusal(put(tmp_path, name, data[: int(len(data) * 0.9)]))
 
 
 @pytest.mark.parametrize(
@@ -340,17 +207,8 @@ def test_tiff_with_too_large_tiles_is_refused(tmp_path):
 def test_big_tiff_is_read_or_refused_by_its_size(tmp_path, order, side):
     """BigTIFF has numbers of eight bytes. Pillow reads only little-endian files."""
     tags = [
-        (256, side),
-        (257, side),
-        (258, 8),
-        (259, 1),
-        (262, 1),
-        (273, 232),
-        (277, 1),
-        (278, side),
-        (279, 9),
-        (339, 1),
-    ]
+        (256, side), (257, side), (258, 8), (259, 1), (262, 1), (273, 232), (277, 1), (278, side), (279, 9), (339, 1),
+    ]  # fmt: skip
     table = b"".join(struct.pack(f"{order}HHQQ", tag, 16, 1, value) for tag, value in tags)
     mark = b"II" if order == "<" else b"MM"
     data = mark + struct.pack(f"{order}HHHQQ", 43, 8, 0, 16, len(tags)) + table + bytes(8 + 9)
@@ -367,27 +225,6 @@ def test_tiff_with_too_many_bytes_a_pixel_is_refused(tmp_path, monkeypatch):
     assert "holds more than 1424 MB; make it smaller first" in refusal(path)
 
 
-def test_png_with_two_different_headers_is_refused(tmp_path):
-    """OpenCV reads the first header, with 4e8 pixels; Pillow the second, with one."""
-
-    def chunk(name, data):
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-
-    def header(side):
-        return chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 16, 2, 0, 0, 0))
-
-    pixel = chunk(b"IDAT", zlib.compress(bytes(7))) + chunk(b"IEND", b"")
-    path = put(tmp_path, "a.png", b"\x89PNG\r\n\x1a\n" + header(20_000) + header(1) + pixel)
-    assert "larger than 89 megapixels" in refusal(path)
-
-
-def test_picture_file_over_the_limit_is_refused_also_below_pillows_own(tmp_path):
-    """Pillow's own limit is slightly higher."""
-    path = put(tmp_path, "a.pgm", b"P5 89200 1000 255\n")
-    assert "larger than 89 megapixels" in refusal(path)
-    assert "cut short" in refusal(put(tmp_path, "a.pgm", b"P5 89000 1000 255\n"))
-
-
 def test_damaged_tiff_prints_nothing_on_the_standard_streams(tmp_path, capfd):
     whole = tiff(tmp_path / "a.tif", 50, 30).read_bytes()
     assert "damaged" in refusal(put(tmp_path, "a.tif", whole[:-20]))
@@ -396,7 +233,7 @@ def test_damaged_tiff_prints_nothing_on_the_standard_streams(tmp_path, capfd):
 
 @pytest.mark.timeout(20)
 @pytest.mark.parametrize("read", [read_picture, read_map, read_labels])
-@pytest.mark.parametrize("name", ["a.npy", "a.npz", "a.png"])
+@pytest.mark.parametrize("name", ["a.npy", "a.png"])
 def test_pipe_as_a_picture_is_refused_at_once(tmp_path, read, name):
     os.mkfifo(tmp_path / name)
     assert "not a file but a folder or a device" in refusal(tmp_path / name, read)
@@ -410,55 +247,11 @@ def test_npy_file_announcing_too_much_is_refused(tmp_path, read):
     assert "holds more than 1424 MB; make it smaller first" in refusal(path, read)
 
 
-@pytest.mark.parametrize("read", [read_picture, read_map, read_labels])
-def test_npz_file_without_arrays_is_refused(tmp_path, read):
-    with zipfile.ZipFile(tmp_path / "a.npz", "w") as archive:
-        archive.writestr("readme.txt", "hello")
-    assert "holds 0 arrays instead of one" in refusal(tmp_path / "a.npz", read)
-
-
-def test_npy_and_npz_files_with_swapped_suffixes_are_read(tmp_path):
-    np.savez(tmp_path / "a.npz", COLOURS)
-    np.save(tmp_path / "b.npy", COLOURS)
-    swapped = (tmp_path / "a.npz").rename(tmp_path / "a.npy"), (tmp_path / "b.npy").rename(tmp_path / "b.npz")
-    assert all(np.array_equal(read_picture(path), COLOURS) for path in swapped)
-
-
-@given(st.data())
-def test_damaged_picture_file_gives_a_picture_or_an_error_with_its_name(tmp_path_factory, data):
-    form, name = data.draw(st.sampled_from([("PNG", "a.png"), ("JPEG", "a.jpg"), ("GIF", "a.gif"), ("BMP", "a.bmp")]))
-    damaged = bytearray(encode(Image.fromarray(COLOURS), form))
-    for place in data.draw(st.lists(st.integers(0, len(damaged) - 1), min_size=1, max_size=5)):
-        damaged[place] = data.draw(st.integers(0, 255))
-    path = put(tmp_path_factory.mktemp("damaged"), name, bytes(damaged))
-    for read in (read_picture, read_map, read_labels):
-        try:
-            assert read(path).ndim in (2, 3)
-        except PictureError as error:
-            assert str(path) in str(error)
-
-
-# Maps of numbers
-
-
 def test_map_file_keeps_its_numbers_and_holes(tmp_path):
     values = np.array([[1.5, NAN], [np.inf, -np.inf]])
     for name, save in (("a.npy", np.save), ("a.npz", np.savez)):
         save(tmp_path / name, values)
         np.testing.assert_array_equal(read_map(tmp_path / name), np.float32([[1.5, NAN], [NAN, NAN]]))
-
-
-@pytest.mark.parametrize("scale", ["-1", "-0.0039"])
-def test_pfm_is_read_unscaled_from_the_bottom_row(tmp_path, scale):
-    rows = np.float32([[1, 2, 3], [4, 5, np.inf]])
-    path = put(tmp_path, "a.pfm", f"Pf\n3 2\n{scale}\n".encode() + rows[::-1].astype("<f4").tobytes())
-    np.testing.assert_array_equal(read_map(path), [[1, 2, 3], [4, 5, NAN]])
-
-
-@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.int16, np.int32, np.float32, np.float64])
-def test_tiff_map_keeps_its_values(tmp_path, dtype):
-    values = np.array([[1, 2, 3], [4, 5, 200]], dtype)
-    np.testing.assert_array_equal(read_map(save_by_opencv(tmp_path, "a.tif", values)), values)
 
 
 def test_grey_picture_as_a_map_keeps_its_raw_values(tmp_path):
@@ -470,33 +263,11 @@ def test_map_values_beyond_float32_are_holes(tmp_path):
     assert np.isnan(read_map(save_npy(tmp_path, "a.npy", np.array([[1e300]])))).all()
 
 
-def test_colour_picture_as_a_map_is_refused(tmp_path):
-    path = put(tmp_path, "a.png", encode(Image.fromarray(COLOURS), "PNG"))
-    assert "a map must have one number per pixel" in refusal(path, read_map)
-
-
-@pytest.mark.parametrize("values", [np.zeros((0, 3)), np.zeros(3), np.zeros((2, 2), complex), np.array([["a"]])])
+@pytest.mark.parametrize(
+    "values", [COLOURS, np.zeros((0, 3)), np.zeros(3), np.zeros((2, 2), complex), np.array([["a"]])]
+)
 def test_array_of_another_shape_or_type_as_a_map_is_refused(tmp_path, values):
     assert "a map must have one number per pixel" in refusal(save_npy(tmp_path, "a.npy", values), read_map)
-
-
-def test_pickled_array_as_a_map_is_refused(tmp_path):
-    path = tmp_path / "a.npy"
-    np.save(path, np.array([[object()]]), allow_pickle=True)
-    assert "cannot be read as an array" in refusal(path, read_map)
-
-
-def test_npz_file_with_several_arrays_as_a_map_is_refused(tmp_path):
-    np.savez(tmp_path / "a.npz", np.zeros((2, 2)), np.ones((2, 2)))
-    assert "holds 2 arrays" in refusal(tmp_path / "a.npz", read_map)
-
-
-def test_truncated_array_as_a_map_is_refused_with_the_reason(tmp_path):
-    data = save_npy(tmp_path, "a.npy", np.zeros((9, 9))).read_bytes()
-    assert "cannot be read as an array" in refusal(put(tmp_path, "a.npy", data[:300]), read_map)
-
-
-# Label pictures
 
 
 def test_label_file_is_numbered_from_zero_in_the_order_of_values(tmp_path):
@@ -516,10 +287,6 @@ def test_label_file_in_colour_has_a_label_for_each_colour(tmp_path):
     labels = read_labels(put(tmp_path, "a.png", encode(Image.fromarray(flat), "PNG")))
     assert np.unique(labels).tolist() == [0, 1]
     assert labels[0, 0] == labels[1, 1] != labels[0, 1] == labels[1, 0]
-
-
-def test_label_array_is_numbered_from_zero(tmp_path):
-    assert read_labels(save_npy(tmp_path, "a.npy", np.array([[-1, 5], [5, 9]]))).tolist() == [[0, 1], [1, 2]]
 
 
 def test_label_file_with_too_many_values_is_refused(tmp_path):
@@ -543,13 +310,6 @@ def test_non_finite_pixels_are_filled_from_the_nearest_finite_one(channels):
     assert np.array_equal(filled[known], expected[known])
     assert np.array_equal(filled[2, 6:], expected[1, 6:])
     assert np.array_equal(filled[5, 0], expected[4, 0])
-
-
-def test_integer_picture_is_finite_everywhere():
-    picture = np.arange(6, dtype=np.uint8).reshape(2, 3)
-    filled, known = fill_non_finite(picture)
-    assert known.all()
-    assert np.array_equal(filled, picture)
 
 
 def test_picture_without_finite_pixels_cannot_be_filled():
@@ -599,8 +359,6 @@ REDUCED = {
     "L.png": png("L"),
     "RGB.png": png("RGB"),
     "RGBA.png": png("RGBA"),
-    "LA.png": png("LA"),
-    "P.png": png("P"),
     "P with 4 bits.png": png("P", bits=4),
     "1.png": png("1"),
     "L 16.png": deep(".png", 1),
@@ -609,15 +367,11 @@ REDUCED = {
     "one strip.tif": by_tifffile(),
     "lzw.tif": strips("tiff_lzw", strip_size=97 * 3 * 5),
     "deflate.tif": strips("tiff_adobe_deflate", strip_size=97 * 3 * 5),
-    "grey.tif": strips("tiff_lzw", "L", strip_size=97 * 5),
     "fax.tif": strips("group4", "1", strip_size=13 * 5),
     "jpeg.tif": strips("jpeg", strip_size=97 * 3 * 16),
     "turned.tif": strips("tiff_lzw", strip_size=97 * 3 * 5, tiffinfo={274: 8}),
     "tiles.tif": by_tifffile(tile=(16, 32), compression="zlib", predictor=2),
     "planes.tif": by_tifffile(np.moveaxis(LARGE, 2, 0), planarconfig="separate", photometric="rgb"),
-    "planes in tiles.tif": by_tifffile(
-        np.moveaxis(LARGE, 2, 0), planarconfig="separate", photometric="rgb", tile=(16, 16), compression="zlib"
-    ),
     "RGB 16.tif": by_tifffile(LARGE.astype(np.uint16) * 211, rowsperstrip=7, compression="zlib"),
     "float.tif": by_tifffile(LARGE[..., 0].astype(np.float32) / 255, rowsperstrip=7),
     "big-endian.tif": by_tifffile(byteorder=">", rowsperstrip=4),
@@ -630,8 +384,7 @@ def test_png_and_tiff_that_are_too_large_are_reduced_while_they_are_read(tmp_pat
     path = tmp_path / name
     REDUCED[name](path)
     whole = read_picture(path)
-    for module in (png_bands, bands):
-        monkeypatch.setattr(module, "BAND_PIXELS", 600)
+    monkeypatch.setattr(bands, "BAND_PIXELS", 600)
     monkeypatch.setattr(decoding, "MOST_PIXELS", 1600)
     monkeypatch.setattr(decoding, "MOST_REDUCED", 20_000)
     said = []
@@ -647,64 +400,41 @@ def test_png_and_tiff_that_are_too_large_are_reduced_while_they_are_read(tmp_pat
     assert said == [f"{name} has 0 megapixels; it is reduced to 49 x 31 pixels while it is read"]
 
 
-@pytest.mark.parametrize(
-    ("name", "write", "complaint"),
-    [
-        (
-            "a.tif",
-            strips("tiff_lzw", strip_size=1 << 20),
-            "cannot be reduced while it is read; save it in strips or in",
-        ),
-        (
-            "a.png",
-            lambda path: path.write_bytes(png_of(6, interlaced=1)),
-            "while it is read; save it without interlacing",
-        ),
-        ("a.png", lambda path: path.write_bytes(png_of(9)), "damaged or cut short: a row has an unknown filter"),
-        ("a.png", lambda path: path.write_bytes(png_of(3)[:-40]), "damaged or cut short: its rows end early"),
-    ],
-)
-def test_large_picture_that_cannot_be_cut_into_bands_is_refused_with_the_cure(
-    tmp_path, monkeypatch, name, write, complaint
-):
-    write(tmp_path / name)
-    for module in (png_bands, bands):
-        monkeypatch.setattr(module, "BAND_PIXELS", 600)
-    monkeypatch.setattr(tiff_format, "MOST_PIXELS", 1600)
-    monkeypatch.setattr(decoding, "MOST_PIXELS", 1600)
-    with pytest.raises(PictureError, match=complaint):
-        read_picture(tmp_path / name, reduce=True)
+def png_file(*chunks):
+    """Return a PNG of these chunks, with their check sums."""
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)) for name, data in chunks
+    )
 
 
 def png_of(row_filter, interlaced=0):
     """Return a grey PNG of 97 x 61 pixels of noise, each of whose rows has this filter."""
     noise = np.random.default_rng(0).integers(0, 256, (61, 98), dtype=np.uint8)
     noise[:, 0] = row_filter
-    chunks = [
-        (b"IHDR", struct.pack(">IIBBBBB", 97, 61, 8, 0, 0, 0, interlaced)),
-        (b"IDAT", zlib.compress(noise.tobytes())),
-        (b"IEND", b""),
-    ]
-    return b"\x89PNG\r\n\x1a\n" + b"".join(
-        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)) for name, data in chunks
-    )
+    header = struct.pack(">IIBBBBB", 97, 61, 8, 0, 0, 0, interlaced)
+    return png_file((b"IHDR", header), (b"IDAT", zlib.compress(noise.tobytes())), (b"IEND", b""))
 
 
-@pytest.mark.parametrize("row_filter", [0, 1, 2, 3, 4])
-def test_each_row_filter_of_a_large_png_is_undone(tmp_path, monkeypatch, row_filter):
-    path = put(tmp_path, "a.png", png_of(row_filter))
-    whole = read_picture(path).astype(float)
-    monkeypatch.setattr(png_bands, "BAND_PIXELS", 600)
+def test_png_with_two_different_headers_is_refused(tmp_path):
+    """OpenCV reads the first header, with 4e8 pixels; Pillow the second, with one."""
+    headers = [(b"IHDR", struct.pack(">IIBBBBB", side, side, 16, 2, 0, 0, 0)) for side in (20_000, 1)]
+    data = png_file(*headers, (b"IDAT", zlib.compress(bytes(7))), (b"IEND", b""))
+    assert "larger than 89 megapixels" in refusal(put(tmp_path, "a.png", data))
+
+
+@pytest.mark.parametrize(
+    ("name", "write", "word"),
+    [
+        ("a.tif", strips("tiff_lzw", strip_size=1 << 20), "strips"),
+        ("a.png", lambda path: path.write_bytes(png_of(6, interlaced=1)), "interlacing"),
+        ("a.png", lambda path: path.write_bytes(png_of(9)), "unknown filter"),
+        ("a.png", lambda path: path.write_bytes(png_of(3)[:-40]), "rows end early"),
+    ],
+)
+def test_large_picture_that_cannot_be_cut_into_bands_is_refused(tmp_path, monkeypatch, name, write, word):
+    write(tmp_path / name)
+    monkeypatch.setattr(bands, "BAND_PIXELS", 600)
+    monkeypatch.setattr(tiff_format, "MOST_PIXELS", 1600)
     monkeypatch.setattr(decoding, "MOST_PIXELS", 1600)
-    even = np.pad(whole, [(0, 1), (0, 1)], mode="edge")
-    mean = even.reshape(31, 2, 49, 2).mean(axis=(1, 3))
-    np.testing.assert_allclose(read_picture(path, reduce=True), mean, atol=1)
-
-
-def test_jpeg_of_a_hundred_megapixels_is_read_as_a_photo(tmp_path):
-    path = put(tmp_path, "scan.jpg", encode(Image.new("L", (10_000, 10_000), 200), "JPEG", quality=30))
-    with pytest.raises(PictureError, match="larger than 89 megapixels"):
-        read_picture(path)
-    scene = Scene.photo(path)
-    assert scene.views.left.shape == (5000, 5000)
-    assert scene.notes == ("scan.jpg has 100 megapixels; it is reduced to 5000 x 5000 pixels while it is read",)
+    with pytest.raises(PictureError, match=word):
+        read_picture(tmp_path / name, reduce=True)

@@ -1,4 +1,4 @@
-"""Trees of segments cut at a number and at a level."""
+"""If one of these fails, a picture is divided at other borders, or into more segments, than was asked for."""
 
 import numpy as np
 import pytest
@@ -29,9 +29,3 @@ def test_cut_keeps_borders_of_the_level_and_at_most_the_number(
     found = SegmentTree(LABELS, JOINS, LEVELS).cut(most, level)
     assert found.labels.tolist() == labels
     assert found.confidence == pytest.approx(np.array(confidence, np.float32))
-
-
-def test_tree_of_one_region_is_one_segment():
-    tree = SegmentTree(np.zeros((2, 2), np.int32), np.empty((0, 2), np.int32))
-    assert tree.levels.shape == (0,)
-    assert tree.cut(5).count == 1

@@ -1,4 +1,4 @@
-"""Arrays in files: as NumPy writes them, damaged, and hostile."""
+"""If one of these fails, an array is read wrong, or a damaged or hostile file fills the memory."""
 
 import io
 import struct
@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from hostile import npy_header, npz, npz_bomb
@@ -51,13 +50,6 @@ def test_array_that_numpy_wrote_is_read_back_unchanged(array: np.ndarray):
         assert (again.dtype, again.shape) == (array.dtype, array.shape)
         assert again.tobytes() == array.tobytes()
         assert again.flags.writeable
-
-
-def test_array_in_fortran_order_is_read_in_fortran_order():
-    array = np.asfortranarray(np.arange(6).reshape(2, 3))
-    again = read_array(io.BytesIO(npy_bytes(array)))
-    assert again.flags.f_contiguous
-    assert again.tolist() == array.tolist()
 
 
 @pytest.mark.parametrize(
@@ -157,12 +149,6 @@ def test_archive_member_longer_than_its_header_announces_is_refused_in_little_me
         read_array(file)
 
 
-def test_header_without_numbers_is_refused_in_little_memory():
-    with refused_in_little_memory():
-        read_array(io.BytesIO(npy_header((100_000_000,))))
-    assert "89 megapixels" in refusal(npy_header((10_000, 10_000)))
-
-
 def test_archive_read_by_name_returns_those_arrays():
     held = Archive(io.BytesIO(npz_bytes(a=np.arange(3), b=np.array("text"))))
     assert held.names == ("a", "b")
@@ -173,12 +159,6 @@ def test_archive_read_by_name_returns_those_arrays():
         held.read(["a", "c", "d"])
 
 
-def test_archive_lists_names_without_decoding_a_bomb(tmp_path: Path):
-    path = npz_bomb(tmp_path / "a.npz", a=(20_000, 20_000), b=(0,))
-    with path.open("rb") as file:
-        assert Archive(file).names == ("a", "b")
-
-
 def test_archive_of_many_small_arrays_is_refused_as_too_large(tmp_path: Path):
     path = npz_bomb(tmp_path / "a.npz", **{f"n{number}": (9_000_000,) for number in range(20)})
     with path.open("rb") as file:
@@ -187,19 +167,6 @@ def test_archive_of_many_small_arrays_is_refused_as_too_large(tmp_path: Path):
             held.read(held.names)
         with pytest.raises(TooLargeError):
             held.read(held.names)
-
-
-@given(st.data())
-def test_damaged_file_gives_an_array_or_a_printable_reason(data):
-    whole = bytearray(
-        data.draw(st.sampled_from([ONE, npz_bytes(a=np.arange(6.0).reshape(2, 3)), bytes(archive(a_npy=ONE))]))
-    )
-    for place in data.draw(st.lists(st.integers(0, len(whole) - 1), min_size=1, max_size=4)):
-        whole[place] = data.draw(st.integers(0, 255))
-    try:
-        assert isinstance(read_array(io.BytesIO(bytes(whole))), np.ndarray)
-    except ValueError as error:
-        assert str(error).isprintable()
 
 
 def test_written_archive_compresses_only_arrays_that_shrink():

@@ -1,4 +1,4 @@
-"""Rows of JSON, one a line: damaged ones are named, and a file that cannot be read says why."""
+"""If one of these fails, rows of results are lost, or a damaged line is passed over."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Checks before a file is read."""
+"""If one of these fails, a device, a pipe or a huge file hangs the program or fills its memory."""
 
 import os
 import stat
@@ -10,7 +10,6 @@ from tangible_core.files.reading import (
     MOST_BYTES,
     MOST_PIXELS,
     TooLargeError,
-    check_file,
     check_size,
     content_digest,
     read_bytes,
@@ -37,23 +36,6 @@ def test_file_over_the_limit_is_not_read(tmp_path: Path):
     (tmp_path / "a").write_bytes(bytes(11))
     with pytest.raises(OSError, match="it holds more than 1e-05 MB"):
         read_bytes(tmp_path / "a", 10)
-
-
-def test_sparse_file_counts_with_its_full_size(tmp_path: Path):
-    with (tmp_path / "a").open("wb") as file:
-        file.truncate(MOST_BYTES + 1)
-    with pytest.raises(OSError, match="it holds more than 1424 MB"):
-        check_file(tmp_path / "a")
-
-
-def test_name_with_a_null_byte_is_refused(tmp_path: Path):
-    with pytest.raises(OSError, match="no file can have this name"):
-        check_file(tmp_path / "a\0b")
-
-
-def test_missing_file_raises_file_not_found(tmp_path: Path):
-    with pytest.raises(FileNotFoundError):
-        read_bytes(tmp_path / "a")
 
 
 def test_file_of_unknown_size_is_read_up_to_a_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

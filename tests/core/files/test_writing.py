@@ -1,5 +1,6 @@
+"""If one of these fails, a file is lost, half written or written by two programs at once."""
+
 import errno
-import json
 import os
 import signal
 import stat
@@ -35,13 +36,6 @@ def names_in(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-def test_written_file_is_whole_and_its_folders_are_created(tmp_path):
-    path = tmp_path / "a" / "b" / "c.txt"
-    write_text(path, "grün\n")
-    assert path.read_text(encoding="utf-8") == "grün\n"
-    assert names_in(path.parent) == ["c.txt"]
-
-
 def test_atomic_write_shows_no_file_before_the_block_ends(tmp_path):
     path = tmp_path / "c.bin"
     with atomic_write(path) as file:
@@ -63,13 +57,6 @@ def test_atomic_write_with_an_error_leaves_only_the_old_file(tmp_path):
     assert names_in(tmp_path) == ["c.txt"]
 
 
-def test_atomic_write_interrupted_leaves_nothing(tmp_path):
-    with pytest.raises(KeyboardInterrupt), atomic_write(tmp_path / "c.txt") as file:
-        file.write(b"new")
-        raise KeyboardInterrupt
-    assert names_in(tmp_path) == []
-
-
 def test_full_disk_gives_one_clear_error_and_leaves_nothing(tmp_path, monkeypatch):
     path = tmp_path / "c.txt"
 
@@ -80,54 +67,14 @@ def test_full_disk_gives_one_clear_error_and_leaves_nothing(tmp_path, monkeypatc
     assert names_in(tmp_path) == []
 
 
-def test_disk_full_at_the_rename_gives_an_error_and_leaves_nothing(tmp_path, monkeypatch):
-    def full(*_):
-        raise OSError(errno.EDQUOT, os.strerror(errno.EDQUOT))
-
-    monkeypatch.setattr(Path, "replace", full)
-    with pytest.raises(OutputError, match="quota"):
-        write_text(tmp_path / "c.txt", "new")
-    assert names_in(tmp_path) == []
-
-
-def test_folder_that_cannot_be_created_is_an_output_error(tmp_path):
-    write_text(tmp_path / "file", "no folder")
-    with pytest.raises(OutputError, match=r"file.c\.txt: cannot be written: .*choose another folder"):
-        write_text(tmp_path / "file" / "c.txt", "new")
-
-
-def test_folder_without_permission_is_an_output_error(tmp_path, monkeypatch):
-    def denied(*_):
-        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
-
-    monkeypatch.setattr("tangible_core.files.writing.os.open", denied)  # root may write anywhere, so no chmod here
-    with pytest.raises(OutputError, match="Permission denied; choose another folder"):
-        write_text(tmp_path / "c.txt", "new")
-
-
-@pytest.mark.parametrize("path", ["", ".", "/", ".."])
-def test_path_without_a_name_is_an_output_error(tmp_path, monkeypatch, path):
+@pytest.mark.parametrize("path", ["", ".", "/", "..", "folder", "file/c.txt"])
+def test_path_of_no_file_is_an_output_error(tmp_path, monkeypatch, path):
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "file").touch()
     with pytest.raises(OutputError, match="cannot be written"):
         write_text(Path(path), "new")
-    assert names_in(tmp_path) == []
-
-
-def test_name_of_a_folder_is_an_output_error(tmp_path):
-    (tmp_path / "c.txt").mkdir()
-    with pytest.raises(OutputError, match=r"c\.txt: cannot be written"):
-        write_text(tmp_path / "c.txt", "new")
-    assert names_in(tmp_path) == ["c.txt"]
-
-
-def test_written_file_has_the_permissions_of_the_umask(tmp_path):
-    before = os.umask(0o027)
-    try:
-        write_text(tmp_path / "c.txt", "new")
-        assert os.umask(0o027) == 0o027
-    finally:
-        os.umask(before)
-    assert stat.S_IMODE((tmp_path / "c.txt").stat().st_mode) == 0o640
+    assert names_in(tmp_path) == ["file", "folder"]
 
 
 @pytest.mark.parametrize("write", [write_text, lambda path, text, private: open_alone(path, private=private).close()])
@@ -173,12 +120,6 @@ def test_file_of_the_longest_name_is_written(tmp_path):
         assert path.read_text() == "new"
 
 
-def test_name_that_is_not_unicode_is_read_back_from_json(tmp_path):
-    name = os.fsdecode(b"caf\xe9")
-    write_text(tmp_path / "c.json", json.dumps([name], ensure_ascii=False))
-    assert json.loads((tmp_path / "c.json").read_text("utf-8")) == [name]
-
-
 def test_concurrent_writers_leave_one_whole_file(tmp_path):
     path = tmp_path / "c.txt"
     texts = [letter * 100_000 for letter in "abcdefgh"]
@@ -193,9 +134,7 @@ class TestSoleWriter:
     def test_block_excludes_others_of_its_path_alone(self, tmp_path):
         path = tmp_path / "new" / ("long " * 40 + "one")
         with sole_writer(path):
-            with pytest.raises(
-                OutputError, match=rf"{path.parent}: another program is writing the same files there; wait"
-            ):
+            with pytest.raises(OutputError, match="another program is writing the same files"):
                 sole_writer(path).__enter__()
             with sole_writer(path.with_name("long " * 40 + "other")):
                 pass
@@ -223,18 +162,6 @@ class TestSoleWriter:
             pass
         assert names_in(tmp_path) == []
 
-    def test_folder_that_is_deleted_meanwhile_is_no_error(self, tmp_path):
-        with sole_writer(tmp_path / "a" / "mine"):
-            for each in (tmp_path / "a").iterdir():
-                each.unlink()
-            (tmp_path / "a").rmdir()
-        assert names_in(tmp_path) == []
-
-    def test_folder_that_cannot_be_created_is_an_output_error(self, tmp_path):
-        write_text(tmp_path / "file", "no folder")
-        with pytest.raises(OutputError, match="file: cannot be written: File exists; choose another folder"):
-            sole_writer(tmp_path / "file" / "mine").__enter__()
-
 
 def test_file_opened_alone_cannot_be_opened_again_until_closed(tmp_path):
     path = tmp_path / "a" / "b.bin"
@@ -242,15 +169,8 @@ def test_file_opened_alone_cannot_be_opened_again_until_closed(tmp_path):
     with open_alone(path) as file:
         assert path.read_bytes() == b""
         file.write(b"new")
-        with pytest.raises(
-            OutputError, match=r"b\.bin: another program is writing to it; end that one or choose another"
-        ):
+        with pytest.raises(OutputError, match="another program is writing"):
             open_alone(path)
         assert path.read_bytes() == b"new"
     open_alone(path).close()
     assert path.read_bytes() == b""
-
-
-def test_folder_opened_as_a_file_is_an_output_error(tmp_path):
-    with pytest.raises(OutputError, match="cannot be written: Is a directory; choose another folder"):
-        open_alone(tmp_path)

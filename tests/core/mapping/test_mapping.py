@@ -1,4 +1,4 @@
-"""The mapping from hand to picture: exact in both directions, clutch, limits, and compiled kernels."""
+"""The mapping from hand to picture: a wrong one puts the surface beside the hand, or pushes where it must not."""
 
 import math
 from functools import partial
@@ -9,10 +9,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numba import float64, int64, njit, void
 
-from tangible_core.compiled.kernels import Address
 from tangible_core.compiled.touch import CompiledLink, LinkKernels
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
-from tangible_core.mapping import MappedDevice, Placement, WorkspaceMapping, intended_path, map_device, placement_of
+from tangible_core.mapping import (
+    MappedDevice,
+    Placement,
+    WorkspaceMapping,
+    intended_path,
+    kernels,
+    map_device,
+    placement_of,
+)
 from tangible_core.mapping.device import over
 from tangible_core.mapping.placement import turn
 from tangible_core.plugins.interfaces import HapticDevice, Link
@@ -113,8 +120,6 @@ def push(link: Link, *force: float) -> Force:
 
 def to_picture(place: Placement, hand_m: tuple[float, float, float]) -> tuple[float, ...]:
     """Return the point of the picture at a point of the hand, by the kernel."""
-    from tangible_core.mapping import kernels
-
     state = np.array([*hand_m, 0.0, 0.0, 0.0, 0.0])
     kernels.place(place, np.zeros(kernels.MEMORY), state)
     return tuple(state[:3].tolist())
@@ -129,8 +134,6 @@ def to_hand(place: Placement, picture_m: tuple[float, ...]) -> tuple[float, floa
 
 
 class TestInPlainPython:
-    """The methods of `Placement`, which need no kernels."""
-
     @given(placements, points)
     def test_placement_agrees_with_kernel_and_inverse(self, place: Placement, point: tuple[float, float, float]):
         size = max(1.0, 1.0 / place.scale, place.scale)
@@ -138,14 +141,6 @@ class TestInPlainPython:
         assert to_picture(place, place.under_hand(point)) == close(point)
         assert place.under_hand(to_picture(place, point)) == close(point)
         assert place.under_hand(point) == close(to_hand(place, point))
-
-    def test_placement_of_a_device_agrees_with_its_link(self, buffer: np.ndarray):
-        mapping = WorkspaceMapping(region_m=(0.01, -0.005, 0.02, 0.01), rotation_deg=30, offset_m=(0.0, 0.01, 0.02))
-        device = map_device(BufferDevice(), mapping)
-        picture_m = (0.012, -0.003, 0.001)
-        seen = hold(buffer, device.open(), *placement_of(device).under_hand(picture_m)).position_m
-        assert seen == pytest.approx(picture_m, abs=1e-15)
-        assert placement_of(Mock()) == Placement()
 
     def test_intended_path_is_where_the_link_puts_the_hand(self):
         mapping = WorkspaceMapping(
@@ -157,19 +152,12 @@ class TestInPlainPython:
         there = [to_picture(placement_of(device), tuple(each)) for each in hand_m.tolist()]
         assert intended_path(device, ticks) == pytest.approx(np.array(there), abs=1e-15)
         assert intended_path(BufferDevice(), ticks) is None
+        assert placement_of(Mock()) == Placement()
 
 
 class TestGeometry:
     @given(placements, points)
-    def test_point_to_picture_and_back_is_the_same(self, place: Placement, point: tuple[float, float, float]):
-        size = max(1.0, 1.0 / place.scale, place.scale)
-        assert to_hand(place, to_picture(place, point)) == pytest.approx(point, abs=1e-12 * size)
-        assert to_picture(place, to_hand(place, point)) == pytest.approx(point, abs=1e-12 * size)
-
-    @given(placements, points)
     def test_velocity_is_mapped_like_points(self, place: Placement, point: tuple[float, float, float]):
-        from tangible_core.mapping import kernels
-
         state = np.array([*point, *point, 3.0])
         kernels.place(place, np.zeros(kernels.MEMORY), state)
         still = np.subtract(to_picture(place, point), to_picture(place, (0.0, 0.0, 0.0)))
@@ -179,8 +167,6 @@ class TestGeometry:
     @given(placements, points)
     def test_forces_are_rotated_and_keep_their_size(self, place: Placement, force: tuple[float, float, float]):
         """Compare the work at the hand, which is `scale` times that in the picture, and of the same sign."""
-        from tangible_core.mapping import kernels
-
         x, y, z = kernels.push(place, np.zeros(kernels.MEMORY), *force)
         assert math.hypot(x, y, z) == pytest.approx(math.hypot(*force), abs=1e-15, rel=1e-12)
         assert (*place.rotate_back(x, y), z) == pytest.approx(force, abs=1e-12)
@@ -188,34 +174,26 @@ class TestGeometry:
         way = np.subtract(to_hand(place, step), to_hand(place, (0.0, 0.0, 0.0)))
         assert np.dot((x, y, z), way) == pytest.approx(place.scale * np.dot(force, step), abs=1e-12 * (1 + place.scale))
 
-    @pytest.mark.parametrize(
-        ("degrees", "seen"),
-        [(0.0, (0.03, 0.01)), (90.0, (0.01, -0.03)), (180.0, (-0.03, -0.01)), (-90.0, (-0.01, 0.03))],
-    )
-    def test_quarter_turns_are_exact(self, degrees: float, seen: tuple[float, float]):
+    def test_quarter_turns_are_exact(self):
         """Rotate a picture counter-clockwise: its bottom comes to lie right of the hand."""
-        place = WorkspaceMapping(rotation_deg=degrees).placement(SPEC.workspace_m)
-        assert to_picture(place, (0.03, 0.01, 0.002)) == (*seen, 0.002)
+        for degrees, seen in ((0, (0.03, 0.01)), (90, (0.01, -0.03)), (180, (-0.03, -0.01)), (-90, (-0.01, 0.03))):
+            place = WorkspaceMapping(rotation_deg=degrees).placement(SPEC.workspace_m)
+            assert to_picture(place, (0.03, 0.01, 0.002)) == (*seen, 0.002)
 
-    def test_region_fills_the_workspace(self):
-        """Map a part of 20 x 10 mm to a hand that moves 80 mm: four times as large."""
+    def test_rotated_region_fills_the_workspace_unless_a_scale_is_given(self):
+        assert WorkspaceMapping(region_m=(0, 0, 0.02, 0.01), scale=2).placement(SPEC.workspace_m).scale == 2
         place = WorkspaceMapping(region_m=(0.01, -0.005, 0.02, 0.01)).placement((0.08, 0.08, 0.08))
         assert place.scale == 4
-        assert to_picture(place, (0.0, 0.0, 0.0)) == (0.01, -0.005, 0.0)
         assert to_picture(place, (-0.04, 0.02, 0.004)) == (0.0, 0.0, 0.001)
-
-    def test_rotated_region_fills_the_workspace(self):
         place = WorkspaceMapping(region_m=(0, 0, 0.02, 0.01), rotation_deg=90).placement((0.08, 0.16, 0.08))
         assert place.scale == 8
         assert to_hand(place, (0.01, 0.005, 0.0)) == pytest.approx((-0.04, 0.08, 0.0), abs=1e-15)
-
-    def test_scale_overrides_the_fit_of_a_region(self):
-        assert WorkspaceMapping(region_m=(0, 0, 0.02, 0.01), scale=2).placement(SPEC.workspace_m).scale == 2
 
     def test_spec_is_in_metres_of_the_picture(self):
         mapping = WorkspaceMapping(scale=2, rotation_deg=90)
         spec = mapping.spec_on_picture(DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.06, 0.08), 2e-5, buttons=4))
         assert spec == DeviceSpec(8.0, 6000.0, 40.0, (0.03, 0.05, 0.04), 1e-5, buttons=4)
+        assert MappedDevice(device=Mock(), mapping=mapping).spec() == mapping.spec_on_picture(SPEC)
 
 
 class TestClutch:
@@ -227,11 +205,9 @@ class TestClutch:
         assert hold(buffer, link, -0.02, -0.04, 0.01).position_m == pytest.approx((0.01, 0.0, 0.005))
         assert hold(buffer, link, 0.0, -0.04, 0.01).position_m == pytest.approx((0.02, 0.0, 0.005))
 
-    def test_clutch_held_from_the_start_keeps_the_picture_under_the_hand(self, buffer: np.ndarray):
+    def test_clutch_held_from_the_start_keeps_the_picture_and_another_button_is_no_clutch(self, buffer: np.ndarray):
         link = open_link(buffer, clutch_button=0)
         assert hold(buffer, link, 0.02, 0.0, 0.01, 1).position_m == (0.02, 0.0, 0.01)
-
-    def test_another_button_is_not_the_clutch(self, buffer: np.ndarray):
         link = open_link(buffer, clutch_button=1)
         hold(buffer, link, 0.0, 0.0, 0.0, 5)
         assert hold(buffer, link, 0.01, 0.0, 0.0, 5).position_m == (0.01, 0.0, 0.0)
@@ -284,20 +260,11 @@ class TestLimits:
         assert push(link, 1.0, 0.0, 0.0) == NO_FORCE
 
     def test_limits_give_no_energy_when_entered_inside_the_surface(self, buffer: np.ndarray):
-        """Press in where force is barred, and move to where it is allowed: a spring must give nothing back."""
+        """A hand that pressed in where force is barred is not thrown out where it is allowed."""
         link = open_link(buffer, limits_m=(0.06, 0.06, 0.06))
-        work = 0.0
-        way = [(0.04, 0.0, z) for z in np.linspace(0.01, -0.01, 50)]
-        way += [(x, 0.0, -0.01) for x in np.linspace(0.04, 0.0, 50)] + [
-            (0.0, 0.0, z) for z in np.linspace(-0.01, 0.01, 50)
-        ]
-        last = way[0]
-        for place in way:
-            force = link.applied
-            work += float(np.dot(force, np.subtract(place, last)))
-            last = hold(buffer, link, *place).position_m
-            link.write(Force(0.0, 0.0, max(0.0, -800 * last[2])))
-        assert work <= 0
+        for x, z, given_n in ((0.04, -0.01, 0.0), (0.0, -0.01, 0.0), (0.0, 0.01, 0.0), (0.0, -0.01, 8.0)):
+            hold(buffer, link, x, 0.0, z)
+            assert push(link, 0.0, 0.0, max(0.0, -800 * z)).z == given_n
 
 
 class TestKernels:
@@ -306,39 +273,21 @@ class TestKernels:
         rng = np.random.default_rng(0)
         by_method, by_kernel = open_link(buffer, **options), open_link(buffer, **options)
         assert isinstance(by_kernel, CompiledLink)
-        kernels = by_kernel.kernels()
+        own = by_kernel.kernels()
         state = np.zeros(7)
         for _ in range(50):
             buffer[:6], buffer[6] = rng.uniform(-0.05, 0.05, 6), rng.integers(2)
             force = rng.uniform(-3, 3, 3) * rng.integers(2)
             seen = by_method.read()
-            assert kernels.read(*kernels.fixed, state) == 1
+            assert own.read(*own.fixed, state) == 1
             assert state == pytest.approx([*seen.position_m, *seen.velocity_m_per_s, seen.buttons], abs=1e-15)
             by_method.write(Force(*force))
             applied = buffer[8:].copy()
-            kernels.write(*kernels.fixed, *force)
+            own.write(*own.fixed, *force)
             assert np.array_equal(buffer[8:], applied)
-
-    def test_kernel_leaves_a_stale_state_unchanged(self, buffer: np.ndarray):
-        kernels = open_link(buffer, scale=2.0).kernels()
-        buffer[7] = 0
-        state = np.arange(7.0)
-        assert kernels.read(*kernels.fixed, state) == 0
-        assert np.array_equal(state, np.arange(7.0))
-
-    def test_compiled_loop_calls_kernels_by_address(self, buffer: np.ndarray):
-        @njit(nogil=True)
-        def loop(read, write, fixed, state):
-            for i in range(10):
-                read(*fixed, state)
-                write(*fixed, 0.0, 0.0, float(i))
-
-        kernels = open_link(buffer, scale=2.0).kernels()
-        buffer[:3] = 0.02, 0.04, 0.06
-        state = np.zeros(7)
-        loop(Address(kernels.read), Address(kernels.write), kernels.fixed, state)
-        assert state[:3].tolist() == [0.01, 0.02, 0.03]
-        assert buffer[8:].tolist() == [0, 0, 9]
+        buffer[7], before = 0, state.copy()
+        assert own.read(*own.fixed, state) == 0
+        assert np.array_equal(state, before), "a stale state stays"
 
     def test_exchange_is_passed_to_the_device(self, buffer: np.ndarray):
         link = open_link(buffer, scale=2.0)
@@ -351,74 +300,35 @@ class TestKernels:
 
 
 class TestDevice:
-    @pytest.mark.parametrize(
-        "nothing",
-        [{}, {"scale": 1.0}, {"rotation_deg": 360.0}, {"rotation_deg": -360.0}, {"region_m": (0, 0, 0.08, 0.08)}],
-    )
-    def test_identity_mapping_returns_the_device_itself(self, nothing: dict):
+    def test_identity_mapping_returns_the_device_itself(self):
         mock = Mock()
-        assert map_device(mock, WorkspaceMapping(**nothing)) is mock
+        for nothing in ({}, {"rotation_deg": -360.0}, {"region_m": (0, 0, 0.08, 0.08)}):
+            assert map_device(mock, WorkspaceMapping(**nothing)) is mock
 
     @pytest.mark.parametrize("check", DEVICE_CHECKS)
     def test_mapped_device_passes_the_device_checks(self, check):
         mapping = WorkspaceMapping(scale=2.5, rotation_deg=37.0, offset_m=(0.01, -0.01, 0.0), clutch_button=3)
         check(MappedDevice(device=Mock(), mapping=mapping))
 
-    def test_mapped_device_spec_is_in_metres_of_the_picture(self):
-        mapping = WorkspaceMapping(scale=2.0)
-        spec = MappedDevice(device=Mock(), mapping=mapping).spec()
-        assert spec == mapping.spec_on_picture(SPEC) != SPEC
 
-    def test_mapped_device_keeps_its_options_in_json(self):
-        device = MappedDevice(device=Mock(path="circle"), mapping=WorkspaceMapping(scale=2.0))
-        assert device.model_dump()["device"]["path"] == "circle"
-
-    def test_half_sized_picture_at_half_scale_gives_the_same_forces(self):
-        """Follow the same path over a picture of half the size, at half the scale."""
-        from tangible_core import HapticSurface, load_method
-
-        heights = 0.005 + 0.004 * np.sin(np.linspace(0, 6, 64))[None, :] * np.cos(np.linspace(0, 5, 64))[:, None]
-        law = partial(load_method("render", "penalty"), dequantise="never")
-        whole = law(stiffness_n_per_m=500).touch(HapticSurface.from_heights(heights, width_m=0.08))
-        half = law(stiffness_n_per_m=1000).touch(HapticSurface.from_heights(heights / 2, width_m=0.04))
-        mock = Mock(hand=None, z_m=0.001)
-        with mock.open() as one, map_device(mock, WorkspaceMapping(scale=2.0)).open() as other:
-            for _ in range(2000):
-                assert half.force(other.read()) == pytest.approx(whole.force(one.read()), abs=1e-5)
-
-
-@pytest.mark.parametrize(
-    ("options", "complaint"),
-    [
-        ({"scale": 0}, "scale"),
-        ({"scale": math.nan}, "scale"),
-        ({"rotation_deg": 1000}, "rotation_deg"),
-        ({"region_m": (0, 0, 0, 1)}, "region_m"),
-        ({"region_m": (0, 0, 1)}, "region_m"),
-        ({"offset_m": (math.inf, 0, 0)}, "offset_m"),
-        ({"clutch_button": -1}, "clutch_button"),
-        ({"limits_m": (1, 1, 0)}, "limits_m"),
-        ({"zoom": 2}, "zoom"),
-    ],
-)
-def test_wrong_options_are_refused(options: dict, complaint: str):
-    with pytest.raises(ValueError, match=complaint):
-        WorkspaceMapping(**options)
+def test_wrong_options_are_refused():
+    for name, wrong in (
+        ("scale", 0), ("scale", math.nan), ("rotation_deg", 1000), ("region_m", (0, 0, 0, 1)), ("region_m", (0, 0, 1)),
+        ("offset_m", (math.inf, 0, 0)), ("clutch_button", -1), ("limits_m", (1, 1, 0)), ("zoom", 2),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=name):
+            WorkspaceMapping(**{name: wrong})
 
 
 @pytest.mark.parametrize(
     ("mapping", "area_m"),
     [
-        ({}, (0.08, 0.06)),
-        ({"scale": 0.5}, (0.04, 0.03)),
         ({"offset_m": (0.01, 0.0, 0.0)}, (0.06, 0.06)),  # centred on the device: what is as far on both sides
         ({"offset_m": (-0.04, 0.0, 0.0)}, (0.08, 0.06)),  # nothing of the picture is on one of the sides
         ({"offset_m": (0.0, 0.05, 0.0), "scale": 2.0}, (0.16, 0.02)),
         ({"region_m": (0.01, -0.02, 0.02, 0.02), "scale": 1.0}, (0.06, 0.02)),
         ({"rotation_deg": 90.0, "offset_m": (0.0, 0.01, 0.0)}, (0.06, 0.06)),
         ({"rotation_deg": 90.0}, (0.06, 0.08)),
-        ({"rotation_deg": 180.0}, (0.08, 0.06)),
-        ({"rotation_deg": 45.0}, (0.06 / 2**0.5,) * 2),
         ({"rotation_deg": -30.0}, (0.06 / (0.5 + 0.75**0.5),) * 2),
     ],
 )

@@ -1,4 +1,4 @@
-"""Colour names, compared with a survey, and the colours of segments."""
+"""If one of these fails, a rule by colour finds other segments than people would name so."""
 
 import cv2
 import numpy as np
@@ -29,20 +29,8 @@ def test_colour_names_agree_with_the_survey(name: str):
     assert name_of(rgb) == expected
 
 
-@pytest.mark.parametrize(
-    ("rgb", "expected"),
-    [
-        ((0, 0, 0), "black"),
-        ((1, 1, 1), "white"),
-        ((0.5, 0.5, 0.5), "grey"),
-        ((0.45, 0.31, 0.19), "brown"),
-        ((0.35, 0.55, 0.78), "blue"),
-        ((0.24, 0.47, 0.2), "green"),
-        ((0.6, 0.25, 0.2), "red"),
-    ],
-)
-def test_colour_names_of_plain_cases(rgb: tuple[float, float, float], expected: str):
-    assert name_of(rgb) == expected
+def test_colours_without_a_hue_are_black_grey_and_white():
+    assert [name_of((share,) * 3) for share in (0, 0.5, 1)] == ["black", "grey", "white"]
 
 
 def test_segment_colour_is_that_of_most_pixels():
@@ -52,11 +40,3 @@ def test_segment_colour_is_that_of_most_pixels():
     picture[:, 4:] = (255, 255, 255)
     labels = np.repeat(np.int32([[0, 1]]), 4, axis=1).repeat(2, axis=0)
     assert segment_colours(SegmentMap(labels), picture) == [("blue", 0.75), ("white", 1.0)]
-
-
-@pytest.mark.parametrize("dtype", ["uint8", "uint16", "float64", "bool"])
-def test_segment_colours_take_any_picture(dtype: str):
-    labels = SegmentMap(np.zeros((1, 1), np.int32))
-    white = {"uint8": 255, "uint16": 65535, "float64": 1.0, "bool": True}[dtype]
-    for shape in ((1, 1), (1, 1, 3), (1, 1, 4)):
-        assert segment_colours(labels, np.full(shape, white, dtype)) == [("white", 1.0)]

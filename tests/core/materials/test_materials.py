@@ -1,15 +1,15 @@
-"""The library of materials, its files, and the assignment of materials to segments."""
+"""If one of these fails, a segment feels like another material than was meant, or a wrong library is not refused."""
 
-from dataclasses import MISSING, fields, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tangible_core.data import TEXTURES, Material, SegmentMap
-from tangible_core.errors import ConfigError, MaterialError, PictureError
-from tangible_core.materials.assignment import LADDER, NEUTRAL, assign, find, library, load_library, relative_roughness
-from tangible_core.materials.files import VALUES, MaterialBlock, sources_of
+from tangible_core.data import Material, SegmentMap
+from tangible_core.errors import ConfigError, MaterialError
+from tangible_core.materials.assignment import LADDER, assign, library, load_library, relative_roughness
+from tangible_core.materials.files import sources_of
 from tangible_core.materials.rules import MaterialRule
 
 MUD = "mud: {stiffness_n_per_m: 300, damping_n_s_per_m: 2, static_friction: 0.6, dynamic_friction: 0.5}\n"
@@ -35,60 +35,6 @@ def complaints(tmp_path: Path, text: str) -> list[str]:
     return str(error.value).replace(f"{tmp_path}/", "").splitlines()
 
 
-class TestLibrary:
-    def test_measured_values_are_those_of_the_sources(self):
-        assert library()["ice"].dynamic_friction == 0.03
-        assert library()["ice"].static_friction == 0.1
-        middles = {"sand": (0.69, 0.80), "wood": (0.19, 0.25), "rubber": (0.41, 0.61), "cloth": (0.22, 0.37)}
-        middles |= {"stone": (0.34, 0.70), "brick": (0.51, 0.63), "metal": (0.24, 0.35), "foam": (0.87, 1.39)}
-        middles |= {"carpet": (0.76, 1.11), "leather": (0.36, 0.43)}
-        for name, (low, high) in middles.items():
-            assert library()[name].dynamic_friction == pytest.approx((low + high) / 2), name
-            assert f"{low:.2f} to {high:.2f}" in library()[name].source
-
-    def test_grain_is_speed_over_frequency(self):
-        for name, hertz in {"sand": 140, "wood": (137 + 232) / 2, "cloth": (117 + 148) / 2, "metal": 216.5}.items():
-            assert library()[name].grain_m == pytest.approx(0.12 / hertz, rel=0.01), name
-
-    @pytest.mark.parametrize("material", library().values(), ids=lambda each: each.name)
-    def test_library_material_is_within_a_desktop_device(self, material: Material):
-        assert material.stiffness_n_per_m <= (900 if material.roughness_m else 3000)
-        assert 0 < material.damping_n_s_per_m <= 5
-        assert material.source
-
-    def test_material_names_are_those_of_the_file(self):
-        assert all(name == material.name for name, material in library().items())
-        others = {"glass", "rubber", "foam", "carpet", "skin", "grass", "water"}
-        assert set(library()) == {NEUTRAL, *LADDER, *others}
-
-    @pytest.mark.parametrize("material", library().values(), ids=lambda each: each.name)
-    def test_every_value_has_a_source(self, material: Material):
-        sources = sources_of(material)
-        assert [*sources] == [*VALUES]
-        assert all(sources.values())
-
-    def test_every_texture_model_is_used(self):
-        assert {each.texture for each in library().values()} == set(TEXTURES)
-
-    def test_neutral_material_has_no_friction_and_no_texture(self):
-        plain = library()[NEUTRAL]
-        assert (plain.static_friction, plain.dynamic_friction, plain.roughness_m) == (0, 0, 0)
-
-    def test_ladder_runs_from_smooth_to_rough(self):
-        roughness = [library()[name].roughness_m for name in LADDER]
-        assert roughness == sorted(roughness)
-        assert len(set(roughness)) == len(LADDER)
-
-    def test_library_is_read_once_and_read_only(self):
-        assert load_library() is library()
-        with pytest.raises(TypeError):
-            library()["ice"] = library()["sand"]  # type: ignore[index]
-
-    def test_misspelt_material_name_gets_a_suggestion(self):
-        with pytest.raises(MaterialError, match=r"'icee' \(did you mean 'ice'\?\); there are plain, ice, glass"):
-            find("icee", library())
-
-
 class TestOwnFile:
     def test_file_adds_a_material(self, tmp_path: Path):
         path = tmp_path / "mine.yaml"
@@ -105,11 +51,6 @@ class TestOwnFile:
         source = f"stiffness_n_per_m: mine.yaml; {library()['ice'].source}"
         assert ice == replace(library()["ice"], stiffness_n_per_m=1200.0, source=source)
 
-    def test_file_may_state_a_source_for_each_value(self, tmp_path: Path):
-        path = tmp_path / "mine.yaml"
-        path.write_text("ice:\n  dynamic_friction: 0.02\n  source:\n    dynamic_friction: my rig\n    others: guess\n")
-        assert load_library(path)["ice"].source == "dynamic_friction: my rig; others: guess"
-
     def test_all_complaints_come_at_once_with_their_places(self, tmp_path: Path):
         text = (
             "ice: {stifness_n_per_m: 3, damping_n_s_per_m: -1}\n"
@@ -122,42 +63,29 @@ class TestOwnFile:
         lines = complaints(tmp_path, text)
         places = ["1:28", "1:7", "3:3", "5:3", "4:3", "6:12", "2:1", "7:1", "8:1", "9:1", "10:8", "10:1"]
         assert [each.split(": ", 1)[0] for each in lines] == [f"mine.yaml:{place}" for place in places]
-        assert "ice.damping_n_s_per_m: Input should be greater than or equal to 0, not -1" in lines[0]
-        assert "ice.stifness_n_per_m: unknown option (did you mean 'stiffness_n_per_m'?)" in lines[1]
-        assert "which is not a property (did you mean 'grain_m'?)" in lines[5]
+        assert "did you mean 'stiffness_n_per_m'" in lines[1] and "did you mean 'grain_m'" in lines[5]
         assert "dynamic_friction 0.9 is above static_friction 0.26" in lines[9]
-        missing = "stiffness_n_per_m, damping_n_s_per_m, static_friction, dynamic_friction are missing"
-        assert lines[11].endswith(f"glas: {missing} (did you mean 'glass'?)")
+        assert "are missing" in lines[11] and "did you mean 'glass'" in lines[11]
 
     @pytest.mark.parametrize(
         ("text", "complaint"),
         [
-            ("ice: [\n", "mine.yaml:2:1: expected the node content, but found '<stream end>'"),
-            ("ice: {}\nice: {}\n", "mine.yaml:2:1: found duplicate key"),
-            ("ice:\n\tgrain_m: 1\n", "mine.yaml:2:1: found character '\\t'"),
+            ("ice: [\n", "mine.yaml:2:1: "),
+            ("ice: {}\nice: {}\n", "mine.yaml:2:1: "),
+            ("ice:\n\tgrain_m: 1\n", "mine.yaml:2:1: "),
             ("", "mine.yaml:1:1: a library is a mapping"),
             ("- ice\n", "mine.yaml:1:1: a library is a mapping"),
-            ("ice: {stiffness_n_per_m: 0}\n", "mine.yaml:1:7: ice.stiffness_n_per_m: Input should be greater than 0"),
-            ("ice: {grain_m: .inf}\n", "mine.yaml:1:7: ice.grain_m: Input should be a finite number, not inf"),
-            ("ice: {grain_m: true}\n", "mine.yaml:1:7: ice.grain_m: Input should be a valid number, not True"),
-            ("ice: {seed: 1.5}\n", "mine.yaml:1:7: ice.seed: Input should be a valid integer, not 1.5"),
-            ("ice: {anisotropy: 2}\n", "mine.yaml:1:7: ice.anisotropy: Input should be less than or equal to 1, not 2"),
-            ("ice: {direction_deg: 180}\n", "mine.yaml:1:7: ice.direction_deg: Input should be less than 180, not 180"),
-            ("sand: {texture: smooth}\n", "mine.yaml:1:1: material 'sand': texture is smooth and roughness_m 8.8e-05"),
-            ("ice: {texture: drag}\n", "mine.yaml:1:1: material 'ice': texture drag needs a drag_n_s_per_m above 0"),
-            (
-                "plain: {texture: stick-slip}\n",
-                "mine.yaml:1:1: material 'plain': texture stick-slip needs a dynamic_fr",
-            ),
+            ("ice: {stiffness_n_per_m: 0}\n", "mine.yaml:1:7: ice.stiffness_n_per_m: "),
+            ("ice: {grain_m: .inf}\n", "mine.yaml:1:7: ice.grain_m: "),
+            ("ice: {grain_m: true}\n", "mine.yaml:1:7: ice.grain_m: "),
+            ("ice: {seed: 1.5}\n", "mine.yaml:1:7: ice.seed: "),
+            ("ice: {direction_deg: 180}\n", "mine.yaml:1:7: ice.direction_deg: "),
+            ("ice: {texture: periodical}\n", "mine.yaml:1:7: ice.texture: "),
+            ("sand: {texture: smooth}\n", "mine.yaml:1:1: material 'sand': texture is smooth"),
         ],
     )
     def test_text_that_is_not_a_library_is_refused(self, tmp_path: Path, text: str, complaint: str):
         assert complaints(tmp_path, text)[0].startswith(complaint)
-
-    def test_misspelt_texture_gets_a_suggestion(self, tmp_path: Path):
-        (line,) = complaints(tmp_path, "ice: {texture: periodical}\n")
-        assert line.startswith("mine.yaml:1:7: ice.texture: Input should be 'smooth', 'periodic', ")
-        assert line.endswith("(did you mean 'periodic'?)")
 
     def test_sources_of_each_value_are_told_apart(self, tmp_path: Path):
         path = tmp_path / "mine.yaml"
@@ -170,34 +98,12 @@ class TestOwnFile:
         assert ice["dynamic_friction"] == "physics.info/friction, ice on steel"
         assert ice["stiffness_n_per_m"] == "guess"
 
-    def test_keys_of_a_file_are_the_fields_of_a_material(self):
-        assert set(MaterialBlock.model_fields) == {each.name for each in fields(Material)} - {"name"}
-        for each in fields(Material):
-            if each.default is not MISSING and each.name != "source":
-                assert MaterialBlock.model_fields[each.name].default == each.default
-
-    def test_misspelt_file_gets_a_suggestion(self, tmp_path: Path):
-        (tmp_path / "mine.yaml").write_text(MUD)
-        with pytest.raises(ConfigError, match=r"mime.yaml: there is no such file \(did you mean 'mine.yaml'\?\)"):
-            load_library(tmp_path / "mime.yaml")
-
-    def test_file_that_is_not_text_is_refused(self, tmp_path: Path):
-        (tmp_path / "mine.yaml").write_bytes(b"\xff\xfe\x00")
-        for path in (tmp_path / "mine.yaml", tmp_path):
-            with pytest.raises(ConfigError, match="cannot be read as text"):
-                load_library(path)
-
 
 class TestByName:
     def test_each_label_gets_its_material(self):
         assigned = assign(stripes(3), None, {0: "ice", 1: "sand", 2: "ice"}, library())
         assert [each.name for each in assigned.materials] == ["ice", "sand", "ice"]
         assert assigned.reasons == ("segment 1: named ice", "segment 2: named sand", "segment 3: named ice")
-
-    def test_unnamed_label_is_neutral(self):
-        assigned = assign(stripes(2), None, {1: "sand"}, library())
-        assert [each.name for each in assigned.materials] == ["plain", "sand"]
-        assert assigned.reasons[0] == "segment 1: not named -> plain"
 
     def test_wrong_labels_and_names_are_all_reported(self):
         with pytest.raises(MaterialError) as error:
@@ -220,41 +126,10 @@ class TestByRoughness:
             f"segment 3: number 2 of 3 from smooth to rough ({0.1 / spread * np.sqrt(80 / 81):.3f}) -> wood",
         )
 
-    def test_shadow_does_not_change_the_roughness(self):
-        rows, columns = np.indices((60, 120))
-        picture = np.where(columns < 60, columns / 60, 0.5 + 0.05 * np.where((rows + columns) % 2, 1, -1))
-        assert [each.name for each in assign(stripes(2, 60), picture, "roughness", library()).materials] == [
-            "ice",
-            "brick",
-        ]
-
-    def test_equally_rough_segments_share_a_rank(self):
-        assigned = assign(stripes(3), checkers(0.2, 0.0, 0.2), "roughness", library())
-        assert [each.name for each in assigned.materials] == ["brick", "ice", "brick"]
-        assert "number 2 of 2" in assigned.reasons[0]
-
-    @pytest.mark.parametrize("picture", [checkers(0.2, 0.2), np.zeros((40, 80)), np.full((40, 80, 3), 0.3)])
-    def test_single_rank_gives_the_neutral_material(self, picture: np.ndarray):
-        assigned = assign(stripes(2), picture, "roughness", library())
-        assert [each.name for each in assigned.materials] == [NEUTRAL, NEUTRAL]
-
     def test_more_segments_than_materials_share_them_in_order(self):
         assigned = assign(stripes(12), checkers(*np.arange(12) / 30), "roughness", library())
         rungs = [LADDER.index(each.name) for each in assigned.materials]
         assert rungs == [0, 1, 1, 2, 3, 4, 4, 5, 6, 7, 7, 8]
-
-    @pytest.mark.parametrize("scale", [1e-20, 1.0, 1e20])
-    def test_roughness_ranks_do_not_depend_on_the_scale(self, scale: float):
-        picture = checkers(0.05, 0.3, 0.1)
-        assert np.array_equal(relative_roughness(stripes(3), picture * scale), relative_roughness(stripes(3), picture))
-
-    def test_roughness_ranks_do_not_depend_on_the_dtype(self):
-        eight = np.rint(checkers(0.05, 0.3, 0.1) * 255).astype(np.uint8)
-        expected = assign(stripes(3), eight, "roughness", library()).digest()
-        colour = np.repeat(eight[..., None], 3, axis=2)
-        variants = (eight.astype(np.uint16) * 257, eight / 255, colour, np.dstack([colour, np.full_like(eight, 255)]))
-        for variant in variants:
-            assert assign(stripes(3), variant, "roughness", library()).digest() == expected
 
     @pytest.mark.parametrize(("shape", "side"), [((40, 90), 3), ((300, 256), 5), ((704, 800), 11)])
     def test_roughness_window_is_a_64th_of_the_shorter_side(self, shape: tuple[int, int], side: int):
@@ -269,20 +144,10 @@ class TestByRoughness:
         expected = [np.median(deviations[labels == label]) for label in (0, 1)]
         assert relative_roughness(SegmentMap(labels), picture) == pytest.approx(expected, abs=6e-4)
 
-    def test_roughness_of_a_single_pixel_is_zero(self):
-        assigned = assign(SegmentMap(np.zeros((1, 1), np.int32)), np.ones((1, 1)), "roughness", library())
-        assert assigned.reasons == ("segment 1: number 1 of 1 from smooth to rough (0.000) -> plain",)
-
     def test_roughness_without_a_picture_is_refused(self):
         for picture in (None, np.zeros((3, 4))):
             with pytest.raises(MaterialError, match=r"need the picture of the segments, \(40, 80\)"):
                 assign(stripes(2), picture, "roughness", library())
-
-    def test_roughness_of_a_picture_with_nan_is_refused(self):
-        picture = checkers(0.1, 0.2)
-        picture[3, 5] = np.nan
-        with pytest.raises(PictureError, match="row 3, column 5"):
-            assign(stripes(2), picture, "roughness", library())
 
 
 QUARTERS = np.uint8([[[90, 140, 200], [120, 85, 50]], [[60, 120, 50], [128, 128, 128]]])
@@ -334,10 +199,6 @@ class TestByRules:
         assert [each.name for each in ruled.materials] == ["brick", "glass", "wood"]
         assert ruled.reasons[::2] == alone.reasons[::2]
 
-    def test_roughness_needs_no_picture_if_rules_decide_everything(self):
-        given = rules(*({"segment": label, "material": "ice"} for label in range(2)))
-        assert [each.name for each in assign(stripes(2), None, "roughness", library(), given).materials] == ["ice"] * 2
-
     def test_colour_rule_follows_most_pixels(self):
         segments, picture = quarters()
         picture[:9, :20] = (200, 30, 30)
@@ -346,15 +207,6 @@ class TestByRules:
         picture[:11, :20] = (200, 30, 30)
         assigned = assign(segments, picture, "rules", library(), rules({"colour": "blue", "material": "water"}))
         assert assigned.reasons[0] == "segment 1: not named -> plain"
-
-    def test_rule_that_fits_nothing_is_logged(self, caplog: pytest.LogCaptureFixture):
-        assign(*quarters(), "rules", library(), rules({"colour": "pink", "material": "skin"}))
-        assert caplog.messages == ["materials: rule 1: no segment is pink"]
-
-    @pytest.mark.parametrize("point", [[0, 0], [19.4, 19.4], [-0.0, 0.4]])
-    def test_point_counts_in_pixels_of_the_picture(self, point: list):
-        assigned = assign(*quarters(), "rules", library(), rules({"at": point, "material": "ice"}))
-        assert [each.name for each in assigned.materials] == ["ice", "plain", "plain", "plain"]
 
     def test_every_wrong_rule_is_reported(self):
         given = rules(

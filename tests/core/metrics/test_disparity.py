@@ -1,4 +1,4 @@
-"""Measures of disparity."""
+"""If one of these fails, errors of disparity are reported that other benchmarks would not report."""
 
 import numpy as np
 import pytest
@@ -23,10 +23,6 @@ def test_measures_equal_those_computed_by_hand():
             "density": 100 * 5 / 7,
         }
     )
-
-
-def test_error_equal_to_the_bound_is_good():
-    assert disparity_errors(np.float32([[2]]), np.float32([[0]]))["bad2"] == 0
 
 
 def test_maps_without_known_pixels_give_nan():

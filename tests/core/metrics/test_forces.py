@@ -1,4 +1,4 @@
-"""Errors of forces, against laws whose errors are known by formula."""
+"""If one of these fails, errors of forces are reported that their formulas do not have."""
 
 import math
 
@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangible_core.errors import GeometryError
 from tangible_core.metrics import force_errors
 from tangible_core.metrics.forces import angles_deg
 
@@ -41,14 +40,6 @@ def test_force_of_another_magnitude_has_that_error(factor: float, jnd: float):
     assert errors["noticed_percent"] == 100 * (jnd > 1 + 1e-9)
 
 
-def test_jnd_of_one_great_error_is_that_of_most_ticks():
-    """The median of 0, 1 and 10 just noticeable differences, and the share of ticks above one."""
-    truth = np.tile(UP, (3, 1))
-    errors = force_errors(truth * np.array([[1.0], [1.07], [1.7]]), truth)
-    assert errors["jnd"] == pytest.approx(1)
-    assert force_errors(truth * np.array([[1.0], [1.06], [1.7]]), truth)["noticed_percent"] == pytest.approx(100 / 3)
-
-
 def test_errors_count_the_ticks_with_a_force_only():
     """A force in free air counts for newtons, not for what is told apart; a tick of unknown truth for nothing."""
     truth = rows((0, 0, 1), (0, 0, 1), (0, 0, 0), (np.nan,) * 3, (0, 0, 0))
@@ -68,21 +59,7 @@ def test_paths_without_force_give_nan(count: int):
         assert all(math.isnan(value) for value in force_errors(nothing, truth).values())
 
 
-@pytest.mark.usefixtures("unchecked_shapes")
-def test_paths_of_different_length_are_refused():
-    with pytest.raises(GeometryError, match="one has 3 ticks and the other 2"):
-        force_errors(np.zeros((3, 3)), np.zeros((2, 3)))
-
-
 @given(st.floats(0, math.pi), st.floats(1e-9, 1e9))
 def test_angles_are_exact_for_small_and_large_ones(angle: float, size: float):
     turned = size * rows((math.cos(angle), math.sin(angle), 0))
     assert angles_deg(rows((1, 0, 0)), turned)[0] == pytest.approx(math.degrees(angle), abs=1e-12)
-
-
-@given(st.integers(0, 2**32 - 1))
-def test_errors_are_the_same_in_any_frame(seed: int):
-    random = np.random.default_rng(seed)
-    force, truth = random.normal(0, 1, (2, 20, 3))
-    turn, _ = np.linalg.qr(random.normal(0, 1, (3, 3)))
-    assert force_errors(force @ turn, truth @ turn) == pytest.approx(force_errors(force, truth))

@@ -1,9 +1,10 @@
-"""Connected parts of a picture, and the stability of their numbers."""
+"""If one of these fails, parts are joined, lost or numbered anew when a picture is enlarged."""
 
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
+from scipy import ndimage
 
 from tangible_core.data import PartMap, SegmentMap
 from tangible_core.parts import find_parts, part_sizes, reduced_parts
@@ -16,26 +17,17 @@ def parts_of(labels) -> np.ndarray:
 
 
 def flood(labels: np.ndarray) -> np.ndarray:
-    """Number the parts by filling each from its first pixel, row by row."""
-    numbers = np.full(labels.shape, -1, np.int32)
-    count = 0
-    for start in np.ndindex(labels.shape):
-        if numbers[start] >= 0:
-            continue
-        waiting = [start]
-        while waiting:
-            row, column = place = waiting.pop()
-            if not (0 <= row < labels.shape[0] and 0 <= column < labels.shape[1]) or numbers[place] >= 0:
-                continue
-            if labels[place] == labels[start]:
-                numbers[place] = count
-                waiting += [(row + 1, column), (row - 1, column), (row, column + 1), (row, column - 1)]
-        count += 1
-    return numbers
+    """Number the regions of each label, by SciPy, in the order of their first pixels."""
+    regions = np.zeros(labels.shape, int)
+    for each in np.unique(labels):
+        of_label, _ = ndimage.label(labels == each)
+        regions += (of_label > 0) * (of_label + regions.max())
+    _, first, places = np.unique(regions, return_index=True, return_inverse=True)
+    return np.argsort(np.argsort(first))[places].reshape(labels.shape)
 
 
 @given(SMALL)
-def test_parts_equal_those_of_a_flood_fill(labels):
+def test_parts_equal_the_regions_of_each_label(labels):
     parts = find_parts(SegmentMap(labels))
     assert np.array_equal(parts.labels, flood(labels))
     assert parts.labels.dtype == np.int32
@@ -50,23 +42,6 @@ def test_part_numbers_do_not_depend_on_size_or_segment_labels(labels, times, ord
         parts_of(np.kron(labels, np.ones((times, times), np.int32))), parts.repeat(times, 0).repeat(times, 1)
     )
     assert np.array_equal(parts_of(np.asarray(order, np.int32)[labels]), parts)
-
-
-def test_corners_do_not_connect_parts():
-    assert parts_of([[0, 1], [1, 0]]).tolist() == [[0, 1], [2, 3]]
-
-
-def test_coarser_grid_keeps_numbers_and_parts():
-    labels = np.zeros((40, 60), np.int32)
-    labels[:, 30:] = 1
-    labels[5, 7] = 2  # between the middle pixels
-    parts = find_parts(SegmentMap(labels))
-    few = reduced_parts(parts, (4, 6))
-    assert few.segments == parts.segments
-    assert few.labels[0, 0] == parts.labels[5, 7]
-    few_of_both = np.where(few.labels == parts.labels[5, 7], 0, few.labels)
-    assert np.array_equal(few_of_both, parts.labels[:4, 27:33])
-    assert reduced_parts(parts, (40, 60)) is parts
 
 
 def test_coarser_grid_has_middle_pixels_and_a_cell_for_what_lies_between_them():

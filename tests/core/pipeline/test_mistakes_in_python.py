@@ -1,4 +1,4 @@
-"""Mistakes in Python: one sentence with the name that was probably meant, and the plugin that failed."""
+"""Mistakes in Python. Otherwise a programmer would see a traceback of a library in place of the name that was meant."""
 
 from collections.abc import Callable
 from typing import Any
@@ -19,7 +19,7 @@ from tangible_core import (
     load_method,
 )
 from tangible_core.data import Force, HapticState, Views
-from tangible_core.errors import OptionError, TangibleError
+from tangible_core.errors import TangibleError
 from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, PlainTouch, Touch
 from tangible_core.servo import Safety
 from tangible_depth import Luminance, SemiGlobal
@@ -40,34 +40,33 @@ def flat() -> HapticSurface:
 @pytest.mark.parametrize(
     ("build", "sentence"),
     [
-        (lambda: SemiGlobal(max_disparty_px=64), "SemiGlobal: max_disparty_px: unknown option (did you mean 'max_d"),
-        (lambda: SemiGlobal(max_disparity_px=-4), "SemiGlobal: max_disparity_px: Input should be greater than or equ"),
-        (lambda: SemiGlobal(64), "SemiGlobal: write options with their names, such as max_disparity_px=..."),
-        (lambda: load_method("render", "proxy")(stifness_n_per_m=3), "(did you mean 'stiffness_n_per_m'?)"),
-        (lambda: Mock(path="circl"), "Mock: path: Input should be 'raster', 'circle'"),
-        (lambda: Mock(path="circl"), "not 'circl' (did you mean 'circle'?)"),
-        (lambda: Workspace(widht_m=0.1), "Workspace: widht_m: unknown option (did you mean 'width_m'?)"),
-        (lambda: Safety(max_forc_n=1), "Safety: max_forc_n: unknown option (did you mean 'max_force_n'?)"),
-        (lambda: Pipeline(scene(), texure=None), "texure: is not a key of the pipeline file (did you mean 'texture'?)"),
-        (lambda: Pipeline(scene(), workspace={"widht_m": 1}), "workspace.widht_m: unknown option (did you mean 'width"),
-        (lambda: Scene.photo(GREY, rotat=90), "Scene.photo: rotat: unknown option (did you mean 'rotate'?)"),
-        (lambda: Scene.photo(GREY, non_finite="msk"), "Input should be 'error' or 'mask', not 'msk' (did you mean"),
-        (lambda: Pipeline(scene()).run("out", secnds=3), "Pipeline.run: secnds: unknown option (did you mean 'sec"),
-        (lambda: Pipeline(scene()).run("out", sheet="pgn"), "sheet: is the str 'pgn'; it must be one of png, svg, pdf"),
-        (lambda: Calibration(focal_px=1, basline_m=2), "Calibration: basline_m: unknown field (did you mean 'base"),
-        (lambda: Calibration(focal_px=1), "Calibration: baseline_m: is missing; its fields: focal_px, baseline_m"),
-        (lambda: Material("clay", stifness_n_per_m=1), "Material: stifness_n_per_m: unknown field (did you mean 'sti"),
-        (lambda: Relief(np.ones((2, 2), np.float32), (1, 1), 3), "Relief: is given 3 values; its fields: height_m, ex"),
-        (lambda: Calibration(1, focal_px=2, baseline_m=1), "Calibration: focal_px: is given twice; its fields: focal_"),
-        (lambda: Camera(matrx=np.eye(3)), "Camera: matrx: unknown field (did you mean 'matrix'?); its fields: matrix,"),
-        (lambda: Pipeline(scene()).feel(secnds=3), "secnds: unknown option (did you mean 'seconds'?)"),
-        (lambda: Pipeline(scene(), texture="hierarchy"), "texture: takes an object, not the name 'hierarchy'; `load_m"),
-        (lambda: Pipeline(scene(), depth=Proxy()), "depth: takes an object of a class of DepthEstimator, not Proxy("),
-        (lambda: Pipeline(scene()).make("surfce"), "no product is named 'surfce' (did you mean 'surface'?); known: d"),
-        (lambda: load_method("rendr", "proxy"), "no kind of methods is named 'rendr' (did you mean 'render'?); known"),
-        (lambda: flat().height_at([0, 1], [1, 2, 3]), "x_m and y_m: shapes (2,) and (3,) do not go together"),
-        (lambda: DisparityMap(np.float32([[1, np.inf]])), "disparity_px: 1 of 2 values is infinite; write NaN where"),
-        (lambda: Views(np.int64([[1, 70_000]])), "left view: holds whole numbers from 1 to 70000"),
+        (lambda: SemiGlobal(max_disparty_px=64), "max_disparty_px: unknown option (did you mean 'max_disparity_px'?)"),
+        (lambda: SemiGlobal(max_disparity_px=-4), "max_disparity_px: Input should be greater than or equ"),
+        (lambda: SemiGlobal(64), "write options with their names"),
+        (lambda: load_method("render", "proxy")(stifness_n_per_m=3), "'stiffness_n_per_m'?"),
+        (lambda: Mock(path="circl"), "'circle'?"),
+        (lambda: Workspace(widht_m=0.1), "'width_m'?"),
+        (lambda: Safety(max_forc_n=1), "'max_force_n'?"),
+        (lambda: Pipeline(scene(), texure=None), "'texture'?"),
+        (lambda: Pipeline(scene(), workspace={"widht_m": 1}), "'width_m'?"),
+        (lambda: Scene.photo(GREY, rotat=90), "'rotate'?"),
+        (lambda: Scene.photo(GREY, non_finite="msk"), "'mask'?"),
+        (lambda: Pipeline(scene()).run("out", secnds=3), "'seconds'?"),
+        (lambda: Pipeline(scene()).run("out", sheet="pgn"), "must be one of png, svg, pdf"),
+        (lambda: Calibration(focal_px=1, basline_m=2), "'baseline_m'?"),
+        (lambda: Calibration(focal_px=1), "baseline_m: is missing"),
+        (lambda: Material("clay", stifness_n_per_m=1), "'stiffness_n_per_m'?"),
+        (lambda: Relief(np.ones((2, 2), np.float32), (1, 1), 3), "is given 3 values"),
+        (lambda: Calibration(1, focal_px=2, baseline_m=1), "focal_px: is given twice"),
+        (lambda: Camera(matrx=np.eye(3)), "'matrix'?"),
+        (lambda: Pipeline(scene()).feel(secnds=3), "'seconds'?"),
+        (lambda: Pipeline(scene(), texture="hierarchy"), "texture: takes an object, not the name 'hierarchy'"),
+        (lambda: Pipeline(scene(), depth=Proxy()), "depth: takes an object of a class of DepthEstimator"),
+        (lambda: Pipeline(scene()).make("surfce"), "'surface'?"),
+        (lambda: load_method("rendr", "proxy"), "'render'?"),
+        (lambda: flat().height_at([0, 1], [1, 2, 3]), "shapes (2,) and (3,)"),
+        (lambda: DisparityMap(np.float32([[1, np.inf]])), "1 of 2 values is infinite"),
+        (lambda: Views(np.int64([[1, 70_000]])), "from 1 to 70000"),
     ],
 )  # fmt: skip
 def test_mistake_is_one_sentence_of_ours(build: Callable[[], Any], sentence: str, unchecked_shapes: None):
@@ -76,17 +75,6 @@ def test_mistake_is_one_sentence_of_ours(build: Callable[[], Any], sentence: str
     assert sentence in str(caught.value)
     assert "pydantic" not in str(caught.value)
     assert "\n" not in str(caught.value)
-
-
-def test_options_with_several_mistakes_have_a_sentence_each():
-    with pytest.raises(OptionError) as caught:
-        Proxy(stifness_n_per_m=3, texture="yes please")  # pyright: ignore[reportCallIssue]
-    assert len(caught.value.args) == 2
-
-
-def test_options_error_is_a_value_error_for_those_who_catch_one():
-    with pytest.raises(ValueError, match="unknown option"):
-        Mock(pth="circle")  # pyright: ignore[reportCallIssue]
 
 
 class BrokenDepth(DepthEstimator):

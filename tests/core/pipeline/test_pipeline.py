@@ -1,31 +1,25 @@
-"""The door: all that a file can say and a command can do, said and done in Python."""
+"""The package in Python. Otherwise a program could not do what a file says and a command does, or would hang."""
 
-import logging
 import threading
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tangible_core import Calibration, DisparityMap, Pipeline, Recording, Scene, Views, Workspace, load_pipeline, show
-from tangible_core.data import HapticSurface, Plan
+from tangible_core import Calibration, DisparityMap, Pipeline, Recording, Scene, Views, Workspace, show
 from tangible_core.errors import (
     ArgumentError,
     ConfigError,
-    DeviceError,
     OutputError,
-    PictureError,
     Stopped,
-    UnknownMethod,
 )
 from tangible_core.pipeline.engine.stage import StageEvent
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.plugins import DepthEstimator
-from tangible_core.scene.scene_source import source_of_arguments
 from tangible_core.session import STOPPED, compare_replay
 from tangible_depth import Luminance, SemiGlobal, Zncc
 from tangible_devices import Mock
-from tangible_render import GreyLevel, Penalty, Proxy
+from tangible_render import Penalty, Proxy
 from tangible_texture import Gabor, Histogram
 
 SHAPE = 48, 64
@@ -59,19 +53,15 @@ class Slow(DepthEstimator):
 
 def test_pipeline_plans_makes_runs_and_feels(tmp_path: Path):
     left, right = pair()
-    scene = Scene.pair(left, right, calibration=Calibration(994.978, 0.193, 31.086))
     pipeline = Pipeline(
-        scene,
+        Scene.pair(left, right, calibration=Calibration(994.978, 0.193, 31.086)),
         depth=SemiGlobal(),
         texture=Gabor(segments=5),
         workspace=Workspace(width_m=0.08),
         render=Proxy(),
         device=Mock(path="circle"),
     )
-    plan = pipeline.plan()
-    assert isinstance(plan, Plan)
-    assert repr(plan).splitlines()[0].split() == ["product", "method", "outcome", "why"]
-    assert "<table>" in plan._repr_html_()
+    assert [each.product for each in pipeline.plan().steps][-1] == "touch"
     assert pipeline.disparity is not None and pipeline.disparity.disparity_px.shape == SHAPE
     assert pipeline.surface.extent_m == pytest.approx((0.08, 0.06))
     assert {each.product for each in pipeline.outcomes} >= {"views", "disparity", "surface"}
@@ -79,86 +69,19 @@ def test_pipeline_plans_makes_runs_and_feels(tmp_path: Path):
     assert {path.name for path in run.files} >= {"sheet.png", "outcomes.json", "surface.npz", "recording.npz"}
     assert all(path.exists() for path in run.files)
     assert run.recording is not None and len(run.recording.rows) == 500
-    assert run._repr_html_().startswith("<img ")
-    verdicts = pipeline.preflight()
-    assert {each.check for each in verdicts} >= {"stiffness", "contact"}
+    assert {each.check for each in pipeline.preflight()} >= {"stiffness", "contact"}
     recording = pipeline.feel(Mock(path="circle"), seconds=0.3)
     assert recording.stopped == "" and len(recording.rows) > 100
     assert recording.about.device == "mock" and recording.about.renderer == "proxy"
+    assert all(each._repr_html_().startswith("<img ") for each in (run, recording, pipeline.surface))
+    assert all("<table>" in each._repr_html_() for each in (pipeline.plan(), pipeline, Recording(recording.rows[:0])))
 
 
 class TestScene:
-    def test_scene_of_files_equals_that_of_arrays(self, tmp_path: Path):
-        left, right = pair()
-        np.save(tmp_path / "left.npy", left)
-        of_files = Scene.pair(left=tmp_path / "left.npy", right=right)
-        assert of_files.views is not None
-        of_arrays = Scene.pair(left, right).views
-        assert of_arrays is not None
-        assert of_files.views.digest() == of_arrays.digest()
-
-    def test_scene_is_not_changed_by_later_changes_of_arrays(self):
-        left, right = pair()
-        scene = Scene.pair(left, right)
-        before = scene.views.left.copy() if scene.views else None
-        left[:] = 0
-        assert scene.views is not None
-        np.testing.assert_array_equal(scene.views.left, before)
-
-    def test_scene_of_heights_has_their_relief(self):
-        scene = Scene.heights([[0, 1], [2, 3]], relief_m=0.006)
-        assert Pipeline(scene, cached=False).surface.height_m.max() == np.float32(0.006)
-
-    def test_scene_of_custom_labels_and_disparity_is_made_of_them(self):
-        left, right = pair()
-        labels = np.repeat([[7, 9]], SHAPE[0], axis=0).repeat(SHAPE[1] // 2, axis=1)
-        scene = Scene.pair(left, right, disparity=np.ones(SHAPE), segments=labels)
-        pipeline = Pipeline(scene, materials={0: "ice", 1: "sand"}, cached=False)
-        assert pipeline.segments is not None and pipeline.segments.count == 2
-        assert pipeline.materials is not None
-        assert [each.name for each in pipeline.materials.materials] == ["ice", "sand"]
-        kinds = {each.product: each.outcome for each in pipeline.outcomes}
-        assert (kinds["disparity"], kinds["segments"]) == ("given", "given")
-
     def test_builtin_scene_is_found_by_name(self):
         assert Scene.builtin("coins").name == Scene.builtin("builtin/coins").name == "builtin/coins"
         with pytest.raises(ConfigError, match=r"no scene is named 'builtin/coin'.*did you mean"):
             Scene.builtin("coin")
-
-    @pytest.mark.parametrize(
-        ("parts", "said"),
-        [
-            ({}, "a scene is either left and right, or photo, or height, or video; this one gives nothing"),
-            ({"left": np.zeros(SHAPE)}, "this one gives left"),
-            ({"photo": np.zeros(SHAPE), "relief_m": 0.01}, "relief_m needs height"),
-        ],
-    )
-    def test_scene_of_impossible_parts_is_refused(self, parts: dict, said: str):
-        with pytest.raises(ConfigError, match=said):
-            source_of_arguments(parts)
-
-    @pytest.mark.parametrize(
-        ("photo", "said"),
-        [
-            (np.full(SHAPE, np.nan), "NaN"),
-            (np.zeros((3, 3, 5)), r"the array given as photo"),
-            (np.zeros((0, 3)), "the array given as photo"),
-            ("nowhere.png", "there is no such file"),
-        ],
-    )
-    def test_scene_of_an_invalid_picture_is_refused(self, photo: object, said: str):
-        with pytest.raises(PictureError, match=said):
-            Scene.photo(photo)  # pyright: ignore[reportArgumentType]
-
-    def test_scene_with_nan_is_masked_on_request(self):
-        photo = np.ones((4, 4), np.float32)
-        photo[0, 0] = np.nan
-        scene = Scene.photo(photo, non_finite="mask")
-        assert scene.known is not None and not scene.known[0, 0] and scene.known.sum() == 15
-
-    def test_scene_of_different_sizes_is_refused(self):
-        with pytest.raises(PictureError, match="all parts of a scene must be of one size"):
-            Scene.pair(left=np.zeros((4, 4)), right=np.zeros((4, 5)))
 
 
 class TestMethods:
@@ -168,23 +91,16 @@ class TestMethods:
         assert pipeline.disparity is not None and (pipeline.disparity.disparity_px == 3).all()
         assert pipeline.config.depth is not None and pipeline.config.depth.name == "Flat"
 
-    def test_method_with_other_options_is_not_answered_from_the_cache(self):
-        left, right = pair()
-        for value in (3.0, 4.0, 3.0):
-            found = Pipeline(Scene.pair(left, right), depth=Flat(value_px=value)).disparity
-            assert found is not None and (found.disparity_px == value).all()
-
-    def test_method_of_a_custom_class_is_in_no_file(self, tmp_path: Path):
-        pipeline = Pipeline(Scene.builtin("coins"), depth=Flat())
-        with pytest.raises(ConfigError, match=r"depth: Flat is not an installed plugin.*tangible.depth"):
-            pipeline.to_yaml(tmp_path / "mine.yaml")
-        assert not (tmp_path / "mine.yaml").exists()
-
-    def test_missing_method_is_named_with_the_cure(self):
-        pipeline = Pipeline(Scene.builtin("coins"), cached=False)
-        with pytest.raises(ConfigError, match=r"^the pipeline has no depth; give it one: Pipeline\(scene, depth=...\)"):
-            pipeline.surface  # noqa: B018
-        with pytest.raises(ConfigError, match="the pipeline has no device"):
+    def test_pipeline_of_what_no_file_holds_is_not_written(self, tmp_path: Path):
+        for scene, depth in ((Scene.builtin("coins"), Flat()), (Scene.heights(np.eye(4)), None)):
+            pipeline = Pipeline(scene, depth=depth, cached=False)
+            with pytest.raises(ConfigError, match="Flat is not an installed plugin" if depth else "made of arrays"):
+                pipeline.to_yaml(tmp_path / "mine.yaml")
+            assert not (tmp_path / "mine.yaml").exists()
+        run = pipeline.run(tmp_path)
+        assert "made of arrays" in (tmp_path / "config.txt").read_text()
+        assert tmp_path / "config.txt" in run.files
+        with pytest.raises(ConfigError, match="no device"):
             pipeline.feel()
 
     @pytest.mark.usefixtures("unchecked_shapes")
@@ -195,20 +111,20 @@ class TestMethods:
 
     @pytest.mark.usefixtures("unchecked_shapes")
     @pytest.mark.parametrize(
-        ("block", "said"),
+        ("block", "location"),
         [
-            ({"workspace": {"width_m": -1}}, "workspace.width_m: Input should be greater than or equal to 0.000001"),
-            ({"workspace": {"width_m": 1e-300}}, "workspace.width_m: Input should be greater than or equal to"),
-            ({"workspace": {"widht_m": 1}}, r"workspace.widht_m: unknown option \(did you mean 'width_m'\?\)"),
-            ({"safety": {"ramp_s": "long"}}, "safety.ramp_s"),
-            ({"materials": "smoothness"}, "materials.by"),
-            ({"workspace": 0.08}, "workspace: Input should be a mapping, such as {key: value}, not 0.08"),
+            ({"workspace": {"width_m": -1}}, ("workspace", "width_m")),
+            ({"workspace": {"width_m": 1e-300}}, ("workspace", "width_m")),
+            ({"workspace": {"widht_m": 1}}, ("workspace", "widht_m")),
+            ({"safety": {"ramp_s": "long"}}, ("safety", "ramp_s")),
+            ({"materials": "smoothness"}, ("materials", "by")),
+            ({"workspace": 0.08}, ("workspace",)),
         ],
     )
-    def test_blocks_with_nonsense_are_refused(self, block: dict, said: str):
-        with pytest.raises(ConfigError, match=said) as error:
+    def test_blocks_with_nonsense_are_refused(self, block: dict, location: tuple):
+        with pytest.raises(ConfigError) as error:
             Pipeline(Scene.builtin("coins"), **block)
-        assert error.value.complaints[0].location == tuple(said.partition(":")[0].split("."))
+        assert error.value.complaints[0].location == location
 
     def test_other_keys_of_a_file_are_taken_and_unknown_ones_refused(self):
         scene = Scene.photo(pair()[0])
@@ -217,10 +133,6 @@ class TestMethods:
         for name in ("wants", "registry"):
             with pytest.raises(ArgumentError, match=f"{name}: is not a key of the pipeline file"):
                 Pipeline(scene, **{name: "parts"})
-
-    def test_unknown_product_is_refused_with_the_nearest(self):
-        with pytest.raises(UnknownMethod, match="no product is named 'surfaces'"):
-            Pipeline(Scene.builtin("coins")).make("surfaces")
 
 
 class TestThereAndBack:
@@ -248,19 +160,6 @@ class TestThereAndBack:
         again.to_yaml(tmp_path / "again.yaml")
         assert (tmp_path / "again.yaml").read_text() == (tmp_path / "elsewhere" / "mine.yaml").read_text()
 
-    def test_file_of_a_builtin_scene_makes_an_equal_one(self, tmp_path: Path):
-        Pipeline(Scene.builtin("coins"), render=GreyLevel()).to_yaml(tmp_path / "mine.yaml")
-        assert load_pipeline(tmp_path / "mine.yaml").config.scene == "builtin/coins"
-
-    def test_file_of_a_scene_of_arrays_is_refused(self, tmp_path: Path):
-        with pytest.raises(ConfigError, match="scene: is made of arrays"):
-            Pipeline(Scene.heights(np.eye(4))).to_yaml(tmp_path / "mine.yaml")
-
-    def test_run_without_a_configuration_file_writes_the_reason(self, tmp_path: Path):
-        run = Pipeline(Scene.heights(np.eye(4)), cached=False).run(tmp_path)
-        assert "scene: is made of arrays" in (tmp_path / "config.txt").read_text()
-        assert tmp_path / "config.txt" in run.files
-
 
 class TestWatching:
     def test_progress_has_the_start_and_outcome_of_each_stage(self):
@@ -273,14 +172,6 @@ class TestWatching:
             ("surface", None),
             ("surface", "ran"),
         ]
-
-    def test_stop_between_stages_raises_stopped(self):
-        left, right = pair()
-        stop = threading.Event()
-        pipeline = Pipeline(Scene.pair(left, right), depth=Flat(), cached=False)
-        with pytest.raises(Stopped, match="stopped on request"):
-            pipeline.make("surface", progress=lambda stage: stop.set(), stop=stop)
-        assert pipeline.surface.height_m.shape == SHAPE
 
     def test_stop_within_a_long_stage_raises_stopped(self):
         left, right = pair()
@@ -314,23 +205,21 @@ class TestFeeling:
         assert len(found.rows) == 250 and found.peak_force_n > 0
 
     def test_session_is_recorded_into_a_file(self, pipeline: Pipeline, tmp_path: Path):
-        for real, name in ((True, "a.nc"), (True, "b.npz"), (False, "c.csv")):
+        for real, name in ((True, "a.nc"), (False, "c.csv")):
             found = pipeline.feel(seconds=0.2, in_real_time=real, record=tmp_path / name)
             np.testing.assert_array_equal(Recording.load(tmp_path / name).rows, found.rows)
+        with pytest.raises(OutputError, match=r"hand\.txt"):
+            pipeline.feel(seconds=0.1, record=tmp_path / "hand.txt")
 
     def test_session_passes_ticks_to_a_function(self, pipeline: Pipeline):
         rows: list[np.ndarray] = []
         found = pipeline.feel(seconds=0.2, keep=rows.append)
         assert found.rows.size == 0 and sum(map(len, rows)) > 50
 
-    def test_session_with_an_invalid_file_is_refused(self, pipeline: Pipeline, tmp_path: Path):
-        with pytest.raises(OutputError, match=r"hand\.txt"):
-            pipeline.feel(seconds=0.1, record=tmp_path / "hand.txt")
-
     def test_simulated_session_without_end_is_refused(self, pipeline: Pipeline):
-        with pytest.raises(ConfigError, match="seconds: is inf; it must be positive and finite"):
+        with pytest.raises(ConfigError, match="seconds"):
             pipeline.feel(seconds=None, in_real_time=False)
-        with pytest.raises(ConfigError, match="then, on_wait: are for a session in real time"):
+        with pytest.raises(ConfigError, match="in real time"):
             pipeline.feel(in_real_time=False, on_wait=pytest.fail)
 
     def test_recording_is_replayed_with_another_law(self, pipeline: Pipeline):
@@ -341,64 +230,18 @@ class TestFeeling:
         assert compare_replay(before, after)["ticks"] == 1000
         assert 0 < after.peak_force_n < before.peak_force_n
 
-    def test_session_with_a_failing_device_keeps_its_ticks(self, pipeline: Pipeline):
-        from loop_devices import Failing
 
-        with pytest.raises(DeviceError):
-            pipeline.feel(Failing(opens="never"), seconds=0.1, in_real_time=False)
+@pytest.mark.parametrize("product", ["views", "disparity", "segments", "relief", "surface"])
+def test_product_is_drawn_as_its_panel(product: str):
+    from matplotlib.figure import Figure
 
-
-@pytest.fixture(scope="module")
-def sample_pipeline() -> Pipeline:
     left, right = pair()
-    scene, texture = Scene.pair(left, right), Histogram(segments=2)
-    return Pipeline(scene, depth=Flat(), texture=texture, render=Penalty(), cached=False)
-
-
-class TestShown:
-    @pytest.mark.parametrize("product", ["views", "disparity", "segments", "relief", "surface"])
-    def test_product_is_drawn_as_its_panel(self, sample_pipeline: Pipeline, product: str):
-        from matplotlib import pyplot
-        from matplotlib.figure import Figure
-
-        record = getattr(sample_pipeline.scene if product == "views" else sample_pipeline, product)
-        axes = Figure().add_subplot()
-        assert show(record, axes) is axes
-        assert axes.get_title()
-        alone = show(record)
-        assert alone.get_title() == axes.get_title()
-        pyplot.close("all")
-
-    @pytest.mark.parametrize("product", ["views", "disparity", "segments", "relief", "surface"])
-    def test_product_in_a_notebook_is_a_picture(self, sample_pipeline: Pipeline, product: str):
-        from matplotlib import pyplot
-
-        before = pyplot.get_fignums()
-        html = getattr(sample_pipeline.scene if product == "views" else sample_pipeline, product)._repr_html_()
-        assert html.startswith("<img alt=") and "data:image/png;base64," in html
-        assert pyplot.get_fignums() == before
-
-    def test_plan_and_outcomes_are_shown_as_tables(self, sample_pipeline: Pipeline):
-        assert sample_pipeline.materials is not None
-        assert "<td" in sample_pipeline.materials._repr_html_()
-        assert "&lt;" not in sample_pipeline.outcomes._repr_html_()
-        assert "relief" in repr(sample_pipeline.outcomes)
-        assert "<table>" in sample_pipeline._repr_html_()
-        assert "<table>" in Calibration(1.0, 1.0)._repr_html_()
-
-    def test_recording_is_drawn(self, sample_pipeline: Pipeline):
-        found = sample_pipeline.feel(Mock(), seconds=0.1, in_real_time=False)
-        assert found._repr_html_().startswith("<img ")
-        empty = Recording(found.rows[:0])
-        assert "<table>" in empty._repr_html_()
-
-    def test_record_without_a_picture_is_refused(self):
-        with pytest.raises(OutputError, match="a Calibration has no picture of its own"):
-            show(Calibration(1.0, 1.0))
-
-    def test_properties_have_the_types_of_their_products(self, sample_pipeline: Pipeline):
-        assert isinstance(sample_pipeline.make("surface"), HapticSurface)
-        logging.getLogger(__name__).debug("%s", sample_pipeline.make("surface").extent_m)
+    sample = Pipeline(Scene.pair(left, right), depth=Flat(), texture=Histogram(segments=2), cached=False)
+    axes = Figure().add_subplot()
+    assert show(getattr(sample.scene if product == "views" else sample, product), axes) is axes
+    assert axes.get_title()
+    with pytest.raises(OutputError, match="no picture of its own"):
+        show(Calibration(1.0, 1.0))
 
 
 def test_touch_is_made_for_the_device_on_which_it_is_felt():

@@ -1,9 +1,7 @@
-"""A pipeline file for pictures that have none, and pictures in place of a file."""
+"""Pictures in place of a pipeline file. Otherwise somebody could not begin, or a name of a file would act as a key."""
 
 import json
-import re
 from pathlib import Path
-from xml.etree import ElementTree
 
 import cv2
 import numpy as np
@@ -21,7 +19,7 @@ from tangible_core.pipeline.starter import are_pictures, scene_key, starter
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene_files import SceneFiles
 from tangible_depth import Auto
-from videos import greys, write_video
+from videos import write_video
 
 
 def waves(columns: int, rows: int, across: float) -> np.ndarray:
@@ -44,14 +42,16 @@ def relief_mm(picture: str) -> float:
     return 1e3 * config.workspace.relief_m
 
 
-def test_starter_values_suit_the_picture(folder: Path):
+def test_starter_values_suit_the_picture(folder: Path, monkeypatch: pytest.MonkeyPatch):
     made = starter([Path("calm.png")], folder / "p.yaml")
     config = parse_config(made.text, folder / "p.yaml", default_registry())
     assert isinstance(config.scene, SceneFiles) and config.scene.photo == folder / "calm.png"
     assert config.workspace.width_m == 0.06, "portrait: its longer side fits the device"
     assert made.scene.views is not None and made.scene.views.shape == (160, 120)
     assert (config.relief.by, config.relief_kind, config.size[1:3]) == ("edges", "edges", (0.002, 0.00025))
-    assert all(line.count("#") for line in made.text.splitlines() if " mm " in line), "each length is explained"
+    monkeypatch.setattr(Auto, "finds_depth", True)
+    config = parse_config(starter([Path("calm.png")], Path("p.yaml")).text, Path("p.yaml"), default_registry())
+    assert (config.relief_kind, config.relief.slope, config.size.relief_m) == ("depth", 1.1, 0.005)
 
 
 def test_starter_of_a_video_is_as_high_as_its_edges_allow(folder: Path):
@@ -65,12 +65,6 @@ def test_starter_of_a_video_is_as_high_as_its_edges_allow(folder: Path):
         assert config.relief_kind == "photograph" and config.size.smooth_m == 0.0015
         assert 1e3 * config.size.relief_m <= most_mm
         assert (1e3 * config.size.relief_m == 8.0) == (name == "calm")
-
-
-def test_starter_of_a_picture_whose_depth_a_network_finds(folder: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(Auto, "finds_depth", True)
-    config = parse_config(starter([Path("calm.png")], Path("p.yaml")).text, Path("p.yaml"), default_registry())
-    assert (config.relief_kind, config.relief.slope, config.size.relief_m) == ("depth", 1.1, 0.005)
 
 
 def test_starter_of_heights_in_millimetres_keeps_their_size(folder: Path):
@@ -107,42 +101,21 @@ def test_starter_takes_a_map_a_pair_and_a_builtin_scene(folder: Path):
     pair = starter([folder / "calm.png", folder / "calm.png"], folder / "sub" / "p.yaml").text
     assert f"left: {folder.as_posix()}/calm.png" in pair
     assert "scene: builtin/coins" in starter([Path("builtin/coins")], Path("p.yaml")).text
-    with pytest.raises(ConfigError, match="did you mean 'builtin/coins'"):
-        starter([Path("builtin/coin")], Path("p.yaml"))
-    with pytest.raises(ConfigError, match="3 pictures: name one, or left and right"):
-        starter([Path("calm.png")] * 3, Path("p.yaml"))
-    assert are_pictures([Path("A.JPG")]) and not are_pictures([Path("a.yaml")])
-
-
-def test_starter_of_a_video_reads_its_first_frame(folder: Path):
-    greys(folder / "walk.avi", 3, shape=(120, 160))
-    made = starter([Path("walk.avi")], folder / "p.yaml")
-    config = parse_config(made.text, folder / "p.yaml", default_registry())
-    assert isinstance(config.scene, SceneFiles) and config.scene.video == folder / "walk.avi"
-    assert made.scene.frames is not None and are_pictures([Path("WALK.MP4")])
-    assert (
-        "walk.avi, its first frame: one picture, 160 x 120 pixels" in made.text and "layout: side-by-side" in made.text
-    )
-    with pytest.raises(ConfigError, match="left and right are two pictures"):
-        starter([Path("walk.avi")] * 2, folder / "p.yaml")
-
-
-def test_starter_of_a_stereo_jpeg_is_a_pair(folder: Path):
-    Image.fromarray(np.zeros((20, 60), np.uint8)).save(folder / "both.JPS", format="JPEG")
-    made = starter([folder / "both.JPS"], folder / "p.yaml")
-    assert "\nscene: {stereo: both.JPS}\n" in made.text
-    assert made.scene.views is not None and made.scene.views.right is not None
-    assert made.scene.views.shape == (20, 30)
+    for pictures in ([Path("builtin/coin")], [Path("calm.png")] * 3, [Path("walk.avi")] * 2):
+        with pytest.raises(ConfigError):
+            starter(pictures, Path("p.yaml"))
+    assert are_pictures([Path("A.JPG")]) and are_pictures([Path("WALK.MP4")]) and not are_pictures([Path("a.yaml")])
+    one, other = (Image.new("RGB", (64, 48), colour) for colour in ("red", "blue"))
+    one.save("two.mpo", "MPO", save_all=True, append_images=[other])
+    one.save("one.mpo", "JPEG")
+    assert (scene_key(Path("two.mpo")), scene_key(Path("one.mpo"))) == ("stereo", "photo")
 
 
 def test_new_writes_a_file_that_runs_and_never_overwrites(folder: Path):
     assert tangible("new", "my steep: one.png", "--out", "p.yaml", cwd=folder).returncode == 0
     text = (folder / "p.yaml").read_text()
     assert tangible("plan", "p.yaml", cwd=folder).returncode == 0
-    again = tangible("new", "calm.png", "--out", "p.yaml", cwd=folder)
-    assert (again.returncode, again.stderr) == (
-        2, "p.yaml: is there already; --out FILE writes another one, --force writes over it\n"
-    )  # fmt: skip
+    assert tangible("new", "calm.png", "--out", "p.yaml", cwd=folder).returncode == 2
     assert (folder / "p.yaml").read_text() == text
     assert tangible("new", "calm.png", "--out", "p.yaml", "--force", cwd=folder).returncode == 0
     assert (folder / "p.yaml").read_text() != text
@@ -152,20 +125,24 @@ def test_new_writes_a_file_that_runs_and_never_overwrites(folder: Path):
 def test_picture_runs_without_a_file(folder: Path):
     done = tangible("run", "calm.png", "--set", "want=surface", "--set", "workspace.width_m=30 mm", cwd=folder)
     assert done.returncode == 0, done.stderr
-    assert "`tangible new calm.png` writes them down" in done.stderr
     written = (folder / "out" / "calm" / "config.yaml").read_text()
     assert "width_m: 0.03" in written and f"{folder}/calm.png" in written
     assert tangible("plan", "out/calm/config.yaml", cwd=folder).returncode == 0
     assert not list(folder.glob("*.yaml")), "nothing is written beside the picture"
-    other = tangible("plan", "calm.png", "--set", "scene=builtin/coins", cwd=folder)
-    assert "builtin/coins" in other.stdout
+    assert "builtin/coins" in tangible("plan", "calm.png", "--set", "scene=builtin/coins", cwd=folder).stdout
     assert "name one pipeline file" in tangible("run", "a.yaml", "calm.png", cwd=folder).stderr
-    assert "there is no such file (did you mean 'calm.png'?)" in tangible("run", "calmm.png", cwd=folder).stderr
+    assert "did you mean 'calm.png'" in tangible("run", "calmm.png", cwd=folder).stderr
+    name = "a\udce9.png"
+    (folder / "calm.png").rename(folder / name)
+    assert tangible("export", name, "--to", "text", "--out", "out", cwd=folder).returncode == 0
+    done = tangible("run", name, "--set", "want=relief", "--out", "out", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert Path(json.loads((folder / "out/outcomes.json").read_text("utf-8"))["scene"]).name == name
 
 
 NAMES = [
     "a\ntitle: X\nsafety: {max_force_n: 7}\n#.png",
-    *(f"a{control}title: X.png" for control in "\r\t\x1b\x7f\x85\x9b\u2028\u2029\ufeff\uffff\udce9"),
+    *(f"a{control}title: X.png" for control in "\r\x1b\x85\u2028\ufeff\uffff\udce9"),
     "$name {b: 'c\"} #d\\n.png",
 ]
 """Names that break a line, that a file of YAML or UTF-8 cannot hold as they are, or that look like YAML."""
@@ -183,39 +160,3 @@ class TestHostileNames:
         assert (config.title, config.safety.max_force_n) == ("", None)
         write_text(folder / "completed.yaml", config.as_yaml())
         assert load_pipeline(folder / "completed.yaml").config.scene == config.scene
-
-    @pytest.mark.parametrize("name", [NAMES[0], "a\udce9.png"], ids=ascii)
-    def test_picture_is_run_and_exported_under_a_plain_name(self, folder: Path, name: str):
-        (folder / name).write_bytes((folder / "calm.png").read_bytes())
-        done = tangible("run", name, "--set", "want=relief", "--out", "out", cwd=folder)
-        assert done.returncode == 0, done.stderr
-        outcomes = json.loads((folder / "out/outcomes.json").read_text("utf-8"))
-        assert Path(outcomes["scene"]).name == name
-        done = tangible("export", name, "--to", "swell,text", "--out", "out", cwd=folder)
-        assert done.returncode == 0, done.stderr
-        plain = re.sub("[\n\udce9]", " ", name.removesuffix(".png"))
-        titles = [
-            ElementTree.parse(drawing).getroot().findtext("{http://www.w3.org/2000/svg}title")
-            for drawing in (folder / "out").glob("*.svg")
-        ]
-        assert titles and all(title is not None and title.startswith(plain) for title in titles)
-
-    def test_file_that_is_written_has_a_plain_comment(self, folder: Path):
-        text = starter([Path("calm.png")], folder / "a\nwant: relief\n.yaml").text
-        assert "want: relief" not in text.splitlines()
-
-
-@pytest.mark.parametrize("title", [r"a\nb", r"a\eb", r"a\x85b", r"a\Lb"])
-def test_title_that_no_line_holds_is_refused(title: str):
-    with pytest.raises(ConfigError, match=r"p.yaml:2:1: .*one line of text without control characters"):
-        parse_config(f'scene: builtin/coins\ntitle: "{title}"\n', Path("p.yaml"), default_registry())
-    kept = 'scene: builtin/coins\ntitle: "\\u00A0\U0001f642 z. B.\\n"\n'
-    assert parse_config(kept, Path("p.yaml"), default_registry()).title.strip() == "🙂 z. B."
-
-
-def test_picture_of_two_lenses_that_is_named_alone_is_a_pair(tmp_path: Path):
-    one, other = (Image.new("RGB", (64, 48), colour) for colour in ("red", "blue"))
-    one.save(tmp_path / "two.mpo", "MPO", save_all=True, append_images=[other])
-    one.save(tmp_path / "one.mpo", "JPEG")
-    assert scene_key(tmp_path / "two.mpo") == "stereo"
-    assert scene_key(tmp_path / "one.mpo") == "photo"

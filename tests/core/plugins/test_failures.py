@@ -1,4 +1,4 @@
-"""The plugin that an error came from: the innermost one, or none for a fault of the core."""
+"""Errors of plugins. Otherwise the wrong package would be blamed, or a lack of memory would look like a fault."""
 
 import re
 import subprocess
@@ -36,31 +36,23 @@ class Outer(Law):
     """A wrapper of another force law."""
 
 
+@pytest.mark.usefixtures("unchecked_shapes")
 def test_error_in_nested_plugins_names_the_innermost():
     with pytest.raises(IndexError) as raised:
         Outer(Law()).force((0, 0, 0))
     assert place_of(raised.value) == Place("render", __name__, "Law", "force")
+    with pytest.raises(TypeError) as raised:
+        CompiledTouch(None, ()).force((0, 0, 0))  # pyright: ignore[reportArgumentType]
+    assert place_of(raised.value) is None, "an error of the core"
 
 
-@pytest.mark.usefixtures("unchecked_shapes")
-def test_error_of_the_core_has_no_plugin():
-    touch = CompiledTouch(None, ())  # pyright: ignore[reportArgumentType]
-    with pytest.raises(TypeError, match="'NoneType' object is not callable") as raised:
-        touch.force((0, 0, 0))  # pyright: ignore[reportArgumentType]
-    assert place_of(raised.value) is None
-
-
-@pytest.mark.parametrize(("module", "package"), [("cv2.ximgproc", "opencv-contrib-python-headless"), ("acme", "acme")])
-def test_missing_package_is_named_with_the_command_that_installs_it(
-    module: str, package: str, monkeypatch: pytest.MonkeyPatch
-):
+def test_missing_package_is_named_with_the_command_that_installs_it(monkeypatch: pytest.MonkeyPatch):
+    gone = ModuleNotFoundError("No module named 'cv2.gone'", name="cv2.gone")
+    assert missing_package(gone) is None, "its package is installed"
     monkeypatch.setattr("tangible_core.plugins.failures.find_spec", lambda name: None)
-    error = ModuleNotFoundError(f"No module named {module!r}", name=module)
-    assert sentence(error) == f"tangible needs the package {package}, which is not installed; pip install {package}"
-
-
-def test_missing_module_of_an_installed_package_is_no_missing_package():
-    assert missing_package(ModuleNotFoundError("No module named 'cv2.gone'", name="cv2.gone")) is None
+    for module, package in (("cv2.ximgproc", "opencv-contrib-python-headless"), ("acme", "acme")):
+        error = ModuleNotFoundError(f"No module named {module!r}", name=module)
+        assert sentence(error).endswith(f"{package}, which is not installed; pip install {package}")
 
 
 def test_recording_without_scipy_is_not_called_damaged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
@@ -97,38 +89,27 @@ def unmapped(*_: object) -> None:
     raise ImportError("_backend_agg.so: failed to map segment from shared object")
 
 
-def test_sheet_that_lacks_memory_ends_the_run_as_a_mistake_and_keeps_its_products(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_lack_of_memory_is_a_mistake_and_keeps_what_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     np.save(tmp_path / "h.npy", np.eye(8))
     monkeypatch.setattr(Sheet, "draw", unmapped)
+    monkeypatch.setattr(Heights, "write", unmapped)
     done = tangible("run", "h.npy", "--set", "want=relief", "--out", "out", cwd=tmp_path)
-    assert done.returncode == 2
-    assert "ran out of memory (ImportError: _backend_agg.so: failed to map segment" in done.stderr
+    assert (done.returncode, done.stderr.count("ran out of memory")) == (2, 1)
     assert (tmp_path / "out/relief.npz").stat().st_size > 0
-
-
-def test_method_whose_import_lacks_memory_is_not_called_broken(monkeypatch: pytest.MonkeyPatch):
+    done = tangible("export", "h.npy", "--to", "heights", "--out", "here", cwd=tmp_path)
+    assert (done.returncode, done.stderr.count("ran out of memory")) == (2, 1)
     monkeypatch.setattr(EntryPoint, "load", unmapped)
     with pytest.raises(ImportError, match="failed to map segment"):
         Registry().load("depth", "semi-global")
 
 
-def test_exporter_that_lacks_memory_refuses(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    np.save(tmp_path / "h.npy", np.eye(8))
-    monkeypatch.setattr(Heights, "write", unmapped)
-    done = tangible("export", "h.npy", "--to", "heights", "--out", "out", cwd=tmp_path)
-    assert (done.returncode, done.stderr.count("ran out of memory")) == (2, 1)
-
-
 def test_cached_result_is_kept_where_memory_lacks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    def no_memory(*_: object) -> None:
+        raise MemoryError
+
     cache = Cache(tmp_path)
     cache.put("ab" * 32, Relief(np.zeros((2, 2), np.float32), (1.0, 1.0)))
     with monkeypatch.context() as patch, pytest.raises(MemoryError):
-        patch.setattr(np, "empty", lambda *_: unmapped_array())
+        patch.setattr(np, "empty", no_memory)
         cache.get("ab" * 32)
     assert cache.get("ab" * 32) is not None
-
-
-def unmapped_array() -> None:
-    raise MemoryError

@@ -1,4 +1,4 @@
-"""The safety of every driver: no force over the limit or not finite, none left behind, none after closing."""
+"""The safety of every driver. Otherwise a force over the limit would reach a hand, or one be left behind at the end."""
 
 import logging
 import math

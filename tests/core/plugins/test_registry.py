@@ -1,12 +1,12 @@
-import subprocess
+"""The registry of methods. Otherwise one broken package would hide all others, or be imported by a list."""
+
 import sys
 
 import pytest
 
 from tangible_core.errors import BrokenMethod, UnknownMethod
-from tangible_core.plugins import hooks
 from tangible_core.plugins.interfaces import DepthEstimator
-from tangible_core.plugins.registry import KIND_NAMES, Registry, load_method
+from tangible_core.plugins.registry import KIND_NAMES, Registry
 
 MINE = '''
     import numpy as np
@@ -28,23 +28,14 @@ def install_mine(install, name="acme", **points):
     return install(name, {"tangible.depth": points or {"mine": f"{name}:Mine"}}, **{name: MINE})
 
 
-def test_registry_without_plugins_is_empty(install):
+def test_method_is_listed_without_being_imported_and_loaded_by_name(install):
     assert Registry().listings == ()
-    with pytest.raises(UnknownMethod, match="no depth method is named 'mine'; installed: none"):
-        Registry().load("depth", "mine")
-
-
-def test_method_is_listed_without_being_imported(install):
     install_mine(install)
     [listing] = Registry().listings
     assert (listing.kind, listing.name, listing.target) == ("depth", "mine", "acme:Mine")
     assert (listing.origin, listing.distribution) == ("acme 1.0", "acme")
     assert listing.summary == "The same everywhere."
     assert "acme" not in sys.modules
-
-
-def test_method_is_loaded_by_name(install):
-    install_mine(install)
     cls = Registry().load("depth", "mine")
     assert issubclass(cls, DepthEstimator)
     assert cls is Registry().load("depth", "acme/mine")
@@ -59,38 +50,28 @@ def test_listings_are_sorted_by_kind_and_name(install):
 
 
 @pytest.mark.parametrize(
-    ("name", "complaint"),
+    ("kind", "name", "complaint"),
     [
-        ("mime", r"no depth method is named 'mime' \(did you mean 'mine'\?\); installed: mine"),
-        ("other/mine", r"no depth method is named 'other/mine'.*; installed: mine"),
-        ("", "no depth method is named ''; installed: mine"),
-        ("Mine", "installed: mine"),
+        ("depth", "mime", r"'mime' \(did you mean 'mine'\?\); installed: mine"),
+        ("depth", "other/mine", "'other/mine'.*; installed: mine"),
+        ("depth", "", "''; installed: mine"),
+        ("texture", "mine", "no texture method is named 'mine'"),
+        ("dept", "mine", r"'dept' \(did you mean 'depth'\?\)"),
     ],
 )
-def test_name_that_is_not_installed_is_refused_with_the_nearest(install, name, complaint):
+def test_name_that_is_not_installed_is_refused_with_the_nearest(install, kind, name, complaint):
     install_mine(install)
     with pytest.raises(UnknownMethod, match=complaint):
-        Registry().load("depth", name)
-
-
-def test_unknown_kind_is_refused_with_the_nearest(install):
-    with pytest.raises(UnknownMethod, match=r"no kind of methods is named 'dept' \(did you mean 'depth'\?\)"):
-        Registry().load("dept", "mine")
-
-
-def test_name_of_another_kind_is_refused(install):
-    install_mine(install)
-    with pytest.raises(UnknownMethod, match="no texture method is named 'mine'"):
-        Registry().load("texture", "mine")
+        Registry().load(kind, name)
 
 
 @pytest.mark.parametrize(
     ("source", "complaint"),
     [
-        ("import a_module_that_is_not_there", "ModuleNotFoundError: No module named 'a_module_that_is_not_there'"),
-        ("1 / 0", "ZeroDivisionError: division by zero"),
+        ("import a_module_that_is_not_there", "ModuleNotFoundError"),
+        ("1 / 0", "ZeroDivisionError"),
         ("def (", "SyntaxError"),
-        ("", "AttributeError: module 'broken' has no attribute 'Mine'"),
+        ("", "AttributeError"),
         ("Mine = 3", "is not a DepthEstimator"),
         ("class Mine: 'A class'", "is not a DepthEstimator"),
         ("from tangible_core.plugins import Segmenter as Mine", "is not a DepthEstimator"),
@@ -112,13 +93,12 @@ def test_broken_plugin_leaves_the_others_usable(install, source, complaint):
 @pytest.mark.parametrize(
     ("target", "summary"),
     [
-        ("no_such_package.module:Mine", "(cannot be read: there is no module no_such_package)"),
-        ("acme.no_such_module:Mine", "(cannot be read:"),
         ("acme:Mime", "(cannot be read: acme has no class Mime (did you mean 'Mine'?))"),
-        ("acme", "(cannot be read:"),
-        ("acme:", "(cannot be read:"),
-        ("?", "(cannot be read:"),
         ("acme:Bare", "(no docstring)"),
+        *(
+            (each, "(cannot be read:")
+            for each in ("no_package.module:Mine", "acme.no_module:Mine", "acme", "acme:", "?")
+        ),
     ],
 )
 def test_target_that_leads_nowhere_is_listed_and_not_loaded(install, target, summary):
@@ -144,46 +124,12 @@ def test_two_plugins_of_one_name_are_chosen_by_distribution(install):
     assert registry.load("depth", "other").__module__ == "rival"
 
 
-@pytest.mark.parametrize(
-    ("group", "what"), [("depth", "depth method slow (slow:Slow, from acme 1.0)"), ("hooks", "hooks slow (slow)")]
-)
-def test_plugin_with_a_slow_import_is_logged_meanwhile(install, monkeypatch, caplog, group, what):
-    monkeypatch.setattr("tangible_core.runtime.slowness.LONG_S", 0.01)
-    slow = """
-        import time
-        until = time.monotonic() + 60
-        while not heard.messages and time.monotonic() < until:
-            time.sleep(0.005)
-        class Slow: pass
-        """
-    monkeypatch.setattr("builtins.heard", caplog, raising=False)
-    target = "slow" if group == "hooks" else "slow:Slow"
-    install("acme", {f"tangible.{group}": {"slow": target}}, slow=slow)
-    if group == "hooks":
-        hooks.manager()
-    else:
-        with pytest.raises(BrokenMethod, match="is not a DepthEstimator"):
-            Registry().load("depth", "slow")
-    assert caplog.messages[0].startswith(f"importing {what}")
-    assert caplog.messages[0].endswith("has taken 0.01 s so far and goes on; Ctrl-C ends it")
-
-
 def test_plugin_with_a_heavy_library_is_listed_without_importing_it(install):
-    site = install(
-        "heavy",
-        {"tangible.depth": {"heavy": "heavy:Mine"}},
-        heavy="import heavy_library\n" + MINE.replace("\n    ", "\n"),
-        heavy_library="raise AssertionError('imported by a listing')",
-    )
-    install_mine(install)
-    assert [each.summary for each in Registry().listings] == ["The same everywhere."] * 2
-    code = (
-        f"import sys; sys.path.insert(0, {str(site)!r}); from tangible_core.plugins.registry import Registry; "
-        "names = Registry().names('depth'); assert 'heavy' in names, names; "
-        "print([each.summary for each in Registry().listings if each.name == 'heavy'], 'heavy_library' in sys.modules)"
-    )
-    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert ran.stdout.strip() == "['The same everywhere.'] False"
+    heavy = "import heavy_library\n" + MINE.replace("\n    ", "\n")
+    install("heavy", {"tangible.depth": {"heavy": "heavy:Mine"}}, heavy=heavy, heavy_library="raise AssertionError")
+    assert [each.summary for each in Registry().listings] == ["The same everywhere."]
+    with pytest.raises(BrokenMethod, match="AssertionError"):
+        Registry().load("depth", "heavy")
 
 
 def test_method_in_a_package_has_its_summary_read_from_the_file(install):
@@ -235,8 +181,3 @@ def test_hook_with_nonsense_names_leaves_the_others_usable(install, answer):
     )
     assert "mine" in Registry().names("depth")
     assert Registry().load("depth", "mine")
-
-
-def test_shipped_methods_are_installed():
-    assert load_method("depth", "opencv-sgbm").__name__ == "OpenCVSGBM"
-    assert load_method("device", "mock").__name__ == "Mock"

@@ -1,11 +1,11 @@
-"""Touches in plain Python: `path` calls `force` position by position."""
+"""Touches in plain Python. Otherwise a custom force law would be asked at wrong places, speeds or times."""
 
 import math
 
 import numpy as np
 import pytest
 
-from tangible_core.data import NO_FORCE, Force, HapticState
+from tangible_core.data import Force, HapticState
 from tangible_core.errors import GeometryError
 from tangible_core.plugins.interfaces import PlainTouch
 
@@ -65,17 +65,3 @@ def test_path_velocities_equal_those_of_a_compiled_law():
 def test_path_of_a_wrong_shape_or_period_is_refused(positions: np.ndarray, period_s: float, complaint: str):
     with pytest.raises(GeometryError, match=complaint):
         Tape().path(positions, period_s)
-
-
-def test_law_with_force_alone_is_complete():
-    class Nothing(PlainTouch):
-        pass
-
-    with pytest.raises(TypeError, match="force"):
-        Nothing()
-
-    class Free(PlainTouch):
-        def force(self, state: HapticState) -> Force:
-            return NO_FORCE
-
-    assert Free().path(np.zeros((2, 3))).tolist() == [[0, 0, 0], [0, 0, 0]]

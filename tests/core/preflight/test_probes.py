@@ -1,4 +1,4 @@
-"""Probes of a hand that presses down all over a surface, against force laws in closed form."""
+"""Probes of a force law. Otherwise a law would be called softer than it is, and buzz in the hand."""
 
 import numpy as np
 import pytest
@@ -40,11 +40,6 @@ class TestSprings:
         depth_m = probes.depth_m.reshape(32, 32)
         np.testing.assert_allclose(depth_m[:, :15], 1 / 200, rtol=1e-4)
         np.testing.assert_allclose(depth_m[:, 17:], 1 / 1000, rtol=1e-4)
-
-    def test_probe_depth_is_limited_by_the_reach(self):
-        probes = fly(level(), "proxy", stiffness_n_per_m=10.0, workspace_m=(0.1, 0.1, 0.004)).probes
-        np.testing.assert_allclose(probes.depth_m, 0.004)
-        np.testing.assert_allclose(probes.strength_n, 0.04, rtol=1e-4)
 
 
 class TestOtherLaws:

@@ -1,4 +1,4 @@
-"""The dependencies of code: edits that change its digest, and edits that do not."""
+"""The dependencies of code. Otherwise an edit would be answered by an old result, or nothing ever by the cache."""
 
 import os
 import sys

@@ -1,4 +1,4 @@
-"""The imports of a text in every form."""
+"""The imports of a module. Otherwise an edit of an imported file would not be noticed, and an old result be used."""
 
 import ast
 from pathlib import Path
@@ -38,6 +38,7 @@ def test_import_is_found_in_every_form(text: str, expected: list[Import]):
     assert [each for each in imports(text.encode()) if each.module != "x"] == expected
 
 
+@pytest.mark.whole
 def test_imports_of_every_module_equal_those_of_a_full_parse():
     """About a hundred of these modules are read at the start of a force loop."""
     for path in (file for folder in ("tangible_core", "plugins", "tests") for file in (ROOT / folder).rglob("*.py")):

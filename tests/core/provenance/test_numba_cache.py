@@ -1,4 +1,4 @@
-"""Kernels of any package: compiled code is reused if all of its sources are the same, and never otherwise."""
+"""Compiled kernels. Otherwise an edited kernel would run as it was, or each start would compile anew."""
 
 import os
 import subprocess
@@ -111,6 +111,7 @@ def test_kernel_of_an_undone_edit_is_loaded_within_the_kept_number(acme: Acme):
         assert len(list((acme.folder / "__pycache__").glob(f"kernels.law-*.{suffix}"))) == KEPT
 
 
+@pytest.mark.whole
 def test_kernel_of_a_read_only_package_is_cached_in_the_users_folder(acme: Acme):
     (acme.folder / "__pycache__").write_text("no folder")
     assert [acme.run_soon(), acme.run_soon()] == [["6.0", "1"], ["6.0", "0"]]
@@ -119,6 +120,7 @@ def test_kernel_of_a_read_only_package_is_cached_in_the_users_folder(acme: Acme)
     assert list(acme.users.rglob("kernels.law-*.nbi"))
 
 
+@pytest.mark.whole
 def test_kernel_is_recompiled_also_if_numba_was_imported_first(acme: Acme):
     first = f"import numba; {CALL}"
     assert [acme.run(first), acme.run()] == [["6.0", "1"], ["6.0", "0"]]
@@ -126,6 +128,7 @@ def test_kernel_is_recompiled_also_if_numba_was_imported_first(acme: Acme):
     assert acme.run(first) == ["8.0", "1"]
 
 
+@pytest.mark.whole
 def test_kernel_compiled_by_an_old_process_after_an_edit_is_not_saved(acme: Acme):
     """Its constants are from before the edit, and the text that it could read is from after it."""
     edited = "import tangible_core, time; from acme import layout; time.sleep(0.05)"
@@ -135,6 +138,7 @@ def test_kernel_compiled_by_an_old_process_after_an_edit_is_not_saved(acme: Acme
     assert acme.run_soon() == ["8.0", "1"]
 
 
+@pytest.mark.whole
 def test_vectorized_kernels_are_recompiled_after_an_edit(acme: Acme):
     text = "import numba\nfrom . import layout\n@numba.{}(cache=True)\ndef law(x{}): {}\n"
     call = "import numpy as np, tangible_core; from acme import kernels; y = np.zeros(1); print(kernels.law(y, y)[0])"

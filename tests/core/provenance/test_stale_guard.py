@@ -1,4 +1,4 @@
-"""The guard, compiled once and then edited: no force is limited by an old layout."""
+"""The guard after an edit. Otherwise forces would be limited by an old layout of its settings."""
 
 import os
 import re
@@ -7,9 +7,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import tangible_core
 
 PUSHED_FOR_A_SECOND = """
+import pytest
+
 import tangible_core
 from tangible_core.data import DeviceSpec
 from tangible_core.servo import Safety
@@ -32,6 +36,7 @@ def push(packages: Path) -> tuple[float, int]:
     return float(force_n), int(compiled)
 
 
+@pytest.mark.whole
 def test_guard_is_recompiled_after_an_edit_of_its_layout(tmp_path: Path):
     shutil.copytree(
         Path(tangible_core.__file__).parent, tmp_path / "tangible_core", ignore=shutil.ignore_patterns("__pycache__")

@@ -1,4 +1,4 @@
-"""Versions of the libraries that results depend on."""
+"""Versions of libraries. Otherwise a result of an older library would be taken for one of the newer."""
 
 import subprocess
 import sys

@@ -1,13 +1,11 @@
-"""Reliefs of maps whose answer is known."""
+"""If one of these fails, a relief is too steep, too low or untrue to the depths of its map."""
 
 import numpy as np
 import pytest
 
-from tangible_core import Pipeline, Scene
 from tangible_core.data import Calibration, DisparityMap
-from tangible_core.errors import GeometryError
-from tangible_core.relief import ReliefChoice, ReliefScale, relief_scale, shape_relief
-from tangible_core.relief.shaping import CELL_M, GRAIN_HIGH_M
+from tangible_core.relief import ReliefChoice, ReliefScale, shape_relief
+from tangible_core.relief.shaping import GRAIN_HIGH_M
 from tangible_core.relief.tones import STRAIGHT
 from tangible_core.scene import geometry
 from tangible_core.scene.geometry import ValueRange
@@ -47,10 +45,6 @@ def bar(width_m, columns=800):
     return values
 
 
-def test_depth_suits_five_millimetres_rounded_by_a_quarter():
-    assert SIZE[:3] == (0.08, HIGH_M, 0.00025)
-
-
 @pytest.mark.parametrize("camera", [None, CAMERA])
 @pytest.mark.parametrize("holes", ["fill", "cut"])
 def test_plain_choice_is_the_linear_relief(camera, holes):
@@ -60,15 +54,6 @@ def test_plain_choice_is_the_linear_relief(camera, holes):
     expected = geometry.make_relief(DisparityMap(values), camera, WIDTH_M, HIGH_M, holes).height_m
     assert np.allclose(found, expected, atol=1e-9)
     assert not np.array_equal(found, shaped(values, smooth_m=0))
-
-
-def test_finer_cells_are_kept_where_less_is_rounded():
-    """Pixels of 0.05 mm, of which 0.1 mm are kept under the usual rounding."""
-    values = np.random.default_rng(6).uniform(1, 9, (20, 1600)).astype(np.float32)
-    relief = geometry.make_relief(DisparityMap(values), None, WIDTH_M, HIGH_M)
-    found = shaped(values, PLAIN, smooth_m=0.0001)
-    assert np.allclose(found, geometry.smooth(relief, 0.0001).height_m, atol=1e-6)
-    assert shaped(values, PLAIN).std() < 0.2 * relief.height_m.std()
 
 
 @pytest.mark.parametrize(("columns", "kept"), [(1333, True), (1600, False)])
@@ -118,11 +103,6 @@ def test_word_depth_keeps_true_proportions():
     assert np.allclose(by_disparity, HIGH_M * (values[0, [100, 300, 500, 700]] - 10) / 15, atol=2e-5)
 
 
-def test_uncalibrated_depth_is_linear_in_disparity():
-    values = two_levels()
-    assert np.array_equal(shaped(values, {**PLAIN, "by": "depth"}), shaped(values, PLAIN))
-
-
 def test_cliff_becomes_a_ramp_of_the_slope_about_the_border():
     found = shaped(two_levels(), {"accent_m": 0, "slope": 1.0})[20]
     slopes = np.diff(found) / (WIDTH_M / 800)
@@ -133,34 +113,11 @@ def test_cliff_becomes_a_ramp_of_the_slope_about_the_border():
     assert ramp_m == pytest.approx(0.9 * HIGH_M, rel=0.06)
 
 
-@pytest.mark.parametrize("columns", [200, 741, 1600])
-def test_no_place_of_noise_is_steeper_than_the_slope(columns):
-    values = np.random.default_rng(1).uniform(0, 100, (columns // 4, columns)).astype(np.float32)
-    found, pitch_m = shaped(values, {"slope": 1.1}), WIDTH_M / columns
-    assert np.abs(np.diff(found, axis=1)).max() <= 1.1 * pitch_m * 1.001
-    assert np.abs(np.diff(found, axis=0)).max() <= 1.1 * pitch_m * 1.001
-    assert np.abs(found[1:, 1:] - found[:-1, :-1]).max() <= 1.1 * pitch_m * 2**0.5 * 1.001
-
-
 @pytest.mark.parametrize(("width_m", "kept"), [(0.001, 0.3), (0.0015, 0.5), (0.002, 0.6)])
 def test_narrow_bar_keeps_a_share_of_its_height(width_m, kept):
     found = shaped(bar(width_m))[100]
     height_m = found[395:406].max() - min(found[300:395].min(), found[406:500].min())
     assert kept * HIGH_M <= height_m < HIGH_M
-
-
-def test_same_scene_at_twice_the_pixels_is_the_same_relief():
-    y, x = np.mgrid[:500, :800] / 500
-    scene = (10 + 3 * x + 8 * (np.hypot(x - 0.5, y - 0.5) < 0.2) + 5 * (np.abs(x - 1.1) < 0.06)).astype(np.float32)
-    large = np.kron(scene, np.ones((2, 2), np.float32)) * 2
-    one, other = shaped(scene), shaped(large).reshape(500, 2, 800, 2).mean(axis=(1, 3))
-    assert np.sqrt(np.mean((one - other) ** 2)) <= 40e-6
-
-
-def test_mirrored_map_gives_the_mirrored_relief():
-    values = np.random.default_rng(2).uniform(0, 9, (40, 60)).astype(np.float32)
-    for turned in (np.flipud, np.fliplr):
-        assert np.allclose(turned(shaped(turned(values).copy())), shaped(values), atol=1e-7)
 
 
 def test_accent_raises_what_stands_before_and_lowers_what_lies_behind():
@@ -178,16 +135,6 @@ def test_accent_raises_what_stands_before_and_lowers_what_lies_behind():
     assert 0 < half.max() <= 0.0003 + 1e-6
 
 
-def test_noise_is_taken_out_and_a_step_stays():
-    noise_px = 10 * 0.3 * GRAIN_HIGH_M / HIGH_M
-    values = two_levels() + np.random.default_rng(3).normal(0, noise_px, (40, 800)).astype(np.float32)
-    plain = {**PLAIN, "slope": 0}
-    rough, calm = (shaped(values, {**plain, "grain_m": grain_m}, smooth_m=1e-9) for grain_m in (0, 0.0003))
-    level = np.s_[:, 50:350]
-    assert calm[level].std() < 0.6 * rough[level].std()
-    assert abs((calm[20, 420] - calm[20, 380]) - HIGH_M) < 0.04 * HIGH_M
-
-
 def test_unknown_places_are_filled_from_behind_or_cut():
     values = two_levels()
     values[:, 500:600] = np.nan
@@ -199,25 +146,6 @@ def test_unknown_places_are_filled_from_behind_or_cut():
     assert filled[20, 325] == pytest.approx(0, abs=1e-6)
 
 
-@pytest.mark.parametrize("shape", [(1, 1), (1, 30), (30, 1), (3, 2)])
-@pytest.mark.parametrize("value", [0.0, -4.0, 1e30])
-def test_constant_map_of_any_shape_is_flat(shape, value):
-    assert not shaped(np.full(shape, value)).any()
-
-
-def test_map_of_nothing_known_is_refused():
-    with pytest.raises(GeometryError, match="no depth is known"):
-        shaped(np.full((4, 4), np.nan))
-
-
-def test_spikes_stay_within_the_relief():
-    values = np.full((60, 90), 10.0)
-    values[30, 40], values[10, 10], values[50, 80] = 1e6, 1e30, -1e6
-    found = shaped(values)
-    assert np.isfinite(found).all()
-    assert found.min() >= 0 and found.max() <= HIGH_M * (1 + 1e-6)
-
-
 def test_given_scale_is_that_of_the_relief():
     """A thing that stands still keeps its height, whatever else is in the frame."""
     values = two_levels()
@@ -225,40 +153,3 @@ def test_given_scale_is_that_of_the_relief():
     found = shaped(values, {"accent_m": 0}, scale=scale)
     assert found[20, 10] == pytest.approx(HIGH_M / 16, rel=0.01)
     assert found[20, -10] == pytest.approx(HIGH_M / 4, rel=0.01)
-
-
-def test_scale_of_a_map_makes_the_relief_of_the_map():
-    values = np.random.default_rng(4).uniform(1, 9, (50, 70)).astype(np.float32)
-    disparity, choice = DisparityMap(values), ReliefChoice()
-    scale = relief_scale(disparity, None, WIDTH_M, choice)
-    assert np.array_equal(shaped(values, scale=scale), shaped(values))
-    assert scale.spans == geometry.nearness_range(disparity, None)
-    assert np.array_equal(relief_scale(disparity, None, WIDTH_M, ReliefChoice(by="depth")).tones, STRAIGHT)
-
-
-def test_noise_between_frames_stays_under_what_is_felt():
-    """A quarter of a pixel of noise moves the surface by less than the 29 um that are felt at 3.2 mm."""
-    values, random = two_levels(columns=400, rows=200, low=20, high=60), np.random.default_rng(5)
-    frames = [values + random.normal(0, 0.25, values.shape).astype(np.float32) for _ in range(2)]
-    scale = relief_scale(DisparityMap(frames[0]), None, WIDTH_M, ReliefChoice())
-    one, other = (shaped(each, scale=scale) for each in frames)
-    assert 1e-7 < np.sqrt(np.mean((one - other) ** 2)) < 29e-6
-
-
-def test_rounding_comes_last_and_is_that_of_the_workspace():
-    """A relief of an old file is still smoothed by as much as the file says."""
-    found = shaped(two_levels(), {**PLAIN}, smooth_m=0.002)[20]
-    at = (np.arange(800) - 399.5) * WIDTH_M / 800
-    wave = np.interp([0.1587, 0.5, 0.8413], found / HIGH_M, at)
-    assert np.allclose(wave, [-0.002, 0, 0.002], atol=4e-5)
-    assert CELL_M <= WIDTH_M / 800
-
-
-@pytest.mark.parametrize("choice", [{}, {"spread": 0}, {"accent_m": 0}, "depth", UNDISTORTED])
-def test_outcome_tells_that_heights_are_spread_and_the_cure(choice):
-    picture = np.zeros((40, 60, 3), np.uint8)
-    scene = Scene.photo(picture, disparity=two_levels(columns=60, rows=40))
-    pipeline = Pipeline(scene, relief=choice, cached=False)
-    assert pipeline.relief.height_m.max() > 0.004
-    [why] = [each.why for each in pipeline.outcomes if each.product == "relief"]
-    assert ("`relief: depth` keeps true proportions" in why) == (choice not in ("depth", UNDISTORTED))

@@ -1,4 +1,4 @@
-"""OpenCV's switches, and their reset."""
+"""OpenCV's switches: results differ between processors without them, and other programs are slow if they stay."""
 
 from threading import Barrier, Thread
 
@@ -20,29 +20,6 @@ def test_plain_opencv_switches_back_after_the_block():
         assert not cv2.useOptimized()
         assert not cv2.ipp.useIPP()
         assert cv2.getNumThreads() == 1
-
-
-def test_plain_opencv_switches_back_after_an_error():
-    with pytest.raises(ZeroDivisionError), plain_opencv():
-        _ = 1 / 0
-
-
-def test_plain_opencv_nested_stays_until_the_outer_block_ends():
-    with plain_opencv():
-        with plain_opencv():
-            pass
-        assert not cv2.useOptimized()
-        assert not cv2.ipp.useIPP()
-
-
-def test_plain_opencv_leaves_optimising_off_if_it_was_off():
-    cv2.setUseOptimized(False)
-    try:
-        with plain_opencv():
-            pass
-        assert not cv2.useOptimized()
-    finally:
-        cv2.setUseOptimized(True)
 
 
 def test_plain_opencv_in_overlapping_threads_stays_until_the_last_ends():

@@ -4,7 +4,6 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 from pathlib import Path
 
 import pytest
@@ -46,20 +45,9 @@ def test_signal_ignored_before_stays_ignored():
     assert signal.getsignal(signal.SIGHUP) == signal.SIG_IGN
 
 
-def test_signals_in_another_thread_are_left_alone():
-    handlers: list[object] = []
-
-    def look() -> None:
-        with end_as_ctrl_c():
-            handlers.append(signal.getsignal(signal.SIGTERM))
-
-    thread = threading.Thread(target=look)
-    thread.start()
-    thread.join()
-    assert handlers == [signal.SIG_DFL]
-
-
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129), (signal.SIGQUIT, 131)])
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGTERM, 143), pytest.param(signal.SIGQUIT, 131, marks=pytest.mark.whole)]
+)
 def test_signal_ends_a_plugin_that_hangs_at_its_import(tmp_path: Path, number: signal.Signals, code: int):
     hang = "import sys, time; print('imported', file=sys.stderr, flush=True); time.sleep(600)"
     site = distribution(tmp_path / "site", "hang", {"tangible.depth": {"hang": "hang:Hang"}}, hang=hang)

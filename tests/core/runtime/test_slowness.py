@@ -1,7 +1,6 @@
-"""The warning for slow work."""
+"""The warning for slow work: a plugin that hangs at its import looks like a program that hangs."""
 
 import logging
-import threading
 import time
 
 import pytest
@@ -19,11 +18,3 @@ def test_slow_work_is_reported_while_it_runs(caplog: pytest.LogCaptureFixture, m
         while not caplog.messages and time.monotonic() < until:
             time.sleep(0.005)
     assert caplog.messages == ["importing acme has taken 0.01 s so far and goes on; Ctrl-C ends it"]
-
-
-def test_quick_work_is_not_reported_and_leaves_no_timer(caplog: pytest.LogCaptureFixture):
-    before = threading.active_count()
-    with warn_if_slow(log, "importing acme"):
-        pass
-    assert threading.active_count() <= before + 1  # the timer ends by itself
-    assert not caplog.messages

@@ -1,4 +1,4 @@
-"""Standard output is for the program alone: whatever a plugin prints, in any way, goes to standard error."""
+"""Standard output is for the program alone: a plugin that prints must not spoil what another program reads."""
 
 import fcntl
 import io
@@ -10,6 +10,7 @@ import struct
 import subprocess
 import sys
 import termios
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -105,13 +106,12 @@ class TestPlugins:
         ("words", "where"),
         [
             (["run", "p.yaml", "--no-cache", "--json"], {"at import", "at the start", "while watching", "in estimate"}),
-            (["plan", "p.yaml", "--json"], {"at import", "at the start"}),
-            (["plugins", "--json"], {"at import", "at the start"}),
-            (["devices", "--json"], {"at import", "at the start"}),
-            (["materials", "show", "wood", "--json"], {"at import", "at the start"}),
-            (["check", "depth", "noisy", "--json"], {"at import", "at the start", "in estimate"}),
-            (["compare", "c.yaml", "--json"], {"at import", "at the start", "while watching"}),
             (["schema"], {"at import", "at the start"}),
+            pytest.param(
+                ["compare", "c.yaml", "--json"],
+                {"at import", "at the start", "while watching"},
+                marks=pytest.mark.whole,
+            ),
         ],
         ids=lambda words: words[0] if isinstance(words, list) else "",
     )
@@ -120,84 +120,52 @@ class TestPlugins:
     ) -> None:
         done = tangible(folder, *words)
         json.loads(done.stdout)
-        noise = {
-            line
-            for line in done.stderr.splitlines()
-            if line.split(" ")[0] in ("print", "write", "file", "C", "process")
+        assert {line for line in done.stderr.splitlines() if line.startswith(WAYS)} == {
+            f"{way} {place}" for way in WAYS for place in where
         }
-        assert noise == {f"{way} {place}" for way in WAYS for place in where}
 
-    @pytest.mark.parametrize("words", [["plan", "none.yaml"], ["check", "depth", "nosy"], ["plugins", "--jsn"]])
-    def test_standard_output_is_empty_after_a_mistake(self, folder: Path, words: list[str]) -> None:
-        done = tangible(folder, *words)
+    def test_standard_output_is_empty_after_a_mistake_and_open_to_commands_of_plugins(self, folder: Path) -> None:
+        done = tangible(folder, "plan", "none.yaml")
         assert (done.returncode, done.stdout) == (2, "")
         assert "C at import" in done.stderr
-
-    def test_standard_output_for_people_holds_only_the_programs_text(self, folder: Path) -> None:
-        done = tangible(folder, "run", "p.yaml", "--no-cache")
-        assert done.returncode == 0, done.stderr
-        assert done.stdout.startswith("left.png is done: its disparity is made.\n")
-        assert not any(way in done.stdout for way in ("print ", "write ", "file 1", "C at", "C in", "process "))
-
-    def test_standard_output_is_open_to_help_and_commands_of_plugins(self, folder: Path) -> None:
         assert tangible(folder, "hello").stdout.splitlines()[-1] == "hello from a plugin's command"
-        for words in (["--help"], ["run", "--help"], ["devices", "doctor", "--help"]):
-            done = tangible(folder, *words)
-            assert "Usage: tangible" in done.stdout
-            assert "print at import" in done.stderr
 
 
 class TestStreams:
-    @pytest.mark.parametrize(
-        ("words", "lines"), [(["plugins"], 0), (["plugins"], 1), (["plugins", "--json"], 1), (["materials"], 0)]
-    )
-    def test_reader_that_goes_away_is_not_an_error(self, folder: Path, words: list[str], lines: int) -> None:
+    @pytest.mark.parametrize(("words", "lines"), [("plugins", 0), ("plugins --json", 1)])
+    def test_reader_that_goes_away_is_not_an_error(self, folder: Path, words: str, lines: int) -> None:
         done = subprocess.run(
-            f"set -o pipefail; {TANGIBLE} {' '.join(words)} | head -{lines}",
+            f"set -o pipefail; {TANGIBLE} {words} | head -{lines}",
             shell=True, executable="/bin/bash", cwd=folder, capture_output=True, text=True, env=quiet(),
         )  # fmt: skip
         assert (done.returncode, done.stderr) == (0, "")
         assert len(done.stdout.splitlines()) == lines
 
-    @pytest.mark.parametrize(
-        ("words", "unbuffered"), [(["plugins", "--json"], ""), (["plugins", "--json"], "1"), (["--help"], "")]
-    )
-    def test_full_disk_is_reported_in_one_line(self, folder: Path, words: list[str], unbuffered: str) -> None:
+    @pytest.mark.parametrize("unbuffered", ["", pytest.param("1", marks=pytest.mark.whole)])
+    def test_full_disk_is_reported_in_one_line(self, folder: Path, unbuffered: str) -> None:
         with Path("/dev/full").open("w") as full:
-            done = tangible(folder, *words, stdout=full, env={**quiet(), "PYTHONUNBUFFERED": unbuffered})
+            done = tangible(folder, "plugins", "--json", stdout=full, env={**quiet(), "PYTHONUNBUFFERED": unbuffered})
         assert done.returncode == 2
         assert done.stderr == "standard output cannot be written: No space left on device\n"
 
-    @pytest.mark.parametrize("words", [["plan", "none.yaml"], ["plan", "--no-such-option"]])
-    def test_mistake_with_a_full_standard_error_still_exits_with_2(self, folder: Path, words: list[str]) -> None:
-        with Path("/dev/full").open("w") as full:
-            assert tangible(folder, *words, stderr=full, env=quiet()).returncode == 2
-
-    @pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-"])
+    @pytest.mark.parametrize(
+        "closed", [">&- 2>&-", *(pytest.param(each, marks=pytest.mark.whole) for each in (">&-", "2>&-"))]
+    )
     def test_closed_streams_do_not_stop_a_run(self, folder: Path, closed: str) -> None:
         done = subprocess.run(
             f"{TANGIBLE} run p.yaml --no-cache --json {closed}", shell=True, cwd=folder, capture_output=True, text=True
         )
         assert done.returncode == 0
-        if ">&-" not in closed.split():
-            json.loads(done.stdout)
 
-    def test_message_of_a_mistake_comes_after_the_output(self, folder: Path) -> None:
-        """Both go to one stream, in the order in which they happened."""
-        done = tangible(folder, "check", "depth", "nosy", stderr=subprocess.STDOUT, env=quiet())
-        assert done.returncode == 2
-        assert done.stdout.startswith("no depth method is named 'nosy'")
-
-    @pytest.mark.parametrize("encoding", ["ascii", "cp437"])
-    def test_stream_writes_any_text_in_the_encoding_of_standard_output(self, folder: Path, encoding: str) -> None:
+    def test_stream_writes_any_text_in_the_encoding_of_standard_output(self) -> None:
         """A console or a pipe that has no sign for something shows its number; nothing ends in an error."""
         code = (
             "from tangible_core.runtime.standard_output import protect, stream\n"
             "with protect(): print('\\u2265\\u2800 \\u00fc', file=stream())"
         )
-        env = {**quiet(), "PYTHONIOENCODING": encoding}
+        env = {**quiet(), "PYTHONIOENCODING": "cp437"}
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, env=env, check=True)
-        assert done.stdout.rstrip() == "\u2265\u2800 \u00fc".encode(encoding, "backslashreplace")
+        assert done.stdout.rstrip() == "\u2265\u2800 \u00fc".encode("cp437", "backslashreplace")
 
     def test_terminal_output_has_its_colours_and_width(self, folder: Path) -> None:
         """132 columns, with standard input and error elsewhere."""
@@ -233,19 +201,13 @@ class TestProtect:
         out, err = io.StringIO(), io.StringIO()
         monkeypatch.setattr(sys, "stdout", out)
         monkeypatch.setattr(sys, "stderr", err)
-        with protect(), protect():
+        with suppress(ZeroDivisionError), protect(), protect():
             print("a plugin")
             print("the program", file=stream())
+            raise ZeroDivisionError
         print("afterwards")
         assert (out.getvalue(), err.getvalue()) == ("the program\nafterwards\n", "a plugin\n")
         assert stream() is out
-
-    def test_protect_is_undone_after_an_error(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        out = io.StringIO()
-        monkeypatch.setattr(sys, "stdout", out)
-        with pytest.raises(ZeroDivisionError), protect():
-            raise ZeroDivisionError
-        assert sys.stdout is out and stream() is out
 
     def test_protect_without_standard_output_redirects_print(
         self, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -1,4 +1,4 @@
-"""One limit for the threads of kernels, OpenCV and torch."""
+"""One limit for the threads of kernels, OpenCV and torch: several workers on a machine must not slow each other."""
 
 import os
 import subprocess
@@ -66,37 +66,27 @@ def test_thread_limit_bounds_the_work_at_one_time(eight):
         in_blocks(64, meet)
 
 
-def test_thread_limit_of_the_environment_holds_for_a_single_method(eight, monkeypatch: pytest.MonkeyPatch):
+def test_thread_limit_of_a_pipeline_overrides_that_of_the_environment(eight, monkeypatch: pytest.MonkeyPatch):
     SEEN.clear()
-    monkeypatch.setenv("TANGIBLE_THREADS", "2")
-    Asking().segment(np.zeros((4, 4), np.float32))
-    monkeypatch.delenv("TANGIBLE_THREADS")
-    Asking().segment(np.zeros((4, 4), np.float32))
-    assert SEEN == [(2, 2), (8, 6)]
-
-
-def test_thread_limit_of_a_pipeline_overrides_the_environment(eight, monkeypatch: pytest.MonkeyPatch):
-    SEEN.clear()
-    monkeypatch.setenv("TANGIBLE_THREADS", "5")
     scene = Scene.photo(np.zeros((8, 8), np.float32))
+    Asking().segment(scene.views.left)
+    monkeypatch.setenv("TANGIBLE_THREADS", "5")
+    Asking().segment(scene.views.left)
     pipeline = Pipeline(scene, texture=Asking(), cached=False, threads=3)
     assert pipeline.engine.threads == Pipeline.from_config(pipeline.config, like=pipeline).engine.threads == 3
     pipeline.make("segments")
     Pipeline(scene, texture=Asking(), cached=False).make("segments")
-    assert SEEN == [(3, 3), (5, 5)]
+    assert SEEN == [(8, 6), (5, 5), (3, 3), (5, 5)]
 
 
-@pytest.mark.parametrize("text", ["none", "0", "-1", "1.5", "²"])
-def test_thread_variable_that_is_not_a_number_is_refused(text: str, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setenv("TANGIBLE_THREADS", text)
-    with pytest.raises(ConfigError, match=r"TANGIBLE_THREADS: is .* a whole number of threads from 1"):
-        thread_count()
-
-
-@pytest.mark.parametrize("value", [0, -1, 1.5, True, "2"])
-def test_thread_option_that_is_not_a_number_is_refused(value: object):
-    with pytest.raises(ArgumentError, match=r"threads: is .* a whole number from 1"):
-        check_threads(value)
+def test_thread_limit_that_is_not_a_number_is_refused(monkeypatch: pytest.MonkeyPatch):
+    for text in ("none", "0", "1.5", "²"):
+        monkeypatch.setenv("TANGIBLE_THREADS", text)
+        with pytest.raises(ConfigError, match="TANGIBLE_THREADS"):
+            thread_count()
+    for value in (0, 1.5, True, "2"):
+        with pytest.raises(ArgumentError, match="threads"):
+            check_threads(value)
 
 
 TORCH = """
@@ -112,6 +102,7 @@ print(inside, outside, again, torch.get_num_threads())
 """
 
 
+@pytest.mark.whole
 def test_thread_limit_holds_for_torch_whenever_it_is_imported():
     """Torch takes its number of threads from the environment, up to the number of processors."""
     variables = {**os.environ, "OMP_NUM_THREADS": "2", "MKL_NUM_THREADS": "2"}

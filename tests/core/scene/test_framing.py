@@ -1,11 +1,9 @@
-"""Framing of a picture: crop, rotation, inversion, clipping, no data, transparency."""
+"""If one of these fails, another part of a picture is felt than was cut out, or its unknown places are felt."""
 
-import json
 from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
 
 from tangible_core import Pipeline, Scene, Workspace
 from tangible_core.errors import ConfigError, PictureError
@@ -31,10 +29,6 @@ class TestHeights:
         assert self.of(rotate=270).tolist() == [[3, 7, 11], [2, 6, 10], [1, 5, 9], [0, 4, 8]]
         assert self.of(crop=[1, 0, 2, 1], rotate=180).tolist() == [[2, 1]]
 
-    def test_invert_exchanges_high_and_low(self):
-        relief = Pipeline(Scene.heights(HEIGHTS, invert=True), cached=False).relief.height_m
-        assert (relief[0, 0], relief[2, 3]) == (np.float32(0.02), 0)
-
     @pytest.mark.parametrize("nodata", [-9999, [-9999, 1e20], -9999.0])
     def test_nodata_values_become_unknown(self, nodata):
         torn = HEIGHTS.copy()
@@ -42,10 +36,6 @@ class TestHeights:
         framed = self.of(torn, nodata=nodata)
         assert np.isnan(framed).tolist() == (torn == -9999).tolist()
         assert np.nanmin(framed) == 0
-
-    def test_nodata_values_are_compared_in_32_bits(self):
-        lowest = float(np.finfo(np.float32).min)
-        assert np.isnan(self.of(np.array([[lowest, 0.1, 1]]), nodata=[-3.4028235e38, 0.1])).tolist() == [[1, 1, 0]]
 
     def test_clip_cuts_spikes(self):
         spiked = np.linspace(0, 1, 1000).reshape(20, 50)
@@ -60,28 +50,12 @@ class TestHeights:
         grey[0, 3, 3] = 0
         assert np.argwhere(np.isnan(self.of(grey))).tolist() == [[0, 3]]
 
-    @pytest.mark.parametrize("rotate", [0, 90, 180, 270])
-    def test_stated_size_is_that_of_the_part_as_it_lies(self, tmp_path: Path, rotate: int):
-        """A map of 40 x 90 mm; of its 4 columns and 3 rows, 2 and 1 are cut out: 20 x 30 mm."""
-        state = {"format": "tangible heights 1", "file": "h.png", "columns": 4, "rows": 3}
-        size = {"width_mm": 40, "length_mm": 90, "high_mm": 11, "low_mm": 0, "step_mm": 1}
-        (tmp_path / "h.json").write_text(json.dumps({**state, **size}))
-        Image.fromarray(HEIGHTS.astype(np.uint16)).save(tmp_path / "h.png")
-        for crop, sides in ((None, (0.04, 0.09)), ([1, 2, 2, 1], (0.02, 0.03))):
-            scene = Scene.heights(tmp_path / "h.png", crop=crop, rotate=rotate)
-            width_m, length_m = sides if rotate in (0, 180) else sides[::-1]
-            assert scene.own_size == pytest.approx((width_m, length_m, 0.011))
-        assert Scene.heights(tmp_path / "h.png", invert=True).measured is None
-
 
 class TestPhotos:
     def of(self, photo=PHOTO, **options) -> np.ndarray:
         views = Scene.photo(photo, **options).views
         assert views is not None
         return views.left
-
-    def test_photo_is_cropped_and_rotated(self):
-        np.testing.assert_array_equal(self.of(crop=[1, 1, 2, 2], rotate=90), np.rot90(PHOTO[1:3, 1:3], -1))
 
     def test_labels_and_disparity_are_cropped_and_rotated_with_the_photo(self):
         labels = np.uint8([[0, 0, 0, 0], [0, 0, 7, 9], [0, 0, 7, 9]])
@@ -90,33 +64,20 @@ class TestPhotos:
         assert scene.segments.labels.tolist() == [[1, 1], [2, 2]]
         assert scene.disparity.disparity_px.tolist() == [[10, 6], [11, 7]]
 
-    @pytest.mark.parametrize(
-        ("photo", "inverted"),
-        [
-            (np.uint8([[0, 200]]), [[255, 55]]),
-            (np.uint16([[0, 65535]]), [[65535, 0]]),
-            (np.float32([[0.25, 1]]), [[0.75, 0]]),
-            (np.array([[True, False]]), [[False, True]]),
-        ],
-    )
-    def test_invert_exchanges_light_and_dark(self, photo, inverted):
-        framed = self.of(photo, invert=True)
-        assert framed.tolist() == inverted
-        assert framed.dtype == photo.dtype
+    def test_invert_exchanges_light_and_dark(self):
+        for dark, light, white in ((np.uint8(200), np.uint8(55), 255), (np.float32(0.25), np.float32(0.75), 1)):
+            photo = np.array([[0, dark, white]], dark.dtype)
+            np.testing.assert_array_equal(
+                self.of(photo, invert=True), np.array([[white, light, 0]], dark.dtype), strict=True
+            )
+        assert self.of(np.uint16([[0, 65535]]), invert=True).tolist() == [[65535, 0]]
+        assert self.of(np.array([[True, False]]), invert=True).tolist() == [[False, True]]
 
     def test_clip_limits_brightness_to_percentiles(self):
         photo = np.linspace(50, 150, 1000).astype(np.uint8).reshape(20, 50)
         photo[0, 0], photo[5, 5] = 0, 255
         framed = self.of(photo, clip=[5, 95])
         assert (framed.min(), framed.max()) == (54, 145)
-
-    def test_clip_ignores_transparent_pixels(self):
-        photo = np.full((10, 10, 4), 100, np.uint8)
-        photo[0, 1:4, :3] = 110
-        photo[..., 3] = 255
-        photo[:9, :, 3] = 0
-        photo[:9, :, :3][photo[:9, :, :3] == 100] = 0
-        assert self.of(photo, clip=[1, 99]).min() == 100
 
 
 class TestTransparency:
@@ -149,11 +110,6 @@ class TestTransparency:
         [why] = [each.why for each in pipeline.outcomes if each.product == "views"]
         assert why.endswith(f"{100 * hidden.mean():.0f} % of the array given as photo is transparent: flat ground")
 
-    def test_ground_takes_the_material_named_for_it(self, cut_out: np.ndarray):
-        parts = {"depth": Luminance(), "texture": Gradient(smallest_px=20), "cached": False}
-        surface = Pipeline(Scene.photo(cut_out), **parts, materials={2: "ice"}).surface
-        assert [each.name for each in surface.materials] == ["plain", "plain", "ice"]
-
     def test_cache_key_depends_on_the_outline(self):
         """Two photos: in one a corner pixel is transparent and its neighbour not finite, in the other the reverse."""
         photos = [np.full((8, 8, 4), 0.5), np.full((8, 8, 4), 0.5)]
@@ -166,39 +122,24 @@ class TestTransparency:
         assert pipelines[0].scene.views.digest() == pipelines[1].scene.views.digest()
         assert pipelines[0].engine.key("segments") != pipelines[1].engine.key("segments")
 
-    def test_opaque_picture_loses_its_fourth_channel_only(self):
-        rgba = np.dstack([PHOTO, np.full(PHOTO.shape[:2], 128, np.uint8)])
-        scene = Scene.photo(rgba)
-        np.testing.assert_array_equal(scene.views.left, PHOTO)
-        assert scene.shown is None and scene.known is None
-
     def test_transparent_picture_is_refused(self):
         with pytest.raises(PictureError, match="all of the picture is transparent; there is nothing to feel"):
             Scene.photo(np.zeros((3, 3, 4), np.uint8))
 
 
-@pytest.mark.parametrize(
-    ("parts", "message"),
-    [
-        ({"crop": [2, 0, 3, 3]}, r"crop \[2, 0, 3, 3\] reaches beyond the picture, which is 4 x 3"),
-        ({"crop": [0, 1, 1, 3]}, r"crop \[0, 1, 1, 3\] reaches beyond"),
-    ],
-)
-def test_crop_beyond_the_picture_is_refused(parts, message):
-    with pytest.raises(PictureError, match=message):
-        Scene.heights(HEIGHTS, **parts)
+@pytest.mark.parametrize("crop", [[2, 0, 3, 3], [0, 1, 1, 3]])
+def test_crop_beyond_the_picture_is_refused(crop):
+    with pytest.raises(PictureError, match="reaches beyond"):
+        Scene.heights(HEIGHTS, crop=crop)
 
 
 @pytest.mark.parametrize(
     ("parts", "message"),
     [
-        ({"photo": PHOTO, "crop": [0, 0, 0, 3]}, "scene.crop.2: Input should be greater than or equal to 1"),
-        ({"photo": PHOTO, "crop": [0, 0, 3]}, "scene.crop.3: Field required"),
-        ({"photo": PHOTO, "rotate": 45}, "scene.rotate: Input should be 0, 90, 180 or 270"),
-        ({"photo": PHOTO, "clip": [99, 1]}, r"^scene: clip is \[low, high\] with low < high"),
-        ({"photo": PHOTO, "clip": [-1, 50]}, "scene.clip.0: Input should be greater than or equal to 0"),
-        ({"photo": PHOTO, "clip": [1, 101]}, "scene.clip.1: Input should be less than or equal to 100"),
-        ({"photo": PHOTO, "clip": [7, 7]}, r"^scene: clip is \[low, high\] with low < high"),
+        ({"photo": PHOTO, "crop": [0, 0, 0, 3]}, "scene.crop.2"),
+        ({"photo": PHOTO, "crop": [0, 0, 3]}, "scene.crop.3"),
+        ({"photo": PHOTO, "rotate": 45}, "scene.rotate"),
+        *(({"photo": PHOTO, "clip": clip}, "clip") for clip in ([99, 1], [7, 7], [-1, 50], [1, 101])),
         ({"photo": PHOTO, "nodata": 0}, "nodata needs height"),
         ({"photo": PHOTO, "layout": "top-bottom"}, "layout needs stereo"),
         ({"left": PHOTO, "right": PHOTO, "rotate": 90, "invert": True}, "rotate and invert is for a photo or a height"),
@@ -210,12 +151,6 @@ def test_wrong_options_are_refused(parts, message):
         source_of_arguments(parts)
 
 
-def test_masked_heights_are_unknown():
-    scene = Scene.heights(np.ma.masked_equal(HEIGHTS, HEIGHTS[0, 1]))
-    assert scene.height is not None
-    np.testing.assert_array_equal(np.isnan(scene.height), HEIGHTS[0, 1] == HEIGHTS)
-
-
 def test_pipeline_file_takes_the_same_options(tmp_path: Path):
     np.save(tmp_path / "dem.npy", HEIGHTS)
     text = "scene: {height: dem.npy, crop: [1, 0, 3, 2], rotate: 180, invert: true, nodata: [6], clip: [0, 90]}\n"
@@ -224,17 +159,3 @@ def test_pipeline_file_takes_the_same_options(tmp_path: Path):
     pipeline.to_yaml(tmp_path / "again.yaml")
     for each in (pipeline, Pipeline.from_yaml(tmp_path / "again.yaml")):
         np.testing.assert_allclose(each.scene.height, [[-6.2, np.nan, -5], [-3, -2, -1]], rtol=1e-6)
-    (tmp_path / "p.yaml").write_text("scene:\n  height: dem.npy\n  rotate: 45\n  crop: [0, 0, -1, 2]\nwant: relief\n")
-    with pytest.raises(ConfigError) as error:
-        Pipeline.from_yaml(tmp_path / "p.yaml")
-    first, second = str(error.value).splitlines()
-    assert "p.yaml:4:" in first and "scene.crop.2" in first
-    assert "p.yaml:3:3: scene.rotate: Input should be 0, 90, 180 or 270, not 45" in second
-
-
-def test_crop_applies_to_the_upright_picture(tmp_path: Path):
-    exif = Image.Exif()
-    exif[0x0112] = 6
-    Image.fromarray(PHOTO).save(tmp_path / "p.png", exif=exif)
-    framed = Scene.photo(tmp_path / "p.png", crop=[0, 0, 3, 1]).views
-    np.testing.assert_array_equal(framed.left, np.rot90(PHOTO, -1)[:1])

@@ -1,9 +1,9 @@
-"""Means of squares of a large picture, band by band."""
+"""If one of these fails, a picture that is reduced band by band is felt with wrong pixels at its rims, or cut short."""
 
 import numpy as np
 import pytest
 
-from tangible_core.scene.formats.large.bands import reduced
+from tangible_core.scene.formats.bands import reduced
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float32, np.int32])

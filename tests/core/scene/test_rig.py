@@ -1,4 +1,4 @@
-"""Raw pairs of known cameras: points of space that two lenses saw lie on one row, at the disparity of their depth."""
+"""If one of these fails, a raw pair of known cameras is felt at wrong depths, or a wrong calibration is not refused."""
 
 from pathlib import Path
 
@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
-from ruamel.yaml import YAML
 
 from tangible_core import Pipeline, Workspace, load_pipeline
 from tangible_core.data import Calibration, Views
@@ -73,59 +72,41 @@ def assert_shared_rows_and_exact_depth(cameras: StereoRig, calibration: Calibrat
     assert calibration.focal_px * calibration.baseline_m / disparity == pytest.approx(points @ axes[2], rel=1e-3)
 
 
+@pytest.mark.parametrize("vertical", [False, True])
 @pytest.mark.parametrize("lens", LENSES)
 @given(
     turn=st.tuples(*[st.floats(-0.08, 0.08)] * 3),
-    move=st.tuples(st.floats(-0.3, -0.05), st.floats(-0.03, 0.03), st.floats(-0.03, 0.03)),
+    along=st.floats(-0.3, -0.05),
+    aside=st.tuples(*[st.floats(-0.03, 0.03)] * 2),
 )
-def test_rectified_points_share_rows_and_give_exact_depth(lens, turn, move):
+def test_rectified_points_share_rows_and_give_exact_depth(lens, vertical, turn, along, aside):
+    """Cameras above each other: the canvas lies on its side, its rows along the baseline."""
+    move = (aside[0], along, aside[1]) if vertical else (along, *aside)
     cameras = rig(turn, move, lens)
     calibration = rectify_views(Views(BLANK, BLANK), cameras).views.calibration
-    assert calibration is not None
+    assert calibration is not None and calibration.vertical == vertical
     assert_shared_rows_and_exact_depth(cameras, calibration)
     assert calibration.baseline_m == pytest.approx(np.linalg.norm(move))
 
 
 @pytest.mark.parametrize("lens", LENSES)
-def test_rectified_pictures_follow_their_points(lens: str):
-    """Bright dots of a scene at one depth are found on one row in both turned pictures."""
+def test_rectified_pictures_show_the_points_of_their_pixels(lens: str):
+    """Rectify pictures of the pixels' own columns and rows: each number is the place that a pixel shows."""
     cameras = rig(lens=lens)
-    dots = np.array([[x, y, 1.5] for x in (-0.4, 0.0, 0.4) for y in (-0.25, 0.25)])
-    views = []
-    for points, camera in ((dots, cameras.left), (dots @ cameras.rotation.T + cameras.translation_m, cameras.right)):
-        picture = np.zeros(SHAPE, np.float32)
-        columns, rows = np.meshgrid(np.arange(SHAPE[1]), np.arange(SHAPE[0]))
-        for x, y in seen(points, camera):
-            picture += np.exp(-((columns - x) ** 2 + (rows - y) ** 2) / 8).astype(np.float32)
-        views.append(np.clip(picture, 0, 1))
-    rectified = rectify_views(Views(*views), cameras)
-    assert rectified.known.shape == rectified.views.shape and rectified.known.mean() > 0.5
-    assert rectified.views.right is not None and rectified.views.right.shape == rectified.views.shape
-    rows_lit = [np.sort(peaks(each)[:, 0]) for each in (rectified.views.left, rectified.views.right)]
-    np.testing.assert_allclose(*rows_lit, atol=0.3)
-
-
-def peaks(picture: np.ndarray) -> np.ndarray:
-    """Rows and columns of the six brightest blobs, to a fraction of a pixel."""
-    rest, peaks_px = picture.copy(), []
-    for _ in range(6):
-        row, column = np.unravel_index(np.argmax(rest), rest.shape)
-        rows, columns = np.s_[max(0, row - 5) : row + 6], np.s_[max(0, column - 5) : column + 6]
-        part = rest[rows, columns]
-        inner = np.indices(part.shape).reshape(2, -1)
-        peaks_px.append((inner * part.ravel()).sum(axis=1) / part.sum() + [rows.start, columns.start])
-        rest[rows, columns] = 0
-    return np.array(peaks_px)
-
-
-@pytest.mark.parametrize("lens", LENSES)
-@given(turn=st.tuples(*[st.floats(-0.08, 0.08)] * 3), move=st.tuples(*[st.floats(-0.03, 0.03)] * 2))
-def test_points_seen_from_below_share_columns_and_give_exact_depth(lens, turn, move):
-    """The canvas lies on its side, its rows along the baseline; the pictures are turned back by a quarter."""
-    cameras = rig(turn, (move[0], -0.2, move[1]), lens)
-    calibration = rectify_views(Views(BLANK, BLANK), cameras).views.calibration
-    assert calibration is not None and calibration.vertical
-    assert_shared_rows_and_exact_depth(cameras, calibration)
+    axes = axes_of(cameras)
+    rows, columns = np.indices(SHAPE, np.float32)
+    of_columns, of_rows = (rectify_views(Views(each, each), cameras) for each in (columns, rows))
+    focal_px, offsets = of_rows.views.calibration.focal_px, []
+    for side, camera, turn in (("left", cameras.left, axes), ("right", cameras.right, axes @ cameras.rotation.T)):
+        shown = np.dstack([getattr(each.views, side) for each in (of_columns, of_rows)])
+        found = undistort_points(shown.reshape(-1, 2), camera, turn, np.diag([focal_px, focal_px, 1.0]))
+        canvas_rows, canvas_columns = np.indices(shown.shape[:2])
+        shift = found.reshape(shown.shape) - np.dstack([canvas_columns, canvas_rows])
+        middle = shift[shift.shape[0] // 4 : -shift.shape[0] // 4, shift.shape[1] // 4 : -shift.shape[1] // 4]
+        assert np.ptp(middle, axis=(0, 1)).max() < 0.2
+        offsets.append(middle.mean(axis=(0, 1)))
+    assert offsets[0] == pytest.approx(offsets[1], abs=0.02)
+    assert of_rows.known.mean() > 0.5
 
 
 @pytest.mark.parametrize("finest_m", [0, 8e-4])
@@ -169,44 +150,31 @@ def test_rotation_of_four_decimals_becomes_the_nearest_rotation():
         StereoRig(good.left, good.right, np.round(exact, 2), good.translation_m)
 
 
-@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, bool, np.float32])
-@pytest.mark.parametrize("channels", [(), (3,), (4,)])
-def test_rectified_pictures_keep_dtype_and_channels(dtype, channels):
-    picture = (np.random.default_rng(0).random((*SHAPE, *channels)) > 0.5).astype(dtype)
-    rectified = rectify_views(Views(picture, picture), rig(lens="radial")).views
-    assert rectified.left.shape[2:] == channels
-    assert rectified.left.max() <= picture.max()
-
-
-def test_rectifying_one_view_raises():
+@pytest.mark.parametrize("move", [(0.1, 0, 0), (0.0, 0.0, -0.5), (-0.01, 0.2, 0.0)])
+def test_rig_with_the_right_camera_elsewhere_raises(move):
+    with pytest.raises(GeometryError, match="translation"):
+        rig((0, 0, 0), move)
     with pytest.raises(PictureError, match="two views"):
         rectify_views(Views(BLANK), rig())
 
 
-@pytest.mark.parametrize("move", [(0.1, 0, 0), (0.0, 0.0, -0.5), (-0.01, 0.2, 0.0)])
-def test_rig_with_the_right_camera_elsewhere_raises(move):
-    with pytest.raises(GeometryError, match="exchange left and right, or check the translation"):
-        rig((0, 0, 0), move)
-
-
 @pytest.mark.parametrize(
-    ("part", "value", "words"),
+    ("part", "value"),
     [
-        ("rotation", np.diag([1.0, 1, -1]), "determinant"),
-        ("rotation", 2 * np.eye(3), "orthogonal"),
-        ("translation_m", np.zeros(3), "metres"),
-        ("translation_m", np.array([np.inf, 0, 0]), "metres"),
+        ("rotation", np.diag([1.0, 1, -1])),
+        ("rotation", 2 * np.eye(3)),
+        *(("translation_m", np.array([x, 0, 0])) for x in (0, np.inf)),
     ],
 )
-def test_rig_refuses_wrong_rotation_and_translation(part, value, words):
+def test_rig_refuses_wrong_rotation_and_translation(part, value):
     good = rig()
     parts = {name: getattr(good, name) for name in ("left", "right", "rotation", "translation_m")}
-    with pytest.raises(GeometryError, match=words):
+    with pytest.raises(GeometryError):
         StereoRig(**{**parts, part: value})
 
 
 @pytest.mark.parametrize(
-    ("matrix", "distortion", "words"),
+    ("matrix", "distortion", "word"),
     [
         (np.zeros((3, 3)), np.zeros(0), "focal"),
         (np.full((3, 3), np.nan), np.zeros(0), "focal"),
@@ -214,8 +182,8 @@ def test_rig_refuses_wrong_rotation_and_translation(part, value, words):
         (np.eye(3), np.full(4, np.nan), "coefficients"),
     ],
 )
-def test_camera_refuses_wrong_matrix_and_distortion(matrix, distortion, words):
-    with pytest.raises(GeometryError, match=words):
+def test_camera_refuses_wrong_matrix_and_distortion(matrix, distortion, word):
+    with pytest.raises(GeometryError, match=word):
         Camera(matrix, distortion)
 
 
@@ -253,24 +221,17 @@ def write_opencv(path: Path, cameras: StereoRig, unit_m: float = 1.0) -> None:
 
 
 class TestFiles:
-    @pytest.mark.parametrize("unit_m", [1.0, 0.001])
-    def test_opencv_file_gives_the_same_rig(self, tmp_path: Path, unit_m: float):
+    @pytest.mark.parametrize(("suffix", "unit_m"), [("yml", 1.0), ("yml", 0.001), ("xml", 1.0), ("json", 1.0)])
+    def test_opencv_file_gives_the_same_rig(self, tmp_path: Path, suffix: str, unit_m: float):
         cameras = rig(lens="radial")
-        write_opencv(tmp_path / "rig.yml", cameras, unit_m)
-        found, size = read_rig(tmp_path / "rig.yml", unit_m)
+        write_opencv(tmp_path / f"rig.{suffix}", cameras, unit_m)
+        found, size = read_rig(tmp_path / f"rig.{suffix}", unit_m)
         assert size is None
         for side in ("left", "right"):
             np.testing.assert_array_equal(getattr(found, side).matrix, getattr(cameras, side).matrix)
             np.testing.assert_array_equal(getattr(found, side).distortion, getattr(cameras, side).distortion)
         np.testing.assert_allclose(found.rotation, cameras.rotation, atol=1e-15)
         np.testing.assert_allclose(found.translation_m, cameras.translation_m, atol=1e-12)
-
-    @pytest.mark.parametrize("head", ["%YAML:1.0\n---\n", "%YAML 1.0\n---\n", ""])
-    def test_head_of_opencv_or_of_yaml_1_0_or_none_is_read(self, tmp_path: Path, head: str):
-        write_opencv(tmp_path / "rig.yml", rig(lens="radial"))
-        text = (tmp_path / "rig.yml").read_text()
-        (tmp_path / "rig.yml").write_text(head + text[text.index("M1:") :])
-        assert read_rig(tmp_path / "rig.yml").cameras.left.distortion.size == 4
 
     @pytest.mark.parametrize("model", ["radtan", "equidistant"])
     def test_kalibr_file_gives_the_same_rig(self, tmp_path: Path, model: str):
@@ -296,46 +257,30 @@ class TestFiles:
         assert seen_m == pytest.approx([-0.864, -0.01, 0.523])
         assert found.centre_m == pytest.approx((0.1, 0.01, -0.005))
 
-    def test_kalibr_pose_takes_points_of_the_left_camera_to_the_right_one_in_the_unit_of_the_file(self, tmp_path: Path):
-        """A right camera that is turned by 0.1 rad to its right sees what is ahead of the left one on its left."""
-        cos, sin = np.cos(0.1), np.sin(0.1)
-        pose = [[cos, 0, -sin, -0.1 * cos], [0, 1, 0, 0], [sin, 0, cos, -0.1 * sin], [0, 0, 0, 1]]
-        chain = YAML(typ="safe").load(KALIBR_NONE)
-        chain["cam1"]["T_cn_cnm1"] = np.array(pose).tolist()
-        YAML(typ="safe").dump(chain, tmp_path / "camchain.yaml")
-        found, _ = read_rig(tmp_path / "camchain.yaml", 0.001)
-        np.testing.assert_allclose(found.centre_m, (1e-4, 0, 0), atol=1e-12)
-        ahead = found.rotation @ [0, 0, 1.0] + found.translation_m
-        assert ahead[0] < -0.09
-
     @pytest.mark.parametrize(
         ("text", "message"),
         [
-            ("M1: 3\n", "rig.yml: has no left matrix (M1, K1"),
+            ("M1: 3\n", "left matrix"),
             ("a: [1\n", "rig.yml:2:1"),
-            ("- 1\n", "rig.yml:1:1: a calibration of two cameras is a mapping"),
-            (
-                "M1: !!opencv-matrix {rows: 3, cols: 3, data: [1, 2]}\n",
-                "3 rows and 3 cols are not 2 numbers",
+            ("- 1\n", "mapping"),
+            ("cam0: 5\ncam1: {}\n", "camera_model pinhole"),
+            ("cam0: {camera_model: omni}\ncam1: {}\n", "camera_model pinhole"),
+            (KALIBR.format(model="fov", coefficients=[]), "distortion_model"),
+            (KALIBR.format(model="radtan", coefficients=["x"]), "distortion_coeffs"),
+            (KALIBR.format(model="radtan", coefficients=[1]), "0 or 4"),
+            (KALIBR_NONE.replace("110.0, ", ""), "is [fu, fv, pu, pv]"),
+            (KALIBR_NONE.replace("T_cn_cnm1", "T"), "4 x 4 pose of cam1"),
+            *(
+                (KALIBR_NONE.replace("[120, 90]", size), "resolution")
+                for size in ("[.nan, 48]", "[120]", "[9, -9]", "1")
             ),
-            ("cam0: 5\ncam1: {}\n", "cam0 is a camera with camera_model pinhole, not 5"),
-            ("cam0: {camera_model: omni}\ncam1: {}\n", "cam0 is a camera with camera_model pinhole"),
-            (KALIBR.format(model="fov", coefficients=[]), "distortion_model: 'fov' is not one of radtan"),
-            (KALIBR.format(model="radtan", coefficients=["x"]), "distortion_coeffs must be a list of finite numbers"),
-            (KALIBR.format(model="radtan", coefficients=[1]), "rig.yml: a radial-tangential lens has 0 or 4"),
-            (KALIBR.format(model="none", coefficients=[]).replace("110.0, ", ""), "is [fu, fv, pu, pv]"),
-            (KALIBR.format(model="none", coefficients=[]).replace("T_cn_cnm1", "T"), "is the 4 x 4 pose of cam1"),
-            (KALIBR_NONE.replace("[120, 90]", "[.nan, 48]"), "cam0.resolution must be a list of finite numbers"),
-            (KALIBR_NONE.replace("[120, 90]", "[120]"), "cam0.resolution is [width, height] in pixels, not [120]"),
-            (KALIBR_NONE.replace("[120, 90]", "[120, -90]"), "cam0.resolution is [width, height] in pixels"),
-            (KALIBR_NONE.replace("[120, 90]", "120"), "cam0.resolution must be a list of finite numbers, not 120"),
-            (KALIBR_NONE.replace("110.0,", "true,"), "cam0.intrinsics must be a list of finite numbers"),
-            (KALIBR_NONE.replace("110.0,", "1e999,"), "cam0.intrinsics must be a list of finite numbers"),
-            (KALIBR_NONE.replace("0.0, 1.0, 0.0, 0.01", "0.0"), "cam1.T_cn_cnm1 must be a list of finite numbers"),
-            ("M1: {rows: 1, cols: 1, data: 5}\n", "rig.yml: left matrix must be a list of finite numbers, not 5"),
-            ("M1: {rows: -3, cols: -3, data: [1,2,3,4,5,6,7,8,9]}\n", "-3 rows and -3 cols are not 9 numbers"),
-            ("M1: {rows: true, cols: 1, data: [1]}\n", "True rows and 1 cols are not 1 numbers"),
-            ("M1: {rows: 1, cols: 1, data: [[1, 2]]}\n", "1 rows and 1 cols are not 2 numbers"),
+            *((KALIBR_NONE.replace("110.0", number), "cam0.intrinsics") for number in ("true", "1e999")),
+            (KALIBR_NONE.replace("0.0, 1.0, 0.0, 0.01", "0.0"), "cam1.T_cn_cnm1"),
+            ("M1: {rows: 3, cols: 3, data: [1, 2]}\n", "not 2 numbers"),
+            ("M1: {rows: 1, cols: 1, data: 5}\n", "left matrix"),
+            ("M1: {rows: -3, cols: -3, data: [1,2,3,4,5,6,7,8,9]}\n", "not 9 numbers"),
+            ("M1: {rows: true, cols: 1, data: [1]}\n", "True rows"),
+            ("M1: {rows: 1, cols: 1, data: [[1, 2]]}\n", "not 2 numbers"),
         ],
     )
     def test_wrong_calibration_file_raises(self, tmp_path: Path, text: str, message: str):
@@ -432,15 +377,6 @@ class TestMoreFormats:
         np.testing.assert_array_equal(found.right.matrix, matrices[1])
         assert found.left.distortion.tolist() == lens.tolist()
 
-    @pytest.mark.parametrize("suffix", ["xml", "json", "yml"])
-    def test_every_file_storage_of_opencv_gives_the_same_rig(self, tmp_path: Path, suffix: str):
-        cameras = rig(lens="radial")
-        write_opencv(tmp_path / f"rig.{suffix}", cameras)
-        found = read_rig(tmp_path / f"rig.{suffix}").cameras
-        np.testing.assert_array_equal(found.left.matrix, cameras.left.matrix)
-        np.testing.assert_array_equal(found.right.distortion, cameras.right.distortion)
-        np.testing.assert_allclose(found.centre_m, cameras.centre_m, atol=1e-15)
-
     def test_intrinsics_are_read_with_the_extrinsics_beside_them(self, tmp_path: Path):
         write_opencv(tmp_path / "rig.yml", rig())
         lines = (tmp_path / "rig.yml").read_text()
@@ -452,17 +388,17 @@ class TestMoreFormats:
     @pytest.mark.parametrize(
         ("name", "text", "message"),
         [
-            ("calib.txt", MIDDLEBURY.replace("baseline=193.001\n", ""), "baseline must be 1 finite numbers, not ''"),
-            ("calib.txt", MIDDLEBURY.replace("91.5", "x"), "cam1 must be 9 finite numbers"),
-            ("calib.txt", KITTI.replace("7.2e+02", "nan"), "P2 must be 12 finite numbers"),
-            ("calib.txt", KITTI.replace("7.2e+02", "0"), "a projection has positive focal lengths"),
-            ("calib.txt", KITTI_RAW.replace("1.242000e+03", "1e999"), "S_rect_02 must be 2 finite numbers"),
-            ("calib.txt", KITTI.replace("-3.4e+02", "9e+02"), "neither to its right nor below it"),
-            ("left.yaml", "camera_matrix: {data: [1]}\n", "the left camera lacks one of left camera matrix"),
-            ("rig.xml", "<opencv_storage><M1>", "is not XML as OpenCV writes it"),
-            ("rig.xml", "<!DOCTYPE a [<!ENTITY b 'c'>]><opencv_storage/>", "it declares a document type"),
-            ("rig.xml", "<opencv_storage><M1><rows>x</rows></M1></opencv_storage>", "is not XML as OpenCV writes it"),
-            ("rig.xml", "<opencv_storage/>", "has no left matrix"),
+            ("calib.txt", MIDDLEBURY.replace("baseline=193.001\n", ""), "baseline"),
+            ("calib.txt", MIDDLEBURY.replace("91.5", "x"), "cam1"),
+            ("calib.txt", KITTI.replace("7.2e+02", "nan"), "P2"),
+            ("calib.txt", KITTI.replace("7.2e+02", "0"), "positive focal lengths"),
+            ("calib.txt", KITTI_RAW.replace("1.242000e+03", "1e999"), "S_rect_02"),
+            ("calib.txt", KITTI.replace("-3.4e+02", "9e+02"), "neither to its right nor below"),
+            ("left.yaml", "camera_matrix: {data: [1]}\n", "left camera matrix"),
+            ("rig.xml", "<opencv_storage><M1>", "not XML"),
+            ("rig.xml", "<!DOCTYPE a [<!ENTITY b 'c'>]><opencv_storage/>", "document type"),
+            ("rig.xml", "<opencv_storage><M1><rows>x</rows></M1></opencv_storage>", "not XML"),
+            ("rig.xml", "<opencv_storage/>", "left matrix"),
         ],
     )
     def test_wrong_file_raises_with_its_part(self, tmp_path: Path, name: str, text: str, message: str):
@@ -491,76 +427,21 @@ class TestFoundRig:
         assert made.scene.views is not None and made.scene.views.calibration is not None
         assert made.scene.notes == ()
 
-    @pytest.mark.parametrize("text", ["nonsense", MIDDLEBURY.replace("width=120", "width=121")])
-    def test_file_that_is_no_rig_or_for_another_size_is_not_mentioned(self, folder: Path, text: str):
-        (folder / "calib.txt").write_text(text)
-        assert Scene.pair(folder / "left.png", folder / "right.png").notes == ()
-        assert "rig:" not in starter([folder / "left.png", folder / "right.png"], folder / "new.yaml").text
-
-    def test_rig_above_the_two_folders_of_a_sequence_is_found(self, folder: Path):
-        for name, place in (("left", "image_2"), ("right", "image_3")):
-            (folder / place).mkdir()
-            (folder / f"{name}.png").rename(folder / place / "000000.png")
-        (folder / "calib.txt").write_text(KITTI)
-        scene = Scene.pair(folder / "image_2" / "000000.png", folder / "image_3" / "000000.png")
-        assert scene.notes == (
-            f"calib.txt states the cameras of the pair; write `rig: {folder / 'calib.txt'}` to use it",
-        )
-
     def test_baseline_of_sixty_metres_works_and_is_questioned(self, folder: Path):
         paths = {"left": folder / "left.png", "right": folder / "right.png"}
         write_opencv(folder / "rig.yml", rig((0, 0, 0), (-60.0, 0, 0)))
-        far = Scene.pair(**paths, rig=folder / "rig.yml")
-        assert far.views is not None and far.views.calibration is not None
-        assert far.views.calibration.baseline_m == 60
-        assert far.notes == ("the cameras stand 60 m apart; if these are millimetres, write `rig_unit_m: 0.001`",)
-        given_m = Scene.pair(**paths, calibration=Calibration(1000, 60))
-        assert given_m.notes == ("the cameras stand 60 m apart; if these are millimetres, write `baseline_m: 60 mm`",)
+        for options, cure in (
+            ({"rig": folder / "rig.yml"}, "rig_unit_m"),
+            ({"calibration": Calibration(1000, 60)}, "mm"),
+        ):
+            scene = Scene.pair(**paths, **options)
+            assert scene.views.calibration.baseline_m == 60 and cure in scene.notes[0]
         assert Scene.pair(**paths, calibration=Calibration(1000, 0.06)).notes == ()
 
 
-class TestScene:
-    @pytest.fixture
-    def folder(self, tmp_path: Path) -> Path:
-        for name in ("left", "right"):
-            np.save(tmp_path / f"{name}.npy", np.random.default_rng(0).random(SHAPE).astype(np.float32))
-        write_opencv(tmp_path / "rig.yml", rig(lens="radial"))
-        return tmp_path
-
-    def test_rig_from_a_file_equals_rig_from_arrays(self, folder: Path):
-        left, right = (np.load(folder / f"{name}.npy") for name in ("left", "right"))
-        of_files = Scene.pair(left=folder / "left.npy", right=folder / "right.npy", rig=folder / "rig.yml")
-        of_arrays = Scene.pair(left, right, rig=rig(lens="radial"))
-        assert of_files.views is not None and of_arrays.views is not None
-        np.testing.assert_allclose(of_files.views.left, of_arrays.views.left, atol=1e-6)
-        assert of_files.views.calibration is not None
-        assert of_files.views.calibration.baseline_m == pytest.approx(np.linalg.norm((-0.1, 0.01, 0.005)))
-        assert of_files.known is not None and not of_files.known.all()
-
-    def test_pipeline_file_takes_a_rig(self, folder: Path):
-        from tangible_core import load_pipeline
-
-        (folder / "p.yaml").write_text("scene: {left: left.npy, right: right.npy, rig: rig.yml, rig_unit_m: 0.5}\n")
-        views = load_pipeline(folder / "p.yaml").scene.views
-        assert views is not None and views.calibration is not None
-        assert views.calibration.baseline_m == pytest.approx(np.linalg.norm((-0.05, 0.005, 0.0025)))
-
-    def test_rig_for_another_picture_size_raises(self, folder: Path):
-        (folder / "rig.yml").write_text(KALIBR.format(model="none", coefficients=[]).replace("[120, 90]", "[752, 480]"))
-        with pytest.raises(PictureError, match=r"left\.npy is not 752 x 480"):
-            Scene.pair(left=folder / "left.npy", right=folder / "right.npy", rig=folder / "rig.yml")
-
-    @pytest.mark.parametrize(
-        ("options", "message"),
-        [
-            ({"truth": np.ones(SHAPE)}, "rig gives the cameras.*leave out truth"),
-            ({"segments": np.ones(SHAPE, int)}, "leave out segments"),
-        ],
-    )
-    def test_rig_with_incompatible_options_raises(self, folder: Path, options: dict, message: str):
-        with pytest.raises(ConfigError, match=message):
-            Scene.pair(left=BLANK, right=BLANK, rig=folder / "rig.yml", **options)
-
-    def test_rig_without_a_pair_raises(self, folder: Path):
-        with pytest.raises(ConfigError, match="rig needs left"):
-            source_of_arguments({"photo": BLANK, "rig": folder / "rig.yml"})
+@pytest.mark.parametrize("name", ["truth", "segments"])
+def test_rig_with_incompatible_options_raises(name: str):
+    with pytest.raises(ConfigError, match=f"leave out {name}"):
+        Scene.pair(left=BLANK, right=BLANK, rig="rig.yml", **{name: np.ones(SHAPE, int)})
+    with pytest.raises(ConfigError, match="rig needs left"):
+        source_of_arguments({"photo": BLANK, "rig": "rig.yml"})

@@ -1,3 +1,5 @@
+"""If one of these fails, a scene has other pictures, sizes or numbers than its files, or a wrong one is taken."""
+
 import socket
 from pathlib import Path
 
@@ -7,10 +9,9 @@ import pytest
 from pictures import write_png
 from standard_sets import put
 from tangible_core.data import DisparityMap, Relief, SegmentMap
-from tangible_core.errors import ConfigError, GeometryError, OptionError, PictureError
+from tangible_core.errors import ConfigError, OptionError, PictureError
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_files import BUILTINS, SceneFiles
-from tangible_core.scene.scene_source import source_of_arguments
 
 NAN = np.nan
 SIZE = {"width_m": 0.08, "relief_m": 0.02}
@@ -34,23 +35,9 @@ def complaint(**files):
     return sentence
 
 
-# The block of a scene
-
-
-@pytest.mark.parametrize(
-    ("files", "named"),
-    [
-        ({}, "nothing"),
-        ({"left": "a"}, "left"),
-        ({"right": "a"}, "right"),
-        ({"left": "a", "photo": "b"}, "left, photo"),
-        ({"left": "a", "right": "b", "height": "c"}, "left, right, height"),
-        ({"photo": "a", "height": "b"}, "photo, height"),
-        ({"disparity": "a"}, "disparity"),
-    ],
-)
-def test_scene_is_exactly_one_of_pair_photo_and_height(files, named):
-    assert complaint(**files).endswith(f"either left and right, or photo, or height, or video; this one gives {named}")
+@pytest.mark.parametrize("names", ["", "left", "right", "left photo", "left right height", "photo height", "disparity"])
+def test_scene_is_exactly_one_of_pair_photo_and_height(names):
+    assert complaint(**dict.fromkeys(names.split(), "a")).endswith(f"gives {', '.join(names.split()) or 'nothing'}")
 
 
 @pytest.mark.parametrize(
@@ -71,42 +58,6 @@ def test_incompatible_files_are_refused(files, message):
     assert message in complaint(**files)
 
 
-def test_every_key_has_a_description():
-    properties = SceneFiles.model_json_schema()["properties"]
-    assert all(each["description"] for each in properties.values())
-
-
-def test_scene_files_survive_json():
-    files = BUILTINS["builtin/motorcycle"]
-    assert SceneFiles.model_validate_json(files.model_dump_json()) == files
-
-
-# Builtin scenes
-
-
-def test_motorcycle_is_a_calibrated_pair_with_truth():
-    scene = Scene.read("builtin/motorcycle", Path("anywhere"))
-    assert scene.name == "builtin/motorcycle"
-    assert scene.views.left.shape == scene.views.right.shape == (500, 741, 3)
-    camera = scene.views.calibration
-    assert (camera.focal_px, camera.baseline_m, camera.offset_px) == (994.978, 0.193001, 31.086)
-    assert scene.truth.dtype == np.float32
-    assert scene.truth.shape == (500, 741)
-    assert np.isnan(scene.truth).mean() == pytest.approx(0.0735, abs=1e-4)
-    assert not np.isinf(scene.truth).any()
-    assert scene.disparity is None and scene.segments is None
-
-
-def test_motorcycle_truth_belongs_to_the_left_view():
-    scene = Scene.read("builtin/motorcycle", Path())
-    rows, columns = np.nonzero(scene.truth > 0)
-    target = np.rint(columns - scene.truth[rows, columns]).astype(int)
-    inside = target >= 0
-    left = scene.views.left[rows, columns].astype(float)[inside]
-    assert np.median(np.abs(left - scene.views.right[rows[inside], target[inside]])) < 6
-    assert np.median(np.abs(left - scene.views.right[rows[inside], columns[inside]])) > 12
-
-
 @pytest.mark.parametrize("name", BUILTINS)
 def test_builtin_scenes_need_no_network(name, monkeypatch):
     def refuse(*args, **options):
@@ -118,27 +69,12 @@ def test_builtin_scenes_need_no_network(name, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("name", "hint"),
-    [
-        ("builtin/motorcicle", "(did you mean 'builtin/motorcycle'?)"),
-        ("a.png", "write {photo: FILE}"),
-        ("", "builtin/"),
-    ],
+    ("name", "hint"), [("builtin/motorcicle", "did you mean"), ("a.png", "{photo: FILE}"), ("", "")]
 )
 def test_unknown_scene_name_lists_the_builtin_scenes(name, hint):
-    with pytest.raises(ConfigError, match="no scene is named") as caught:
+    with pytest.raises(ConfigError, match="builtin/gravel") as caught:
         Scene.read(name, Path())
     assert hint in str(caught.value)
-    assert "builtin/gravel" in str(caught.value)
-
-
-def test_builtin_scene_without_scikit_image_names_it(monkeypatch):
-    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    with pytest.raises(PictureError, match="pip install scikit-image"):
-        Scene.read("builtin/brick", Path())
-
-
-# Scenes in files
 
 
 def test_relative_paths_start_at_the_folder(folder):
@@ -149,12 +85,6 @@ def test_relative_paths_start_at_the_folder(folder):
     assert scene.name == "left.png"
     assert scene.views.calibration is None
     assert scene.truth is None
-
-
-def test_calibration_needs_no_offset(folder):
-    files = SceneFiles(left="left.png", right="right.png", focal_px=100, baseline_m=0.1)
-    camera = Scene.read(files, folder).views.calibration
-    assert (camera.focal_px, camera.baseline_m, camera.offset_px) == (100, 0.1, 0)
 
 
 def test_photo_brings_its_disparity_and_segments(folder):
@@ -168,12 +98,6 @@ def test_photo_brings_its_disparity_and_segments(folder):
     np.testing.assert_array_equal(disparity.disparity_px, np.load(folder / "map.npy"))
     assert segments.labels[0].tolist() == [0, 0, 0, 1, 1, 1]
     assert scene.views.right is None
-
-
-def test_truth_is_read_only(folder):
-    scene = Scene.read(SceneFiles(photo="photo.png", truth="map.npy"), folder)
-    with pytest.raises(ValueError, match="read-only"):
-        scene.truth[0, 0] = 1
 
 
 def test_height_map_brings_its_relief_and_no_views(folder):
@@ -190,30 +114,11 @@ def test_height_map_may_state_its_relief(folder):
     assert scene.brings(**SIZE)["relief"].height_m.max() == np.float32(0.005)
 
 
-def test_height_map_holes_are_filled_or_cut(folder):
-    np.save(folder / "holes.npy", [[2, NAN, 1, 0]])
-    files = SceneFiles(height="holes.npy")
-    filled, cut = (
-        Scene.read(files, folder).brings(width_m=0.08, relief_m=1, holes=holes)["relief"].height_m.tolist()
-        for holes in ("fill", "cut")
-    )
-    assert (filled, cut) == ([[1, 0.5, 0.5, 0]], [[1, 0, 0.5, 0]])
-
-
-def test_height_map_without_known_heights_is_refused(folder):
-    np.save(folder / "nothing.npy", np.full((3, 3), NAN))
-    with pytest.raises(GeometryError, match=r"nothing\.npy: the height map holds only NaN or infinity"):
-        Scene.read(SceneFiles(height="nothing.npy"), folder).brings(**SIZE)
-
-
 @pytest.mark.parametrize(
     ("files", "named"),
     [
         ({"left": "left.png", "right": "wide.png"}, ("wide.png (right) is 7 x 4", "left.png (left) is 6 x 4")),
-        (
-            {"photo": "photo.png", "disparity": "wide.npy"},
-            ("wide.npy (disparity) is 7 x 4", "photo.png (photo) is 6 x"),
-        ),
+        ({"photo": "photo.png", "disparity": "wide.npy"}, ("wide.npy (disparity)", "photo.png (photo)")),
         ({"photo": "photo.png", "segments": "wide.png"}, ("wide.png (segments)", "photo.png (photo)")),
         ({"photo": "photo.png", "truth": "wide.npy"}, ("wide.npy (truth)", "photo.png (photo)")),
         ({"height": "map.npy", "segments": "wide.png"}, ("wide.png (segments)", "map.npy (height)")),
@@ -223,12 +128,6 @@ def test_parts_of_two_sizes_are_named_with_their_files(folder, files, named):
     with pytest.raises(PictureError, match="all parts of a scene must be of one size") as caught:
         Scene.read(SceneFiles(**files), folder)
     assert all(each in str(caught.value) for each in named)
-
-
-@pytest.mark.parametrize("key", ["photo", "height"])
-def test_missing_file_is_named(folder, key):
-    with pytest.raises(PictureError, match="there is no such file"):
-        Scene.read(SceneFiles(**{key: "nothing.png"}), folder)
 
 
 @pytest.mark.parametrize("as_file", [True, False])
@@ -253,13 +152,3 @@ def test_truth_is_decoded_by_its_scale(as_file: bool, tmp_path: Path):
 
 
 # The constructors
-
-
-def test_scene_of_a_pair_in_one_picture_has_two_views():
-    assert Scene.pair(PICTURE, layout="side-by-side").views.right.shape[:2] == (4, 3)
-    assert Scene.pair(PICTURE, PICTURE).views.right.shape[:2] == (4, 6)
-
-
-def test_scene_with_an_unknown_keyword_is_refused():
-    with pytest.raises(ConfigError, match=r"scene\.colour: unknown option; known: left, right"):
-        source_of_arguments({"photo": PICTURE, "colour": "red"})

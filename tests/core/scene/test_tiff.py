@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 import tifffile
 
-from tangible_core.errors import PictureError
 from tangible_core.scene.formats.pictures import read_labels, read_map, read_picture
 
 CHANCE = np.random.default_rng(0)
@@ -92,22 +91,6 @@ def test_transparency_hides_pixels_of_a_picture_and_of_a_map(tmp_path: Path, dty
     np.testing.assert_array_equal(read_picture(tmp_path / "rgb.tif"), np.dstack([colours, alpha]))
 
 
-def test_infrared_is_left_out_and_told(tmp_path: Path):
-    colours, infrared = numbers("uint16", 3), numbers("uint16")
-    notes: list[str] = []
-    tifffile.imwrite(
-        tmp_path / "a.tif", np.dstack([colours, infrared]), photometric="rgb", extrasamples=["unspecified"]
-    )
-    np.testing.assert_array_equal(read_picture(tmp_path / "a.tif", notify=notes.append), colours)
-    assert notes == ["a.tif has 1 more channels, such as infrared, which are left out"]
-
-
-def test_more_bands_than_colours_without_a_name_are_refused(tmp_path: Path):
-    tifffile.imwrite(tmp_path / "a.tif", numbers("int16", 7), photometric="minisblack", planarconfig="contig")
-    with pytest.raises(PictureError, match="holds 7 channels and does not say which are red, green and blue"):
-        read_picture(tmp_path / "a.tif")
-
-
 @pytest.mark.parametrize(
     ("nodata", "dtype"),
     [("-9999", "float32"), ("-32768", "int16"), ("65535", "uint16"), ("-3.40282e+38", "float32"), ("1e20", "float64")],
@@ -123,14 +106,6 @@ def test_value_for_no_data_is_unknown(tmp_path: Path, nodata: str, dtype: str):
     np.testing.assert_array_equal(heights[known], values[known].astype(np.float32))
 
 
-def test_mask_page_says_which_pixels_are_known(tmp_path: Path):
-    values, shown = numbers("float32"), CHANCE.random((ROWS, COLUMNS)) < 0.5
-    with tifffile.TiffWriter(tmp_path / "a.tif") as file:
-        file.write(values, metadata=None)
-        file.write(shown, subfiletype=4, photometric="minisblack", metadata=None)
-    np.testing.assert_array_equal(read_map(tmp_path / "a.tif"), np.where(shown, values, np.nan))
-
-
 @pytest.mark.parametrize("orientation", range(1, 9))
 def test_picture_and_its_mask_are_turned_upright(tmp_path: Path, orientation: int):
     values = np.zeros((2, 3), np.float32)
@@ -144,17 +119,3 @@ def test_picture_and_its_mask_are_turned_upright(tmp_path: Path, orientation: in
     heights = read_map(tmp_path / "a.tif")
     assert heights.shape == ((3, 2) if orientation > 4 else (2, 3))
     assert np.isnan(heights[corner]) and np.isnan(heights).sum() == 1
-
-
-@pytest.mark.parametrize("values", [np.ones((3, 4), np.complex64), np.ones((3, 4), np.complex128)])
-def test_complex_numbers_are_refused(tmp_path: Path, values: np.ndarray):
-    tifffile.imwrite(tmp_path / "a.tif", values)
-    with pytest.raises(PictureError, match="holds complex numbers of"):
-        read_map(tmp_path / "a.tif")
-
-
-def test_labels_are_the_numbers_in_their_order(tmp_path: Path):
-    for dtype, order in product(("uint8", "uint16", "int32", "int64"), "<>"):
-        values = np.repeat(np.array([[0], [1], [100]]), 8, axis=1).astype(dtype)
-        tifffile.imwrite(tmp_path / "a.tif", values, byteorder=order, compression="deflate")
-        assert read_labels(tmp_path / "a.tif")[:, 0].tolist() == [0, 1, 2]

@@ -1,13 +1,11 @@
-"""Exchanged views, recognised by the signs of disparities and by occlusion."""
+"""If one of these fails, a pair whose views are exchanged is felt inside out."""
 
 import numpy as np
 import pytest
 
-from tangible_core import Pipeline, Scene
 from tangible_core.data import DisparityMap
 from tangible_core.scene import pair_checks
 from tangible_core.scene.pair_checks import correct_exchanged, view_order
-from tangible_depth import SemiGlobal
 
 SHAPE = 120, 200
 BOX = slice(80, 130)
@@ -33,7 +31,6 @@ def box_and_wall(box_px: float, wall_px: float) -> tuple[DisparityMap, np.ndarra
         (-20, 10, True, "left and right seem to be exchanged: 120 of 120 contours occlude"),
         (10, 40, True, "left and right seem to be exchanged: 120 of 120 contours occlude"),
     ],
-    ids=["in order", "converging", "shifted", "exchanged", "exchanged and converging", "exchanged and shifted"],
 )
 def test_view_order_follows_occlusion(box_px: float, wall_px: float, exchanged: bool, message: str):
     order = view_order(*box_and_wall(box_px, wall_px))
@@ -50,18 +47,9 @@ def test_view_order_without_occlusion_is_open_unless_cameras_explain_the_signs()
     assert view_order(*box_and_wall(-40, -10), offset_px=31.0).exchanged
 
 
-def test_view_order_of_relative_or_uncertain_maps_has_no_message():
-    values = np.full(SHAPE, -8, np.float32)
-    relative = DisparityMap(values, unit="relative")
-    unsure = DisparityMap(values, np.full(SHAPE, 0.1, np.float32))
-    assert not any(view_order(each, np.zeros(SHAPE, np.uint8)).message for each in (relative, unsure))
-
-
 @pytest.mark.parametrize(
     ("low_px", "votes", "exchanged", "is_open"),
     [
-        (-40, (44, 15), False, False),
-        (-40, (15, 44), True, False),
         (-40, (18, 10), False, False),
         (-40, (17, 10), False, True),
         (-40, (10, 17), False, True),
@@ -71,9 +59,7 @@ def test_view_order_of_relative_or_uncertain_maps_has_no_message():
         (-40, (20, 0), False, False),
         (20, (0, 49), False, False),
         (20, (0, 50), True, False),
-        (20, (25, 49), False, False),
         (20, (24, 48), True, False),
-        (40, (0, 49), False, False),
         (40, (17, 50), False, False),
         (40, (17, 51), True, False),
     ],
@@ -89,39 +75,9 @@ def test_order_follows_a_clear_majority_of_contours(low_px, votes, exchanged: bo
         assert view_order(disparity, picture, offset_px=0.0) == pair_checks.IN_ORDER
 
 
-@pytest.mark.parametrize("exchanged", [False, True])
-def test_stereo_card_of_few_rows_is_felt_the_right_way_round(exchanged: bool):
-    """A textured box of 55 rows stands 12 px before a wall, in two pictures that were shifted by 30 px: 55 strips."""
-    random = np.random.default_rng(0)
-    left, right = random.integers(0, 90, (2, 75, 260), np.uint8)
-    right[:, 30:] = left[:, :-30]
-    box = random.integers(160, 255, (55, 60), np.uint8)
-    left[10:65, 100:160] = right[10:65, 118:178] = box
-    scene = Scene.pair(right, left) if exchanged else Scene.pair(left, right)
-    pipeline = Pipeline(scene, depth=SemiGlobal(rectify="never"), cached=False)
-    height_m = pipeline.relief.height_m
-    rows, columns = height_m.shape
-    assert height_m[rows // 2, columns // 2] > height_m[rows // 2, columns // 10] + 0.001
-    [outcome] = [each for each in pipeline.outcomes if each.product == "disparity"]
-    assert ("left and right seem to be exchanged" in outcome.why) == exchanged
-    assert "is open" not in outcome.why
-
-
 def test_correct_exchanged_changes_the_signs():
     corrected = correct_exchanged(box_and_wall(-40, -10)[0])
     assert np.nanmax(corrected.disparity_px) == 40 and np.isnan(corrected.disparity_px).any()
-
-
-def test_exchanged_views_give_the_same_relief_with_a_warning():
-    views = Scene.builtin("motorcycle").views
-    assert views is not None and views.right is not None
-    truth = np.nan_to_num(Scene.builtin("motorcycle").truth, posinf=0)
-    for left, right, warned in ((views.left, views.right, False), (views.right, views.left, True)):
-        pipeline = Pipeline(Scene.pair(left, right), depth=SemiGlobal(), cached=False)
-        assert np.corrcoef(pipeline.relief.height_m.ravel(), truth.ravel())[0, 1] > 0.5
-        [outcome] = [each for each in pipeline.outcomes if each.product == "disparity"]
-        assert ("left and right seem to be exchanged" in outcome.why) == warned
-        assert any(each.kind == "warning" for each in outcome.notes) == warned
 
 
 def strip(step_px: float, width: int, before: float, after: float) -> tuple[np.ndarray, np.ndarray]:
@@ -141,15 +97,9 @@ def strip(step_px: float, width: int, before: float, after: float) -> tuple[np.n
         ([(4, 6, 0, 1), (4, 7, 0, 1), (4, 2, 0, 1), (4, 1, 0, 1)], 2, 0),
         ([(3, 3, 0, 1), (2.9, 3, 0, 1), (-10, 10, 0, 1)], 1, 0),
     ],
-    ids=[
-        "one edge is half as strong again",
-        "by a hundredth of white",
-        "as wide as the step",
-        "or by 2 px",
-        "least step",
-    ],
 )
 def test_strips_vote_by_the_clearer_of_their_edges(rows: list[tuple], in_order: int, exchanged: int):
+    """One edge is half as strong again, or by a hundredth of white; as wide as the step, or by 2 px; the least step."""
     values, grey = (np.stack(each) for each in zip(*(strip(*row) for row in rows), strict=True))
     for first in (0, 16):
         assert pair_checks._votes(values[:, first:], grey[:, first:]) == (in_order, exchanged)

@@ -1,4 +1,4 @@
-"""The force loop in its process: its ticks, its swaps, and that it leaves no force, however it ends."""
+"""The force loop in its process: what is felt is not the surface, or a force is left when the loop ends."""
 
 import os
 import signal
@@ -12,11 +12,10 @@ import pytest
 from ctrl_c import HEARING
 from faulty_touch import FaultyTouch
 from loop_devices import Circling, Failing
-from loop_scenes import SOFT_N_PER_M, held_force
+from loop_scenes import SOFT_N_PER_M, held_force, proxy
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import TICK_COLUMNS, TickFlag
-from tangible_core.errors import ConfigError, DeviceError
-from tangible_core.plugins.interfaces import Touch
+from tangible_core.errors import ConfigError
 from tangible_core.servo import OVER, Safety, Servo
 from tangible_core.servo.ring import shared_folder
 from waiting import until
@@ -26,14 +25,9 @@ FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
 LEVEL = HapticSurface.from_heights(np.full((32, 32), 0.002, np.float32))
 AT_ONCE = Safety(ramp_s=0, stale_s=1.0)  # a late tick takes no force away
 DEEP_M = 0.05
-DEEP = HapticSurface.from_heights(np.full((32, 32), DEEP_M, np.float32))
-"""A surface with a force to speak of even with a stiffness of SOFT_N_PER_M."""
+"""Height of a surface with a force to speak of even with a stiffness of SOFT_N_PER_M."""
 
 pytestmark = pytest.mark.usefixtures("patient")
-
-
-def proxy(surface: HapticSurface = LEVEL, **options: float) -> Touch:
-    return load_method("render", "proxy")(**options).touch(surface)
 
 
 def ticks(servo: Servo) -> np.ndarray:
@@ -51,7 +45,7 @@ class TestTicks:
         ],
     )
     def test_each_kind_of_loop_renders_the_surface(self, device, how: str) -> None:
-        with Servo(proxy(DEEP, stiffness_n_per_m=SOFT_N_PER_M), device, AT_ONCE, seconds=0.3) as servo:
+        with Servo(proxy(DEEP_M, stiffness_n_per_m=SOFT_N_PER_M), device, AT_ONCE, seconds=0.3) as servo:
             assert how in servo.how
             assert servo.start_s > 0
             until(lambda: not servo.running)
@@ -66,29 +60,7 @@ class TestTicks:
         periods = 299 + report.overruns - int(1000 * late_s)  # a tick each, or none; and what the last one missed
         assert due_s == pytest.approx(0.001 * periods, abs=1e-9)
 
-    @pytest.mark.usefixtures("loop_in_thread")
-    def test_ticks_match_the_law_and_its_guard(self) -> None:
-        """Compares the loop's forces that were not limited with those of the same law here."""
-        heights = np.random.default_rng(0).uniform(0.002, 0.0024, (32, 32)).astype(np.float32)
-        touch = proxy(HapticSurface.from_heights(heights), stiffness_n_per_m=SOFT_N_PER_M)
-        safety = AT_ONCE.model_copy(update={"passivity": "off"})
-        with Servo(touch, Circling(z_m=0.0015), safety, seconds=0.5) as servo:
-            until(lambda: not servo.running)
-            rows = ticks(servo)
-        free = rows[:, FLAGS].astype(int) & ~(TickFlag.TOUCHING | TickFlag.OVERRUN) == 0
-        assert free.sum() > 400
-        np.testing.assert_allclose(rows[free][:, FORCE], touch.path(rows[:, 2:5])[free], atol=1e-9)
-
-    @pytest.mark.usefixtures("loop_in_thread")
-    def test_servo_without_end_runs_until_stopped(self) -> None:
-        with Servo(proxy(), Circling()) as servo:
-            until(lambda: servo.report().ticks > 50)
-            assert servo.running
-            report = servo.stop("enough")
-            assert (report.stopped, servo.running) == ("enough", False)
-            assert servo.stop("again").stopped == "enough"
-
-    @pytest.mark.parametrize("seconds", [0, -1, float("nan"), float("inf")])
+    @pytest.mark.parametrize("seconds", [0, float("nan"), float("inf")])
     def test_servo_time_that_is_invalid_is_refused(self, seconds: float) -> None:
         with pytest.raises(ConfigError, match="seconds"):
             Servo(proxy(), Circling(), seconds=seconds)
@@ -98,11 +70,10 @@ class TestTicks:
 class TestSwap:
     @pytest.mark.parametrize("device", [Circling(z_m=0.0), Circling(z_m=0.0, exchanges=True), Failing(fault="none")])
     def test_swap_takes_effect_from_one_tick_to_the_next(self, device) -> None:
-        higher = HapticSurface.from_heights(np.full((48, 64), DEEP_M + 0.001, np.float32))
-        with Servo(proxy(DEEP, stiffness_n_per_m=SOFT_N_PER_M), device, AT_ONCE) as servo:
+        with Servo(proxy(DEEP_M, stiffness_n_per_m=SOFT_N_PER_M), device, AT_ONCE) as servo:
             until(lambda: servo.report().ticks > 100)
             limited = AT_ONCE.model_copy(update={"max_force_n": 0.05})
-            servo.swap(proxy(higher, stiffness_n_per_m=SOFT_N_PER_M), limited)
+            servo.swap(proxy(DEEP_M + 0.001, stiffness_n_per_m=SOFT_N_PER_M), limited)
             there = servo.report().ticks
             until(lambda: servo.report().ticks > there + 100)
             servo.stop()
@@ -116,13 +87,13 @@ class TestSwap:
         moved = rows[swapped:, 0] > rows[swapped - 1, 0] + on_its_way_s
         assert rows[swapped:][moved, 13].max() == pytest.approx(0.05)
 
-    @pytest.mark.parametrize("device", [Circling(z_m=0.0), Circling(z_m=0.0, exchanges=True), Failing(fault="none")])
+    @pytest.mark.parametrize("device", [Circling(z_m=0.0), Failing(fault="none")])
     def test_swapped_scene_fades_in(self, device) -> None:
         """By the clock of the ticks: late ones have a greater share."""
         fading = Safety(ramp_s=0.1, stale_s=1.0, max_step_n=10, passivity="off")
-        with Servo(proxy(DEEP, stiffness_n_per_m=SOFT_N_PER_M), device, fading) as servo:
+        with Servo(proxy(DEEP_M, stiffness_n_per_m=SOFT_N_PER_M), device, fading) as servo:
             until(lambda: len(ticks(servo)) > 50 and not int(ticks(servo)[-1, FLAGS]) & TickFlag.RAMPING)
-            servo.swap(proxy(DEEP, stiffness_n_per_m=SOFT_N_PER_M))
+            servo.swap(proxy(DEEP_M, stiffness_n_per_m=SOFT_N_PER_M))
             until(lambda: bool((ticks(servo)[:-1, FLAGS].astype(int) & TickFlag.SWAPPED).any()))
             until(lambda: not int(ticks(servo)[-1, FLAGS]) & TickFlag.RAMPING)
             servo.stop()
@@ -145,12 +116,6 @@ class TestSwap:
             assert "the tick is in Python" not in servo.how
             there = servo.report().ticks
             until(lambda: servo.report().ticks > there + 20)
-
-    def test_swap_after_the_end_is_an_error(self) -> None:
-        with Servo(proxy(), Circling(), seconds=0.01) as servo:
-            until(lambda: not servo.running)
-            with pytest.raises(DeviceError, match="has ended"):
-                servo.swap(proxy())
 
 
 class TestNoForceIsLeft:
@@ -180,25 +145,9 @@ class TestNoForceIsLeft:
             until(lambda: not servo.running)
         assert held_force(record) == 0
 
-    @pytest.mark.usefixtures("loop_in_thread")
-    def test_device_that_cannot_be_opened_is_an_error(self) -> None:
-        before = set(shared_folder().glob(f"tangible-{os.getpid()}-*"))
-        with pytest.raises(DeviceError, match="in use by another program"), Servo(proxy(), Failing(opens="never")):
-            pytest.fail("it was opened")
-        assert set(shared_folder().glob(f"tangible-{os.getpid()}-*")) == before
-
-    def test_killed_loop_leaves_no_force(self, tmp_path: Path) -> None:
-        """A killed process cannot clean up: the host opens the device once more to release it."""
-        record = tmp_path / "force"
-        with Servo(proxy(), Failing(fault="none", record=str(record), simulated=False), AT_ONCE) as servo:
-            until(lambda: held_force(record) > 0)
-            os.kill(servo.process_id, signal.SIGKILL)
-            until(lambda: not servo.running)
-            assert "died" in servo.report().stopped
-            assert held_force(record) == 0
-
-    @pytest.mark.parametrize("killed_by", [signal.SIGKILL, signal.SIGINT])
+    @pytest.mark.parametrize("killed_by", [signal.SIGKILL, pytest.param(signal.SIGINT, marks=pytest.mark.whole)])
     def test_killed_host_leaves_no_force_and_no_memory(self, tmp_path: Path, killed_by: signal.Signals) -> None:
+        """In the middle of a film, whose memory the host shares."""
         record = tmp_path / "force"
         script = [*HEARING, sys.executable, "-c", HOST.format(record=str(record))]
         host = subprocess.Popen(script, stderr=subprocess.DEVNULL, start_new_session=True)
@@ -216,11 +165,12 @@ class TestNoForceIsLeft:
 
 
 HOST = """
-import time, numpy as np
-from tangible_core import HapticSurface, load_method
-from tangible_core.servo import Safety, Servo
+import time
 from loop_devices import Failing
-touch = load_method("render", "proxy")().touch(HapticSurface.from_heights(np.full((8, 8), 0.002, np.float32)))
-with Servo(touch, Failing(fault="none", record={record!r}), Safety(ramp_s=0)):
-    time.sleep(60)
+from moving_plane import MovingPlane, level
+from tangible_core.servo import Safety, Servo
+with Servo(MovingPlane(0.01, 100.0), Failing(fault="none", record={record!r}), Safety(ramp_s=0)) as servo:
+    for number in range(30_000):
+        servo.show(level(0.01 + 0.001 * (number % 3)), number)
+        time.sleep(0.002)
 """

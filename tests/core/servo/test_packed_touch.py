@@ -1,4 +1,4 @@
-"""Packed touches, which one process makes and another passes on unread; and the null touch."""
+"""Packed touches, which one process passes on unread: a scene is lost or felt unlimited, or memory is never freed."""
 
 import json
 import os
@@ -14,7 +14,7 @@ from loop_devices import Circling, Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import NO_FORCE, Force, HapticState
-from tangible_core.errors import BrokenMethod, DeviceError
+from tangible_core.errors import DeviceError
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.plugins.touch import PlainTouch
 from tangible_core.servo import Packed, Ring, Safety, Servo, null_touch, pack_touch, parcel, ring
@@ -38,18 +38,6 @@ class Silent(PlainTouch):
         return Force(0.0, 0.0, max(0.0, -7000 * state.position_m[2]))
 
 
-class Unsendable(PlainTouch):
-    """A touch with a member that cannot be sent to another process."""
-
-    stiffness_n_per_m = 0.0
-
-    def __init__(self) -> None:
-        self.held = lambda: None
-
-    def force(self, state: HapticState) -> Force:
-        return NO_FORCE
-
-
 def of_a_dead_maker(touch: Touch) -> tuple[Path, float]:
     made = pack_touch(touch, SPEC)
     dead = made.parcel.with_name("tangible-999999999-a_b1.parcel")
@@ -71,12 +59,6 @@ class TestStiffness:
         assert one.stiffness_n_per_m > 5000
         one.discard()
 
-    def test_packed_touch_with_invalid_stiffness_is_refused(self):
-        one = Packed(parcel.pack(stiff()), float("nan"))
-        with pytest.raises(BrokenMethod, match="stiffness of nan"), Servo(one, Circling()):
-            pass
-        assert not parcels()
-
 
 class TestOwner:
     def test_parcel_of_killed_maker_belongs_to_its_adopter(self):
@@ -94,41 +76,22 @@ class TestOwner:
         with pytest.raises(DeviceError, match=r"the packed scene is missing .*; make it again"):
             Packed(path, stiffness)
 
-    def test_parcel_has_one_owner(self):
-        first = pack_touch(stiff(), SPEC)
-        dead = first.parcel.rename(first.parcel.with_name("tangible-999999999-c.parcel"))
-        second = Packed(str(dead), 1.0)
-        with pytest.raises(DeviceError, match="make it again"):
-            Packed(str(dead), 1.0)
-        second.discard()
-
     @pytest.mark.parametrize("name", ["tangible-1-x.ring", "x.parcel", "../tangible-1.parcel", ""])
     def test_file_that_is_not_a_parcel_is_left_alone(self, tmp_path: Path, name: str):
         with pytest.raises(DeviceError, match="is not the file of a packed scene"):
             Packed(tmp_path / name, 1.0)
 
     def test_touch_that_cannot_be_packed_leaves_no_file(self):
+        class Local(Silent):
+            """A class that no other process can import."""
+
         with pytest.raises(DeviceError, match="make it picklable"):
-            pack_touch(Unsendable(), SPEC)
+            pack_touch(Local(), SPEC)
         assert not parcels()
 
 
 @pytest.mark.usefixtures("loop_in_thread")
 class TestUse:
-    def test_packed_touch_in_the_host_has_no_force(self):
-        one = pack_touch(stiff(), SPEC)
-        for ask in (lambda: one.force(HapticState((0.0, 0.0, 0.0))), lambda: one.path(np.zeros((2, 3)))):
-            with pytest.raises(DeviceError, match="only in the loop's process; ask the touch that was packed"):
-                ask()
-        one.discard()
-
-    def test_packed_touch_inside_an_object_arrives_as_the_touch(self):
-        one = pack_touch(stiff(), SPEC)
-        (touch,) = parcel.unpack(parcel.pack([one]))
-        assert isinstance(touch, CompiledTouch)
-        assert touch.force(HapticState((0.0, 0.0, 0.001))).z == pytest.approx(50)
-        assert not parcels()
-
     @pytest.mark.parametrize("device", [Failing(opens="never"), Circling()])
     def test_parcel_of_loop_that_does_not_start_is_deleted(self, device, monkeypatch: pytest.MonkeyPatch):
         one = pack_touch(stiff(), SPEC)

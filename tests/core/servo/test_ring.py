@@ -1,6 +1,4 @@
-"""The ring of a force loop: its layout, its readers, and its file."""
-
-import threading
+"""The ring of a force loop: a reader gets torn ticks, or misses some without knowing."""
 
 import numpy as np
 import pytest
@@ -8,7 +6,7 @@ import pytest
 from ring_ticks import put
 from tangible_core.data import TICK_COLUMNS, TickFlag
 from tangible_core.servo import Ring
-from tangible_core.servo.ring import COUNT, MARKS, MOST_LATE_S, OVERRUNS, PERIOD_NS, START_NS, WIDEST_US
+from tangible_core.servo.ring import COUNT, MARKS, MOST_LATE_S, PERIOD_NS, WIDEST_US
 from tangible_core.servo.ticks import cycle
 from tangible_core.servo.ticks.loop import sections
 
@@ -44,11 +42,6 @@ class TestReading:
         assert rows[:, 0].tolist() == list(range(24, 40))
         assert following - 10 - len(rows) == 14
 
-    def test_slot_being_written_is_not_read(self, small: Ring) -> None:
-        put(small, *range(5))
-        small.stamps[3] = -1
-        assert small.since(0)[0][:, 0].tolist() == [0, 1, 2, 4]
-
     def test_row_overwritten_during_the_read_is_omitted(self, small: Ring) -> None:
         put(small, *range(16))
         small.ticks = Overwritten(small)
@@ -62,25 +55,6 @@ class TestReading:
         put(small, *range(15))
         small.stamps[15] = -1
         assert small.since(-1)[0][:, 0].tolist() == list(range(15))
-
-    def test_rows_read_during_fast_writing_are_whole(self, small: Ring) -> None:
-        done = threading.Event()
-
-        def write() -> None:
-            put(small, *range(30_000))
-            done.set()
-
-        thread = threading.Thread(target=write)
-        thread.start()
-        first, seen = 0, 0
-        while not done.is_set():
-            rows, first = small.since(first)
-            whole = np.delete(rows, cycle.FLAGS, axis=1)
-            assert (whole == whole[:, :1]).all()
-            assert (np.diff(whole[:, 0]) > 0).all()
-            seen += len(rows)
-        thread.join()
-        assert seen > 0
 
 
 class Overtaken:
@@ -119,10 +93,6 @@ class TestLatest:
         assert small.latest() is None
         row = small.latest()
         assert row is not None and row[0] == 35
-
-    def test_header_words_have_names(self, small: Ring) -> None:
-        small.header[START_NS], small.header[OVERRUNS] = 7, 5
-        assert (small.start_ns, small.overruns, small.count) == (7, 5, 0)
 
 
 class TestWriting:

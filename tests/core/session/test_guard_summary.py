@@ -1,4 +1,4 @@
-"""The summary of a session if the guard changes most of its forces, with the cure."""
+"""The summary of a session: a person is not told that the guard changed most of the forces, and what helps."""
 
 from pathlib import Path
 
@@ -6,12 +6,7 @@ import numpy as np
 import pytest
 
 from command_line import tangible
-from level_ground import GROUND
-from tangible_core import Pipeline
-from tangible_core.data import Force, HapticState, ServoReport
-from tangible_core.session import guard_summary, run_simulated
-from tangible_devices.mock import Mock
-from tangible_render.proxy import Proxy
+from tangible_core.session import guard_summary
 
 STIFF = "scene: {height: level.npy}\nwant: touch\nrender: {use: proxy, stiffness_n_per_m: 5000}\ndevice: {use: mock}\n"
 SOFTENED = "100 % of the ticks in contact the force was scaled down, because the force law is stiffer"
@@ -48,30 +43,8 @@ def test_guard_summary_reports_limits_of_most_ticks(flagged: dict[str, int], sai
     assert bool(found) == bool(said)
 
 
-def test_recording_prints_the_guard_summary():
-    softened = run_simulated(Proxy(stiffness_n_per_m=5000.0).touch(GROUND), Mock(), 1.0)
-    assert SOFTENED in repr(softened)
-    assert repr(softened).startswith("Recording of 0.999 s: 1000 ticks, peak force ")
-    held = run_simulated(Proxy(stiffness_n_per_m=1600.0).touch(GROUND), Mock(), 1.0)
-    assert "\n" not in repr(held)
-
-
 def test_run_prints_the_guard_summary(folder: Path):
     done = tangible("run", "p.yaml", "--seconds", 0.5, cwd=folder)
     assert done.returncode == 0, done.stderr
     assert SOFTENED in done.stdout
     assert SOFTENED in (folder / "out/p/outcomes.json").read_text()
-
-
-@pytest.mark.parametrize("more", [(), ("--json",)])
-def test_feel_prints_the_guard_summary(folder: Path, more: tuple[str, ...], monkeypatch: pytest.MonkeyPatch):
-    def feel(self: Pipeline, *_: object, on_report, on_start, **__: object) -> None:
-        flagged = {"TOUCHING": 90, "STIFFNESS_LIMITED": 90}
-        on_start(type("Servo", (), {"how": "made up", "start_s": 0.0}))
-        on_report(
-            ServoReport(100, 0.1, HapticState((0, 0, 0)), Force(0, 0, 0), 1.0, 0.0, "the time is over", flagged=flagged)
-        )
-
-    monkeypatch.setattr(Pipeline, "feel", feel)
-    done = tangible("feel", "p.yaml", *more, cwd=folder)
-    assert SOFTENED in done.stdout.replace("\n", " ")

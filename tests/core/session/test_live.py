@@ -18,7 +18,6 @@ from tangible_core.data import ServoReport
 from tangible_core.errors import OutputError
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import OVER, Ring, Safety, Servo
-from tangible_core.servo.ring import STOP
 from tangible_core.servo.ticks import cycle
 from tangible_core.servo.ticks.loop import sections
 from tangible_core.session import INTERRUPTED, Recording, RingDrain, figures, keeping, run_in_real_time
@@ -124,23 +123,6 @@ def test_drain_starts_at_its_first_tick_and_passes_each_tick_once(loop_part: Ser
     loop_part.ring.remove()  # the loop has ended
     drain.look()
     assert [rows[:, 0].tolist() for rows in kept] == [[100], list(range(101, 131))]
-
-
-def test_drain_on_full_disk_raises_and_the_loop_goes_on(loop_part: Servo, tmp_path: Path) -> None:
-    with keeping(tmp_path / "hand.nc", About("none", "none", "")) as writer:
-        drain = RingDrain(loop_part, writer.append)
-        write_ticks(loop_part.ring, 10)
-        drain.look()
-        write_ticks(loop_part.ring, 50)
-        with files_up_to((tmp_path / "hand.nc").stat().st_size + 1000), pytest.raises(OutputError, match="free some"):
-            drain.look()
-    assert not loop_part.ring.header[STOP]
-    whole = Recording.load(tmp_path / "hand.nc")
-    assert whole.time_s.tolist() == list(range(10))
-    assert whole.stopped.startswith("the recording ends early")
-    with keeping(tmp_path / "again.csv", About("none", "none", "")) as writer:  # begun in the middle of a life
-        RingDrain(loop_part, writer.append, 55).look()
-    assert Recording.load(tmp_path / "again.csv").time_s.tolist() == [55, 56, 57, 58, 59]
 
 
 def test_drain_passes_unrecorded_ticks_again(loop_part: Servo) -> None:

@@ -1,6 +1,5 @@
-"""The conformance kit itself, and the checks that every kind of method shares."""
+"""The conformance kit. Otherwise a faulty method would be called correct, or a real motor be pushed unasked."""
 
-import inspect
 import logging
 import os
 import re
@@ -17,8 +16,8 @@ import loop_devices
 from tangible_core import DisparityMap, Views
 from tangible_core.errors import BrokenMethod, UnknownMethod
 from tangible_core.plugins import DepthEstimator
-from tangible_core.plugins.registry import KIND_NAMES, Registry
-from tangible_core.testing import CheckFailure, CheckResult, checks, conforms, every_method, run_checks
+from tangible_core.plugins.registry import Registry
+from tangible_core.testing import CheckFailure, CheckResult, checks, every_method, run_checks
 
 SOURCE = '''
     import numpy as np
@@ -40,24 +39,6 @@ SOURCE = '''
 def registry(install):
     install("acme", {"tangible.depth": {"mine": "acme:Mine", "lost": "acme:Lost"}}, acme=SOURCE)
     return Registry()
-
-
-@pytest.mark.parametrize("kind", KIND_NAMES)
-def test_check_docstring_states_a_demand(kind):
-    for check in checks(kind):
-        first, *_ = inspect.getdoc(check).split("\n\n")
-        assert first.endswith("."), check.__name__
-
-
-@pytest.mark.parametrize("kind", KIND_NAMES)
-def test_check_names_of_a_kind_are_unique(kind):
-    names = [check.__name__ for check in checks(kind)]
-    assert len(set(names)) == len(names)
-
-
-def test_checks_unknown_kind_suggests_a_name():
-    with pytest.raises(UnknownMethod, match=r"did you mean 'depth'"):
-        checks("dept")
 
 
 def test_run_checks_yields_results_with_messages(registry):
@@ -117,14 +98,6 @@ def test_run_checks_other_exception_is_a_failure_with_its_place(install, caplog)
     assert "ZeroDivisionError" in caplog.text
 
 
-def test_run_checks_missing_extra_keeps_the_message(install):
-    missing = 'raise BrokenMethod("mine needs torch; pip install tangible-images[torch]")'
-    source = SOURCE.replace("return", f"from tangible_core.errors import BrokenMethod; {missing}; return")
-    install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme=source)
-    results = {result.name: result for result in run_checks("depth", "mine", Registry())}
-    assert results["wall_is_found"].message == "mine needs torch; pip install tangible-images[torch]"
-
-
 def test_conforms_in_a_third_party_module_runs_every_check(install, tmp_path, monkeypatch):
     points = {"tangible.depth": {"mine": "acme:Mine"}}
     site = install("acme", points, acme=source_declaring("flat_pair_claims_nothing"))
@@ -146,11 +119,6 @@ def test_conforms_in_a_third_party_module_runs_every_check(install, tmp_path, mo
     assert "the wall is shifted by 6 px; the median error is 3 px" in ran.stdout
 
 
-def test_conforms_unknown_expected_failure_is_refused():
-    with pytest.raises(ValueError, match=r"no depth check is named 'wall_is_fond' \(did you mean 'wall_is_found'\?\)"):
-        conforms("depth", "mine", {"wall_is_fond": "because"})
-
-
 LISTINGS = {
     "name_is_plain": ("My_Method", SOURCE, "the name is 'My_Method'"),
     "summary_is_there": ("mine", SOURCE.replace('"""Six pixels everywhere."""', ""), "no docstring"),
@@ -163,35 +131,24 @@ LISTINGS = {
 
 
 @pytest.mark.parametrize("check", every_method.LISTING_CHECKS)
-def test_listing_check_faulty_listing_fails(install, check):
-    name, source, complaint = LISTINGS[check.__name__]
-    install("acme", {"tangible.depth": {name: "acme:Mine"}}, acme=source)
-    with pytest.raises(CheckFailure, match=complaint):
-        check(Registry().find("depth", name))
-
-
-@pytest.mark.parametrize("check", every_method.LISTING_CHECKS)
-def test_listing_check_correct_listing_passes(registry, check):
+def test_listing_check_faulty_listing_fails(install, registry, check):
     check(registry.find("depth", "mine"))
+    name, source, complaint = LISTINGS[check.__name__]
+    install("bad", {"tangible.depth": {name: "bad:Mine"}}, bad=source)
+    with pytest.raises(CheckFailure, match=complaint):
+        check(Registry().find("depth", name if name != "mine" else "bad/mine"))
 
 
-def test_import_check_module_not_importable_fails(install):
-    install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme="import nothing_there")
-    with pytest.raises(CheckFailure, match="acme cannot be imported: ModuleNotFoundError: No module named 'nothing"):
-        every_method.import_is_light(Registry().find("depth", "mine"))
-
-
-@pytest.mark.parametrize("name", ["gabor", "opencv-sgbm", "zncc-7x7", "a1", "3mf"])
-def test_name_check_plain_name_passes(install, name):
+@pytest.mark.parametrize(
+    "name", ["gabor", "zncc-7x7", "a1", "3mf", "Gabor", "two words", "a_b", "-a", "a--b", "1e3", "0xff"]
+)
+def test_name_check_wants_words_joined_by_hyphens(install, name):
     install("acme", {"tangible.depth": {name: "acme:Mine"}}, acme=SOURCE)
-    every_method.name_is_plain(Registry().find("depth", name))
-
-
-@pytest.mark.parametrize("name", ["Gabor", "two words", "a_b", "-a", "a-", "a--b", "1a", "1e3", "0xff", "a.b"])
-def test_name_check_other_name_fails(install, name):
-    install("acme", {"tangible.depth": {name: "acme:Mine"}}, acme=SOURCE)
-    with pytest.raises(CheckFailure, match="lower-case words joined by hyphens"):
+    if name in ("gabor", "zncc-7x7", "a1", "3mf"):
         every_method.name_is_plain(Registry().find("depth", name))
+    else:
+        with pytest.raises(CheckFailure, match="lower-case words joined by hyphens"):
+            every_method.name_is_plain(Registry().find("depth", name))
 
 
 class Six(DepthEstimator):
@@ -250,14 +207,10 @@ OPTIONS: dict[str, Any] = {
 
 @pytest.mark.parametrize("check", every_method.OPTION_CHECKS)
 def test_option_check_faulty_options_fail(check):
+    check(Six(shift_px=3.0))
     with pytest.raises(Exception) as caught:
         check(OPTIONS[check.__name__])
     assert isinstance(caught.value, CheckFailure) or check.__name__ == "schema_can_be_made"
-
-
-@pytest.mark.parametrize("check", every_method.OPTION_CHECKS)
-def test_option_check_correct_options_pass(check):
-    check(Six(shift_px=3.0))
 
 
 MOTOR = '''
@@ -276,15 +229,15 @@ MOTOR = '''
     '''
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("allowed", ["", "1"])
 def test_conforms_real_device_is_pushed_only_if_allowed(install, tmp_path, monkeypatch, allowed):
     site = install("acme", {"tangible.device": {"motor": "acme:Motor"}}, acme=MOTOR)
     module = 'from tangible_core.testing import conforms\n\ntest_motor = conforms("device", "motor")\n'
     tmp_path.joinpath("test_motor.py").write_text(module)
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(site), str(Path(loop_devices.__file__).parent)]))
-    monkeypatch.delenv("TANGIBLE_MOTORS", raising=False)
-    if allowed:
-        monkeypatch.setenv("TANGIBLE_MOTORS", allowed)
+    search = [str(site), str(Path(loop_devices.__file__).parent), os.environ.get("PYTHONPATH", "")]
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(search))
+    monkeypatch.setenv("TANGIBLE_MOTORS", allowed)
     command = [sys.executable, "-m", "pytest", "-rs", "-p", "no:cacheprovider", "test_motor.py"]
     ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ("let its grip hang free, and set TANGIBLE_MOTORS=1" in ran.stdout) != bool(allowed)

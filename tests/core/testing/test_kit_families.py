@@ -1,4 +1,4 @@
-"""Every check of every kind passes a correct method and fails one with the fault that it is there for."""
+"""Every check of the kit. Otherwise a method with the fault that a check is there for would pass."""
 
 from typing import Any, ClassVar
 

@@ -1,10 +1,8 @@
-"""The catalogues: each has all that the program shows, and nothing else."""
+"""The catalogues. Otherwise a text would stay English in a German program."""
 
 import pytest
 
 import catalogues
-from tangible_core.translation.catalogue import catalogue
-from tangible_legibility.words.languages import TABLES
 
 HOW = (
     "run `python tests/helpers/catalogues.py`, and fill in the empty `msgstr` of "
@@ -27,17 +25,3 @@ def test_no_translation_is_of_a_text_that_is_gone(language: str) -> None:
 @pytest.mark.parametrize("language", ["de", "fr"])
 def test_translations_have_the_placeholders_of_their_texts(language: str) -> None:
     assert not list(catalogues.misfits(language))
-
-
-@pytest.mark.parametrize("language", ["de", "fr"])
-def test_places_are_called_as_in_descriptions(language: str) -> None:
-    english, own = TABLES["en"].words, TABLES[language].words  # pyright: ignore[reportArgumentType]
-    places = [key for key in english if len(key) == 3 and key[1] == " " and key != "- -"]
-    assert len(places) == 15
-    translated = catalogue(language)
-    assert [translated(english[key]) for key in places] == [own[key] for key in places]
-
-
-def test_a_new_text_is_missing_and_named() -> None:
-    assert catalogues.normal("{path}: is {size} mm") == catalogues.normal("{file}: is {width_m} mm")
-    assert catalogues.normal("{a} of {b}") != catalogues.normal("{b} of {c} mm")

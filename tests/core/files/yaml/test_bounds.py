@@ -1,21 +1,18 @@
-"""Hostile YAML: each text gives one complaint with its place, quickly."""
+"""If one of these fails, a hostile YAML text takes seconds, gigabytes or a traceback instead of one complaint."""
 
 import json
 from pathlib import Path
 
 import pytest
-from pydantic import BaseModel
 
-from hostile import LAUGHS, YAML_BOMBS
+from hostile import YAML_BOMBS
 from tangible_core.errors import MOST_IN_LINE, MOST_LINES, ConfigError
 from tangible_core.files.reading import MOST_TEXT_BYTES
 from tangible_core.files.yaml import bounds
-from tangible_core.files.yaml.bounds import MOST_DEPTH, MOST_DIGITS, MOST_NODES
-from tangible_core.files.yaml.source import Source, parse_source, plain
-from tangible_core.materials.files import parse_materials
+from tangible_core.files.yaml.bounds import MOST_DEPTH, MOST_DIGITS
+from tangible_core.files.yaml.source import Source, parse_source, plain, read_text
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
-from tangible_core.scene.formats.pictures import MAX_LABELS
 from unreadable import unreadable
 
 PATH = Path("here/p.yaml")
@@ -42,14 +39,6 @@ def test_yaml_bomb_as_a_pipeline_gives_few_short_complaints(name: str):
     assert len(lines) <= MOST_LINES + 1
     assert all(line.isprintable() and len(line) <= MOST_IN_LINE for line in lines)
     assert lines[0].startswith("here/p.yaml:")
-
-
-@pytest.mark.timeout(60)
-@pytest.mark.parametrize("name", YAML_BOMBS)
-def test_yaml_bomb_as_materials_gives_few_short_complaints(name: str):
-    with pytest.raises(ConfigError) as error:
-        parse_materials(YAML_BOMBS[name], PATH, {})
-    assert len(str(error.value)) <= (MOST_LINES + 1) * (MOST_IN_LINE + 1)
 
 
 def deep(levels: int) -> str:
@@ -85,22 +74,6 @@ def test_alias_counts_as_all_nodes_that_it_stands_for(monkeypatch: pytest.Monkey
     assert "values, aliases expanded" in complaint(text.format("*a," * 9))
 
 
-def test_rules_for_the_most_segments_stay_within_the_limits():
-    text = "rules:\n" + "".join(f"- {{segment: {label}, material: ice}}\n" for label in range(MAX_LABELS))
-    assert len(text) < MOST_TEXT_BYTES
-    assert 5 * MAX_LABELS + 3 < MOST_NODES
-
-
-def test_anchor_defined_twice_means_the_last_definition():
-    text = f"a: &a [{'1,' * 300}]\nb: &a [1]\nc: [{'*a,' * 1000}]"
-    assert len(parse(text).tree["c"]) == 1000
-
-
-def test_aliases_are_expanded():
-    tree = parse("a: &a {b: 1}\nc: *a\nd: {<<: *a, e: 2}\nf: &f word\n*f : 3\n").tree
-    assert (tree["c"]["b"], tree["d"]["b"], tree["d"]["e"], tree["word"]) == (1, 1, 2, 3)
-
-
 @pytest.mark.parametrize(
     ("text", "place"),
     [("a: &a [*a]", "1:8"), ("a: &a {b: [1, *a]}", "1:15"), ("a: &a {<<: *a}", "1:12"), ("&a\nb: *a", "2:4")],
@@ -126,36 +99,13 @@ def test_date_is_read_as_text(text: str):
     assert parse(f"photo: {text}").tree["photo"] == text
 
 
-@pytest.mark.parametrize("text", ["!!int word", "!!float word", "!!binary zzz", "!!bool 7", "!!null x"])
-def test_value_that_contradicts_its_tag_is_refused_with_its_place(text: str):
-    try:
-        parse(f"x: {text}")
-    except ConfigError as error:
-        assert str(error).startswith("here/p.yaml:1:4: ")
-
-
 def test_text_with_too_many_bytes_is_refused(tmp_path: Path):
-    from tangible_core.files.yaml.source import read_text
-
     (tmp_path / "a.yaml").write_text("x: 1\n" + "#" * (MOST_TEXT_BYTES - 5))
     assert parse(read_text(tmp_path / "a.yaml")).tree == {"x": 1}
     (tmp_path / "a.yaml").write_text("x: 1\n" + "#" * (MOST_TEXT_BYTES - 4))
     with pytest.raises(ConfigError, match=r"a\.yaml: cannot be read as text: it holds more than 0\.25 MB"):
         read_text(tmp_path / "a.yaml")
     assert complaint("#" * (MOST_TEXT_BYTES + 1)) == "here/p.yaml: it holds more than 0.25 MB"
-
-
-def test_text_that_cannot_be_read_says_why(tmp_path: Path):
-    from tangible_core.files.yaml.source import read_text
-
-    for path, why in unreadable(tmp_path, ".yaml"):
-        with pytest.raises(ConfigError) as error:
-            read_text(path)
-        assert str(error.value) == f"{path}: cannot be read as text: {why}"
-
-
-def test_billion_laughs_has_nine_lines():
-    assert len(LAUGHS.splitlines()) == 9
 
 
 @pytest.mark.parametrize(
@@ -199,24 +149,8 @@ def test_plain_value_with_its_own_tag_and_tagged_mapping_are_read():
     assert {key: plain(value) for key, value in tree.items()} == {"a": 3, "b": True, "c": {"rows": 3}, "d": 2.0}
 
 
-class Options(BaseModel, extra="forbid"):
-    width: int = 1
-
-
-@pytest.mark.parametrize("key", [":", ":text", "[key]", "widht"])
-@pytest.mark.parametrize("place", [(), ("pen",)])
-def test_unknown_key_is_named_though_pydantic_has_such_names(key: str, place: tuple[str, ...]):
-    """Pydantic names the forms of an option `:text` and a key `[key]` where it says where a mistake is."""
-    source = parse(f"'{key}': 1\n")
-    assert source.model(place, Options, source.tree) is None
-    ((sentence, _),) = source.complaints
-    hint = " (did you mean 'width'?)" if key == "widht" else ""
-    assert sentence == f"here/p.yaml:1:1: {'.'.join((*place, key))}: unknown option{hint}; known: width"
-
-
-@pytest.mark.parametrize("version", ["1.0", "0.9", "2.0", "1.99", "1"])
-def test_version_that_the_parser_does_not_know_is_a_complaint(version: str):
-    try:
-        parse(f"%YAML {version}\n---\na: 1\n")
-    except ConfigError as error:
-        assert str(error).startswith("here/p.yaml")
+def test_text_that_cannot_be_read_says_why(tmp_path: Path):
+    for path, why in unreadable(tmp_path, ".yaml"):
+        with pytest.raises(ConfigError) as error:
+            read_text(path)
+        assert str(error.value) == f"{path}: cannot be read as text: {why}"

@@ -1,4 +1,4 @@
-"""What is often wrong in a YAML file is named with its place and a cure that can be followed."""
+"""If one of these fails, a common mistake in a YAML file is not named with its place and a cure."""
 
 from pathlib import Path
 
@@ -33,11 +33,6 @@ def test_mistake_has_its_place_and_a_cure(text: str, message: str):
         parse_config(HEAD + text, Path("p.yaml"), default_registry())
 
 
-def test_override_with_a_decimal_comma_names_the_point():
-    with pytest.raises(ConfigError, match=r"with a decimal point it is 0\.08"):
-        parse_config(HEAD, Path("p.yaml"), default_registry(), ["workspace.width_m=0,08"])
-
-
 def test_dead_link_names_where_it_leads(tmp_path: Path):
     for name in ("p.yaml", "p.png"):
         (tmp_path / name).symlink_to(tmp_path / "gone")
@@ -46,8 +41,3 @@ def test_dead_link_names_where_it_leads(tmp_path: Path):
         load_config(tmp_path / "p.yaml", default_registry())
     with pytest.raises(PictureError, match=f"p.png: {says}"):
         assert Scene.photo(tmp_path / "p.png").views
-
-
-def test_byte_order_mark_is_no_part_of_a_file(tmp_path: Path):
-    (tmp_path / "p.yaml").write_text(HEAD, encoding="utf-8-sig")
-    assert load_config(tmp_path / "p.yaml", default_registry()).scene == "builtin/brick"

@@ -1,4 +1,4 @@
-"""A pipeline file edited key by key: it says what was set, and all else of it stands as it stood."""
+"""A pipeline file edited key by key. Otherwise a change on the page would lose comments or other values."""
 
 import json
 import re
@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 from tangible_core.errors import ConfigError, TangibleError
 from tangible_core.files.yaml.editing import json_in_yaml
 from tangible_core.files.yaml.source import parse_value, plain
-from tangible_core.pipeline.config.editing import REMOVE, edit_text, read_values
-from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.plugins.registry import default_registry
+from tangible_core.pipeline.config.editing import REMOVE, edit_text, read_values, relocate_text
+from tangible_core.pipeline.config.methods import NamedMethod
+from tangible_core.pipeline.config.model import PipelineConfig
+from tangible_core.plugins import Exporter
 
 PATH = Path("here/p.yaml")
 OF_MINE = """\
@@ -101,22 +102,21 @@ def _at(tree: Any, key: Any) -> Any:
     return tree
 
 
-def test_block_of_lines_with_a_new_value_becomes_one_line():
-    text = edit_text(OF_MINE, PATH, {"depth": {"use": "zncc", "window_px": 9}})
-    assert "# how deep\ndepth: {use: zncc, window_px: 9}\n\n# how high\n" in text
-
-
-def test_labels_in_changes_become_whole_numbers():
-    text = edit_text("scene: builtin/brick\n", PATH, {"materials": {"0": "ice"}})
-    assert text == "scene: builtin/brick\nmaterials: {0: ice}\n"
-    assert parse_config(text, PATH, default_registry()).materials.by == {0: "ice"}
-
-
-def test_empty_file_takes_changes():
-    assert edit_text("", PATH, {"scene": "builtin/brick"}) == "scene: builtin/brick\n"
-    assert edit_text("# mine", PATH, {"scene.photo": "a.png"}) == "# mine\nscene: {photo: a.png}\n"
-    assert edit_text("scene: builtin/brick", PATH, {"depth": "zncc"}) == "scene: builtin/brick\ndepth: zncc\n"
-    assert edit_text("# mine\nscene: builtin/brick\n", PATH, {"scene": REMOVE}) == "# mine\n"
+@pytest.mark.parametrize(
+    ("before", "changes", "after"),
+    [
+        ("", {"scene": "builtin/brick"}, "scene: builtin/brick\n"),
+        ("# mine", {"scene.photo": "a.png"}, "# mine\nscene: {photo: a.png}\n"),
+        ("scene: builtin/brick", {"depth": "zncc"}, "scene: builtin/brick\ndepth: zncc\n"),
+        ("# mine\nscene: builtin/brick\n", {"scene": REMOVE}, "# mine\n"),
+        ("scene: a\n", {"materials": {"0": "ice"}}, "scene: a\nmaterials: {0: ice}\n"),
+        ("scene: a\n", {"export.heights.width_m": 0.1}, "scene: a\nexport: [{use: heights, width_m: 0.1}]\n"),
+        ("a: 1\nm: &m {scale: 2}\n", {"m.scale": 3}, "a: 1\nm: &m {scale: 3}\n"),
+        ("depth:\n  use: zncc  # one\n", {"depth": {"use": "auto", "a": 9}}, "depth: {use: auto, a: 9}\n"),
+    ],
+)
+def test_small_file_takes_changes(before: str, changes: dict, after: str):
+    assert edit_text(before, PATH, changes) == after
 
 
 LISTED = "scene: builtin/coins  # mine\nexport: [heights, {use: text, language: de}]  # for others\n"
@@ -139,19 +139,7 @@ def test_exporter_changed_by_its_name_keeps_the_list(changes: dict, exporters: s
     assert text == f"scene: builtin/brick  # mine\nexport: {exporters}  # for others\n"
 
 
-def test_exporters_stay_where_another_key_changes():
-    assert edit_text(LISTED, PATH, {"workspace.width_m": 0.1}).startswith(LISTED)
-    assert edit_text("scene: builtin/coins\n", PATH, {"export.heights.width_m": 0.1}).endswith(
-        "export: [{use: heights, width_m: 0.1}]\n"
-    )
-
-
 def test_exporter_files_are_found_from_another_folder(tmp_path: Path):
-    from tangible_core.pipeline.config.editing import relocate_text
-    from tangible_core.pipeline.config.methods import NamedMethod
-    from tangible_core.pipeline.config.model import PipelineConfig
-    from tangible_core.plugins import Exporter
-
     class Framed(Exporter):
         frame: Path = Path()
 
@@ -159,28 +147,20 @@ def test_exporter_files_are_found_from_another_folder(tmp_path: Path):
             raise NotImplementedError
 
     text = "scene: builtin/coins\nexport: [heights, {use: framed, frame: frames/oak.svg}]\n"
-    exporters = (
-        NamedMethod("heights", "", Framed()),
-        NamedMethod("framed", "", Framed(frame=tmp_path / "frames/oak.svg")),
-    )
+    frames = Path(), tmp_path / "frames/oak.svg"
+    exporters = tuple(NamedMethod(f"{each}", "", Framed(frame=each)) for each in frames)
     config = PipelineConfig(scene="builtin/coins", export=exporters)
     found = relocate_text(text, tmp_path / "p.yaml", config, tmp_path / "sub" / "p.yaml")
     assert found == text.replace("frames/", "../frames/")
 
 
 def test_alias_changed_in_one_place_leaves_the_other():
-    text = "scene: builtin/brick  # mine\nmapping: &m {scale: 2}\nworkspace: {width_m: &w 0.1, relief_m: *w}\n"
-    assert read_values(edit_text(text, PATH, {"workspace.relief_m": 0.2}), PATH)["workspace"] == {
-        "width_m": 0.1,
-        "relief_m": 0.2,
-    }
-    assert read_values(edit_text(text, PATH, {"workspace.width_m": 0.2}), PATH)["workspace"] == {
-        "width_m": 0.2,
-        "relief_m": 0.1,
-    }
-    assert edit_text(text, PATH, {"mapping.scale": 3}) == text.replace("2", "3")
+    text = "scene: builtin/brick  # mine\nworkspace: {width_m: &w 0.1, relief_m: *w}\n"
+    for key, size in (("relief_m", {"width_m": 0.1, "relief_m": 0.2}), ("width_m", {"width_m": 0.2, "relief_m": 0.1})):
+        assert read_values(edit_text(text, PATH, {f"workspace.{key}": 0.2}), PATH)["workspace"] == size
     shared = "a: &b {c: 1}\nd: *b\n"
     assert read_values(edit_text(shared, PATH, {"d.c": 2}), PATH) == {"a": {"c": 1}, "d": {"c": 2}}
+    assert json.dumps(read_values("workspace: {width_m: .nan, 3: 2001-01-01}\n", PATH), allow_nan=False)
 
 
 @pytest.mark.parametrize(
@@ -202,12 +182,6 @@ def test_alias_changed_in_one_place_leaves_the_other():
 def test_impossible_change_is_refused(text: str, changes: dict, says: str):
     with pytest.raises(TangibleError, match=says):
         edit_text(text, PATH, changes)
-
-
-def test_nan_and_dates_become_words_for_json():
-    assert json.dumps(read_values("workspace: {width_m: .nan, 3: 2001-01-01}\n", PATH), allow_nan=False)
-    with pytest.raises(ConfigError):
-        read_values("scene: {", PATH)
 
 
 TEXTS = [

@@ -1,4 +1,4 @@
-"""Parts in pipeline files: correct ones are read, each mistake is one line with its place."""
+"""Parts in pipeline files. Otherwise a wrong name or height would be felt, or a mistake could not be found."""
 
 from pathlib import Path
 
@@ -6,13 +6,15 @@ import pytest
 
 from tangible_core.errors import Complaint, ConfigError
 from tangible_core.parts import HeightChoice, PartChoice
-from tangible_core.pipeline.config.editing import REMOVE, edit_text
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
 
 PATH = Path("here/p.yaml")
 SCENE = "scene: {photo: a.png, segments: parts.png}\n"
+
+
+RULE = ("materials", "rules", 0, "part")
 
 
 def parse(text: str, *overrides: str) -> PipelineConfig:
@@ -51,85 +53,63 @@ def test_parts_are_read_by_number():
 
 def test_file_without_parts_has_none():
     config = parse(SCENE)
-    assert (config.parts, config.heights, config.by_parts, config.title, config.language) == (
-        None,
-        None,
-        False,
-        "",
-        "en",
-    )
-    assert config.size[1:3] == (0.004, 0.0015)
+    assert (config.parts, config.heights, config.by_parts) == (None, None, False)
+    assert (config.title, config.language, *config.size[1:3]) == ("", "en", 0.004, 0.0015)
     assert parse(f"{SCENE}parts:\n").by_parts
     assert parse(f"{SCENE}heights: guess\n").heights == HeightChoice(by="guess")
+    assert parse("scene: {height: a.npy, segments: b.png}\nparts: {0: sea}\n").by_parts
 
 
 @pytest.mark.parametrize(
     "text",
-    [
-        FULL,
-        f"{SCENE}parts: {{0: {{height_m: 1 mm}}}}\nheights: null\n",
-        f"{SCENE}heights: depth\n",
-        f"{SCENE}parts: {{}}\n",
-    ],
-    ids=["all", "heights that are switched off", "heights alone", "parts without an entry"],
+    [FULL, *(f"{SCENE}{end}\n" for end in ("parts: {}", "heights: depth", "parts: {0: {height_m: 1 mm}}\nheights:"))],
 )
 def test_completed_parts_are_read_back_equal(text: str):
     config = parse(text)
     again = parse(config.as_yaml())
-    assert (again.part_names, again.given_heights_m) == (config.part_names, config.given_heights_m)
-    assert again.by_parts == config.by_parts
-    assert (again.heights, again.title, again.language) == (config.heights, config.title, config.language)
+    for name in ("part_names", "given_heights_m", "by_parts", "heights", "title", "language"):
+        assert getattr(again, name) == getattr(config, name)
     assert again.as_yaml() == config.as_yaml()
 
 
 @pytest.mark.parametrize(
-    ("text", "place", "location", "says"),
+    ("text", "place", "location", "word"),
     [
-        ("parts: [wall]", "2:1", ("parts",), "takes a mapping from the number of a part to its name, such as {0: wall"),
-        ("parts: {one: wall}", "2:9", ("parts", "one"), "the number of a part is a whole number from 0, not 'one'"),
-        ("parts: {-1: wall}", "2:9", ("parts", -1), "a whole number from 0, not -1"),
-        ("parts: {true: wall}", "2:9", ("parts", "True"), "a whole number from 0, not True"),
-        ("parts: {6: wall, '6': floor}", "2:18", ("parts", "6"), "parts.6: is there twice"),
-        ("parts: {6: 3}", "2:9", ("parts", 6), "takes the name of a part, or {name: ..., height_m"),
-        ("parts: {6: {nam: wall}}", "2:13", ("parts", 6, "nam"), "did you mean 'name'?"),
-        ("parts:\n  0: wall\n  6: {name: Wall}", "4:7", ("parts", 6, "name"), "'Wall' is the name of part 1 as well"),
-        ("parts: {0: wall, 6: 'wall '}", "2:18", ("parts", 6, "name"), "is the name of part 1 as well; give each part"),
-        ("parts: {0: '12'}", "2:9", ("parts", 0, "name"), "would be taken for the number of a part"),
-        ('parts: {0: "a\\nb"}', "2:9", ("parts", 0, "name"), "is one line of plain text"),
-        (f"parts: {{0: {'x' * 81}}}", "2:9", ("parts", 0, "name"), "over 80 characters"),
-        ("parts: {0: {material: glas}}", "2:13", ("parts", 0, "material"), "did you mean 'glass'?"),
-        ("parts: {0: {height_m: .nan}}\nheights: given", "2:13", ("parts", 0, "height_m"), "finite number"),
-        ("parts: {0: {height_m: -1 mm}}\nheights: given", "2:13", ("parts", 0, "height_m"), "greater than or equal"),
-        ("parts: {0: {height_m: 1 px}}\nheights: given", "2:13", ("parts", 0, "height_m"), "one of the units m, cm"),
-        ("parts: {0: {height_m: 1 mm}}", "2:13", ("parts", 0, "height_m"), "write `heights: {by: given}`"),
-        ("heights: {by: gues}", "2:11", ("heights", "by"), "did you mean 'guess'?"),
-        ("heights: {round_m: 6 mm}", "2:1", ("heights", "by"), "Field required"),
-        ("heights: {by: given, round_m: .inf}", "2:22", ("heights", "round_m"), "finite number"),
-        ("heights: {by: given, bulge_m: 6 mm}", "2:1", ("heights",), "6.3 mm together, and the whole relief is 6 mm"),
-        ("title: [a]", "2:1", ("title",), "valid string"),
-        ("title: " + "x" * 201, "2:1", ("title",), "at most 200 characters"),
-        ("language: german?", "2:1", ("language",), "the tag of a language, such as en, de or pt-BR"),
-        ("parts: {0: wall}\nmaterials: {rules: [{part: wal, material: ice}]}", "3:22",
-         ("materials", "rules", 0, "part"), "no part is named 'wal' (did you mean 'wall'?); named are wall"),
-        ("parts: {0: }\nmaterials: {rules: [{part: wal, material: ice}]}", "3:22",
-         ("materials", "rules", 0, "part"), "`parts:` names none"),
-        ("materials: {rules: [{part: 0, material: ice}]}", "2:22",
-         ("materials", "rules", 0, "part"), "nothing is by parts; name them under `parts:`"),
+        ("parts: [wall]", "2:1", ("parts",), "mapping"),
+        ("parts: {one: wall}", "2:9", ("parts", "one"), "not 'one'"),
+        ("parts: {-1: wall}", "2:9", ("parts", -1), "not -1"),
+        ("parts: {true: wall}", "2:9", ("parts", "True"), "not True"),
+        ("parts: {6: wall, '6': floor}", "2:18", ("parts", "6"), "twice"),
+        ("parts: {6: 3}", "2:9", ("parts", 6), "the name of a part"),
+        ("parts: {6: {nam: wall}}", "2:13", ("parts", 6, "nam"), "'name'?"),
+        ("parts:\n  0: wall\n  6: {name: Wall}", "4:7", ("parts", 6, "name"), "of part 1 as well"),
+        ("parts: {0: wall, 6: 'wall '}", "2:18", ("parts", 6, "name"), "of part 1 as well"),
+        ("parts: {0: '12'}", "2:9", ("parts", 0, "name"), "number of a part"),
+        ('parts: {0: "a\\nb"}', "2:9", ("parts", 0, "name"), "one line"),
+        (f"parts: {{0: {'x' * 81}}}", "2:9", ("parts", 0, "name"), "over 80"),
+        ("parts: {0: {material: glas}}", "2:13", ("parts", 0, "material"), "'glass'?"),
+        ("parts: {0: {height_m: .nan}}\nheights: given", "2:13", ("parts", 0, "height_m"), "finite"),
+        ("parts: {0: {height_m: -1 mm}}\nheights: given", "2:13", ("parts", 0, "height_m"), "greater than"),
+        ("parts: {0: {height_m: 1 px}}\nheights: given", "2:13", ("parts", 0, "height_m"), "units"),
+        ("parts: {0: {height_m: 1 mm}}", "2:13", ("parts", 0, "height_m"), "`heights: {by: given}`"),
+        ("heights: {by: gues}", "2:11", ("heights", "by"), "'guess'?"),
+        ("heights: {round_m: 6 mm}", "2:1", ("heights", "by"), "required"),
+        ("heights: {by: given, round_m: .inf}", "2:22", ("heights", "round_m"), "finite"),
+        ("heights: {by: given, bulge_m: 6 mm}", "2:1", ("heights",), "6.3 mm together"),
+        ("title: [a]", "2:1", ("title",), "string"),
+        ("title: " + "x" * 201, "2:1", ("title",), "200"),
+        *((f'title: "{each}"', "2:1", ("title",), "control") for each in (r"a\nb", r"a\eb", r"a\x85b", r"a\Lb")),
+        ("language: german?", "2:1", ("language",), "tag"),
+        ("parts: {0: wall}\nmaterials: {rules: [{part: wal, material: ice}]}", "3:22", RULE, "'wall'?"),
+        ("parts: {0: }\nmaterials: {rules: [{part: wal, material: ice}]}", "3:22", RULE, "names none"),
+        ("materials: {rules: [{part: 0, material: ice}]}", "2:22", RULE, "nothing is by parts"),
     ],
 )  # fmt: skip
-def test_part_mistake_gives_one_line_with_its_place(text: str, place: str, location: tuple, says: str):
+def test_part_mistake_gives_one_line_with_its_place(text: str, place: str, location: tuple, word: str):
     (sentence,), (complaint,) = complaints(f"{SCENE}{text}\n")
     assert sentence == f"here/p.yaml:{place}: {complaint.text}"
     assert complaint.location == location
-    assert says in sentence
-    assert ".".join(map(str, location)) in sentence
-
-
-def test_height_map_with_heights_is_refused():
-    (sentence,), (complaint,) = complaints("scene: {height: a.npy, segments: b.png}\nheights: {by: given}\n")
-    assert sentence.startswith("here/p.yaml:2:1: heights: the scene is a map of heights")
-    assert complaint.location == ("heights",)
-    assert parse("scene: {height: a.npy, segments: b.png}\nparts: {0: sea}\n").by_parts
+    assert word in sentence
 
 
 def test_part_mistakes_come_all_at_once():
@@ -138,6 +118,8 @@ def test_part_mistakes_come_all_at_once():
     assert [each.location for each in complaints(text)[1]] == [
         ("want",), ("parts", "x"), ("heights", "bulge_m"), ("parts", 1, "name"), ("parts", 2, "material"),
     ]  # fmt: skip
+    (complaint,) = complaints("scene: {height: a.npy, segments: b.png}\nheights: {by: given}\n")[1]
+    assert (complaint.location, complaint.line) == (("heights",), 2)
 
 
 def test_override_keeps_the_name_of_a_part():
@@ -150,12 +132,3 @@ def test_override_keeps_the_name_of_a_part():
     (sentence,), (complaint,) = complaints(f"{SCENE}parts: {{0: a}}\n", "parts.3.name=a")
     assert sentence.startswith("--set parts.3.name=a: parts.3.name: 'a' is the name of part 1 as well")
     assert complaint == Complaint(("parts", 3, "name"), complaint.text, None, None)
-
-
-def test_edited_part_keeps_its_name():
-    text = "scene: builtin/brick  # brick\nparts:\n  0: wall  # behind\n  6: helmet\nheights: given\n"
-    changed = edit_text(text, PATH, {"parts.6.height_m": 0.004, "heights.round_m": 0.003})
-    assert "  0: wall  # behind\n" in changed
-    assert parse(changed).parts == {0: PartChoice(name="wall"), 6: PartChoice(name="helmet", height_m=0.004)}
-    assert parse(changed).heights == HeightChoice(by="given", round_m=0.003)
-    assert edit_text(changed, PATH, {("parts", "6", "height_m"): REMOVE}).count("helmet") == 1

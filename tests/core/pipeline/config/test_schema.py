@@ -1,3 +1,5 @@
+"""The schema of pipeline files. Otherwise an editor would mark a right file as wrong, or a form lack an option."""
+
 import json
 from collections.abc import Iterator
 from importlib import metadata

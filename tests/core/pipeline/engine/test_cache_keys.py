@@ -1,4 +1,4 @@
-"""The keys of cached results: every dependency on its own, with made-up and real methods and packages."""
+"""The keys of cached results. Otherwise a changed option, file or program would be answered by an old result."""
 
 from importlib import import_module
 from pathlib import Path
@@ -102,15 +102,28 @@ class TestKeys:
 
     def differ(self, product: str, one: Engine, other: Engine) -> bool:
         one.make(product)
-        assert outcome(one, product) == "ran"
         other.make(product)
         return outcome(other, product) == "ran"
 
-    def test_keys_differ_for_every_option(self, folder: Path):
-        for product in KEPT:
-            assert not self.differ(product, pipeline(folder), pipeline(folder))
-            for path in (folder / "cache").iterdir():
-                path.unlink()
+    @pytest.mark.parametrize(
+        ("product", "part", "key", "value"),
+        [
+            *(("relief", "workspace", *each) for each in (("width_m", 0.06), ("relief_m", 0.011), ("smooth_m", 0.001))),
+            ("relief", "workspace", "holes", "cut"),
+            *(("relief", "relief", *each) for each in (("by", "depth"), ("slope", 1), ("spread", 0.4), ("grain_m", 0))),
+            ("relief", "relief", "accent_m", 0.002),
+            ("disparity", "depth", "most_px", np.inf),
+        ],
+    )
+    def test_keys_differ_for_every_option(self, folder: Path, product: str, part: str, key: str, value: object):
+        before = {"workspace": Workspace(width_m=0.03), "relief": ReliefChoice(), "depth": Ramp()}[part]
+        after = before.model_copy(update={key: value})
+        one, same, other = (
+            pipeline(folder, **{part: NamedMethod("ramp", "t 1", each) if part == "depth" else each})
+            for each in (before, before, after)
+        )
+        assert not self.differ(product, one, same)
+        assert self.differ(product, same, other)
 
     @pytest.mark.parametrize("product", ["disparity", "segments"])
     def test_keys_differ_for_the_reduction_of_pictures(self, folder: Path, product: str):
@@ -118,6 +131,16 @@ class TestKeys:
         assert self.differ(product, coarse, fine)
         if product == "disparity":
             assert fine.make(product).disparity_px[0].tolist() == list(range(30))
+
+    def test_relief_of_edges_depends_on_a_texture_method_that_makes_a_tree_alone(self, folder: Path):
+        """Its borders are raised lines; a method without a tree has no part in it."""
+        parts = {"want": "relief", "relief": ReliefChoice(by="edges"), "scene": SceneFiles(photo=Path("left.npy"))}
+        found = [
+            keys(folder, **parts, texture=NamedMethod(name, version, load_method("texture", name)()))["relief"]
+            for name, version in (("hierarchy", "1"), ("hierarchy", "2"), ("gradient", "1"), ("gradient", "2"))
+        ]
+        assert len({*found}) == 3
+        assert found[2] == found[3]
 
     @pytest.mark.parametrize("product", ["disparity", "segments"])
     def test_keys_differ_for_the_mask_of_known_pixels(self, folder: Path, product: str):
@@ -129,16 +152,6 @@ class TestKeys:
         np.testing.assert_array_equal(whole.scene.views.left, torn.scene.views.left)
         assert self.differ(product, whole, torn)
         assert torn.make(product).confidence[3, 5] == 0
-
-    def test_relief_of_edges_depends_on_a_texture_method_that_makes_a_tree_alone(self, folder: Path):
-        """Its borders are raised lines; a method without a tree has no part in it."""
-        parts = {"want": "relief", "relief": ReliefChoice(by="edges"), "scene": SceneFiles(photo=Path("left.npy"))}
-        found = [
-            keys(folder, **parts, texture=NamedMethod(name, version, load_method("texture", name)()))["relief"]
-            for name, version in (("hierarchy", "1"), ("hierarchy", "2"), ("gradient", "1"), ("gradient", "2"))
-        ]
-        assert len({*found}) == 3
-        assert found[2] == found[3]
 
     @pytest.mark.parametrize(("product", "method"), [("disparity", Ramp), ("segments", Halves)])
     def test_keys_differ_for_the_version_of_a_method(
@@ -157,28 +170,6 @@ class TestKeys:
 
         assert of(b"one") != of(b"two")
         assert of(b"one") == of(b"one")
-
-    def test_keys_differ_for_infinity_and_none(self, folder: Path):
-        one, other = (pipeline(folder, depth=NamedMethod("ramp", "t 1", Ramp(most_px=each))) for each in (None, np.inf))
-        assert self.differ("disparity", one, other)
-
-    @pytest.mark.parametrize(
-        "size",
-        [{"width_m": 0.06}, {"relief_m": 0.011}, {"smooth_m": 0.001}, {"holes": "cut"}],
-        ids=lambda each: next(iter(each)),
-    )
-    def test_keys_differ_for_the_size_of_a_relief(self, folder: Path, size: dict):
-        one, other = (pipeline(folder, workspace=Workspace(**{"width_m": 0.03, **more})) for more in ({}, size))
-        assert self.differ("relief", one, other)
-
-    @pytest.mark.parametrize(
-        "choice",
-        [{"by": "depth"}, {"slope": 1}, {"spread": 0.4}, {"accent_m": 0.002}, {"grain_m": 0}],
-        ids=lambda each: next(iter(each)),
-    )
-    def test_keys_differ_for_the_shape_of_a_relief(self, folder: Path, choice: dict):
-        one, other = (pipeline(folder, relief=ReliefChoice(**more)) for more in ({}, choice))
-        assert self.differ("relief", one, other)
 
     @pytest.mark.parametrize("brings", [{}, {"disparity": Path("disparity.npy")}], ids=["found", "brought"])
     def test_keys_differ_for_the_cameras(self, folder: Path, brings: dict):
@@ -261,7 +252,7 @@ class TestCode:
             ("tangible_depth.semi_global", {"disparity"}),
             ("tangible_depth.sgm.aggregation", {"disparity"}),
             ("tangible_core.compiled.threads", {"disparity", "segments"}),
-            ("tangible_texture.energies.energy_kernels", {"segments"}),
+            ("tangible_texture.energies.local_energy", {"segments"}),
         ],
     )
     def test_keys_depend_on_the_code_that_makes_the_product_only(
@@ -292,11 +283,6 @@ class TestCode:
         other_version(monkeypatch, distribution)
         after = keys(folder, **real(depth))
         assert {product for product in KEPT if before[product] != after[product]} == products
-
-    def test_keys_depend_on_opencv_under_any_distribution_name(self, folder: Path, monkeypatch: pytest.MonkeyPatch):
-        before = keys(folder, **real())
-        other_version(monkeypatch, next(name for name in versions.LIBRARIES["cv2"] if versions._version(name)))
-        assert before["disparity"] != keys(folder, **real())["disparity"]
 
     def test_keys_depend_on_the_helpers_of_a_plugin(self, folder: Path, monkeypatch: pytest.MonkeyPatch):
         (folder / "acme_depth.py").write_text(

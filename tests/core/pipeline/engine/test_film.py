@@ -1,3 +1,5 @@
+"""Films. Otherwise a video would be felt at a wrong time or height, or a session with one would not end."""
+
 import threading
 import time
 
@@ -13,7 +15,7 @@ from tangible_core.pipeline.engine.film import PipelineFrames
 from tangible_core.pipeline.engine.stage import Context
 from tangible_core.pipeline.engine.stages.relief import ReliefStage
 from tangible_core.pipeline.feeling import Feeling
-from tangible_core.plugins.interfaces import DepthEstimator, Film
+from tangible_core.plugins.interfaces import DepthEstimator
 from tangible_core.scene import pair_checks
 from tangible_depth import Luminance, SemiGlobal
 from tangible_devices import Mock
@@ -45,19 +47,13 @@ def film_pipeline(walk):
     return make
 
 
-def test_first_frame_equals_the_relief_of_the_still(film_pipeline):
-    pipeline = film_pipeline()
-    with Feeling(pipeline).reliefs as reliefs:
-        first = next(iter(reliefs))
-    assert np.array_equal(first.relief.height_m, pipeline.relief.height_m)
-
-
-def test_first_frame_of_one_camera_equals_the_relief_of_its_photograph(walk):
-    pipeline = Pipeline(Scene.video(walk, fps=20, repeat=False), depth=Luminance(), cached=False)
-    with Feeling(pipeline).reliefs as reliefs:
-        first = next(iter(reliefs))
-    assert np.ptp(first.relief.height_m) > 0.0005
-    assert np.array_equal(first.relief.height_m, pipeline.relief.height_m)
+def test_first_frame_equals_the_relief_of_the_still(film_pipeline, walk):
+    one_camera = Pipeline(Scene.video(walk, fps=20, repeat=False), depth=Luminance(), cached=False)
+    for pipeline in (film_pipeline(), one_camera):
+        with Feeling(pipeline).reliefs as reliefs:
+            first = next(iter(reliefs))
+        assert np.ptp(first.relief.height_m) > 0.0005
+        assert np.array_equal(first.relief.height_m, pipeline.relief.height_m)
 
 
 def test_each_frame_equals_the_still_of_its_disparity_and_scale(film_pipeline, walk):
@@ -101,17 +97,27 @@ def test_exchanged_views_stay_exchanged_in_later_frames(walk, tmp_path, monkeypa
 
 def test_film_runs_by_the_clock_of_a_simulated_device(film_pipeline):
     reports = []
-    recording = film_pipeline().feel(Mock(path="circle"), 0.6, in_real_time=False, on_report=reports.append)
+    pipeline = film_pipeline(texture=Histogram(segments=2), parts={0: "ground"})
+    recording = pipeline.feel(Mock(path="circle"), 0.6, in_real_time=False, beacon="ground", on_report=reports.append)
     frames = recording.frame
     assert np.array_equal(np.unique(frames[np.isfinite(frames)]), np.arange(COUNT))
     assert np.all(np.diff(frames[np.isfinite(frames)]) >= 0)
     assert np.abs(recording.time_s[np.searchsorted(frames, 4)] - recording.time_s[0] - 0.2) < 0.06
     assert reports[-1].film.shown == COUNT and reports[-1].film.skipped == 0
+    again = pipeline.feel(Mock(path="circle"), 0.6, in_real_time=False, beacon="ground")
+    assert np.array_equal(recording.rows, again.rows, equal_nan=True)
 
 
-def test_film_gives_the_same_recording_again(film_pipeline):
-    first, again = (film_pipeline().feel(Mock(path="circle"), 0.3, in_real_time=False) for _ in range(2))
-    assert np.array_equal(first.rows, again.rows, equal_nan=True)
+def test_what_cannot_be_a_film_is_refused(film_pipeline, walk):
+    still = Pipeline(Scene.photo(walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
+    for feel, words in (
+        (lambda: film_pipeline(render=Penalty()).feel(Mock(), 0.1, in_real_time=False), "penalty.*proxy"),
+        (lambda: film_pipeline(texture=Histogram(segments=2), heights="guess").feel(Mock(), 0.1), "`heights:`"),
+        (lambda: Feeling(still).reliefs, "does not move"),
+        (lambda: Feeling(still).film(), "does not move"),
+    ):
+        with pytest.raises(ConfigError, match=words):
+            feel()
 
 
 @pytest.mark.usefixtures("loop_in_thread")
@@ -124,57 +130,6 @@ def test_film_in_real_time_is_recorded(film_pipeline, tmp_path):
     felt = recording.frame[np.isfinite(recording.frame)]
     assert felt.size and np.all(np.diff(felt) >= 0) and felt[-1] > 0
     assert not [each for each in threading.enumerate() if each.name == "film"]
-
-
-@pytest.mark.usefixtures("loop_in_thread")
-def test_films_and_stills_in_turn_start_each_film_again(film_pipeline, walk):
-    still = Pipeline(Scene.photo(walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
-    reports = []
-    recording = film_pipeline().feel(Mock(path="circle"), 2.4, then=[still], each_s=0.6, on_report=reports.append)
-    frames = recording.frame
-    stood = np.isnan(frames)
-    turns = np.flatnonzero(np.diff(stood.astype(int)))
-    assert turns.size >= 2, "film, still, film"
-    assert frames[turns[1] + 1] == 0
-    assert not [each for each in threading.enumerate() if each.name == "film"], "the first one ended with its turn"
-    assert any(each.film is None for each in reports) and any(each.film is not None for each in reports)
-
-
-def test_beacon_pulls_over_a_film(film_pipeline):
-    pipeline = film_pipeline(texture=Histogram(segments=2), parts={0: "ground"})
-    reports = []
-    pipeline.feel(Mock(path="circle"), 0.3, in_real_time=False, beacon="ground", on_report=reports.append)
-    assert reports[-1].ticks == 300
-
-
-def test_law_without_films_is_refused_and_others_are_named(film_pipeline):
-    with pytest.raises(ConfigError, match=r"penalty does not support moving surfaces.*proxy") as refused:
-        film_pipeline(render=Penalty()).feel(Mock(), 0.1, in_real_time=False)
-    assert "\n" not in str(refused.value)
-
-
-def test_film_of_a_relief_of_parts_is_refused(film_pipeline):
-    pipeline = film_pipeline(texture=Histogram(segments=2), heights="guess")
-    with pytest.raises(ConfigError, match="leave `heights:` out"):
-        pipeline.feel(Mock(), 0.1, in_real_time=False)
-
-
-def test_film_of_a_still_scene_is_refused(walk):
-    still = Pipeline(Scene.photo(walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
-    with pytest.raises(ConfigError, match="does not move"):
-        _ = Feeling(still).reliefs
-    with pytest.raises(ConfigError, match="does not move"):
-        Feeling(still).film()
-
-
-def test_film_is_made_in_python(film_pipeline):
-    pipeline = film_pipeline()
-    film = Feeling(pipeline).film()
-    assert isinstance(film, Film)
-    with Feeling(pipeline).reliefs as reliefs:
-        for number, _, relief in reliefs:
-            film.show(relief, number)
-    assert film.dropped == COUNT - 1
 
 
 class Shrinks(DepthEstimator):

@@ -1,4 +1,4 @@
-"""Functions for fingers come by a hook, whose first answer counts."""
+"""Functions for fingers. Otherwise a broken package would judge parts, or end an export without its name."""
 
 import pluggy
 import pytest

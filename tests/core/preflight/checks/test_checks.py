@@ -1,13 +1,11 @@
-"""All checks together, and bounds that are met or not."""
+"""All checks together. Otherwise a problem would have no cure, or an odd surface no verdict."""
 
 import math
-from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
-from flights import fly, half_slope, level, material, surface_with_materials
+from flights import fly, half_slope, level
 from tangible_core import HapticSurface, Workspace
 from tangible_core.preflight import CHECKS, judge
 from tangible_core.preflight.checks.cures import flatten, narrow
@@ -16,21 +14,10 @@ from tangible_core.preflight.checks.stiffness import law_stiffness, quantisation
 from tangible_core.preflight.verdict import check_bound
 
 
-def test_page_names_every_check():
-    page = Path(__file__).parents[4].joinpath("docs/preflight.md").read_text(encoding="utf-8")
-    for each in judge(fly(surface_with_materials(material(texture="stochastic", roughness_m=1e-4)))):
-        assert f"| {each.check} |" in page
-
-
 @pytest.mark.parametrize("law", ["proxy", "penalty-gradient", "grey-level", "tangible-mask", "lateral-gradient"])
-@pytest.mark.parametrize(
-    "surface",
-    [HapticSurface.from_heights(np.zeros((1, 1))), level(), half_slope(5.0, 32)],
-    ids=["pixel", "level", "half"],
-)
+@pytest.mark.parametrize("surface", [level(cells=1), half_slope(5.0, 32)], ids=["pixel", "half"])
 def test_checks_all_yield_verdicts_and_failures_have_cures(law: str, surface: HapticSurface):
-    flight = fly(surface, law)
-    verdicts = judge(flight)
+    verdicts = judge(fly(surface, law))
     assert len(verdicts) >= len(CHECKS) - 3
     for each in verdicts:
         assert (each.verdict == "ok") == (each.cure == "") == (each.says == ""), each

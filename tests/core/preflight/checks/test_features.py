@@ -1,4 +1,4 @@
-"""Checks of features, textures and the workspace, on flights whose verdicts are known; each cure is applied."""
+"""Checks of features and textures. Otherwise a surface that nobody can feel would be called good."""
 
 from typing import Any
 
@@ -35,11 +35,10 @@ class TestTextures:
         assert of(textures(fly(surface_with_materials(better))), "rough").verdict == "ok"
         assert "slower than 0.08 m/s" in found.cure
         assert of(textures(fly(surface_with_materials(rough), speed_m_per_s=0.08)), "rough").verdict == "ok"
-
-    def test_coarse_device_samples_at_its_resolution(self):
-        rough = material("rough", texture="stochastic", roughness_m=1e-4, grain_m=1e-3)
-        found = of(textures(fly(surface_with_materials(rough), resolution_m=3e-4)), "rough")
-        assert (found.verdict, found.bound) == ("warn", pytest.approx(1.5e-3))
+        coarse = of(textures(fly(surface_with_materials(rough), resolution_m=3e-4)), "rough")
+        assert (coarse.verdict, coarse.bound) == ("warn", pytest.approx(1.5e-3))
+        [only] = textures(fly(level(), speed_m_per_s=0.1, period_s=0.002))
+        assert (only.verdict, only.value) == ("ok", pytest.approx(4e-4))
 
     def test_only_present_materials_with_a_grain_are_checked(self):
         slipping = material("slipping", texture="stick-slip", static_friction=0.5, dynamic_friction=0.4, grain_m=1e-4)
@@ -47,10 +46,6 @@ class TestTextures:
         others = material("smooth"), material("elsewhere", texture="stochastic", roughness_m=1e-4), slipping
         surface = level(labels=np.tile(labels, (32, 1)), materials=others)
         assert [each.of for each in textures(fly(surface))] == ["shortest wave", "slipping"]
-
-    def test_surface_without_materials_has_one_verdict(self):
-        [only] = textures(fly(level(), speed_m_per_s=0.1, period_s=0.002))
-        assert (only.verdict, only.value) == ("ok", pytest.approx(4e-4))
 
 
 class TestFeatures:
@@ -79,21 +74,12 @@ class TestFeatures:
 
     def test_feature_below_the_threshold_has_a_cure(self):
         found = of(features(self.wave(0.9)), "3.2 mm wide")
-        assert found.verdict == "warn"
-        assert found.value == pytest.approx(0.9 * 29e-6, rel=0.05)
+        assert (found.verdict, found.value) == ("warn", pytest.approx(0.9 * 29e-6, rel=0.05))
         needed = value_in_cure(found, "workspace.relief_m") / (2 * 0.9 * threshold_m(3.2e-3) / 1.741)
         assert needed == pytest.approx(1 / 0.9, rel=0.08)
-
-    def test_feature_above_the_threshold_passes(self):
         assert of(features(self.wave(1.1)), "3.2 mm wide").verdict == "ok"
-
-    def test_feature_below_the_resolution_fails(self):
-        found = of(features(self.wave(1.1, resolution_m=4e-5)), "3.2 mm wide")
-        assert (found.verdict, found.bound, found.source) == ("warn", 4e-5, "the device's resolution")
-
-    def test_wide_hill_has_no_narrow_features(self):
-        hill = shape(lambda x, y: 0.005 * np.exp(-(x**2 + y**2) / (2 * 0.01**2)), 256)
-        assert [(each.of, each.verdict) for each in features(fly(hill))] == [("10 mm wide", "ok"), ("32 mm wide", "ok")]
+        coarse = of(features(self.wave(1.1, resolution_m=4e-5)), "3.2 mm wide")
+        assert (coarse.verdict, coarse.bound, coarse.source) == ("warn", 4e-5, "the device's resolution")
 
     @pytest.mark.parametrize(
         "surface", [level(), shape(lambda x, y: 0.1 * x), HapticSurface.from_heights(np.ones((1, 1)))]
@@ -104,17 +90,6 @@ class TestFeatures:
 
 
 class TestWorkspace:
-    def test_surface_within_reach_passes(self):
-        assert grades(workspace(fly(level(0.02), workspace_m=(0.08, 0.08, 0.02)))) == ["ok"] * 3
-
-    def test_surface_beyond_reach_has_cures(self):
-        surface = HapticSurface.from_heights(np.full((20, 10), 0.03, np.float32), 0.1)
-        width, length, height = workspace(fly(surface, workspace_m=(0.08, 0.08, 0.02), relief_m=0.03))
-        assert grades((width, length, height)) == ["warn"] * 3
-        assert value_in_cure(width, "workspace.width_m") == 0.08
-        assert value_in_cure(length, "workspace.width_m") == 0.04
-        assert value_in_cure(height, "workspace.relief_m") == pytest.approx(0.02, rel=0.06)
-
     @pytest.mark.parametrize(
         ("reach_m", "verdicts"),
         [

@@ -1,4 +1,4 @@
-"""Checks of the device and of this machine, on flights whose verdicts are known; each cure is applied."""
+"""Checks of the device and this machine. Otherwise a late loop or a weak device would be noticed in the hand only."""
 
 import numpy as np
 import pytest
@@ -26,37 +26,12 @@ class TestDevice:
         assert grades(friction(fly(level(), simulated=True))) == ["ok"]
         assert grades(friction(fly(level(), safety=Safety(friction_n=0.3)))) == ["ok"]
 
-    def test_what_is_known_of_a_device_needs_no_words(self):
-        """Value, source, note, cure and fault: of a device that is simulated, known and unknown."""
-        said = [
-            [
-                (each.value, each.source, each.note, each.cure, each.says)
-                for each in (*damping(flight), *friction(flight))
-            ]
-            for flight in (
-                fly(level(), simulated=True),
-                fly(level(), safety=Safety(friction_n=0.3)),
-                fly(level(), device={"damping_n_s_per_m": 20.0, "max_stiffness_n_per_m": 3000.0}),
-            )
-        ]
-        assert said[0] == [(2.0, "simulated", "", "", ""), (0.0, "simulated", "", "", "")]
-        assert said[1] == [(2.0, "the device's specification", "", "", ""), (0.3, "`safety.friction_n`", "", "", "")]
-        assert said[2] == [
-            (
-                1.5,
-                "the device's specification",
-                "20 N s/m stated; its stiffness at 1 kHz implies no more than this",
-                "a guess: start at half the stiffness, and raise it for as long as nothing buzzes",
-                "how well the device damps is a guess",
-            ),
-            (
-                0.0,
-                "",
-                "",
-                "unknown: measure the force at which the handle starts to move, `safety.friction_n: ...`",
-                "the friction of the device's handle is unknown",
-            ),
-        ]
+    def test_what_is_known_of_a_device_needs_no_cure(self):
+        known, unknown = fly(level(), safety=Safety(friction_n=0.3)), fly(level(), max_stiffness_n_per_m=3000.0)
+        for flight in (fly(level(), simulated=True), known):
+            assert not any(each.note or each.cure or each.says for each in (*damping(flight), *friction(flight)))
+        assert [each.value for each in friction(known)] == [0.3]
+        assert all(each.cure and each.says for each in friction(unknown))
 
     @pytest.mark.parametrize(("turned", "of_"), [(False, "width"), (True, "length")])
     def test_surface_beyond_the_reach_is_cured_by_a_width(self, turned: bool, of_: str):
@@ -64,17 +39,10 @@ class TestDevice:
         surface = HapticSurface.from_heights(np.full((32, 64), 0.02, np.float32), 0.12)
         reach_m = (0.2, 0.05, 0.1) if turned else (0.1, 0.2, 0.015)
         found = list(workspace(fly(surface, workspace_m=reach_m, relief_m=0.03)))
-        assert [(each.of, each.verdict) for each in found] == [
-            ("width", "ok" if turned else "warn"),
-            ("length", "warn" if turned else "ok"),
-            ("height", "ok" if turned else "warn"),
-        ]
-        wrong = of(found, of_)
-        assert wrong.says == f"the surface has more {of_} than the device reaches"
-        assert [(each.key, each.value) for each in wrong.changes] == [("workspace.width_m", "0.1")]
+        assert grades(found) == (["ok", "warn", "ok"] if turned else ["warn", "ok", "warn"])
+        assert [(each.key, each.value) for each in of(found, of_).changes] == [("workspace.width_m", "0.1")]
         if not turned:
             assert [(each.key, each.value) for each in found[2].changes] == [("workspace.relief_m", "0.022")]
-            assert found[2].says == "the surface is higher than the device reaches"
 
 
 class TestJitter:
@@ -84,9 +52,6 @@ class TestJitter:
         late_s = np.full(1000, 1e-5)
         late_s[:ticks] = by_s
         return Lateness(late_s, 0.001, real_time=False)
-
-    def test_calm_machine_passes(self):
-        assert grades(lateness(fly(level()))) == ["ok"] * 3
 
     @pytest.mark.parametrize(("ticks", "verdict"), [(1, "ok"), (2, "warn")])
     def test_overruns_are_graded(self, ticks: int, verdict: str):
@@ -100,9 +65,6 @@ class TestJitter:
     def test_lateness_one_tick_in_a_thousand_is_allowed(self, ticks: int, by_s: float, verdict: str):
         found = of(lateness(fly(level(), lateness=self.late(ticks, by_s))), "lateness, p99.9")
         assert (found.verdict, found.bound) == (verdict, 0.001)
-
-    def test_lateness_of_a_period_is_not_an_overrun(self):
-        assert Lateness(np.array([0.0, 0.001, 0.0010001, 0.0]), 0.001, real_time=False).overruns == 0.25
 
     def test_early_clock_does_not_raise_the_limit(self):
         early = Lateness(np.full(1000, -5e-4), 0.001, real_time=True)
@@ -135,8 +97,3 @@ class TestJitter:
         [found] = tick_cost(fly(level(), cost=cost, simulated=simulated))
         assert found.verdict == verdict
         assert verdict == "ok" or found.cure == "a lighter force law (`render.use`), or stop other work on this machine"
-
-    def test_tick_of_a_python_law_is_not_called_compiled(self):
-        [found] = tick_cost(fly(level(), cost=TickCost(np.full(100, 6e-4), 6e-4, compiled=False)))
-        assert "compiled" not in found.note
-        assert found.cure.startswith("a force law of compiled kernels instead of Python")

@@ -1,4 +1,4 @@
-"""Checks of stiffness and damping, on flights whose verdicts are known; each cure is applied."""
+"""Checks of stiffness and damping. Otherwise a surface that buzzes on its device would be called safe."""
 
 from typing import Any
 
@@ -14,14 +14,13 @@ from tangible_core.servo.guard.safety import Safety
 class TestStiffness:
     """The device renders 4000 N/m by its damping, of which the guard leaves 3200; its specification has 10,000 N/m."""
 
-    @pytest.mark.parametrize(("stiffness", "verdict"), [(3200, "ok"), (3201, "warn"), (4000, "warn"), (4001, "unsafe")])
+    @pytest.mark.parametrize(
+        ("stiffness", "verdict"), [(0.26, "warn"), (3200, "ok"), (3201, "warn"), (4000, "warn"), (4001, "unsafe")]
+    )
     def test_stiffness_is_graded_by_the_damping(self, stiffness: float, verdict: str):
-        found, _ = law_stiffness(fly(level(), stiffness_n_per_m=stiffness))
-        assert (found.verdict, found.bound) == (verdict, 3200)
-
-    def test_soft_law_is_a_warning(self):
-        soft, *_ = law_stiffness(fly(level(), stiffness_n_per_m=0.26))
-        assert (soft.verdict, soft.says) == ("warn", "the force law is so soft that a hand goes through the surface")
+        found, *_ = law_stiffness(fly(level(), stiffness_n_per_m=stiffness))
+        assert found.verdict == verdict
+        assert found.bound == 3200 or stiffness == 0.26, "so soft that a hand goes through"
 
     @pytest.mark.parametrize(
         ("changes", "limit"),
@@ -51,18 +50,14 @@ class TestStiffness:
         coarse = {"safety": Safety(friction_n=0.033), "resolution_m": 2e-5, "max_stiffness_n_per_m": 3000.0}
         left = [each.most_n_per_m for each in fly(level(), **coarse).ceilings]
         assert left == pytest.approx([2400, 2640, 3000])
-
-    def test_fast_loop_has_the_limit_of_the_device(self):
         limits = [each.limit_n_per_m for each in fly(level(), max_stiffness_n_per_m=3000.0, period_s=0.00025).ceilings]
         assert sorted(limits) == pytest.approx([3000, 12_000])
+        undamped = fly(level(), device={"damping_n_s_per_m": 0.0}, max_stiffness_n_per_m=1000.0)
+        assert undamped.ceilings[0].limit_n_per_m == 1000
 
     @pytest.mark.parametrize(("asked", "given_n"), [(None, 8.0), (2.0, 2.0), (50.0, 8.0)])
     def test_max_force_is_the_lesser_of_device_and_option(self, asked: float | None, given_n: float):
         assert fly(level(), safety=Safety(max_force_n=asked)).max_force_n == given_n
-
-    @pytest.mark.parametrize(("period_s", "step_n"), [(0.00025, 0.125), (0.001, 0.5), (0.004, 0.5)])
-    def test_max_step_is_that_of_the_guard(self, period_s: float, step_n: float):
-        assert fly(level(), period_s=period_s).max_step_n == step_n
 
     def test_stiffness_cure_passes(self):
         flight = fly(level(), stiffness_n_per_m=20_000.0)
@@ -91,15 +86,10 @@ class TestStiffness:
 
     def test_texture_is_clean_up_to_900_n_per_m(self):
         rough = {"texture": "stochastic", "roughness_m": 1e-4}
-        pair = material("clean", **rough, stiffness_n_per_m=900.0), material("buzzes", **rough, stiffness_n_per_m=950.0)
-        clean, buzzes = material_stiffness(fly(surface_with_materials(*pair)))
-        assert (clean.verdict, buzzes.verdict) == ("ok", "warn")
+        made_of = [material(f"{each:g}", **rough, stiffness_n_per_m=each) for each in (900.0, 950.0, 5000.0)]
+        clean, buzzes, unsafe = material_stiffness(fly(surface_with_materials(*made_of)))
+        assert grades((clean, buzzes, unsafe)) == ["ok", "warn", "unsafe"]
         assert value_in_cure(buzzes, "stiffness_n_per_m") == 900
-
-    def test_rough_material_too_stiff_for_the_device_is_unsafe(self):
-        rough = material(texture="stochastic", roughness_m=1e-4, stiffness_n_per_m=5000.0)
-        [found] = material_stiffness(fly(surface_with_materials(rough)))
-        assert found.verdict == "unsafe"
 
     @pytest.mark.parametrize(("own", "verdict"), [(1.0, "ok"), (1.01, "warn")])
     def test_damping_is_graded_with_the_stiffness(self, own: float, verdict: str):
@@ -111,21 +101,9 @@ class TestStiffness:
 
     def test_damping_bound_falls_with_delay(self):
         """b > K T (1 + 2 d) / 2 + B, with b 2 N s/m, K 1000 N/m and d 1."""
-        flight = fly(level(), "penalty-gradient", stiffness_n_per_m=1000.0, safety=Safety(delay_ticks=1))
-        [found] = law_damping(flight)
-        assert found.bound == pytest.approx(0.5)
-
-    def test_damping_bound_of_a_law_too_stiff_is_zero(self):
-        [found] = law_damping(fly(level(), "penalty-gradient", stiffness_n_per_m=6000.0))
-        assert found.bound == 0
-
-    @pytest.mark.parametrize(("places", "verdict"), [(2, "ok"), (15, "warn")])
-    def test_damping_at_a_few_places_is_ignored(self, places: int, verdict: str):
-        flight = fly(level(), "penalty-gradient", stiffness_n_per_m=2000.0)
-        object.__setattr__(flight.probes, "stiffness_n_per_m", np.full(1000, 2000.0))
-        object.__setattr__(flight.probes, "damping_n_s_per_m", np.where(np.arange(1000) < places, 9.0, 0.5))
-        [found] = law_damping(flight)
-        assert (found.verdict, found.value) == (verdict, 0.5 if verdict == "ok" else 9.0)
+        for stiffness, safety, bound in ((1000.0, Safety(delay_ticks=1), 0.5), (6000.0, Safety(), 0)):
+            [found] = law_damping(fly(level(), "penalty-gradient", stiffness_n_per_m=stiffness, safety=safety))
+            assert found.bound == pytest.approx(bound)
 
     def test_damping_bound_follows_the_stiffness_of_each_place(self):
         """b is 2 N s/m: 500 N/m leave 1.75 of it, 3000 N/m leave 0.5."""
@@ -137,22 +115,12 @@ class TestStiffness:
         assert (found.verdict, found.value) == ("warn", pytest.approx(1.6, rel=0.01))
         assert found.bound == pytest.approx(0.5, rel=0.01)
 
-    def test_coupling_lowers_damping_that_changes_fast(self):
-        """The coupling's damping is a quarter of the device's 2 N s/m: with 3 N s/m, 0.43 of it is felt."""
-        flight = fly(level(), "penalty-gradient", damping_n_s_per_m=3.0, safety=Safety(coupling="auto"))
-        [found] = law_damping(flight)
-        assert (found.verdict, found.value) == ("ok", pytest.approx(3.0 * 0.5 / 3.5, rel=0.01))
-
     def test_encoder_step_that_is_felt_is_a_warning(self):
         [fine] = quantisation(fly(level(), stiffness_n_per_m=800.0, press_n=1.0, resolution_m=8.75e-5))
         [coarse] = quantisation(fly(level(), stiffness_n_per_m=800.0, press_n=1.0, resolution_m=9e-5))
         assert (fine.verdict, coarse.verdict) == ("ok", "warn")
         softer = value_in_cure(coarse, "render.stiffness_n_per_m")
         assert grades(quantisation(fly(level(), stiffness_n_per_m=softer, press_n=1.0, resolution_m=9e-5))) == ["ok"]
-
-    def test_device_without_damping_has_its_stated_limit(self):
-        flight = fly(level(), device={"damping_n_s_per_m": 0.0}, max_stiffness_n_per_m=1000.0)
-        assert flight.ceilings[0].limit_n_per_m == 1000
 
 
 def test_materials_that_are_too_stiff_alone_are_softened():

@@ -1,4 +1,4 @@
-"""The limits of a force, which hold for any input of the guard."""
+"""The limits of a force hold for any input of the guard, or a broken law or driver reaches the hand."""
 
 import math
 

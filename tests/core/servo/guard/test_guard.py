@@ -1,4 +1,4 @@
-"""The guard of a force: exact results tick by tick, and limits that hold for any input."""
+"""The guard of a force, exactly, tick by tick: if it fails, a device pushes a hand harder than it was allowed to."""
 
 import math
 
@@ -41,22 +41,12 @@ class TestMaximum:
         np.testing.assert_allclose(forces[0], [math.copysign(math.sqrt(32), huge)] * 2 + [0], rtol=1e-15)
         assert TickFlag.FORCE_LIMITED in flags[0]
 
-    def test_force_below_maximum_stays(self):
-        wanted = (0.1, 0.2, -0.3)
-        forces, flags, _ = ticks(Safety(**BARE), [wanted])
-        assert tuple(forces[0]) == wanted
-        assert flags == [TickFlag.TOUCHING]
-
 
 class TestSlew:
     def test_slew_limited_steps_are_exact(self):
         forces, flags, _ = ticks(Safety(max_step_n=0.5, **BARE), [(0.0, 0.0, 1.75)] * 5)
         assert forces[:, 2].tolist() == [0.5, 1.0, 1.5, 1.75, 1.75]
         assert [TickFlag.SLEW_LIMITED in each for each in flags] == [True] * 3 + [False] * 2
-
-    def test_falling_force_has_the_same_slew_limit(self):
-        forces, _, _ = ticks(Safety(max_step_n=0.5, **BARE), [(1.0, 0.0, 0.0)] * 2 + [(-1.0, 0.0, 0.0)] * 3)
-        assert forces[:, 0].tolist() == [0.5, 1.0, 0.5, 0.0, -0.5]
 
     @pytest.mark.parametrize("axis", [0, 1, 2])
     def test_step_starts_at_the_last_force_along_each_axis(self, axis: int):
@@ -181,13 +171,6 @@ class TestStale:
         assert held[:4] == [(0.0, 0.0, 0.4, 0)] * 4
         assert held[4:] == [(0.0, 0.0, 0.0, TickFlag.STALE)] * 2
 
-    def test_first_position_after_stale_ticks_gives_zero_force(self):
-        settings, memory = Safety(stale_s=0.005, **BARE).arrays(SPEC, 0.0)
-        push = (*[0.0] * 6, 0.0, 0.0, 0.4)
-        guard(settings, memory, 0.001, *push)
-        assert guard(settings, memory, 0.006, *push) == (0.0, 0.0, 0.0, TickFlag.STALE)
-        assert guard(settings, memory, 0.001, *push)[2] == 0.4
-
     def test_position_at_the_age_limit_is_not_stale(self):
         settings, memory = Safety(stale_s=0.0625, max_step_n=10, **BARE).arrays(SPEC, 0.0)
         push = (*[0.0] * 6, 0.1, 0.2, 0.4)
@@ -230,11 +213,6 @@ class TestStiffnessLimit:
         assert forces[0, 2] == pytest.approx(0.2, rel=1e-12)
         assert flags == [TickFlag.TOUCHING | TickFlag.STIFFNESS_LIMITED]
 
-    def test_force_of_soft_law_stays(self):
-        forces, flags, _ = ticks(Safety(**BARE), [(0.0, 0.0, 0.4)] * 50, stiffness=2399.0)
-        assert (forces[:, 2] == 0.4).all()
-        assert TickFlag.STIFFNESS_LIMITED not in flags[-1]
-
     @pytest.mark.parametrize("delay", [0, 1, 2])
     def test_stiffness_limit_follows_the_measured_period(self, delay: int):
         safety = Safety(delay_ticks=delay, **BARE)
@@ -274,20 +252,7 @@ class TestStiffnessLimit:
         held = 2.4 * (0.001 + 0.002 / 128) / (1e-6 + 8e-6 / 128)
         assert guard(settings, memory, 0.003, *[0.0] * 6, 0.0, 0.0, 0.4)[2] == pytest.approx(0.4 * held / 2390)
 
-    def test_gain_falls_over_50_ms(self):
-        settings, memory = Safety(**BARE).arrays(SPEC, 2000.0)
-        assert guard(settings, memory, 0.019, *[0.0] * 6, 0.0, 0.0, 0.4)[2] == pytest.approx(0.4 * (1 - 0.019 / 0.05))
-
     def test_encoder_limit_does_not_depend_on_the_period(self):
         """2 f / Delta is 2000 N/m, of which 1600 may be used."""
         forces, _, _ = ticks(Safety(friction_n=0.03, **BARE), [(0.0, 0.0, 0.4)] * 500, stiffness=2000.0)
         np.testing.assert_allclose(forces[:, 2], 0.4 * 1600 / 2000)
-
-
-def test_limits_that_act_are_counted():
-    settings, memory = Safety(**BARE).arrays(SPEC, 0.0)
-    for force in ([0.3, 0, 0], [50, 0, 0], [50, 0, 0], [0, 0, 0], [NAN, 0, 0], [0, 0, 0]):
-        guard(settings, memory, 0.001, *[0.0] * 6, *map(float, force))
-    assert counts(memory) == {
-        TickFlag.TOUCHING: 3, TickFlag.FORCE_LIMITED: 2, TickFlag.SLEW_LIMITED: 3, TickFlag.NOT_FINITE: 1,
-    }  # fmt: skip

@@ -1,4 +1,4 @@
-"""The passivity observer and controller, in every direction and at other periods than a millisecond."""
+"""The passivity observer and controller: without them a loop gives a hand energy, and shakes it."""
 
 import math
 from collections.abc import Sequence
@@ -32,21 +32,6 @@ def tick(arrays, place: Sequence[float], velocity: Sequence[float], force: Seque
 
 
 class TestObserver:
-    @AXES
-    def test_work_is_observed_along_each_axis(self, axis: int):
-        """Two steps, as each starts at the stored place."""
-        arrays = STRICT.arrays(SPEC, 0.0)
-        for step in range(3):
-            tick(arrays, along(axis, 0.001 * step), REST, (0.5, 0.25, 0.125))
-        assert arrays[1][ENERGY_J] == pytest.approx(-2 * 0.001 * (0.5, 0.25, 0.125)[axis])
-
-    @AXES
-    def test_jump_along_any_axis_is_not_work(self, axis: int):
-        arrays = STRICT.arrays(SPEC, 0.0)
-        tick(arrays, REST, REST, (0.5, 0.25, 0.125))
-        tick(arrays, along(axis, 0.011), REST, (0.5, 0.25, 0.125))
-        assert arrays[1][ENERGY_J] == 0.0
-
     def test_energy_before_the_first_position_is_zero(self):
         arrays = COUPLED.arrays(SPEC, 0.0)
         tick(arrays, (0.002, 0.002, 0.002), REST, (0.0, 0.0, 1e-12))
@@ -82,13 +67,6 @@ class TestController:
         np.testing.assert_allclose(left, force - brake * v, atol=1e-12)
         assert (TickFlag.DAMPED in flags) == (brake > 0)
 
-    def test_damped_force_is_at_most_the_maximum(self):
-        arrays = STRICT.arrays(SPEC, 0.0)
-        arrays[1][ENERGY_J] = -1e-2
-        left, flags = tick(arrays, REST, (-1.0, 0.0, 0.0), (7.9, 0.0, 0.0))
-        assert left.tolist() == [8.0, 0.0, 0.0]
-        assert TickFlag.DAMPED in flags
-
     @AXES
     def test_released_force_is_damped_while_it_acts(self, axis: int):
         arrays = STRICT.arrays(SPEC, 0.0)
@@ -122,15 +100,6 @@ class TestPassivity:
             yield memory[ENERGY_J]
 
     @pytest.mark.parametrize("delay", [0, 1, 3])
-    def test_work_of_held_force_is_exact(self, delay: int):
-        random = np.random.default_rng(0)
-        x, fx = np.cumsum(random.uniform(-1e-3, 1e-3, 50)), random.uniform(0.1, 1, 50)
-        held = np.concatenate([np.zeros(1 + delay), fx])[:50]
-        work = np.cumsum(held * np.diff(x, prepend=x[0]))
-        found = list(self.energies(zip(x, fx, strict=True), passivity="strict", delay_ticks=delay))
-        np.testing.assert_allclose(found, -work, atol=1e-15)
-
-    @pytest.mark.parametrize("delay", [0, 2])
     def test_work_counts_along_every_axis(self, delay: int):
         random = np.random.default_rng(1)
         places, forces = np.cumsum(random.uniform(-1e-3, 1e-3, (40, 3)), axis=0), random.uniform(0.1, 1, (40, 3))
@@ -161,20 +130,6 @@ class TestPassivity:
             found.append(memory[ENERGY_J])
         assert found == pytest.approx([0.0, 5e-4, 0.0])
 
-    @pytest.mark.parametrize("axis", [0, 1, 2])
-    @pytest.mark.parametrize(
-        ("passivity", "gained_j", "left_n"),
-        [("strict", 0.0, 0.0), ("strict", 1e-5, 0.1), ("strict", 2.1e-5, 0.2), ("coupled", 0.0, 0.12)],
-    )
-    def test_brake_predicts_the_energy_of_this_tick(self, axis: int, passivity: str, gained_j: float, left_n: float):
-        """0.2 N at 0.1 m/s give 20 uJ in a tick; of that the handle's damping of 1.2 N s/m takes 12 uJ."""
-        settings, memory = Safety(passivity=passivity, **AT_ONCE).arrays(SPEC, 0.0)
-        memory[ENERGY_J] = gained_j
-        along = np.eye(3)[axis]
-        *force, flags = guard(settings, memory, 0.001, 0.0, 0.0, 0.0, *(0.1 * along), *(0.2 * along))
-        assert force == pytest.approx(left_n * along, abs=1e-15)
-        assert bool(flags & TickFlag.DAMPED) == (left_n < 0.2)
-
     def test_slow_hand_is_damped(self):
         settings, memory = Safety(passivity="strict", **AT_ONCE).arrays(SPEC, 0.0)
         memory[ENERGY_J] = -1e-3
@@ -187,22 +142,11 @@ class TestPassivity:
         left = guard(settings, memory, 0.001, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 8.0)
         assert left[:3] == pytest.approx(np.array([0.0, -7.5, 8.0]) * 8 / math.hypot(7.5, 8))
 
-    def test_handle_damping_counts_up_to_the_margin(self):
-        *_, energy = self.energies([(0.0, 1e-9), (0.002, 1e-9)], stiffness_margin=0.5)
-        assert energy == pytest.approx(0.5 * 1.5 * 2.0**2 * 0.001, rel=1e-6)
-
     def test_energy_credit_ends_in_free_air_but_debt_stays(self):
         gained = list(self.energies([(0.0, 1.0), (-0.001, 0.0), (-0.001, 0.0)], passivity="strict"))
         assert gained == pytest.approx([0.0, 1e-3, 0.0])
         owed = list(self.energies([(0.0, 1.0), (0.001, 0.0), (0.001, 0.0)], passivity="strict"))
         assert owed == pytest.approx([0.0, -1e-3, -1e-3])
-
-    def test_energy_debt_is_at_most_the_greatest_force_over_a_millimetre(self):
-        moves = [(0.005 * i, 8.0) for i in range(10)]
-        assert list(self.energies(moves, passivity="strict"))[-1] == pytest.approx(-0.008)
-
-    def test_jump_of_the_sensor_is_not_work(self):
-        assert list(self.energies([(0.0, 1.0), (0.011, 1.0)], passivity="strict")) == [0.0, 0.0]
 
     @pytest.mark.parametrize(("owed_j", "damping"), [(1e-6, 0.1), (1e-5, 1.0), (1e-3, 7.5)])
     def test_brake_follows_the_formula_up_to_five_times_the_device_damping(self, owed_j: float, damping: float):

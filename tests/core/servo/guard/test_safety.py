@@ -1,10 +1,8 @@
-"""The options of a force loop, its stiffness limits, and the arrays of its guard."""
+"""The options of a force loop, its stiffness limits, and the arrays of its guard: wrong ones let a device shake."""
 
 from pathlib import Path
 
-import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from tangible_core.data import DeviceSpec, TickFlag
 from tangible_core.errors import ConfigError
@@ -28,15 +26,12 @@ def parse(text: str):
 
 
 class TestPipelineFile:
-    def test_file_without_safety_is_guarded(self):
-        assert parse("").safety == Safety()
-
-    def test_defaults_of_safety_are_as_documented(self):
+    def test_file_without_safety_has_the_documented_limits(self):
         stated = Safety(
             max_force_n=None, max_step_n=0.5, ramp_s=0.5, stale_s=0.02, stiffness_margin=0.8, delay_ticks=0,
             friction_n=None, passivity="coupled", coupling=None,
         )  # fmt: skip
-        assert Safety() == stated
+        assert parse("").safety == Safety() == stated
 
     def test_file_options_reach_safety(self):
         text = "safety: {max_force_n: 2, coupling: {stiffness_n_per_m: 900, damping_n_s_per_m: 0.2}, passivity: off}\n"
@@ -115,10 +110,6 @@ class TestArrays:
         assert settings[layout.COUPLING_LAW] == pytest.approx(law or held)
         assert settings[layout.STIFFNESS] == pytest.approx(1 / (2 / held + 1 / law) if law else held / 2)
 
-    def test_gain_at_half_period_respects_the_device_stiffness(self):
-        settings, _ = Safety().arrays(FALCON, 6000.0)
-        assert gain(settings, 0.0005) == pytest.approx(0.5, rel=1e-12)
-
     def test_automatic_coupling_respects_the_encoder_limit(self):
         coarse, _ = Safety(coupling="auto", friction_n=0.015).arrays(FALCON, 800.0)
         assert coarse[layout.COUPLING] == pytest.approx(0.8 * 2 * 0.015 / 3e-5 / 2)
@@ -132,11 +123,6 @@ class TestArrays:
         assert settings[names].tolist() == pytest.approx([900, 0.2, behind])
         assert settings[layout.STIFFNESS] == pytest.approx(felt)
 
-    def test_tool_starts_at_the_device(self):
-        settings, memory = Safety(coupling="auto").arrays(FALCON, 800.0)
-        state = (0.05, -0.04, 0.03, 0.1, 0.2, 0.3)
-        assert guard.couple(settings, memory, 0.001, *state) == state
-
     @pytest.mark.parametrize(
         ("passivity", "brake", "credit"), [("off", 0, 0), ("coupled", 7.5, 1.2), ("strict", 7.5, 0)]
     )
@@ -144,19 +130,8 @@ class TestArrays:
         settings, _ = Safety(passivity=passivity).arrays(FALCON, 800.0)
         assert settings[[layout.BRAKE, layout.CREDIT]] == pytest.approx([brake, credit])
 
-    def test_memory_is_new_for_each_device(self):
-        (one, first), (two, second) = Safety().arrays(FALCON, 1.0), Safety().arrays(FALCON, 1.0)
-        np.testing.assert_array_equal(one, two)
-        first[:] = 0
-        assert second.any()
-
 
 def test_kernel_flags_match_the_record_flags():
     for name in ("TOUCHING", "FORCE_LIMITED", "SLEW_LIMITED", "STIFFNESS_LIMITED", "RAMPING", "NOT_FINITE", "DAMPED"):
         assert getattr(guard, name) == TickFlag[name]
     assert guard.STALE == TickFlag.STALE == 1 << (layout.FLAGS - 1)
-
-
-def test_safety_options_are_frozen():
-    with pytest.raises(ValidationError):
-        Safety().ramp_s = 1.0  # pyright: ignore[reportAttributeAccessIssue]

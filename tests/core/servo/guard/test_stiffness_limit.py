@@ -1,4 +1,6 @@
-"""A simulated handle on springs: its stability with and without guard, and the energy that it receives."""
+"""A simulated handle on springs: behind the guard every law comes to rest, where the bare law shakes the hand."""
+
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,8 +14,7 @@ from simulated_handle import (
     wall,
 )
 from tangible_bench.metrics.stability import Handle
-from tangible_core.data import DeviceSpec, HapticSurface
-from tangible_core.plugins.registry import load_method
+from tangible_core.data import DeviceSpec
 from tangible_core.servo.guard.safety import Safety, stiffness_limit_n_per_m
 
 DAMPING = 2.0
@@ -41,28 +42,27 @@ def test_simulated_limit_matches_the_formula(delay: int, period_s: float):
 
 
 @DELAYS
-@pytest.mark.parametrize("mass_kg", [0.1, 0.5])
-def test_simulation_matches_an_independent_one(delay: int, mass_kg: float):
-    held = handle(delay, mass_kg=mass_kg, period_s=0.004)
+def test_simulation_matches_an_independent_one(delay: int):
+    held = handle(delay, period_s=0.004)
     exact = exact_stiffness_limit(held.handle, delay)
     assert stiffest_stable_n_per_m(wall, held) == pytest.approx(exact, rel=0.01)
 
 
-def test_proxy_on_level_ground_has_the_limit_of_a_spring():
-    plane = HapticSurface.from_heights(np.zeros((16, 16)))
-    make = load_method("render", "proxy")
-    found = stiffest_stable_n_per_m(lambda stiffness: make(stiffness_n_per_m=stiffness).touch(plane), handle())
-    assert found == pytest.approx(limit(0), rel=0.05)
-
-
 @DELAYS
-@PERIODS
-@pytest.mark.parametrize("times", [1.5, 20.0])
-def test_law_of_stated_stiffness_comes_to_rest(delay: int, period_s: float, times: float):
-    law, held = wall(times * limit(delay, period_s)), handle(delay, period_s=period_s)
+@pytest.mark.parametrize(
+    ("times", "period_s", "jitter", "options"),
+    [
+        *((times, period_s, 0.0, {}) for times in (1.5, 20.0) for period_s in (0.00025, 0.004)),
+        *((3.0, 0.001, jitter, {"passivity": "off"}) for jitter in (0.3, 0.9)),
+        (20.0, 0.001, 0.0, {"passivity": "off"}),
+        (20.0, 0.001, 0.0, {"passivity": "off", "coupling": "auto"}),
+    ],
+)
+def test_law_of_stated_stiffness_comes_to_rest(delay: int, times: float, period_s: float, jitter: float, options: Any):
+    law, held = wall(times * limit(delay, period_s)), handle(delay, period_s=period_s, jitter=jitter)
     assert not comes_to_rest(law, held, (0.0, 0.0, 0.0))
-    for safety in (Safety(delay_ticks=delay, passivity="off"), Safety(delay_ticks=delay)):
-        assert comes_to_rest(law, held, (0.0, 0.0, 0.0), safety.arrays(SPEC, law.stiffness_n_per_m))
+    guard = Safety(delay_ticks=delay, **options).arrays(SPEC, law.stiffness_n_per_m)
+    assert comes_to_rest(law, held, (0.0, 0.0, 0.0), guard)
 
 
 @DELAYS
@@ -73,25 +73,8 @@ def test_any_law_behind_the_guard_comes_to_rest(delay: int):
 
 
 @DELAYS
-@pytest.mark.parametrize("jitter", [0.3, 0.9])
-def test_guarded_law_with_clock_jitter_comes_to_rest(delay: int, jitter: float):
-    law, held = wall(3 * limit(delay)), handle(delay, jitter=jitter)
-    assert not comes_to_rest(law, held, (0.0, 0.0, 0.0))
-    arrays = Safety(delay_ticks=delay, passivity="off").arrays(SPEC, law.stiffness_n_per_m)
-    assert comes_to_rest(law, held, (0.0, 0.0, 0.0), arrays)
-
-
-@DELAYS
-def test_any_law_behind_automatic_coupling_comes_to_rest(delay: int):
-    law, held = wall(20 * limit(delay)), handle(delay)
-    arrays = Safety(delay_ticks=delay, coupling="auto", passivity="off").arrays(SPEC, law.stiffness_n_per_m)
-    assert comes_to_rest(law, held, (0.0, 0.0, 0.0), arrays)
-
-
-@DELAYS
-@pytest.mark.parametrize("times", [3.0, 10.0])
-def test_energy_is_at_most_what_the_handle_damping_takes(delay: int, times: float):
-    law, held = wall(times * limit(delay)), handle(delay)
+def test_energy_is_at_most_what_the_handle_damping_takes(delay: int):
+    law, held = wall(3 * limit(delay)), handle(delay)
     bare = ride(law, held, FALLING, 3.0)
     assert (bare.work_j - bare.lost_j).max() > 1e-4
     safety = Safety(delay_ticks=delay, **AT_ONCE)
@@ -109,9 +92,9 @@ def test_energy_with_strict_passivity_is_not_positive(delay: int):
 
 
 @DELAYS
-@pytest.mark.parametrize("times", [1.5, 3.0, 5.0])
-@pytest.mark.parametrize("passivity", ["coupled", "strict"])
-@pytest.mark.parametrize("resolution_m", [0.0, 3e-5])
+@pytest.mark.parametrize(
+    ("times", "passivity", "resolution_m"), [(1.5, "coupled", 3e-5), (3.0, "strict", 0.0), (5.0, "coupled", 0.0)]
+)
 def test_law_of_unknown_stiffness_is_damped(delay: int, times: float, passivity: str, resolution_m: float):
     law, held = wall(times * limit(delay)), handle(delay, resolution_m=resolution_m)
     safety = Safety(delay_ticks=delay, passivity=passivity, **AT_ONCE)

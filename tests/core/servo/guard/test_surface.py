@@ -1,4 +1,4 @@
-"""The energy account of a moving surface: its work on the hand is bounded, and is not charged to the loop."""
+"""The energy account of a moving surface: without it a film is damped away, or lifts a hand without bound."""
 
 from typing import Any
 
@@ -150,37 +150,10 @@ class TestSurfaceWork:
 
 
 FREE: dict[str, Any] = {"passivity": "strict", "ramp_s": 0, "max_step_n": 10}
-SOFT = {"stiffness_n_per_m": 800.0, "damping_n_s_per_m": 0.1}
 HARD = {"stiffness_n_per_m": 20_000.0, "damping_n_s_per_m": 0.5}
 
 
 class TestCoupling:
-    def test_surface_works_by_the_law_force_on_the_tool(self):
-        """The work on a hand at rest is stored in the springs of the law and of the coupling."""
-        felt = Felt(Safety(passivity="strict", ramp_s=0, max_step_n=10, coupling="auto"))
-        for _ in range(500):
-            felt.tick(0.009)
-        coupling = felt.settings[at.COUPLING]
-        before_j, before_n = felt.energy_j, felt.force_n
-        for _ in range(200):
-            felt.tick(0.009, 1e-5)
-        for _ in range(200):
-            felt.tick(0.009)
-        stored_j = (felt.force_n**2 - before_n**2) / 2 * (1 / STIFF + 1 / coupling)
-        assert felt.energy_j - before_j == pytest.approx(stored_j, rel=0.02)
-
-    def test_surface_work_with_moving_tool_covers_the_springs(self):
-        """Its work is never less than what it left in the springs: the rest went into the coupling's damper."""
-        felt = Felt(Safety(passivity="strict", ramp_s=0, max_step_n=10, coupling=Coupling(**SOFT)))
-        for _ in range(2000):
-            felt.tick(0.009)
-        before_j, before_n = felt.energy_j, felt.force_n
-        for i in range(2000):
-            felt.tick(0.009, 1e-4 if i < 20 else 0.0)
-        stored_j = (felt.force_n**2 - before_n**2) / 2 * (1 / STIFF + 1 / SOFT["stiffness_n_per_m"])
-        assert felt.force_n > 1.2 * before_n
-        assert stored_j < felt.energy_j - before_j < 1.1 * stored_j
-
     @pytest.mark.parametrize(
         ("hand_m", "stiffness_n_per_m", "more"),
         [(0.007, STIFF, {"max_force_n": 0.5}), (0.0099, 20_000.0, {"coupling": Coupling(**HARD)})],
@@ -215,8 +188,7 @@ def damped_share(
 
 
 class TestMovedHand:
-    @pytest.mark.parametrize("coupling", [None, "auto"])
-    @pytest.mark.parametrize("rate_hz", [0.5, 2.0])
+    @pytest.mark.parametrize(("rate_hz", "coupling"), [(0.5, "auto"), (2.0, None)])
     def test_hand_moved_by_surface_is_not_damped(self, rate_hz: float, coupling):
         """Once the force has faded in, which lifts a hand by itself."""
         assert damped_share(MovingPlane(0.012, STIFF), rate_hz, coupling, 5.0, 1.5) < 0.01

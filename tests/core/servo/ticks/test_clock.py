@@ -1,4 +1,4 @@
-"""Clocks of three systems in compiled code: here the system's own, and the others on simulated functions."""
+"""Clocks of three systems in compiled code, two of them simulated: a wrong one makes every tick late or early."""
 
 import ctypes
 from typing import Any
@@ -87,8 +87,7 @@ def test_compiled_clock_is_the_programs():
     assert clock.wait_ns(here, due, 100_000) >= due
 
 
-@pytest.mark.parametrize("kind", ["windows", "mach"])
-@pytest.mark.parametrize("after_ns", [1_000_000, 2_500_000_000])
+@pytest.mark.parametrize(("kind", "after_ns"), [("windows", 2_500_000_000), ("mach", 1_000_000)])
 def test_compiled_sleep_ends_when_the_tick_is_due(kind: str, after_ns: int):
     system, timer = windows(10**7) if kind == "windows" else mach(125, 3)
     words = clock.clock(kind, timer)

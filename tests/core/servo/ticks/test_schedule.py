@@ -1,4 +1,4 @@
-"""The schedule of ticks: missed ones are counted, not made up for, and the lead follows the machine's lateness."""
+"""The schedule of ticks: ticks that are made up for push twice, and a lead that never falls keeps a processor busy."""
 
 import numpy as np
 import pytest

@@ -1,3 +1,5 @@
+"""The players of a film: a surface that stands still, runs late, or leaves a thread behind when the loop ends."""
+
 import threading
 import time
 from collections import defaultdict
@@ -35,8 +37,8 @@ def play():
     """Plays frames to a film, and stops in the end."""
     players = []
 
-    def play(given, film, fps=200.0, maker=None):
-        frames = GivenFrames(given, fps)
+    def play(given, film, fps=200.0, maker=None, first_s=0.0):
+        frames = GivenFrames(given, fps, first_s)
         players.append(Player(Reliefs(lambda: frames, maker or NearnessOfGrey()), film))
         players[-1].start()
         return players[-1]
@@ -47,9 +49,11 @@ def play():
 
 
 def test_player_shows_frames_in_order_and_stops_at_the_end_of_the_source(play):
+    """Its first frame is due at once, whatever time it has, as in a part that was cut out of a longer film."""
     film = Seen()
-    player = play(greys(*[BOX] * 5), film)
+    player = play(greys(*[BOX] * 5), film, first_s=50.0)
     until(lambda: film.frames[-1:] == [4])
+    assert player.counts.age_ms is not None and 0 <= player.counts.age_ms < 1000 * SOON_S
     assert film.frames == sorted(set(film.frames))
     assert player.counts.shown + player.counts.skipped == 5
     player.check()
@@ -63,24 +67,6 @@ def test_player_shows_the_latest_frame_and_counts_skipped_ones(play):
     assert felt.skipped > 20 and felt.shown + felt.skipped == 60
     assert 0 < felt.per_s < 40
     assert felt.age_ms >= 30
-
-
-@pytest.mark.parametrize(("cores", "asked", "threads"), [(4, None, 3), (4, 2, 2), (4, 9, 3), (1, None, 1)])
-def test_player_leaves_a_processor_to_the_loop(monkeypatch, cores, asked, threads):
-    monkeypatch.setattr("tangible_core.session.film.player.processors", lambda: cores)
-    monkeypatch.setattr("tangible_core.session.film.player.thread_limit", lambda: None)
-    player = Player(Reliefs(lambda: GivenFrames(greys(BOX)), NearnessOfGrey()), Seen(), asked)
-    assert player._threads == threads
-
-
-def test_age_of_a_frame_counts_from_when_it_was_due(monkeypatch):
-    player = Player(Reliefs(lambda: GivenFrames(greys(BOX)), NearnessOfGrey()), Seen())
-    player._began_s = 100.0
-    times = iter([103.25, 104.5, 107.0])
-    monkeypatch.setattr("tangible_core.session.film.player.time.monotonic", lambda: next(times))
-    for due_s in (3.0, 4.0, 5.0):
-        player._note(due_s)
-    assert player.counts.age_ms == pytest.approx(500)
 
 
 def test_player_repeats_a_relief_until_the_surface_arrives(play):
@@ -98,9 +84,7 @@ def test_player_logs_damaged_frames_once_and_goes_on(play, caplog):
     player = play(given, film, fps=20)
     until(lambda: film.frames[-1:] == [5])
     assert player.counts.damaged >= 1
-    assert [each.message for each in caplog.records].count(
-        "the surface stands still until the next valid frame: frame is damaged"
-    ) == 1
+    assert caplog.text.count("frame is damaged") == 1
     player.check()
 
 
@@ -155,28 +139,6 @@ def test_stopped_work_ends_a_film_and_is_no_damage(play, caplog):
     assert not player._thread.is_alive()
     player.check()
     assert (player.counts.damaged, caplog.messages) == (0, [])
-
-
-def test_stopped_work_by_the_clock_is_raised():
-    frames = GivenFrames(greys(BOX, BOX), fps=10)
-    with Reliefs(lambda: frames, NearnessOfGrey()) as reliefs:
-        show = ByClock(reliefs, Seen())
-        reliefs._maker = Faulty(Stopped())
-        with pytest.raises(Stopped):
-            for tick in range(200):
-                show(tick / 1000)
-        assert show.counts.damaged == 0
-
-
-def test_first_frame_is_due_at_once_whatever_time_it_has(monkeypatch):
-    """A film that begins at 50 s, as a part that was cut out of a longer one, is not late by 50 s."""
-    asked, frames = [], GivenFrames(greys(BOX), first_s=50.0)
-    monkeypatch.setattr(frames, "at", asked.append)
-    monkeypatch.setattr("tangible_core.session.film.player.time.monotonic", iter([1000.0, 1000.25]).__next__)
-    player = Player(Reliefs(lambda: frames, NearnessOfGrey()), Seen())
-    assert player._due(frames).time_s == 50.0
-    assert player._due(frames) is None
-    assert asked == [50.25]
 
 
 def test_player_stops_soon_during_a_slow_method_and_keeps_no_process_alive(play):

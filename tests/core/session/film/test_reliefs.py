@@ -1,15 +1,16 @@
+"""The frames of a film as reliefs: without a common scale the ground moves under the hand from frame to frame."""
+
 from contextlib import suppress
 
 import numpy as np
 import pytest
 
 from films import GivenFrames, NearnessOfGrey, greys
-from tangible_core.data import DisparityMap
-from tangible_core.errors import ConfigError, GeometryError
+from tangible_core.errors import GeometryError
 from tangible_core.relief import ReliefScale
 from tangible_core.relief.tones import STRAIGHT
 from tangible_core.scene.geometry import ValueRange
-from tangible_core.session.film import FrameMaker, Reliefs
+from tangible_core.session.film import Reliefs
 from tangible_core.session.film.reliefs import ADAPTS_S, Scale
 
 GROUND = np.full((8, 12), 20.0)
@@ -29,13 +30,6 @@ def test_scale_of_the_first_frame_is_kept():
     film = heights(BOX, *[NEARER] * 5)
     assert film[-1][6, 9] == film[-1][2, 3] == pytest.approx(0.01), "what is nearer is clipped, and pushes nothing down"
     assert film[-1][0, 0] == 0
-
-
-def test_scale_follows_slowly():
-    film = heights(BOX, *[NEARER] * 400)
-    box = np.array([each[2, 3] for each in film])
-    assert box[-1] < 0.008, "the box goes down as something nearer stays"
-    assert np.abs(np.diff(box)).max() < 0.001
 
 
 def test_scale_is_looked_at_in_each_eighth_frame_after_the_first():
@@ -69,37 +63,6 @@ def test_cut_determines_range_and_cameras_again():
     assert film[3][0, 0] == pytest.approx(0.01) and film[3][2, 3] == 0
 
 
-def test_reliefs_have_the_numbers_and_times_of_their_frames():
-    with Reliefs(lambda: GivenFrames(greys(BOX, BOX, BOX), fps=10), NearnessOfGrey()) as reliefs:
-        assert [(each.number, each.time_s) for each in reliefs] == [(0, 0.0), (1, 0.1), (2, 0.2)]
-
-
-def test_reliefs_restart_when_reopened_and_close_the_video():
-    opened = []
-
-    def frames():
-        opened.append(GivenFrames(greys(BOX, NEARER)))
-        return opened[-1]
-
-    maker = NearnessOfGrey()
-    reliefs = Reliefs(frames, maker)
-    with pytest.raises(ConfigError, match="not open"):
-        _ = reliefs.frames
-    for _ in range(2):
-        with reliefs:
-            assert len(list(reliefs)) == 2
-    assert maker.begun == 2
-    assert [each.closed for each in opened] == [True, True]
-
-
-def test_frame_without_depth_is_refused_and_the_next_goes_on():
-    dark = np.full((8, 12), 255.0)
-    with Reliefs(lambda: GivenFrames(greys(dark, BOX)), NearnessOfGrey()) as reliefs:
-        with pytest.raises(GeometryError, match="no depth is known"):
-            reliefs.make(reliefs.frames.next())
-        assert reliefs.make(reliefs.frames.next()).relief.height_m.any()
-
-
 def test_scene_after_a_dark_pause_begins_with_its_own_range():
     maker, dark, other = NearnessOfGrey(), np.full((8, 12), 255.0), 200 - BOX / 2
     film = []
@@ -109,28 +72,3 @@ def test_scene_after_a_dark_pause_begins_with_its_own_range():
                 film.append(reliefs.make(frame).relief.height_m)
     assert maker.begun == 2
     assert film[-1][0, 0] == pytest.approx(0.01) and film[-1][2, 3] == 0, "the range is the new one"
-
-
-def test_scene_whose_first_frame_is_empty_begins_with_the_next():
-    class Blind(FrameMaker):
-        """Knows nothing of a picture that is dark, of which it would keep that."""
-
-        def __init__(self):
-            self.maker, self.kept = NearnessOfGrey(), ""
-
-        def begin(self, views):
-            self.kept = "dark" if views.left.max() == 0 else "light"
-            return self.disparity(views)
-
-        def disparity(self, views):
-            found = self.maker.disparity(views)
-            return DisparityMap(np.full_like(found.disparity_px, np.nan)) if self.kept == "dark" else found
-
-        scale = staticmethod(NearnessOfGrey().scale)
-        relief = staticmethod(NearnessOfGrey().relief)
-
-    maker = Blind()
-    with Reliefs(lambda: GivenFrames(greys(np.zeros((8, 12)), BOX)), maker) as reliefs:
-        with pytest.raises(GeometryError):
-            reliefs.make(reliefs.frames.next())
-        assert reliefs.make(reliefs.frames.next()).relief.height_m[2, 3] > 0

@@ -1,11 +1,11 @@
+"""The filter of a film in time: what flickers is felt as a buzz, and what moved leaves a trail."""
+
 import numpy as np
 import pytest
 
-from films import layered, true_disparity
 from tangible_core.data import DisparityMap
 from tangible_core.session.film import Steady
 from tangible_core.session.film.steady import GATE_PX, MOST_DOUBTS, MOST_MISSING
-from tangible_depth import SemiGlobal
 
 FLAT = np.full((6, 8), 10, np.float32)
 
@@ -97,31 +97,3 @@ def test_frame_of_another_size_restarts_the_filter():
     steady.next(DisparityMap(FLAT))
     found = steady.next(DisparityMap(FLAT[:3] + 5))
     assert found.cut and np.array_equal(found.disparity.disparity_px, FLAT[:3] + 5)
-
-
-@pytest.fixture(scope="module")
-def films():
-    """Return the noisy, the filtered and the true disparity of a box that moves over a ground."""
-    generator, steady = np.random.default_rng(3), Steady()
-    method = SemiGlobal(resolution="half", min_disparity_px=0, max_disparity_px=32)
-    found = [method.estimate(layered(number, 6.0, generator)) for number in range(18)]
-    felt = [steady.next(each).disparity.disparity_px for each in found]
-    return np.stack([each.disparity_px for each in found]), np.stack(felt), np.stack([*map(true_disparity, range(18))])
-
-
-def test_flicker_at_rest_is_halved_without_more_errors(films):
-    found, felt, true = films
-    still = (true == true[0]).all(axis=0)
-    flicker = [np.diff(each[4:], axis=0)[:, still].std() for each in (found, felt)]
-    assert flicker[1] < 0.5 * flicker[0]
-    wrong = [(np.abs(each - true)[4:, still] > 2).mean() for each in (found, felt)]
-    assert wrong[1] <= wrong[0]
-
-
-def test_moving_edge_is_at_most_a_frame_late_without_a_trail(films):
-    found, felt, true = films
-    before = np.roll(true, 1, axis=0)
-    late = np.minimum(np.abs(felt - true), np.abs(felt - before))[2:] > 2
-    asis = np.minimum(np.abs(found - true), np.abs(found - before))[2:] > 2
-    walked = (true != true[0]).any(axis=0)
-    assert late[:, walked].mean() <= asis[:, walked].mean() + 0.02

@@ -1,9 +1,8 @@
-"""Recordings in memory and in their files."""
+"""Recordings in memory and in their files: ticks that were recorded come back, or their loss is said."""
 
 import csv
 import os
 import tracemalloc
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -14,12 +13,10 @@ from numpy.lib import recfunctions as rfn
 from scipy.io import netcdf_file
 
 from hostile import npz_bomb
-from tangible_core.data import TICK_COLUMNS, HapticSurface, TickFlag
+from tangible_core.data import TICK_COLUMNS, TickFlag
 from tangible_core.errors import OutputError
-from tangible_core.session import About, Recording, check_record_path, run_simulated
+from tangible_core.session import About, Recording, check_record_path
 from tangible_core.session.recording import netcdf, tick_file
-from tangible_devices.mock import Mock
-from tangible_render.penalty_gradient import PenaltyGradient
 
 ABOUT = About("mock", "proxy", "scene: x\nwörds: 1\n", "2026-01-02T03:04:05+00:00", "mine 1.0")
 
@@ -34,31 +31,19 @@ def some(count: int = 5, **more) -> Recording:
     return Recording(rows, **more)
 
 
-def same(one: Recording, other: Recording) -> bool:
-    return one.digest() == other.digest()
-
-
 @pytest.mark.parametrize("suffix", [".nc", ".npz"])
 @pytest.mark.parametrize("count", [0, 1, 5])
-@pytest.mark.parametrize("about", [About(), ABOUT])
-def test_saved_recording_is_loaded_unchanged(tmp_path: Path, count: int, about: About, suffix: str):
-    recording = some(count, stopped="the cable is out", about=about)
+def test_saved_recording_is_loaded_unchanged(tmp_path: Path, count: int, suffix: str):
+    recording = some(count, stopped="the cable is out", about=ABOUT)
     recording.save(tmp_path / "deep" / f"stroke{suffix}")
-    assert same(Recording.load(tmp_path / "deep" / f"stroke{suffix}"), recording)
-
-
-def test_npz_is_read_by_numpy(tmp_path: Path):
-    some().save(tmp_path / "stroke.npz")
-    with np.load(tmp_path / "stroke.npz") as file:
-        assert np.array_equal(file["force_n"], some().force_n)
-        assert np.array_equal(file["flags"], some().flags)
+    assert Recording.load(tmp_path / "deep" / f"stroke{suffix}").digest() == recording.digest()
 
 
 @pytest.mark.parametrize("count", [0, 1, 5])
 def test_csv_keeps_every_digit_of_the_ticks(tmp_path: Path, count: int):
     recording = Recording(some(count).rows + np.pi)
     recording.save(tmp_path / "stroke.csv")
-    assert same(Recording.load(tmp_path / "stroke.csv"), recording)
+    assert Recording.load(tmp_path / "stroke.csv").digest() == recording.digest()
     with (tmp_path / "stroke.csv").open(newline="") as file:
         assert [float(row["fz_n"]) for row in csv.DictReader(file)] == recording.force_n[:, 2].tolist()
 
@@ -104,13 +89,6 @@ def test_frame_in_nc_file_is_read_by_other_programs(tmp_path: Path):
     assert np.array_equal(Recording.load(tmp_path / "stroke.nc").frame[:2], rows[:2, 16])
 
 
-@pytest.mark.parametrize("name", ["time_s", "x_m", "vz_m_per_s", "fz_n"])
-def test_csv_without_a_needed_column_is_refused(tmp_path: Path, name: str):
-    (tmp_path / "less.csv").write_text(",".join(each for each in TICK_COLUMNS if each != name) + "\n")
-    with pytest.raises(OutputError, match=f"first line has no {name}"):
-        Recording.load(tmp_path / "less.csv")
-
-
 def test_old_npz_file_is_read(tmp_path: Path):
     arrays = {name: getattr(some(), name) for name in ("time_s", "position_m", "velocity_m_per_s", "force_n")}
     np.savez(tmp_path / "old.npz", **arrays, stopped="", not_finite=2, limited=3)
@@ -118,15 +96,6 @@ def test_old_npz_file_is_read(tmp_path: Path):
     assert all(np.array_equal(getattr(recording, name), array) for name, array in arrays.items())
     assert np.isnan(recording.proxy_m).all()
     assert recording.about == About()
-
-
-def test_csv_is_replayed_by_a_mock(tmp_path: Path):
-    touch = PenaltyGradient().touch(HapticSurface.from_heights(np.full((3, 3), 0.01)))
-    first = run_simulated(touch, Mock(speed_m_per_s=0.2), 0.3)
-    first.save(tmp_path / "stroke.csv")
-    again = run_simulated(touch, Mock(path="csv", csv_file=tmp_path / "stroke.csv", hand=None), 0.3)
-    assert np.allclose(again.position_m, first.position_m, rtol=0, atol=1e-15)
-    assert np.allclose(again.force_n, first.force_n, rtol=0, atol=1e-11)
 
 
 def test_figures_of_a_recording_are_exact():
@@ -159,25 +128,8 @@ def test_recording_of_wrong_shape_is_refused():
 def refusal(path: Path) -> str:
     with pytest.raises(OutputError) as error:
         Recording.load(path)
-    message = str(error.value)
-    assert message.startswith(f"{path}: ")
-    assert message.isprintable()
-    assert len(message) < 500
-    return message
-
-
-def header(path: Path) -> str:
-    some(1).save(path)
-    return path.read_text().splitlines()[0]
-
-
-@pytest.mark.timeout(20)
-@pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
-def test_pipe_or_device_is_refused(tmp_path: Path, suffix: str):
-    os.mkfifo(tmp_path / f"pipe{suffix}")
-    (tmp_path / f"zero{suffix}").symlink_to("/dev/zero")
-    for name in ("pipe", "zero"):
-        assert "cannot be read: it is not a file but a folder or a device" in refusal(tmp_path / f"{name}{suffix}")
+    assert str(error.value).startswith(f"{path}: ")
+    return str(error.value)
 
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
@@ -199,20 +151,6 @@ def test_decompression_bomb_is_not_unpacked(tmp_path: Path):
         tracemalloc.stop()
 
 
-def test_archive_with_odd_entries_is_refused(tmp_path: Path):
-    some().save(tmp_path / "a.npz")
-    whole = (tmp_path / "a.npz").read_bytes()
-    entry = whole.find(b"PK\x01\x02")
-    for at, name in ((8, "encrypted"), (10, "compression is not one")):
-        data = bytearray(whole)
-        while entry >= 0:
-            data[entry + at] |= 1
-            entry = data.find(b"PK\x01\x02", entry + 1)
-        entry = whole.find(b"PK\x01\x02")
-        (tmp_path / "a.npz").write_bytes(data)
-        assert name in refusal(tmp_path / "a.npz")
-
-
 def test_archive_without_a_needed_array_names_it(tmp_path: Path):
     np.savez(tmp_path / "a.npz", time_s=np.zeros(3), stopped="")
     assert "it holds no position_m, velocity_m_per_s, force_n" in refusal(tmp_path / "a.npz")
@@ -220,6 +158,13 @@ def test_archive_without_a_needed_array_names_it(tmp_path: Path):
     with np.load(tmp_path / "a.npz") as held:
         np.savez(tmp_path / "b.npz", **{name: held[name] for name in held if name != "stopped"})
     assert "it holds no stopped" in refusal(tmp_path / "b.npz")
+
+
+def test_archive_entries_of_other_names_are_not_read(tmp_path: Path):
+    some().save(tmp_path / "a.npz")
+    with np.load(tmp_path / "a.npz") as held:
+        np.savez(tmp_path / "b.npz", **held, more=np.array([{}], object))
+    assert Recording.load(tmp_path / "b.npz").digest() == some().digest()
 
 
 @pytest.mark.parametrize("dtype", [complex, "U1", "M8[s]"])
@@ -230,25 +175,20 @@ def test_ticks_that_are_not_numbers_are_refused(tmp_path: Path, dtype: object):
     assert "late_s holds" in refusal(tmp_path / "b.npz")
 
 
-def test_archive_entries_of_other_names_are_not_read(tmp_path: Path):
-    some().save(tmp_path / "a.npz")
-    with np.load(tmp_path / "a.npz") as held:
-        np.savez(tmp_path / "b.npz", **held, more=np.array([{}], object))
-    assert same(Recording.load(tmp_path / "b.npz"), some())
-
-
-@pytest.mark.parametrize("bits", ["nan", "inf", "1e300", "-3e9"])
-@pytest.mark.parametrize("place", [14, 15])
+@pytest.mark.parametrize(("place", "bits"), [(14, "nan"), (14, "1e300"), (15, "inf"), (15, "-3e9")])
 def test_flags_and_buttons_beyond_32_bits_are_refused(tmp_path: Path, bits: str, place: int):
     row = ["0"] * 17
     row[place] = bits
-    (tmp_path / "a.csv").write_text(f"{header(tmp_path / 'b.csv')}\n{','.join(row)}\n")
+    (tmp_path / "a.csv").write_text(f"{','.join(TICK_COLUMNS)}\n{','.join(row)}\n")
     assert f"its {TICK_COLUMNS[place]} do not all fit into 32 bits" in refusal(tmp_path / "a.csv")
 
 
-def test_error_shortens_a_long_text_in_place_of_a_number(tmp_path: Path):
-    (tmp_path / "a.csv").write_text(header(tmp_path / "b.csv") + "\n" + "x\x1b" * 10**6 + ",0" * 16 + "\n")
-    assert "could not convert string to float" in refusal(tmp_path / "a.csv")
+def test_csv_without_needed_columns_or_numbers_is_refused(tmp_path: Path):
+    for name in ("time_s", "fz_n"):
+        (tmp_path / "less.csv").write_text(",".join(each for each in TICK_COLUMNS if each != name) + "\n")
+        assert f"first line has no {name}" in refusal(tmp_path / "less.csv")
+    (tmp_path / "text.csv").write_text(f"{','.join(TICK_COLUMNS)}\n" + "x" + ",0" * 16 + "\n")
+    assert "is not a recording" in refusal(tmp_path / "text.csv")
 
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
@@ -267,29 +207,13 @@ def test_damaged_file_is_one_error_or_a_recording(tmp_path_factory, suffix: str,
         assert str(error).isprintable()
 
 
-@pytest.mark.parametrize("name", ["stroke", "stroke.parquet", "stroke.npz.txt"])
+@pytest.mark.parametrize("name", ["stroke", "stroke.npz.txt"])
 def test_recording_name_with_wrong_suffix_is_refused(tmp_path: Path, name: str):
     with pytest.raises(OutputError, match=r"\.nc, \.npz or \.csv"):
         check_record_path(tmp_path / name)
     with pytest.raises(OutputError, match=r"\.nc, \.npz or \.csv"):
         some().save(tmp_path / name)
     assert not list(tmp_path.iterdir())
-
-
-def test_recording_at_unwritable_place_is_an_error(tmp_path: Path):
-    (tmp_path / "file").touch()
-    with pytest.raises(OutputError, match="cannot be written"):
-        some().save(tmp_path / "file" / "stroke.npz")
-
-
-@pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
-@pytest.mark.parametrize("damage", [lambda b: b"", lambda b: b[:-200], lambda b: b"\xff" * 99, lambda b: b"a,b\n"])
-def test_damaged_recordings_are_refused(tmp_path: Path, suffix: str, damage: Callable[[bytes], bytes]):
-    path = tmp_path / f"stroke{suffix}"
-    some().save(path)
-    path.write_bytes(damage(path.read_bytes()))
-    with pytest.raises(OutputError, match="is not a recording, or a damaged one"):
-        Recording.load(path)
 
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz"])
@@ -304,22 +228,23 @@ def test_truncated_recording_is_refused(tmp_path: Path, suffix: str):
 
 
 def test_file_of_another_kind_is_refused(tmp_path: Path):
-    from scipy.io import netcdf_file
-
     np.savez(tmp_path / "other.npz", picture=np.zeros(3))
     np.save(tmp_path / "array.npy", np.zeros(3))
     (tmp_path / "array.npy").rename(tmp_path / "array.npz")
     with netcdf_file(tmp_path / "other.nc", "w") as file:
         file.createDimension("x", 3)
         file.createVariable("time_s", "d", ("x",))[:] = 0
-    for name in ("other.npz", "array.npz", "other.nc"):
-        with pytest.raises(OutputError, match="is not a recording"):
-            Recording.load(tmp_path / name)
+    for name in ("empty.csv", "bytes.csv"):
+        (tmp_path / name).write_bytes(b"" if name == "empty.csv" else b"\xff" * 99)
+    for name in ("other.npz", "array.npz", "other.nc", "empty.csv", "bytes.csv"):
+        assert "is not a recording" in refusal(tmp_path / name)
 
 
+@pytest.mark.timeout(20)
 @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
-def test_missing_file_is_an_error(tmp_path: Path, suffix: str):
+def test_missing_file_folder_pipe_or_device_is_refused(tmp_path: Path, suffix: str):
     (tmp_path / f"folder{suffix}").mkdir()
-    for path in (tmp_path / f"none{suffix}", tmp_path / f"folder{suffix}"):
-        with pytest.raises(OutputError, match="cannot be read"):
-            Recording.load(path)
+    os.mkfifo(tmp_path / f"pipe{suffix}")
+    (tmp_path / f"zero{suffix}").symlink_to("/dev/zero")
+    for name in ("none", "folder", "pipe", "zero"):
+        assert "cannot be read" in refusal(tmp_path / f"{name}{suffix}")

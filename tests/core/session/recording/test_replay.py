@@ -1,4 +1,4 @@
-"""Replay: recorded states through any law."""
+"""Replay of recorded states: a law is judged by forces that it would not give."""
 
 import numpy as np
 import pytest

@@ -1,10 +1,8 @@
-"""Growing recordings: appended ticks can be read at once, by other programs too, and after any end of the program."""
+"""Growing recordings: if they fail, ticks that a hand felt are lost when a program ends or a disk is full."""
 
-import random
 import subprocess
 import sys
 import textwrap
-import time
 from io import BytesIO, FileIO
 from pathlib import Path
 
@@ -57,12 +55,6 @@ def test_file_has_names_units_and_flags_for_other_programs(tmp_path: Path):
         assert np.array_equal(file.variables["fz_n"][:], ROWS[:, 13])
 
 
-def test_file_has_the_information_about_the_session(tmp_path: Path):
-    about = About("mock", "proxy", "want: touch\n", "2026-01-02T03:04:05+00:00", "mine 1.0")
-    Writer(tmp_path / "stroke.nc", about).close()
-    assert Recording.load(tmp_path / "stroke.nc").about == about
-
-
 def test_header_has_the_offset_of_each_variable():
     """scipy uses the first offset and then the sizes; other readers use all offsets."""
     head = tick_file.header(About())
@@ -75,23 +67,18 @@ def test_tick_takes_96_bytes_with_little_loss(tmp_path: Path):
     """Inputs of a law are exact, even after ten days; proxies are within 4 nm, forces within 0.3 uN."""
     rows = np.random.default_rng(0).uniform(-1, 1, (1000, 17)) * ([0.01, 1e-3] + [0.125] * 9 + [8] * 3 + [0, 0, 0])
     rows[:, 0] += 864_000
+    rows[0, 11:14] = 1e300, np.nan, -np.inf
     path = tmp_path / "stroke.nc"
     with Writer(path) as writer:
         empty = path.stat().st_size
         writer.append(rows)
         assert path.stat().st_size - empty == 96 * 1000
-    lost = np.abs(Recording.load(path).rows - rows).max(axis=0)
+    found = Recording.load(path).rows
+    assert np.array_equal(found[0, 11:14], [np.inf, np.nan, -np.inf], equal_nan=True), "beyond float32"
+    lost = np.abs(found[1:] - rows[1:]).max(axis=0)
     assert not lost[[0, 2, 3, 4, 5, 6, 7]].any()
     assert lost[8:11].max() < 4e-9
     assert lost[11:14].max() < 3e-7
-
-
-def test_values_beyond_float32_become_infinite(tmp_path: Path):
-    rows = np.zeros((3, 17))
-    rows[:, 11] = 1e300, np.nan, -np.inf
-    with Writer(tmp_path / "stroke.nc") as writer:
-        writer.append(rows)
-    assert np.array_equal(Recording.load(tmp_path / "stroke.nc").rows[:, 11], [np.inf, np.nan, -np.inf], equal_nan=True)
 
 
 def test_writer_stores_the_reason_of_the_end(tmp_path: Path):
@@ -110,18 +97,10 @@ def test_writer_stores_the_reason_of_the_end(tmp_path: Path):
 
 
 @pytest.mark.usefixtures("unchecked_shapes")
-@pytest.mark.parametrize("rows", [np.zeros(17), np.zeros((3, 10)), np.zeros((2, 2, 17))])
+@pytest.mark.parametrize("rows", [np.zeros(17), np.zeros((3, 10))])
 def test_rows_of_wrong_shape_are_refused(tmp_path: Path, rows: np.ndarray):
     with Writer(tmp_path / "stroke.nc") as writer, pytest.raises(OutputError, match=r"\(n, 17\)"):
         writer.append(rows)
-
-
-def test_writer_at_unwritable_place_is_an_error(tmp_path: Path):
-    (tmp_path / "file").touch()
-    (tmp_path / "folder.nc").mkdir()
-    for path in (tmp_path / "file" / "stroke.nc", tmp_path / "folder.nc"):
-        with pytest.raises(OutputError, match="cannot be written"):
-            Writer(path)
 
 
 def test_second_writer_of_a_file_is_refused(tmp_path: Path):
@@ -135,29 +114,6 @@ def test_second_writer_of_a_file_is_refused(tmp_path: Path):
     assert np.array_equal(Recording.load(path).rows, ROWS)
     Writer(path).close()
     assert len(Recording.load(path).rows) == 0
-
-
-def test_killed_writer_loses_no_appended_tick(tmp_path: Path):
-    """Each tick has its number; the program prints a number once its tick is appended."""
-    path = tmp_path / "stroke.nc"
-    code = """
-        with Writer(Path(sys.argv[1])) as writer:
-            while True:
-                writer.append(np.repeat(writer.ticks + np.arange(100.0), 17).reshape(100, 17))
-                print(writer.ticks, flush=True)
-    """
-    moments = random.Random(0)
-    for _ in range(4):
-        program = start(code, path)
-        said = program.stdout.readline()
-        time.sleep(moments.uniform(0, 0.05))
-        program.kill()
-        said += program.stdout.read()  # `communicate` would pass over what `readline` has read ahead
-        program.communicate()
-        recording = Recording.load(path)
-        assert len(recording.rows) - int(said.split()[-1]) in (0, 100)
-        assert np.array_equal(recording.rows[:, 0], np.arange(len(recording.rows)))
-        assert recording.stopped.startswith("cut off")
 
 
 def test_file_is_whole_between_and_within_writes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
@@ -208,9 +164,3 @@ def test_writer_of_full_file_is_closed(tmp_path: Path, most: int, monkeypatch: p
         with pytest.raises(OutputError, match="is full, with 100 ticks; start another one"):
             writer.append(ROWS)
     assert (len(Recording.load(path).rows), Recording.load(path).stopped) == (100, "the recording is full")
-
-
-def test_writer_without_room_for_the_header_is_an_error(tmp_path: Path):
-    with files_up_to(100), pytest.raises(OutputError, match="it holds 0 ticks"):
-        Writer(tmp_path / "stroke.nc")
-    Writer(tmp_path / "stroke.nc").close()

@@ -1,4 +1,4 @@
-"""Synthetic pairs: their stated disparity and visibility hold for their pixels."""
+"""Synthetic pairs. Otherwise depth methods would be measured against a wrong truth."""
 
 import numpy as np
 import pytest
@@ -9,12 +9,10 @@ from tangible_core.testing.synthetic.surfaces import (
     Surface,
     cap,
     everywhere,
-    left_view,
     rectangle,
     right_view,
     slanted_plane,
     texture,
-    true_disparity,
     truly_visible,
 )
 
@@ -36,15 +34,6 @@ def test_visible_occluded_strip_at_a_step_is_as_wide_as_the_jump(far: float, nea
         assert occluded.sum() == near - far
 
 
-def test_views_whole_disparities_match_exactly():
-    """The right view at x - d equals the left view at x wherever both see the same point."""
-    surfaces = step(3, 8)
-    left, right = left_view(surfaces, SHAPE), right_view(surfaces, SHAPE)
-    rows, columns = np.nonzero(truly_visible(surfaces, SHAPE))
-    shift = true_disparity(surfaces, SHAPE)[rows, columns].astype(int)
-    np.testing.assert_allclose(right[rows, columns - shift], left[rows, columns], atol=1e-9)
-
-
 @pytest.mark.parametrize(
     "surface",
     [
@@ -64,16 +53,6 @@ def test_right_view_shows_the_surface_at_its_disparity(surface: Surface):
     np.testing.assert_allclose(
         right_view([surface], SHAPE)[inside], texture(1, seen, rows)[inside], atol=40 * (~inside).any()
     )
-
-
-def test_texture_spectrum_is_below_the_nyquist_frequency():
-    """The spectrum of the left view ends below its Nyquist frequency: no wave is shorter than 3 px."""
-    grey = left_view([slanted_plane(5, everywhere, 4)], (256, 256)) - 127.5
-    window = np.hanning(256)
-    power = np.abs(np.fft.fft2(grey * window[:, None] * window)) ** 2
-    frequency = np.hypot(*np.meshgrid(np.fft.fftfreq(256), np.fft.fftfreq(256)))
-    assert power[frequency > 1 / 3 + 0.02].sum() < 1e-3 * power.sum()
-    assert grey.std() == pytest.approx(36, rel=0.1)
 
 
 @pytest.mark.parametrize("name", SCENES)

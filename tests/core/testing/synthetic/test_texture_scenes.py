@@ -1,4 +1,4 @@
-"""Synthetic segments: their stated labels and textures hold for their pixels."""
+"""Synthetic segments. Otherwise texture methods would be measured against a wrong truth."""
 
 from pathlib import Path
 
@@ -6,33 +6,20 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tangible_core.errors import PictureError
 from tangible_core.testing.synthetic.texture_scenes import (
     builtin_textures,
     curvy_regions,
     folder_textures,
-    scatter_points,
     smooth_scene,
     texture_mosaic,
 )
-from tangible_core.testing.synthetic.textures import CONTRAST, FAMILIES, GREY, smooth_noise, without_grey
+from tangible_core.testing.synthetic.textures import CONTRAST, FAMILIES, GREY, without_grey
 
 SHAPE = (70, 101)
 
 
 def random(seed: int = 0) -> np.random.Generator:
     return np.random.default_rng(seed)
-
-
-@pytest.mark.parametrize("name", builtin_textures())
-def test_texture_is_repeatable_by_its_seed(name: str):
-    family = builtin_textures()[name]
-    made = family(SHAPE, random(3))
-    np.testing.assert_array_equal(made, family(SHAPE, random(3)))
-    assert (made != family(SHAPE, random(4))).any()
-    assert made.shape == SHAPE
-    assert np.isfinite(made).all()
-    assert made.std() > 0
 
 
 def test_without_grey_values_are_the_same_for_all_textures():
@@ -46,13 +33,6 @@ def test_without_grey_values_are_the_same_for_all_textures():
         blocks = each.reshape(4, 64, 4, 64)
         assert blocks.mean(axis=(1, 3)).std() < 0.2 * CONTRAST
         assert blocks.std(axis=(1, 3)).std() < 0.2 * CONTRAST
-
-
-def test_without_grey_removes_a_gradient_of_light():
-    texture = FAMILIES["grain"]((128, 128), random())
-    lit = texture * np.linspace(0.5, 2, 128) + np.linspace(0, 50 * texture.std(), 128)[:, None]
-    inside = np.s_[32:-32, 32:-32]
-    assert np.corrcoef(without_grey(lit)[inside].ravel(), without_grey(texture)[inside].ravel())[0, 1] > 0.95
 
 
 @pytest.mark.parametrize(
@@ -72,22 +52,6 @@ def test_texture_family_has_its_stated_frequency(name: str, across: float, down:
     columns, rows = np.meshgrid(np.fft.rfftfreq(512), np.fft.fftfreq(512))
     apart = np.minimum(np.hypot(columns - across, rows - down), np.hypot(columns - across, rows + down))
     assert apart.flat[power.argmax()] < 0.05
-
-
-@pytest.mark.parametrize("shape", [(512, 512), (100, 333), (17, 9)])
-def test_smooth_noise_has_mean_0_and_deviation_1(shape: tuple[int, int]):
-    noise = smooth_noise(shape, random(), 6)
-    assert noise.mean() == pytest.approx(0, abs=1e-9)
-    assert noise.std() == pytest.approx(1)
-    assert np.abs(np.diff(noise, axis=0)).max() < 1
-
-
-def test_scatter_points_keep_a_distance():
-    points = scatter_points((100, 200), 12, random())
-    assert points.shape == (12, 2)
-    assert (points >= 0).all() and (points < (100, 200)).all()
-    gaps = np.linalg.norm(points[:, None] - points, axis=2)[~np.eye(12, dtype=bool)]
-    assert gaps.min() > 0.4 * np.sqrt(100 * 200 / 12)
 
 
 def test_curvy_regions_are_large_with_short_borders():
@@ -119,19 +83,6 @@ def test_mosaic_segment_has_one_texture():
     assert np.max(fits, axis=1).tolist() == [1, 1, 1]
 
 
-def test_mosaic_small_picture_has_fewer_segments():
-    for shape in ((1, 1), (1, 7), (3, 2)):
-        scene = texture_mosaic(8, shape)
-        assert scene.picture.shape == shape
-        assert np.unique(scene.labels).tolist() == list(range(scene.count))
-    assert texture_mosaic(8, (1, 1)).count == 1
-
-
-def test_mosaic_more_segments_than_textures_is_refused():
-    with pytest.raises(PictureError, match="a mosaic of 13 needs as many textures, but there are 12; add some"):
-        texture_mosaic(13, SHAPE, textures=FAMILIES)
-
-
 def test_smooth_scene_is_grey_with_noise():
     scene = smooth_scene(7, (200, 150), seed=4)
     assert scene.picture.dtype == np.uint8
@@ -155,11 +106,3 @@ def test_folder_textures_are_cropped_or_mirrored(tmp_path: Path):
     large = found["noise"]((10, 10), random())
     assert large.shape == (10, 10)
     assert large.max() <= 1
-
-
-def test_folder_textures_none_or_flat_is_refused(tmp_path: Path):
-    with pytest.raises(PictureError, match="has no texture pictures"):
-        folder_textures(tmp_path)
-    Image.fromarray(np.full((8, 8), 7, np.uint8)).save(tmp_path / "flat.png")
-    with pytest.raises(PictureError, match=r"flat\.png: is one flat colour, not a texture"):
-        folder_textures(tmp_path)

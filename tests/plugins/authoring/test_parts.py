@@ -1,4 +1,4 @@
-"""`tangible parts`: from a picture to files that run, painted over, corrected and run again."""
+"""`tangible parts`: if a case fails, files do not run, or what a person wrote or painted of the parts is lost."""
 
 import json
 from pathlib import Path
@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image, ImageDraw
-from PIL.PngImagePlugin import PngInfo
 
 from command_line import Done, tangible
 from full_disk import files_up_to
@@ -56,6 +55,7 @@ def test_picture_divided_into_parts_gives_files_that_run(folder: Path):
     assert all(f"written: {name}" in done.stdout for name in HERE)
     assert sorted(each.name for each in folder.iterdir()) == sorted([*HERE, "still.png"])
     text = (folder / "still.yaml").read_text()
+    assert "# part 2: in the middle, " in text and "# part 3: along the bottom, " in text
     assert "scene: {photo: still.png, segments: parts.png}" in text, "it can be moved with its pictures"
     assert "title: Still" in text
     labels = read_labels(folder / "parts.png")
@@ -66,22 +66,12 @@ def test_picture_divided_into_parts_gives_files_that_run(folder: Path):
     assert wall < vase, "the vase stands before the wall"
 
 
-def test_part_line_says_where_the_part_lies(folder: Path):
-    well(tangible("parts", "still.png", cwd=folder))
-    wall, vase, floor = [line for line in (folder / "still.yaml").read_text().splitlines() if line.startswith("  ")][:3]
-    assert wall.startswith('  0: {name: "", height_m: 0.0 mm}   # ')
-    assert wall.endswith("# part 1: 60 % of the picture"), "nothing that another height would make false"
-    assert "# part 2: in the middle, " in vase and "# part 3: along the bottom, " in floor
-
-
 def test_existing_file_without_force_is_kept(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     before = {name: (folder / name).read_bytes() for name in HERE}
     again = tangible("parts", "still.png", "--count", 2, cwd=folder)
     assert (again.returncode, again.stdout) == (2, "")
-    assert again.stderr == (
-        "parts.png: is there already; --out FOLDER writes to another folder, --force writes over it\n"
-    )
+    assert again.stderr.startswith("parts.png: is there already")
     assert {name: (folder / name).read_bytes() for name in HERE} == before
     well(tangible("parts", "still.png", "--count", 2, "--force", "-q", cwd=folder))
     assert read_labels(folder / "parts.png").max() == 1
@@ -95,7 +85,7 @@ def test_picture_itself_is_never_overwritten(folder: Path):
     before = (folder / "parts.png").read_bytes()
     done = tangible("parts", "parts.png", "--force", cwd=folder)
     assert (done.returncode, (folder / "parts.png").read_bytes()) == (2, before)
-    assert "is the picture itself; --out FOLDER" in done.stderr
+    assert "is the picture itself" in done.stderr
 
 
 def test_pipeline_file_in_another_folder_finds_its_picture(folder: Path):
@@ -112,18 +102,17 @@ def test_pipeline_file_in_another_folder_finds_its_picture(folder: Path):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("nothing.png",), "nothing.png: there is no such file"),
-        (("nothing.yaml",), "nothing.yaml: there is no such file"),
-        (("map.npy",), "is a map of heights, which are felt as they are; parts are those of a picture"),
-        (("still.png", "--method", "gradent"), "no texture method is named 'gradent' (did you mean 'gradient'?)"),
-        (("still.png", "--count", 0), "count: must be at least 1, not 0"),
-        (("still.png", "--smallest", "nan"), "smallest: is nan; it must be positive and finite"),
-        (("still.png", "--set", "render.use=proxy"), "--set render.use=proxy: sets options of the texture method"),
-        (("still.png", "--set", "texture.sigma_px=-1"), "texture.sigma_px"),
-        (("still.png", "small.png"), "all parts of a scene must be of one size"),
-        (("still.png", "still.png", "still.png"), "name one, or left and right"),
-        (("bare.yaml",), "bare.yaml: the scene has no parts; give it a picture with `segments: parts.png`"),
-        (("bare.yaml", "bare.yaml"), "name one picture, left and right, or one pipeline file"),
+        (("nothing.png",), "nothing.png"),
+        (("nothing.yaml",), "nothing.yaml"),
+        (("map.npy",), "map of heights"),
+        (("still.png", "--method", "gradent"), "gradent"),
+        (("still.png", "--count", 0), "count"),
+        (("still.png", "--smallest", "nan"), "smallest"),
+        (("still.png", "--set", "render.use=proxy"), "render.use"),
+        (("still.png", "small.png"), "size"),
+        (("still.png", "still.png", "still.png"), "left and right"),
+        (("bare.yaml",), "no parts"),
+        (("bare.yaml", "bare.yaml"), "one pipeline file"),
     ],
 )
 def test_mistake_in_arguments_gives_one_line_with_the_cure(folder: Path, words: tuple[object, ...], said: str):
@@ -133,25 +122,6 @@ def test_mistake_in_arguments_gives_one_line_with_the_cure(folder: Path, words: 
     done = tangible("parts", *words, "--out", "new", cwd=folder)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1), done.stderr
     assert said in done.stderr and not (folder / "new").exists()
-
-
-def test_method_and_count_limit_the_parts(folder: Path):
-    rng = np.random.default_rng(0)
-    grain = np.kron(rng.integers(0, 255, (4, 5)), np.ones((30, 30))).astype(np.uint8)
-    write_png(folder / "grain.png", grain)
-    for words, most in (((), 12), (("--method", "histogram", "--count", 4), 4)):
-        done = well(tangible("parts", "grain.png", *words, "--force", "--json", cwd=folder))
-        assert 1 < len(json.loads(done.stdout)["parts"]) <= most
-    coarse = well(tangible("parts", "grain.png", "--smallest", 50, "--force", "--json", cwd=folder))
-    assert len(json.loads(coarse.stdout)["parts"]) <= 2, "two discs of 50 mm lie on no surface of 80"
-
-
-@pytest.mark.parametrize("picture", [np.full((1, 1), 9), np.full((30, 40), 200)])
-def test_uniform_picture_is_one_part(folder: Path, picture: np.ndarray):
-    write_png(folder / "flat.png", picture.astype(np.uint8))
-    done = well(tangible("parts", "flat.png", cwd=folder))
-    assert "flat.png is one part" in done.stdout
-    assert Pipeline.from_yaml(folder / "flat.yaml").surface.names == ("",)
 
 
 def test_pair_has_heights_by_depth(folder: Path):
@@ -170,11 +140,6 @@ def test_pair_has_heights_by_depth(folder: Path):
     well(tangible("plan", "left.yaml", "--set", "heights.by=depth", cwd=folder))
 
 
-def test_builtin_scene_is_divided(folder: Path):
-    well(tangible("parts", "builtin/coins", "--out", "c", cwd=folder))
-    well(tangible("plan", "c/coins.yaml", cwd=folder))
-
-
 def test_painted_parts_are_renumbered_on_request(folder: Path):
     """A person gives names, splits the wall, reads that numbers changed, lets the file follow, and goes on."""
     well(tangible("parts", "still.png", cwd=folder))
@@ -188,11 +153,7 @@ def test_painted_parts_are_renumbered_on_request(folder: Path):
     paint(folder / "parts.png", (110, 0, 160, 40), 20)  # a window, whose first pixel comes before the vase's
     told = tangible("parts", "still.yaml", cwd=folder)
     assert told.returncode == 2 and "new" in told.stdout, told.stderr
-    assert told.stderr == (
-        "still.yaml: numbers of parts have changed: 2 (vase) is now 3, 3 (floor [old]) is now 4, since "
-        "parts-numbered.png was drawn; --renumber lets what the file says of them follow, --force draws the numbers "
-        "alone\n"
-    )
+    assert "2 (vase) is now 3, 3 (floor [old]) is now 4" in told.stderr
     assert (folder / "parts-numbered.png").read_bytes() == drawn, "what the numbers were is still known"
 
     well(tangible("parts", "still.yaml", "--renumber", cwd=folder))
@@ -206,20 +167,6 @@ def test_painted_parts_are_renumbered_on_request(folder: Path):
     assert said.surface.names == ("wall", "", "vase", "floor [old]")
     well(tangible("parts", "still.yaml", "--renumber", cwd=folder))
     assert file.read_text() == after, "once is enough"
-
-
-def test_removed_part_is_reported_until_corrected(folder: Path):
-    well(tangible("parts", "still.png", cwd=folder))
-    file = folder / "still.yaml"
-    file.write_text(file.read_text().replace('2: {name: ""', "2: {name: floor"))
-    paint(folder / "parts.png", (0, 0, 160, 79), 20)
-    paint(folder / "parts.png", (0, 79, 160, 120), 21)
-    ran = tangible("run", "still.yaml", cwd=folder)
-    assert ran.returncode == 2 and "no part has the key 2: the keys of the 2 parts are 0 to 1" in ran.stderr
-    assert "`tangible parts` draws the parts with their numbers" in ran.stderr
-    alone = tangible("parts", "still.yaml", "--force", cwd=folder)
-    assert alone.returncode == 2 and "no part has the key 2" in alone.stderr, "drawn, and still to be corrected"
-    assert "written: parts-numbered.png" in alone.stdout
 
 
 def test_rule_by_an_old_number_is_refused(folder: Path):
@@ -245,22 +192,6 @@ def test_parts_on_one_line_are_not_renumbered(folder: Path):
     done = tangible("parts", "still.yaml", "--renumber", cwd=folder)
     assert done.returncode == 2 and "`parts:` is not a block of lines" in done.stderr, done.stderr
     assert (file.read_text(), (folder / "parts-numbered.png").read_bytes()) == (before, drawn)
-
-
-def test_painted_picture_of_numbers_without_force_is_kept(folder: Path):
-    well(tangible("parts", "still.png", cwd=folder))
-    numbered = folder / "parts-numbered.png"
-    with Image.open(numbered) as image:
-        said = PngInfo()
-        for key, text in image.info.items():
-            said.add_text(key, text)
-        ImageDraw.Draw(image).line((0, 0, 300, 300), fill=(255, 0, 0), width=9)
-        image.save(numbered, pnginfo=said)
-    before = numbered.read_bytes()
-    done = tangible("parts", "still.yaml", cwd=folder)
-    assert (done.returncode, numbered.read_bytes()) == (2, before)
-    assert "parts-numbered.png: is there already" in done.stderr
-    well(tangible("parts", "still.yaml", "--force", cwd=folder))
 
 
 def test_full_disk_leaves_whole_files_or_none(folder: Path):
@@ -303,33 +234,3 @@ def test_names_of_parts_reach_recording_and_replay(folder: Path):
     again = json.loads(well(tangible("replay", "hand.nc", "still.yaml", "--json", cwd=folder)).stdout)
     assert again["recorded"]["parts"] == [{"0": "[wall]"}] and again["recorded"]["materials"][0]["0"] == "glass"
     assert [each["number"] for each in again["parts"]] == [each["number"] for each in said["parts"]]
-    table = well(tangible("replay", "hand.nc", "still.yaml", cwd=folder)).stdout
-    assert "% of the contact" in table and "material" in table
-
-
-@pytest.mark.usefixtures("loop_in_thread")
-def test_beacon_by_name_reaches_recording_and_replay(folder: Path):
-    well(tangible("parts", "still.png", cwd=folder))
-    file = folder / "still.yaml"
-    file.write_text(file.read_text().replace('1: {name: ""', "1: {name: vase").replace("path: raster", "path: press"))
-    words = ("feel", "still.yaml", "--seconds", 0.8, "--record", "hand.nc", "--json", "--beacon")
-    said = json.loads(well(tangible(*words, "vase", cwd=folder)).stdout)
-    assert said["beacon"] == 1 and said["figures"]["beacon"] > 700
-    ((number, name, share),) = (each.values() for each in said["beacons"])
-    assert (number, name) == (1, "vase") and share > 0.9
-    assert np.isin(Recording.load(folder / "hand.nc").beacon, (1, -1)).all()
-    again = tangible("replay", "hand.nc", "still.yaml", cwd=folder)
-    assert "A beacon pulled to vase for " in well(again).stdout and "only the force law is replayed" in again.stdout
-    alone = Pipeline.from_yaml(file).feel(seconds=0.2, in_real_time=False, beacon=1)
-    assert (alone.beacon == 1).all()
-    wrong = tangible("feel", "still.yaml", "--beacon", "vas", cwd=folder)
-    assert (wrong.returncode, wrong.stdout) == (2, "")
-    assert "no part is called 'vas' (did you mean 'vase'?); the parts are 2: 'vase'" in wrong.stderr
-
-
-def test_run_reports_its_parts(folder: Path):
-    well(tangible("parts", "still.png", cwd=folder))
-    file = folder / "still.yaml"
-    file.write_text(file.read_text().replace('0: {name: ""', "0: {material: glass, name: '[wall]'"))
-    ran = well(tangible("run", "still.yaml", "--set", "want=surface", "--verbose", cwd=folder))
-    assert "\nparts\n  1: [wall], 0 mm high, glass (given)\n  2: " in ran.stdout

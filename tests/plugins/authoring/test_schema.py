@@ -26,3 +26,10 @@ def test_schema_beside_a_file_that_is_not_there_is_refused(tmp_path: Path):
     answer = tangible("schema", "mine.yaml", cwd=tmp_path)
     assert answer.returncode == 2 and "mine.yaml" in answer.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_new_file_beside_a_schema_names_it(tmp_path: Path):
+    for name in ("before", "after"):
+        assert tangible("new", "builtin/brick", "--out", f"{name}.yaml", cwd=tmp_path).returncode == 0
+        assert tangible("schema", f"{name}.yaml", cwd=tmp_path).returncode == 0
+    assert [path.read_text().count("$schema") for path in tmp_path.glob("*.yaml")] == [1, 1]

@@ -1,29 +1,25 @@
 """Batches: many scenes through one pipeline; failures are rows, and unchanged scenes are not made again."""
 
-import csv
 import json
-import os
 import re
-import subprocess
-import sys
+import shutil
 from pathlib import Path
 from threading import Event
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 
 from command_line import tangible
-from english import english_of
 from farm_here import Here
-from full_disk import files_up_to
 from pictures import write_png
-from tangible_batch import batch, job, results, running
+from tangible_batch import batch, extra, job, results, running
 from tangible_batch.farm import Done
-from tangible_batch.job import Job, make_scene
-from tangible_batch.manifest import rows_of
 from tangible_core import Pipeline, Scene
 from tangible_core.errors import ArgumentError, BatchError, OutputError, ResultsError, Stopped
-from videos import greys
+from tangible_core.files.json_lines import JsonLines
+from tangible_core.pipeline.engine.cache import read_record
+from tangible_depth import Luminance
 
 CONFIG = "scene: builtin/brick\nwant: relief\ndepth: luminance\nworkspace: {width_m: 0.04}\n"
 
@@ -55,58 +51,25 @@ def by_id(rows) -> dict[str, dict]:
     return {row["id"]: row for row in rows}
 
 
-def damage_first_page(path: Path) -> None:
-    import pyarrow
-    import pyarrow.parquet
-
-    pyarrow.parquet.write_table(pyarrow.table({"id": [str(number) for number in range(100)]}), path)
-    data = bytearray(path.read_bytes())
-    data[30:60] = b"\xff" * 30
-    path.write_bytes(data)
-
-
 ROW = {"id": "a\udcff", "key": "k", "outcome": "ok", "error": None, "seconds": 1, "folder": "scenes/a"}
 """As little as a row has; a name may have bytes that are not characters."""
 
 
-@pytest.mark.parametrize(
-    ("change", "place"),
-    [
-        ({"id": None}, "id"),
-        ({"id": 3}, "id"),
-        ({"outcome": "done"}, "outcome"),
-        ({"folder": ["a"]}, "folder"),
-        ({"seconds": "1"}, "seconds"),
-        ({"seconds": 10**400}, "seconds"),
-        ({"figures": {"surface": {"width_mm": 4.0, "length_mm": 3.0}}}, "figures.surface.height_mm"),
-        ({"figures": {"force": {}}}, "figures.force.peak_force_n"),
-        ({"figures": {"disparity": {"bad2": [1]}}}, "figures.disparity.bad2"),
-        ({"notes": "dark"}, "notes"),
-    ],
-)
-def test_damaged_row_is_refused_with_its_line_and_field(tmp_path: Path, change: dict, place: str):
-    (tmp_path / "rows.jsonl").write_text("".join(json.dumps(row) + "\n" for row in (ROW, ROW | change)))
-    with pytest.raises(ResultsError, match=rf"rows\.jsonl:2: {place}: .*; remove the line$"):
-        results.last_rows(tmp_path)
+DAMAGE = (
+    ({"id": None}, "id"), ({"outcome": "done"}, "outcome"), ({"seconds": "1"}, "seconds"),
+    ({"seconds": 10**400}, "seconds"),
+    ({"figures": {"surface": {"width_mm": 4.0, "length_mm": 3.0}}}, "figures.surface.height_mm"),
+    ({"figures": {"force": {}}}, "figures.force.peak_force_n"), ({"notes": "dark"}, "notes"),
+)  # fmt: skip
+
+
+def test_damaged_row_is_refused_with_its_line_and_field(tmp_path: Path):
+    for change, place in DAMAGE:
+        (tmp_path / "rows.jsonl").write_text("".join(json.dumps(row) + "\n" for row in (ROW, ROW | change)))
+        with pytest.raises(ResultsError, match=rf"rows\.jsonl:2: {place}: "):
+            results.last_rows(tmp_path)
     (tmp_path / "rows.jsonl").write_text(json.dumps(ROW) + "\n")
     assert results.last_rows(tmp_path) == {ROW["id"]: ROW}
-
-
-def test_half_characters_of_a_row_are_question_marks_in_the_gallery(tmp_path: Path):
-    odd = "a\udcff"
-    row = ROW | {"card": odd, "files": [f"sheet.{odd}", f"{odd}.html"], "notes": [odd], "scene": odd, "folder": odd}
-    (tmp_path / "rows.jsonl").write_text(json.dumps(row) + "\n")
-    (page,) = results.write_gallery(tmp_path, [ROW["id"]])
-    assert 'src="a%3F/a?"' in page.read_text()
-
-
-def test_figure_of_a_damaged_row_is_a_cell_of_the_table_whatever_it_is(tmp_path: Path):
-    import pyarrow.parquet as pq
-
-    row = ROW | {"figures": {"b\udcff": 10**400, "c": [1, "\udcff"], "d": True}}
-    (tmp_path / "rows.jsonl").write_text(json.dumps(row) + "\n")
-    (line,) = pq.read_table(results.write_index(tmp_path, [ROW["id"]])).to_pylist()
-    assert (line["figures.b?"], line["figures.c"], line["figures.d"]) == (1e300, "1; ?", 1)
 
 
 class TestScenes:
@@ -118,8 +81,6 @@ class TestScenes:
         return tangible("batch", "mine.yaml", "--over", "archive", *words, cwd=cwd)
 
     def test_folder_gives_rows_files_a_table_and_a_gallery(self, archive: Path):
-        import pyarrow.parquet as pq
-
         done = self.run(archive.parent)
         assert done.returncode == 0, done.stderr
         assert "4 of 4 scenes are made." in done.stdout
@@ -141,158 +102,47 @@ class TestScenes:
             assert f'<a href="scenes/p{number}/">p{number}</a>' in found[0]
             assert re.search(r"relief made in [\d.e-]+ s", found[0])
 
-    def test_gallery_says_what_was_found_of_a_surface(self, archive: Path):
-        done = self.run(archive.parent, "--set", "want=surface", "--set", "texture={use: histogram, segments: 2}")
-        assert done.returncode == 0, done.stderr
-        page = (archive.parent / "out/mine-batch/gallery.html").read_text()
-        found = r"surface made in [\d.e-]+ s; 40 x \d+ mm, [\d.]+ mm high; [12] segments"
-        assert len(re.findall(found, page)) == 4, page
-
-    def test_gallery_is_in_the_language_of_the_terminal(self, archive: Path):
-        (archive / "p3.png").write_bytes(b"no")
-        done = self.run(archive.parent, "--lang", "de")
-        assert done.returncode == 1
-        page = (archive.parent / "out/mine-batch/gallery.html").read_text()
-        assert '<html lang="de">' in page
-        assert 'alt="p0: das Bild, und daraus berechnet: Relief"' in page
-        assert re.search(r"Relief in [\d,e-]+ s berechnet", page)
-        assert "ist kein Bild" in page, "the error of a picture too"
-        assert not english_of(re.sub(r"<style>.*?</style>|<[^>]*>", " ", page))
-
-    def test_pictures_that_a_shell_expanded_are_taken(self, archive: Path):
-        pictures = [f"archive/p{number}.png" for number in range(3)]
-        done = tangible("batch", "mine.yaml", "--over", *pictures, cwd=archive.parent)
-        assert done.returncode == 0, done.stderr
-        assert "3 of 3 scenes are made." in done.stdout
-        before = tangible("batch", "--over", *pictures, "mine.yaml", "--json", cwd=archive.parent)
-        assert json.loads(before.stdout)["kept"] == 3, "the same names, wherever the words stand"
-        odd = tangible("batch", "mine.yaml", "--over", *pictures, "archive/nothing.png", cwd=archive.parent)
-        assert (odd.returncode, odd.stderr.partition(";")[0]) == (2, "archive/nothing.png: there is no such file")
-
-    def test_warning_names_its_picture(self, archive: Path):
-        done = self.run(archive.parent, "--set", "depth=auto", "--set", "relief=disparity")
-        said = re.findall(r"(\w+): one picture contains no depth", done.stderr)
-        assert sorted(said) == ["p0", "p1", "p2", "p3"], done.stderr
-
     def test_scene_equals_that_of_a_run(self, archive: Path, tmp_path: Path):
-        from tangible_core.pipeline.engine.cache import read_record
-
         self.run(archive.parent, "--set", "workspace.width_m=0.06")
         found = read_record(tmp_path / "out/mine-batch/scenes/p2/relief.npz")
         scene = Scene.photo(archive / "p2.png")
-        from tangible_depth import Luminance
-
         same = Pipeline(scene, depth=Luminance(), workspace={"width_m": 0.06}, cached=False).relief
         assert found.digest() == same.digest()
 
-    def test_bad_pictures_are_rows_with_the_usual_errors(self, tmp_path: Path):
-        folder = tmp_path / "archive"
-        folder.mkdir()
-        (tmp_path / "mine.yaml").write_text(CONFIG.replace("luminance", "semi-global"))
-        pair = picture(1, (48, 90))
-        for name in ("good", "cut", "empty", "sizes", "none", "alone"):
-            write_png(folder / f"{name}_left.png", pair)
-            write_png(folder / f"{name}_right.png", np.roll(pair, -3, axis=1))
-        whole = (folder / "cut_left.png").read_bytes()
-        (folder / "cut_left.png").write_bytes(whole[: len(whole) // 2])
-        (folder / "empty_left.png").write_bytes(b"")
-        write_png(folder / "sizes_right.png", pair[:20])
-        (folder / "none_right.png").write_text("not a picture")
-        (folder / "alone_right.png").unlink()
-        done = self.run(tmp_path)
-        assert done.returncode == 1
-        rows = by_id(rows_in(tmp_path / "out/mine-batch"))
-        errors = {name: row["error"] for name, row in rows.items()}
-        assert errors["good"] is None
-        assert set(rows) == {"good", "cut", "empty", "sizes", "none", "alone_left"}
-        for name, said in {
-            "cut": "cut_left.png",
-            "empty": "empty_left.png",
-            "sizes": "must be of one size",
-            "none": "none_right.png",
-            "alone_left": "two views",
-        }.items():
-            assert said in errors[name]
-            assert f"{name}: " in done.stderr
-        assert "5 failed: --retry repeats these" in done.stdout
+    def test_second_batch_makes_again_what_has_changed(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
+        out, tally = archive.parent / "out/mine-batch", list[int]()
+
+        def make(*words: str) -> None:
+            found = json.loads(self.run(archive.parent, "--json", *words).stdout)
+            assert found["made"] + found["kept"] == found["wanted"]
+            tally.append(found["made"])
+
+        make()
+        make()
+        write_png(archive / "p1.png", picture(9, (30, 30)))
+        make()
+        shutil.rmtree(out / "scenes/p2")
+        make()
+        (archive / "p0.png").unlink()
+        make("--set", "want=surface")
+        assert sorted(by_id(rows_in(out))) == ["p0", "p1", "p2", "p3"]
+        assert pq.read_table(out / "index.parquet")["id"].to_pylist() == ["p1", "p2", "p3"]
+        assert "p0" not in (out / "gallery.html").read_text()
+        make("--set", "want=surface", "--sheets")
+        monkeypatch.setattr("tangible_batch.job_maker.metadata.version", lambda name: "1000.0")
+        make("--set", "want=surface", "--sheets")
+        assert tally == [4, 0, 1, 1, 3, 3, 3]
 
     def test_manifest_rows_set_keys_and_name_files(self, archive: Path):
-        with (archive / "rows.csv").open("w", newline="") as file:
-            table = csv.writer(file)
-            table.writerow(["id", "scene.photo", "workspace.width_m", "depth.smoothing_px"])
-            table.writerows([["wide", "p0.png", "0.1", ""], ["rough", "p0.png", "", 0], ["own", "", "0.03", ""]])
+        table = "id,scene.photo,workspace.width_m\nwide,p0.png,0.1\nown,,0.03\nbad,p1.png,-1\n"
+        (archive / "rows.csv").write_text(table)
+        (archive.parent / "mine.yaml").write_text(CONFIG.replace("relief", "surface"))
         done = tangible("batch", "mine.yaml", "--over", archive / "rows.csv", "--json", cwd=archive.parent)
-        assert done.returncode == 0, done.stderr
-        assert json.loads(done.stdout)["made"] == 3
+        assert done.returncode == 1 and json.loads(done.stdout)["failed"] == 1, done.stderr
         rows = by_id(rows_in(archive.parent / "out/mine-batch"))
-        assert rows["own"]["scene"] == "builtin/brick"
-        assert rows["wide"]["scene"] == rows["rough"]["scene"] == str(archive / "p0.png")
-        assert rows["wide"]["key"] != rows["rough"]["key"]
-
-    def test_row_with_a_video_is_made(self, here: None, archive: Path):
-        greys(archive / "walk.avi", 2)
-        rows = [{"id": "film", "scene.video": archive / "walk.avi"}, {"id": "frames", "scene.video": archive}]
-        done = list(batch(Pipeline.from_yaml(archive.parent / "mine.yaml"), rows, archive.parent / "out"))
-        assert [(row["outcome"], row["scene"]) for row in done] == [
-            ("ok", f"{archive / 'walk.avi'}"),
-            ("ok", f"{archive}"),
-        ]
-
-    def test_folder_without_pictures_gives_its_videos(self, archive: Path):
-        """A phone lays a film of the same name beside each photo."""
-        greys(archive / "p0.avi", 2)
-        assert all("scene.photo=" in row.sets[0] for row in rows_of(str(archive)))
-        films = archive / "films"
-        films.mkdir()
-        greys(films / "walk.avi", 2)
-        greys(films / "run.MP4", 2)
-        (films / "notes.txt").touch()
-        rows = {row.id: row.sets for row in rows_of(str(films))}
-        assert rows == {
-            name: (f'scene.video="{films / file}"',) for name, file in (("run", "run.MP4"), ("walk", "walk.avi"))
-        }
-
-    def test_parquet_manifest_gives_its_rows(self, archive: Path):
-        import pyarrow as pa
-        import pyarrow.parquet as pq
-
-        table = {"id": ["a", "b"], "scene.photo": ["p1.png", "p2.png"], "workspace.width_m": [0.05, None]}
-        pq.write_table(pa.table(table), archive / "rows.parquet")
-        done = tangible("batch", "mine.yaml", "--over", archive / "rows.parquet", cwd=archive.parent)
-        assert done.returncode == 0, done.stderr
-        assert sorted(by_id(rows_in(archive.parent / "out/mine-batch"))) == ["a", "b"]
-
-    def test_second_batch_makes_changed_scenes_only(self, archive: Path):
-        tally = [json.loads(self.run(archive.parent, "--json").stdout) for _ in range(2)]
-        assert [(each["made"], each["kept"]) for each in tally] == [(4, 0), (0, 4)]
-        write_png(archive / "p1.png", picture(9, (30, 30)))
-        assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 1
-        assert json.loads(self.run(archive.parent, "--json", "--set", "want=surface").stdout)["made"] == 4
-        words = ("--json", "--set", "want=surface", "--sheets")
-        assert json.loads(self.run(archive.parent, *words).stdout)["made"] == 4
-
-    def test_batch_of_a_newer_program_makes_all_scenes_again(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
-        from tangible_batch import job_maker
-
-        self.run(archive.parent)
-        monkeypatch.setattr(job_maker.metadata, "version", lambda name: "1000.0")
-        assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 4
-
-    def test_failed_scenes_are_made_again_with_retry(self, archive: Path):
-        whole = (archive / "p1.png").read_bytes()
-        (archive / "p1.png").write_bytes(b"no")
-        stamp = (archive / "p1.png").stat()
-        self.run(archive.parent)
-        tally = json.loads(self.run(archive.parent, "--json").stdout)
-        assert (tally["made"], tally["kept"], tally["failed"]) == (0, 4, 1)
-        (archive / "p1.png").write_bytes(whole)
-        os.utime(archive / "p1.png", ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
-        done = json.loads(self.run(archive.parent, "--json", "--retry").stdout)
-        assert (done["made"], done["failed"]) == (1, 0)
-        import pyarrow.parquet as pq
-
-        table = pq.read_table(archive.parent / "out/mine-batch/index.parquet").to_pydict()
-        assert (sorted(table["id"]), set(table["outcome"])) == (["p0", "p1", "p2", "p3"], {"ok"})
+        assert (rows["own"]["scene"], rows["wide"]["scene"]) == ("builtin/brick", str(archive / "p0.png"))
+        assert [rows[name]["figures"]["surface"]["width_mm"] for name in ("wide", "own")] == [100, 30]
+        assert "workspace.width_m" in rows["bad"]["error"]
 
     def test_torn_last_line_is_removed_and_its_scene_made_again(self, archive: Path):
         out = archive.parent / "out/mine-batch"
@@ -314,86 +164,6 @@ class TestScenes:
         out = archive.parent / "out/mine-batch"
         assert rows_in(out) == []
         assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 4
-
-    def test_row_on_a_full_disk_is_not_half_written(self, archive: Path, tmp_path: Path):
-        from tangible_core.files.json_lines import JsonLines
-
-        with JsonLines(tmp_path / "rows.jsonl") as file:
-            file.add({"id": "a"})
-            with files_up_to(20), pytest.raises(OutputError, match=r"rows\.jsonl: cannot be written"):
-                file.add({"id": "b" * 100})
-            file.add({"id": "c"})
-        assert (tmp_path / "rows.jsonl").read_text() == '{"id": "a"}\n{"id": "c"}\n'
-
-    @pytest.mark.parametrize(
-        ("over", "said"),
-        [
-            ("nowhere/*.png", "holds no picture and no row"),
-            ("rows.csv", "cannot be read: No such file"),
-            ("twice.csv", "two rows are called 'a'"),
-            ("broken.parquet", "is not a Parquet file"),
-            ("cells.csv", "more cells than there are columns"),
-            ("latin.csv", "latin.csv: is not a table: 'utf-8' codec"),
-            ("page.parquet", "page.parquet: is not a Parquet file, or is damaged"),
-            ("wrong", "unknown key"),
-        ],
-    )
-    def test_command_with_a_mistake_reports_one_line_and_leaves_nothing(self, archive: Path, over: str, said: str):
-        folder = archive.parent
-        (folder / "twice.csv").write_text("id,scene.photo\na,archive/p0.png\na,archive/p1.png\n")
-        (folder / "broken.parquet").write_text("PAR?")
-        (folder / "latin.csv").write_bytes("id,title\na,Krüge\n".encode("latin-1"))
-        (folder / "cells.csv").write_text("id,scene.photo\na,archive/p0.png,more\n")
-        damage_first_page(folder / "page.parquet")
-        (folder / "wrong").mkdir()
-        write_png(folder / "wrong/p.png", picture(0))
-        words = ("--set", "unknown=1") if over == "wrong" else ()
-        done = tangible("batch", "mine.yaml", "--over", over, *words, cwd=folder)
-        assert done.returncode == 2
-        [line] = done.stderr.splitlines()
-        assert said in line
-        assert not (folder / "out").exists()
-
-    def test_batch_in_python_yields_rows_and_stops(self, archive: Path, tmp_path: Path):
-        from tangible_depth import Luminance
-
-        pipeline = Pipeline.from_yaml(tmp_path / "mine.yaml")
-        assert pipeline.config.depth is not None
-        assert isinstance(pipeline.config.depth.method, Luminance)
-        rows = [{"id": each.stem, "scene.photo": str(each)} for each in sorted(archive.glob("*.png"))]
-        stop = Event()
-        seen = []
-        with pytest.raises(Stopped):
-            for row in batch(pipeline, rows, tmp_path / "out", stop=stop):
-                seen.append(row["id"])
-                stop.set()
-        assert seen == ["p0"]
-        assert [row["id"] for row in batch(pipeline, rows, tmp_path / "out")] == ["p0", "p1", "p2", "p3"]
-
-    def test_batch_in_python_with_a_mistake_reports_one_line(self, archive: Path, tmp_path: Path):
-        pipeline, out = Pipeline.from_yaml(tmp_path / "mine.yaml"), tmp_path / "out"
-        photo = {"scene.photo": str(archive / "p0.png")}
-        with pytest.raises(BatchError, match="two rows are called 'a'; give each its own `id`"):
-            list(batch(pipeline, [{"id": "a", **photo}, {"id": "a", **photo}], out))
-        with pytest.raises(ArgumentError, match="workers: is the int 0"):
-            list(batch(pipeline, [photo], out, workers=0))
-        assert list(batch(pipeline, [], out)) == []
-
-    def test_row_in_python_with_a_relative_file_is_made_in_its_time(
-        self, archive: Path, monkeypatch: pytest.MonkeyPatch
-    ):
-        monkeypatch.chdir(archive)  # not the folder of the pipeline file
-        limits: list[float] = []
-
-        class Timed(Here):
-            def map(self, work, jobs, chunk=1, timeout_s=1.0):
-                limits.append(timeout_s)
-                return super().map(work, jobs, chunk, timeout_s)
-
-        monkeypatch.setattr(running, "Farm", Timed)
-        pipeline = Pipeline.from_yaml(archive.parent / "mine.yaml")
-        [row] = batch(pipeline, [{"scene.photo": "p0.png"}], archive.parent / "out", timeout_s=7.0)
-        assert (row["id"], row["scene"], limits) == ("0", str(archive / "p0.png"), [7.0])
 
     def test_scene_whose_worker_died_is_a_row_that_failed_and_is_repeated_on_request(
         self, archive: Path, monkeypatch: pytest.MonkeyPatch
@@ -425,35 +195,10 @@ class TestScenes:
         write_png(archive / "p9.png", picture(9))
         assert [row["outcome"] for row in batch(pipeline, rows, out)] == ["ok"] * 4, "the file is there now"
 
-    @pytest.mark.usefixtures("unchecked_shapes")
-    def test_batch_of_something_else_is_refused(self):
-        with pytest.raises(ArgumentError, match=r"pipeline: is .*; it must be a Pipeline"):
-            list(batch("mine.yaml", []))  # pyright: ignore[reportArgumentType]
-
-    def test_progress_counts_scenes_of_before_and_now(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
-        from tangible_core.plugins import hooks
-
-        told: list[tuple[str, str]] = []
-        tell = hooks.tell
-
-        def listen(plugins, hook, **values):
-            if hook == "tangible_stage_started" and values["method"] == "mine":
-                told.append((values["product"].partition(",")[0], values["product"].endswith(" left)")))
-            tell(plugins, hook, **values)
-
-        self.run(archive.parent)
-        for name in ("p1", "p3"):
-            (archive / f"{name}.png").write_bytes(b"no")
-        monkeypatch.setattr(hooks, "tell", listen)
-        assert self.run(archive.parent).returncode == 1
-        assert told == [("3 of 4 scenes (1 failed", True), ("4 of 4 scenes (2 failed", True)]
-
     @pytest.mark.parametrize("of_a_file", [True, False])
     def test_sweep_in_python_is_made_again_where_the_picture_has_changed(
         self, archive: Path, monkeypatch: pytest.MonkeyPatch, of_a_file: bool
     ):
-        from tangible_depth import Luminance
-
         monkeypatch.chdir(archive)  # not the folder of the pipeline file
         (archive.parent / "mine.yaml").write_text(CONFIG.replace("builtin/brick", "{photo: archive/p0.png}"))
         of_python = Pipeline(Scene.photo(archive / "p0.png"), depth=Luminance(), workspace={"width_m": 0.04})
@@ -466,6 +211,92 @@ class TestScenes:
             assert (row["outcome"], row["scene"]) == ("ok", str(archive / "p0.png")), row
             made.append(len(rows_in(archive.parent / "out")))
         assert made == [1, 1, 2]
+
+    def test_gallery_is_in_the_language_of_the_terminal(self, archive: Path):
+        (archive / "p3.png").write_bytes(b"no")
+        assert self.run(archive.parent, "--lang", "de").returncode == 1
+        page = (archive.parent / "out/mine-batch/gallery.html").read_text()
+        assert '<html lang="de">' in page and re.search(r"Relief in [\d,e-]+ s berechnet", page)
+        assert "ist kein Bild" in page, "the error of a picture too"
+
+    def test_pictures_that_a_shell_expanded_are_taken(self, archive: Path):
+        pictures = [f"archive/p{number}.png" for number in range(3)]
+        done = tangible("batch", "--over", *pictures, "mine.yaml", "--json", cwd=archive.parent)
+        assert json.loads(done.stdout)["made"] == 3, done.stderr
+        odd = tangible("batch", "mine.yaml", "--over", *pictures, "archive/nothing.png", cwd=archive.parent)
+        assert odd.returncode == 2 and "archive/nothing.png" in odd.stderr
+
+    def test_bad_pictures_are_rows_with_the_usual_errors(self, tmp_path: Path):
+        folder = tmp_path / "archive"
+        folder.mkdir()
+        (tmp_path / "mine.yaml").write_text(CONFIG.replace("luminance", "semi-global"))
+        pair = picture(1, (48, 90))
+        for name in ("good", "cut", "sizes", "alone"):
+            write_png(folder / f"{name}_left.png", pair)
+            write_png(folder / f"{name}_right.png", np.roll(pair, -3, axis=1))
+        whole = (folder / "cut_left.png").read_bytes()
+        (folder / "cut_left.png").write_bytes(whole[: len(whole) // 2])
+        write_png(folder / "sizes_right.png", pair[:20])
+        (folder / "alone_right.png").unlink()
+        done = self.run(tmp_path, "--set", "workspace.width_m=0.05")
+        assert done.returncode == 1
+        errors = {name: row["error"] for name, row in by_id(rows_in(tmp_path / "out/mine-batch")).items()}
+        assert errors.pop("good") is None
+        for name, said in {"cut": "cut_left.png", "sizes": "one size", "alone_left": "two views"}.items():
+            assert said in errors.pop(name)
+            assert f"{name}: " in done.stderr
+        assert not errors and "3 failed: --retry repeats these" in done.stdout
+
+    def test_warning_names_its_picture(self, archive: Path):
+        done = self.run(archive.parent, "--set", "depth=auto", "--set", "relief=disparity")
+        assert sorted(re.findall(r"(p\d): one picture", done.stderr)) == ["p0", "p1", "p2", "p3"], done.stderr
+
+    @pytest.mark.parametrize(
+        ("over", "said"),
+        [
+            ("nowhere/*.png", "no picture"),
+            ("rows.csv", "No such file"),
+            ("twice.csv", "'a'"),
+            ("broken.parquet", "Parquet"),
+            ("cells.csv", "more cells"),
+            ("latin.csv", "latin.csv"),
+            ("wrong", "unknown key"),
+        ],
+    )
+    def test_command_with_a_mistake_reports_one_line_and_leaves_nothing(self, archive: Path, over: str, said: str):
+        folder = archive.parent
+        (folder / "twice.csv").write_text("id,scene.photo\na,archive/p0.png\na,archive/p1.png\n")
+        (folder / "broken.parquet").write_text("PAR?")
+        (folder / "latin.csv").write_bytes("id,title\na,Krüge\n".encode("latin-1"))
+        (folder / "cells.csv").write_text("id,scene.photo\na,archive/p0.png,more\n")
+        words = (archive, "--set", "unknown=1") if over == "wrong" else (over,)
+        done = tangible("batch", "mine.yaml", "--over", *words, cwd=folder)
+        assert done.returncode == 2
+        [line] = done.stderr.splitlines()
+        assert said in line
+        assert not (folder / "out").exists()
+
+    def test_batch_in_python_yields_rows_and_stops(self, archive: Path, tmp_path: Path):
+        pipeline, stop, seen = Pipeline.from_yaml(tmp_path / "mine.yaml"), Event(), []
+        rows = [{"id": each.stem, "scene.photo": str(each)} for each in sorted(archive.glob("*.png"))]
+        with pytest.raises(Stopped):
+            for row in batch(pipeline, rows, tmp_path / "out", stop=stop):
+                seen.append(row["id"])
+                stop.set()
+        assert seen == ["p0"]
+        assert [row["id"] for row in batch(pipeline, rows, tmp_path / "out")] == ["p0", "p1", "p2", "p3"]
+
+    @pytest.mark.usefixtures("unchecked_shapes")
+    def test_batch_in_python_with_a_mistake_is_refused(self, archive: Path, tmp_path: Path):
+        pipeline, out = Pipeline.from_yaml(tmp_path / "mine.yaml"), tmp_path / "out"
+        photo = {"scene.photo": str(archive / "p0.png")}
+        with pytest.raises(BatchError, match="two rows"):
+            list(batch(pipeline, [{"id": "a", **photo}, {"id": "a", **photo}], out))
+        with pytest.raises(ArgumentError, match="workers"):
+            list(batch(pipeline, [photo], out, workers=0))
+        with pytest.raises(ArgumentError, match="pipeline"):
+            list(batch("mine.yaml", []))  # pyright: ignore[reportArgumentType]
+        assert list(batch(pipeline, [], out)) == []
 
     def test_words_of_the_command_reach_the_workers(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
         farms: list[tuple] = []
@@ -483,173 +314,88 @@ class TestScenes:
         (archive / "rows.csv").write_text("id\n" + "".join(f"r{number}\n" for number in range(8)))
         (archive.parent / "mine.yaml").write_text(CONFIG.replace("builtin/brick", "{photo: archive/p0.png}"))
         words = ("batch", "mine.yaml", "--over", archive / "rows.csv")
-        own = ("--workers", 2, "--threads", 3, "--timeout", 7.5, "--chunk", 3, "--cache", "kept", "--sheets")
+        own = ("--workers", 2, "--threads", 3, "--timeout", 7.5, "--chunk", 3, "--cache", "kept")
         assert tangible(*words, *own, cwd=archive.parent).returncode == 0
-        assert farms == [(2, 3, ""), (2, 7.5, {(3, True, str(archive.parent / "kept"))})]  # two of eight: four rounds
+        assert farms == [(2, 3, ""), (2, 7.5, {(3, False, str(archive.parent / "kept"))})]  # two of eight: four rounds
         assert list((archive.parent / "kept").glob("*.npz"))
         monkeypatch.setattr(running, "processors", lambda: 6)
         assert tangible(*words, "--out", "o", "--scheduler", "tcp://host:1", cwd=archive.parent).returncode == 0
         assert farms[2:] == [(6, 1, "tcp://host:1"), (2, 3600.0, {(None, False, "")})]
         assert tangible(*words, "--timeout", 0, cwd=archive.parent).returncode == 2
+        monkeypatch.chdir(archive)  # not the folder of the pipeline file
+        pipeline = Pipeline.from_yaml(archive.parent / "mine.yaml")
+        [row] = batch(pipeline, [{"scene.photo": "p0.png"}], archive.parent / "out", timeout_s=7.0)
+        assert (row["id"], row["scene"], farms[-1][1]) == ("0", str(archive / "p0.png"), 7.0)
 
     def test_row_with_another_picture_keeps_the_options_of_the_scene(self, archive: Path):
-        (archive.parent / "mine.yaml").write_text(
-            CONFIG.replace("builtin/brick", "{left: l.png, right: r.png, rotate: 90}")
-        )
+        text = CONFIG.replace("builtin/brick", "{left: l.png, right: r.png, rotate: 90}")
+        (archive.parent / "mine.yaml").write_text(text)
         assert self.run(archive.parent).returncode == 0
-        from tangible_core.pipeline.engine.cache import read_record
-
-        found = read_record(archive.parent / "out/mine-batch/scenes/p2/relief.npz")
-        assert found.height_m.shape == (32, 24)
+        assert read_record(archive.parent / "out/mine-batch/scenes/p2/relief.npz").height_m.shape == (32, 24)
 
     def test_scene_with_a_truth_has_the_figures_of_its_disparity(self, archive: Path):
         depth = np.linspace(1, 9, 24 * 32).reshape(24, 32)
         np.save(archive / "found.npy", depth)
-        np.save(archive / "truth.npy", depth + 1.5)
-        scene = "{photo: archive/p0.png, disparity: archive/found.npy, truth: archive/truth.npy}"
-        (archive.parent / "mine.yaml").write_text(f"scene: {scene}\nwant: relief\n")
-        (archive / "rows.csv").write_text("id,workspace.width_m\none,0.05\n")
-        done = tangible("batch", "mine.yaml", "--over", archive / "rows.csv", cwd=archive.parent)
-        assert done.returncode == 0, done.stderr
-        [row] = rows_in(archive.parent / "out/mine-batch")
-        assert row["figures"]["disparity"]["average_px"] == pytest.approx(1.5)
+        for number, off in enumerate((1.5, np.nan)):  # without any truth no figure is finite, and JSON has no NaN
+            np.save(archive / "truth.npy", depth + off)
+            scene = "{photo: archive/p0.png, disparity: archive/found.npy, truth: archive/truth.npy}"
+            (archive.parent / "mine.yaml").write_text(f"scene: {scene}\nwant: relief\n")
+            (archive / "rows.csv").write_text("id,workspace.width_m\none,0.05\n")
+            done = tangible("batch", "mine.yaml", "--over", archive / "rows.csv", cwd=archive.parent)
+            assert done.returncode == 0, done.stderr
+            figures = rows_in(archive.parent / "out/mine-batch")[number]["figures"]["disparity"]
+            assert figures["average_px"] == (None if number else pytest.approx(1.5))
 
-    def test_mistake_in_the_file_ends_the_batch_before_the_first_scene(self, archive: Path):
-        (archive.parent / "mine.yaml").write_text(CONFIG + "textur: gabor\n")
-        done = self.run(archive.parent)
-        assert done.returncode == 2
-        [line] = done.stderr.splitlines()
-        assert "mine.yaml" in line
-        assert "textur" in line
-        assert not (archive.parent / "out").exists()
-
-    def test_mistake_in_a_row_fails_that_row_only(self, archive: Path):
-        (archive / "rows.csv").write_text("id,scene.photo,workspace.width_m\na,p0.png,-1\nb,p1.png,0.1\n")
-        done = tangible("batch", "mine.yaml", "--over", archive / "rows.csv", cwd=archive.parent)
-        assert done.returncode == 1
-        rows = by_id(rows_in(archive.parent / "out/mine-batch"))
-        assert "workspace.width_m" in rows["a"]["error"]
-        assert rows["b"]["outcome"] == "ok"
-
-    def test_sweep_with_a_changed_picture_is_made_again(self, archive: Path):
-        (archive.parent / "mine.yaml").write_text(CONFIG.replace("builtin/brick", "{photo: archive/p0.png}"))
-        (archive / "rows.csv").write_text("workspace.width_m\n0.05\n0.1\n")
-        words = ("batch", "mine.yaml", "--over", archive / "rows.csv", "--json")
-        made = []
-        for seed in (None, None, 5):
-            if seed:
-                write_png(archive / "p0.png", picture(seed, (20, 20)))
-            made.append(json.loads(tangible(*words, cwd=archive.parent).stdout)["made"])
-        assert made == [2, 0, 2]
-
-    @pytest.mark.parametrize("name", ["Krug ä", "\N{AMPHORA}", 'a "quoted" one', "two\nlines", "b\udcff"])
+    @pytest.mark.parametrize("name", ['Ä "quoted" one', "two\nlines", "b\udcff"])
     def test_picture_with_any_name_is_made(self, archive: Path, name: str):
         for each in archive.iterdir():
             each.unlink()
         write_png(archive / f"{name}.png", picture(0))
-        tally = []
-        for seed in (0, 0, 3):
-            if seed:
-                write_png(archive / f"{name}.png", picture(seed, (16, 16)))
-            tally.append(json.loads(self.run(archive.parent, "--json").stdout))
-        assert [each["made"] for each in tally] == [1, 0, 1]
-        [row] = rows_in(archive.parent / "out/mine-batch")[1:]
+        tally = [json.loads(self.run(archive.parent, "--json").stdout) for _ in range(2)]
+        assert [each["made"] for each in tally] == [1, 0]
+        [row] = rows_in(archive.parent / "out/mine-batch")
         assert row["id"] == name
         if name != "b\udcff":  # no YAML holds half a character
             assert row["outcome"] == "ok", row["error"]
 
-    def test_pictures_in_the_results_are_left_out(self, archive: Path):
-        words = ("batch", "mine.yaml", "--over", ".", "--json")
-        tally = [json.loads(tangible(*words, cwd=archive.parent).stdout) for _ in range(2)]
-        assert [each["wanted"] for each in tally] == [4, 4]
-
-    def test_table_leaves_out_scenes_that_are_gone(self, archive: Path):
-        import pyarrow.parquet as pq
-
-        out = archive.parent / "out/mine-batch"
-        self.run(archive.parent)
-        (archive / "p0.png").unlink()
-        self.run(archive.parent)
-        assert sorted(by_id(rows_in(out))) == ["p0", "p1", "p2", "p3"]
-        assert pq.read_table(out / "index.parquet")["id"].to_pylist() == ["p1", "p2", "p3"]
-        assert "p0" not in (out / "gallery.html").read_text()
-
-    def test_scene_with_deleted_files_is_made_again(self, archive: Path):
-        import shutil
-
-        self.run(archive.parent)
-        shutil.rmtree(archive.parent / "out/mine-batch/scenes/p2")
-        assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 1
-
-    @pytest.mark.parametrize("want", ["segments", "disparity", "materials", "surface"])
-    def test_wanted_product_has_a_card(self, archive: Path, want: str):
-        from PIL import Image
-
-        (archive.parent / "mine.yaml").write_text(
-            f"scene: builtin/brick\nwant: {want}\ntexture: {{use: histogram, segments: 2}}\n"
-            + ("" if want in ("segments", "materials") else "depth: luminance\n")
-        )
-        done = self.run(archive.parent)
-        assert done.returncode == 0, done.stderr
-        with Image.open(archive.parent / "out/mine-batch/scenes/p1/card.jpg") as card:
-            assert card.width == 2 * 160
-
-    def test_exports_of_the_file_are_in_each_scene_s_folder(self, archive: Path):
+    def test_exports_of_the_file_are_in_each_scene_s_folder(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
         (archive.parent / "mine.yaml").write_text(CONFIG + "texture: {use: histogram, segments: 2}\nexport: [text]\n")
-        (archive / "p3.png").write_bytes(b"no")
+        words = ("batch", "mine.yaml", "--over", "archive/p0.png", "--sheets")
+        assert tangible(*words, cwd=archive.parent).returncode == 0
+        out = archive.parent / "out/mine-batch"
+        [row] = rows_in(out)
+        assert {".txt", ".html", ".npz"} <= {Path(name).suffix for name in row["files"]}
+        assert all((out / row["folder"] / name).is_file() for name in row["files"])
+        monkeypatch.setattr("tangible_report.Text.write", _fail)
         assert self.run(archive.parent).returncode == 1
-        out = archive.parent / "out/mine-batch"
-        for row in rows_in(out):
-            if row["outcome"] == "ok":
-                exported = {Path(name).suffix for name in row["files"]}
-                assert {".txt", ".html"} <= exported, row
-                assert all((out / row["folder"] / name).is_file() for name in row["files"])
-        (archive / "p2.png").touch()
-        os.utime(archive / "p2.png", (1, 1))
-        write_png(archive / "p3.png", picture(3))
-        assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 2
-
-    def test_failing_exporter_fails_its_scene(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
-        from tangible_report import Text
-
-        def fails(*_: object) -> None:
-            raise OutputError("the ink is dry")
-
-        monkeypatch.setattr(Text, "write", fails)
-        (archive.parent / "mine.yaml").write_text(CONFIG + "texture: {use: histogram, segments: 2}\nexport: [text]\n")
-        done = self.run(archive.parent)
-        assert done.returncode == 1
-        assert "the ink is dry" in rows_in(archive.parent / "out/mine-batch")[0]["error"]
+        assert "the ink is dry" in rows_in(out)[-1]["error"]
 
     def test_second_batch_in_the_same_folder_is_refused(self, archive: Path):
-        from tangible_core.files.json_lines import JsonLines
-
         with JsonLines(archive.parent / "out/mine-batch/rows.jsonl", alone=True) as file:
             file.add({"id": "other"})
             done = self.run(archive.parent)
-        assert done.returncode == 2
-        assert "another program is writing to it; wait for that one or choose another folder" in done.stderr
+        assert done.returncode == 2 and "another program" in done.stderr
         assert len(rows_in(archive.parent / "out/mine-batch")) == 1
 
     def test_batch_without_the_extra_is_refused_before_the_work(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
-        from tangible_batch import extra
-
         monkeypatch.setattr(extra, "find_spec", lambda name: None)
         done = self.run(archive.parent)
-        assert done.returncode == 2
-        assert "pip install distributed pyarrow" in done.stderr
-        with pytest.raises(BatchError, match=r"needs nowhere_at_all \(No module .*\); pip install distributed pyarrow"):
+        assert done.returncode == 2 and "pip install" in done.stderr
+        with pytest.raises(BatchError, match="nowhere_at_all"):
             extra.need("nowhere_at_all")
 
     def test_folder_names_are_safe_on_any_system(self, archive: Path, tmp_path: Path):
-        rows = [
-            {"id": name, "scene.photo": str(archive / "p0.png")} for name in ("a/b", "a_b", "..", "ä:*?", "x" * 300)
-        ]
+        names = ("a/b", "a_b", "..", "ä:*?", "x" * 300)
+        rows = [{"id": name, "scene.photo": str(archive / "p0.png")} for name in names]
         made = list(batch(Pipeline.from_yaml(tmp_path / "mine.yaml"), rows, tmp_path / "out"))
         folders = {row["folder"] for row in made}
         assert len(folders) == len(rows)
         assert [row["error"] for row in made] == [None] * len(rows)
         assert all(Path(tmp_path / "out", each).resolve().parent == tmp_path / "out/scenes" for each in folders)
+
+
+def _fail(*_: object) -> None:
+    raise OutputError("the ink is dry")
 
 
 def test_workforce_uses_all_cores_by_default(monkeypatch: pytest.MonkeyPatch):
@@ -659,23 +405,6 @@ def test_workforce_uses_all_cores_by_default(monkeypatch: pytest.MonkeyPatch):
     assert {said: (each.workers_here, each.threads_each) for said, each in who.items()} == shares
     elsewhere = running.Workforce(scheduler="tcp://host:8786")
     assert elsewhere.threads_each is None  # of cores that are not here
-
-
-def test_gallery_has_every_scene_once_and_its_error_as_text(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(results, "PER_PAGE", 2)
-    names = [f"s{number}" for number in range(5)]
-    lines = [{"id": name, "outcome": "failed", "error": "<b>no</b> & never", "folder": name} for name in names]
-    (tmp_path / "rows.jsonl").write_text("".join(f"{json.dumps(each)}\n" for each in lines))
-    pages = [path.read_text() for path in results.write_gallery(tmp_path, names)]
-    assert [[name for name in names if f"<figcaption>{name} <br>" in page] for page in pages] == [
-        ["s0", "s1"], ["s2", "s3"], ["s4"],
-    ]  # fmt: skip
-    assert all("<em>&lt;b&gt;no&lt;/b&gt; &amp; never</em>" in page for page in pages)
-    assert [re.findall('href="([^"]+)">(\\d)<|<strong>(\\d)<', page) for page in pages] == [
-        [("", "", "1"), ("gallery1.html", "2", ""), ("gallery2.html", "3", "")],
-        [("gallery.html", "1", ""), ("", "", "2"), ("gallery2.html", "3", "")],
-        [("gallery.html", "1", ""), ("gallery1.html", "2", ""), ("", "", "3")],
-    ]
 
 
 def test_gallery_links_files_of_any_name_and_tells_all_that_a_row_knows(tmp_path: Path):
@@ -709,39 +438,20 @@ def test_gallery_links_files_of_any_name_and_tells_all_that_a_row_knows(tmp_path
     assert second.endswith("<br>relief made in 1.2 s; 3 segments</figcaption></figure>")
 
 
-def test_table_column_with_a_text_is_text(tmp_path: Path):
-    import pyarrow.parquet as pq
-
-    lines = [{"id": "a", "figures": {"of": "n/a"}}, {"id": "b", "figures": {"of": 2.5}}, {"id": "c"}]
-    (tmp_path / "rows.jsonl").write_text("".join(f"{json.dumps(each)}\n" for each in lines))
-    table = pq.read_table(results.write_index(tmp_path, "abc"))
-    assert table["figures.of"].to_pylist() == ["n/a", "2.5", None]
-
-
-def test_text_of_any_length_stands_in_the_table(tmp_path: Path):
-    import pyarrow.parquet as pq
-
-    error = "no\n" * 1_000_000
-    (tmp_path / "rows.jsonl").write_text("".join(f"{json.dumps({'id': each, 'error': error})}\n" for each in "ab"))
-    assert pq.read_table(results.write_index(tmp_path, "ab"))["error"].to_pylist() == [error, error]
-
-
-def test_table_is_written_without_pandas(tmp_path: Path):
-    (tmp_path / "rows.jsonl").write_text('{"id": "a", "seconds": 1}\n')
-    code = (
-        "import sys; from pathlib import Path; from tangible_batch.results import write_index; "
-        f"write_index(Path({str(tmp_path)!r}), ['a']); assert 'pandas' not in sys.modules"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-
-
-def test_figures_that_are_not_finite_are_none_in_a_row():
-    found = job._plain({"a": float("nan"), "b": {"c": float("inf"), "d": 1.5}, 2: -float("inf")})  # pyright: ignore[reportPrivateUsage]
-    assert found == {"a": None, "b": {"c": None, "d": 1.5}, "2": None}
-
-
-def test_scene_that_raises_is_a_row(tmp_path: Path):
-    row = make_scene(Job("a", "k", "scene: {photo: no.png}\ndepth: luminance\n", str(tmp_path / "m.yaml"), (), "f"))
-    assert row["outcome"] == "failed"
-    assert "no.png" in row["error"]
+def test_pages_and_table_of_many_rows_have_every_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(results, "PER_PAGE", 2)
+    names = [f"s{number}" for number in range(5)]
+    figures = [{"of": "n/a", "b": 10**400, "c": [1, "\udcff"]}, {"of": 2.5}, {}, {}, {}]
+    lines = [{"id": name, "outcome": "failed", "error": "<b>no</b>", "folder": name} for name in names]
+    text = (json.dumps({**line, "figures": each}) + "\n" for line, each in zip(lines, figures, strict=True))
+    (tmp_path / "rows.jsonl").write_text("".join(text))
+    pages = [path.read_text() for path in results.write_gallery(tmp_path, names)]
+    shown = [[name for name in names if f"<figcaption>{name} <br>" in page] for page in pages]
+    assert shown == [["s0", "s1"], ["s2", "s3"], ["s4"]]
+    assert all("<em>&lt;b&gt;no&lt;/b&gt;</em>" in page for page in pages)
+    assert re.findall('href="([^"]+)">(\\d)<|<strong>(\\d)<', pages[1]) == [
+        ("gallery.html", "1", ""), ("", "", "2"), ("gallery2.html", "3", ""),
+    ]  # fmt: skip
+    table = pq.read_table(results.write_index(tmp_path, names)).to_pydict()
+    assert table["id"] == names and table["figures.of"] == ["n/a", "2.5", None, None, None]
+    assert (table["figures.b"][0], table["figures.c"][0]) == (1e300, "1; ?")

@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -18,7 +17,6 @@ import dask_imported  # noqa: F401
 import farm_work
 from command_line import tangible
 from ctrl_c import HEARING
-from distributions import distribution
 from farm_here import Here
 from pictures import write_png
 from tangible_batch import batch, farm
@@ -26,20 +24,9 @@ from tangible_batch import running as running_batch
 from tangible_batch.farm import Farm
 from tangible_core import Pipeline
 from tangible_core.errors import BatchError
+from waiting import until
 
 CONFIG = "scene: builtin/brick\nwant: relief\ndepth: luminance\nworkspace: {width_m: 0.04}\n"
-DEADLY = """
-import os, signal
-from tangible_depth import Luminance
-
-class Deadly(Luminance):
-    '''Dies of a white picture.'''
-
-    def estimate(self, views):
-        if views.left.min() == views.left.max():
-            os.kill(os.getpid(), signal.SIGKILL)
-        return super().estimate(views)
-"""
 
 
 @pytest.fixture(autouse=True)
@@ -66,7 +53,7 @@ def rows_in(out: Path) -> list[dict]:
     return [json.loads(line) for line in (out / "rows.jsonl").read_text().splitlines()]
 
 
-def test_farm_with_dying_workers_loses_no_other_job(monkeypatch: pytest.MonkeyPatch):
+def test_farm_with_a_dying_worker_loses_no_other_job():
     with Farm(2) as two:
         assert {port.laddr.ip for each in family() for port in each.net_connections() if port.status == "LISTEN"} == {
             "127.0.0.1"
@@ -81,13 +68,17 @@ def test_farm_with_dying_workers_loses_no_other_job(monkeypatch: pytest.MonkeyPa
         [raised] = two.map(farm_work.square, ["seven"])  # its worker lives: the words are those of the error
         assert raised.death.startswith("TypeError: ")
 
+
+@pytest.mark.whole
+def test_farm_whose_workers_are_killed_grow_old_or_hang_loses_no_job(monkeypatch: pytest.MonkeyPatch):
+    with Farm(2) as two:
         workers = set[int]()
 
-        def both_workers_are_back() -> bool:  # one of them died of job 7
+        def both_workers_are_back() -> bool:  # one of them may be slow to start
             workers.update(each.result for each in two.map(farm_work.slow, range(12)))
             return len(workers) == 2
 
-        wait_until(both_workers_are_back)
+        until(both_workers_are_back)
         flow = two.map(farm_work.slow, range(40))
         seen = [next(flow) for _ in range(3)]
         for worker in workers:  # every worker at once
@@ -112,6 +103,7 @@ def test_farm_without_a_scheduler_at_the_address_is_refused(monkeypatch: pytest.
         Farm(1, scheduler="tcp://127.0.0.1:9")
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGINT])
 def test_ended_batch_leaves_no_worker_and_continues(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, end: signal.Signals
@@ -121,7 +113,7 @@ def test_ended_batch_leaves_no_worker_and_continues(
     rows = tmp_path / "out/mine-batch/rows.jsonl"
     with (tmp_path / "noise").open("w") as noise:
         first = subprocess.Popen(command(), cwd=tmp_path, stdout=noise, stderr=noise, start_new_session=True)
-    wait_until(lambda: rows.exists() and rows.read_text().count("\n") >= 3, 60)
+    until(lambda: rows.exists() and rows.read_text().count("\n") >= 3)
     family = [each.pid for each in psutil.Process(first.pid).children(recursive=True)]
     assert len(family) >= 2
     if end == signal.SIGKILL:
@@ -129,7 +121,7 @@ def test_ended_batch_leaves_no_worker_and_continues(
     else:
         os.killpg(first.pid, end)
     code = first.wait(60)
-    wait_until(lambda: not any(map(is_alive, family)), 20)
+    until(lambda: not any(map(is_alive, family)))
     if end == signal.SIGINT:
         said = (tmp_path / "noise").read_text()
         assert code == 130, said
@@ -147,33 +139,20 @@ def test_ended_batch_leaves_no_worker_and_continues(
     assert json.loads(second.stdout)["made"] == 60 - kept
 
 
-def test_scene_that_kills_its_worker_fails_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    site = distribution(tmp_path / "site", "deadly", {"tangible.depth": {"deadly": "deadly:Deadly"}}, deadly=DEADLY)
-    monkeypatch.setenv("PYTHONPATH", str(site), prepend=os.pathsep)
-    folder = archive(tmp_path, 24)
-    write_png(folder / "p5.png", np.full((24, 32), 255, np.uint8))
-    (tmp_path / "mine.yaml").write_text(CONFIG.replace("luminance", "deadly"))
-    done = subprocess.run(command(), cwd=tmp_path, capture_output=True, text=True, timeout=200)
-    assert done.returncode == 1, done.stderr
-    rows = rows_in(tmp_path / "out/mine-batch")
-    assert len(rows) == 24
-    assert [row["id"] for row in rows if row["outcome"] != "ok"] == ["p5"]
-    assert "p5: its worker died of it, twice" in " ".join(done.stderr.split())
-
-
+@pytest.mark.whole
 def test_scheduler_workers_make_the_scenes_and_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     folder = archive(tmp_path, 6)
     pipeline = Pipeline.from_yaml(tmp_path / "mine.yaml")
     rows = [{"id": each.stem, "scene.photo": str(each)} for each in sorted(folder.iterdir())]
     with running("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", tmp_path / "at.json"):
-        wait_until(lambda: (tmp_path / "at.json").exists() and (tmp_path / "at.json").read_text().endswith("}"))
+        until(lambda: (tmp_path / "at.json").exists() and (tmp_path / "at.json").read_text().endswith("}"))
         address = json.loads((tmp_path / "at.json").read_text())["address"]
         with pytest.raises(BatchError, match="has no workers; start some: dask worker tcp://"):
             list(batch(pipeline, rows, tmp_path / "out", scheduler=address))
         worker = ("worker", address, "--no-dashboard", "--local-directory", tmp_path, "--nthreads")
         with running(*worker, "1") as own:
             monkeypatch.setattr(farm, "installed_version", lambda: "0.0.1")
-            wait_until(lambda: not without_workers(address))
+            until(lambda: not without_workers(address))
             with pytest.raises(BatchError, match=r"has tangible-images .*, and this is 0\.0\.1; install the same"):
                 Farm(1, scheduler=address)
             monkeypatch.undo()
@@ -181,7 +160,7 @@ def test_scheduler_workers_make_the_scenes_and_stay(tmp_path: Path, monkeypatch:
             assert sorted(row["id"] for row in made if row["outcome"] == "ok") == [f"p{number}" for number in range(6)]
             assert own.poll() is None
             with running(*worker, "2"):
-                wait_until(lambda: "works on 2 scenes at once" in complaint(address))
+                until(lambda: "works on 2 scenes at once" in complaint(address))
 
 
 def family() -> list[psutil.Process]:
@@ -211,13 +190,6 @@ def running(what: str, *words: object) -> Iterator[subprocess.Popen[bytes]]:
             with suppress(psutil.NoSuchProcess):
                 each.kill()
         process.wait()
-
-
-def wait_until(what, seconds: float = 90.0) -> None:
-    end = time.monotonic() + seconds
-    while not what():
-        assert time.monotonic() < end
-        time.sleep(0.05)
 
 
 def is_alive(process: int) -> bool:

@@ -40,12 +40,6 @@ def test_time_is_worse_beyond_a_tenth_and_the_noise(before: list[float], after: 
     assert worse(rows(before), rows(after)) == expected
 
 
-def test_time_may_rise_by_three_standard_deviations():
-    verdict = find_regressions(rows([0.9, 1.0, 1.1]), rows([1.6, 1.7, 1.8]))
-    assert verdict.worse[0].allowed == pytest.approx(3 * 2**0.5 * 1.4826 * 0.1)
-    assert (verdict.worse[0].before, verdict.worse[0].after) == (1.0, 1.7)
-
-
 @pytest.mark.parametrize(
     ("before", "after", "expected"),
     [(5.0, 5.004, []), (5.0, 5.006, ["bad2 %"]), (5.0, 1.0, []), (5.0, None, ["bad2 %"]), (None, 5.0, [])],
@@ -54,16 +48,14 @@ def test_error_is_worse_beyond_its_tolerance(before: float | None, after: float 
     assert worse(rows([1.0], bad2=before), rows([1.0], bad2=after)) == expected
 
 
-def test_measure_that_is_better_when_high_is_worse_when_lower():
+def test_memory_and_measures_that_are_better_when_high_have_their_own_bounds():
+    for before, after, expected in ((10**8, 104 * 10**6, []), (10**8, 106 * 10**6, ["memory bytes"]), (0, 10**6, [])):
+        assert worse(rows([1.0], memory=before), rows([1.0], memory=after)) == expected
     high, low = ([replace(ROW, seconds=1.0, measures={"density": value})] for value in (90.0, 80.0))
-    assert worse(high, low) == ["density %"]
-    assert worse(low, high) == []
-
-
-def test_memory_is_worse_beyond_five_percent_and_a_mebibyte():
-    assert worse(rows([1.0], memory=10**8), rows([1.0], memory=104 * 10**6)) == []
-    assert worse(rows([1.0], memory=10**8), rows([1.0], memory=106 * 10**6)) == ["memory bytes"]
-    assert worse(rows([1.0], memory=0), rows([1.0], memory=10**6)) == []
+    assert worse(high, low) == ["density %"] and worse(low, high) == []
+    (found,) = find_regressions(rows([0.9, 1.0, 1.1]), rows([1.6, 1.7, 1.8])).worse
+    assert found.allowed == pytest.approx(3 * 2**0.5 * 1.4826 * 0.1), "three standard deviations"
+    assert (found.before, found.after) == (1.0, 1.7)
 
 
 def test_method_that_fails_now_is_worse():

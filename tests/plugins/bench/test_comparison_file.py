@@ -4,9 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
 
+from standard_sets import put
 from tangible_bench.config.reading import Comparison, load_comparison, parse_comparison
+from tangible_bench.measuring.plan import measurements
 from tangible_core.errors import ConfigError
 from tangible_core.plugins.registry import Registry
 
@@ -24,16 +25,11 @@ def complaints(text: str, registry: Registry) -> list[str]:
     return str(error.value).splitlines()
 
 
-def test_minimal_file_has_defaults(registry: Registry):
+def test_file_sets_every_field_that_has_defaults(registry: Registry):
     found = parse(GOOD, registry)
     assert [each.label for each in found.methods] == ["constant"]
-    assert list(found.scenes) == ["steps 480x360"]
-    assert [each.name for each in found.damages] == ["none"]
-    assert (found.protocol.repeats, found.protocol.warmups, found.baseline) == (5, 1, None)
-    assert found.out == Path("out/c")
-
-
-def test_full_file_sets_every_field(registry: Registry):
+    assert list(found.scenes) == ["steps 480x360"] and [each.name for each in found.damages] == ["none"]
+    assert (found.protocol.repeats, found.protocol.warmups, found.baseline, found.out) == (5, 1, None, Path("out/c"))
     text = """\
 compare: depth
 methods:
@@ -111,46 +107,32 @@ baseline: constat
 @pytest.mark.parametrize(
     ("text", "place", "what"),
     [
-        ("", "1:1", "starts with `compare:`"),
-        ("methods: [constant]\n", "1:1", "`compare:` names what kind"),
-        ("compare: dept\n", "1:1", "did you mean 'depth'?"),
-        ("compare: export\n", "1:1", "exporters are not compared"),
-        ("compare: device\n", "1:1", "`tangible devices stress NAME`"),
-        ("compare: depth\nscenes: [synthetic/bars]\n", "1:1", "`methods:` is missing"),
-        ("compare: depth\nmethods: constant\nscenes: [synthetic/bars]\n", "2:1", "is a list"),
-        ("compare: depth\nmethods: []\nscenes: [synthetic/bars]\n", "2:1", "is a list"),
-        ("compare: depth\nmethods: [{use: constant, sweep: [1]}]\nscenes: [synthetic/bars]\n", "2:27", "`sweep:` maps"),
-        ("compare: depth\nmethods: [{use: constant, sweep: {seconds: 1}}]\nscenes: [synthetic/bars]\n", "2:27", "maps"),
-        (
-            "compare: depth\nmethods: [{use: constant, label: [1]}]\nscenes: [synthetic/bars]\n",
-            "2:27",
-            "a label is a word",
-        ),
-        (
-            "compare: depth\nmethods: [{use: ranged, given: [seed]}]\nscenes: [synthetic/bars]\n",
-            "2:25",
-            "gives 'seed' to this",
-        ),
-        ("compare: depth\nmethods: [{use: ranged, given: 3}]\nscenes: [synthetic/bars]\n", "2:25", "max_disparity_px"),
-        ("compare: depth\nmethods: [{use: ranged, given: [[1]]}]\nscenes: [synthetic/bars]\n", "2:25", "gives [1]"),
-        ("compare: depth\nmethods: [{use: half, given: [value_px]}]\nscenes: [synthetic/bars]\n", "2:23", "nothing"),
-        (GOOD + "perturb: [loud]\n", "4:11", "write none, or for example"),
-        (GOOD + "perturb: [{noise: loud}]\n", "4:12", "not 'loud'"),
-        (GOOD + "out: [1]\n", "4:1", "must be a folder"),
-        (GOOD.replace("synthetic/steps", "motorcycle"), "3:10", "no scene is named 'motorcycle'"),
-        (GOOD.replace("synthetic/steps", "{folder: nowhere}"), "3:10", "neither it nor a folder in it holds left.png"),
-        (GOOD.replace("synthetic/steps", "synthetic/steps, synthetic/steps"), "3:27", "two scenes are called"),
-        (
-            GOOD.replace("synthetic/steps", "{builtin: a, folder: b}"),
-            "3:10",
-            "one of builtin, synthetic, folder, set",
-        ),
+        ("", "1:1", "`compare:`"),
+        ("methods: [constant]\n", "1:1", "`compare:`"),
+        ("compare: dept\n", "1:1", "'depth'"),
+        ("compare: export\n", "1:1", "exporters"),
+        ("compare: device\n", "1:1", "stress"),
+        (GOOD.replace("methods: [constant]\n", ""), "1:1", "missing"),
+        (GOOD.replace("[constant]", "constant"), "2:1", "list"),
+        (GOOD.replace("[constant]", "[]"), "2:1", "list"),
+        (GOOD.replace("constant", "{use: constant, sweep: [1]}"), "2:27", "`sweep:`"),
+        (GOOD.replace("constant", "{use: constant, sweep: {seconds: 1}}"), "2:27", "`sweep:`"),
+        (GOOD.replace("constant", "{use: constant, label: [1]}"), "2:27", "label"),
+        (GOOD.replace("constant", "{use: ranged, given: [seed]}"), "2:25", "'seed'"),
+        (GOOD.replace("constant", "{use: ranged, given: 3}"), "2:25", "max_disparity_px"),
+        (GOOD.replace("constant", "{use: half, given: [value_px]}"), "2:23", "nothing"),
+        (GOOD + "perturb: [loud]\n", "4:11", "none"),
+        (GOOD + "perturb: [{noise: loud}]\n", "4:12", "'loud'"),
+        (GOOD + "out: [1]\n", "4:1", "folder"),
+        (GOOD.replace("synthetic/steps", "motorcycle"), "3:10", "'motorcycle'"),
+        (GOOD.replace("synthetic/steps", "{folder: nowhere}"), "3:10", "left.png"),
+        (GOOD.replace("synthetic/steps", "synthetic/steps, synthetic/steps"), "3:27", "two scenes"),
+        (GOOD.replace("synthetic/steps", "{builtin: a, folder: b}"), "3:10", "one of builtin"),
     ],
 )
-def test_file_with_one_mistake_reports_one_line(registry: Registry, text: str, place: str, what: str):
+def test_file_with_one_mistake_reports_its_place(registry: Registry, text: str, place: str, what: str):
     found = complaints(text, registry)
-    assert found[0].startswith(f"here/c.yaml:{place}: "), found
-    assert what in found[0]
+    assert found[0].startswith(f"here/c.yaml:{place}: ") and what in found[0], found
 
 
 def test_override_replaces_a_key(registry: Registry):
@@ -160,46 +142,28 @@ def test_override_replaces_a_key(registry: Registry):
         parse(GOOD, registry, "methods.0.value_px=3")
 
 
-@pytest.mark.parametrize("kind", ["npz", "npy", "pfm", "png"])
-def test_folder_of_pairs_gives_a_scene_each(registry: Registry, tmp_path: Path, kind: str):
+def test_folder_of_pairs_gives_a_scene_each(registry: Registry, tmp_path: Path):
+    def load(scenes: str) -> Comparison:
+        (tmp_path / "c.yaml").write_text(GOOD.replace("synthetic/steps", scenes))
+        return load_comparison(tmp_path / "c.yaml", registry)
+
     truth = np.full((20, 30), 3, np.float32)
-    truth[0, :5] = 0 if kind == "png" else np.nan
-    for name in ("b", "a"):
-        write_pair(tmp_path / "pairs" / name, truth, kind)
+    for name, kind in (("b", "npy"), ("a", "png")):
+        (tmp_path / "pairs" / name).mkdir(parents=True)
+        for side in ("left", "right"):
+            put(tmp_path / f"pairs/{name}/{side}.png", np.zeros(truth.shape, np.uint8))
+        truth[0, :5] = 0 if kind == "png" else np.nan
+        path = tmp_path / f"pairs/{name}/disparity.{kind}"
+        np.save(path, truth) if kind == "npy" else put(path, truth.astype(np.uint8))
     (tmp_path / "pairs" / "empty").mkdir()
-    (tmp_path / "c.yaml").write_text(GOOD.replace("synthetic/steps", "{folder: pairs}, {folder: pairs/a/../b}"))
-    with pytest.raises(ConfigError, match="two scenes are called 'b'"):
-        load_comparison(tmp_path / "c.yaml", registry)
-    (tmp_path / "c.yaml").write_text(GOOD.replace("synthetic/steps", "{folder: pairs}"))
-    found = load_comparison(tmp_path / "c.yaml", registry)
+    found = load("{folder: pairs}")
     assert list(found.scenes) == ["a", "b"]
-    pair = found.scenes["a"].open()
-    expected = truth.copy()
-    expected[0, :5] = np.nan
-    np.testing.assert_array_equal(pair.truth_px, expected)
-    np.testing.assert_array_equal(pair.visible[1:], np.arange(30) >= 3 + np.zeros((19, 1)))
-
-
-def test_folder_without_truth_is_refused(registry: Registry, tmp_path: Path):
-    write_pair(tmp_path / "a", np.ones((8, 9), np.float32), "npy")
-    (tmp_path / "a" / "disparity.npy").unlink()
-    (tmp_path / "c.yaml").write_text(GOOD.replace("synthetic/steps", "{folder: a}"))
-    from tangible_bench.measuring.plan import measurements
-
-    with pytest.raises(ConfigError, match=r"a: has no true disparity; put disparity\.npz"):
-        measurements(load_comparison(tmp_path / "c.yaml", registry))
-
-
-def write_pair(folder: Path, truth: np.ndarray, kind: str) -> None:
-    folder.mkdir(parents=True)
-    for name in ("left.png", "right.png"):
-        Image.fromarray(np.zeros(truth.shape, np.uint8)).save(folder / name)
-    path = folder / f"disparity.{kind}"
-    if kind == "npz":
-        np.savez(path, disparity_px=truth)
-    elif kind == "npy":
-        np.save(path, truth)
-    elif kind == "pfm":
-        path.write_bytes(b"Pf\n%d %d\n-1\n" % truth.shape[::-1] + truth[::-1].tobytes())
-    else:
-        Image.fromarray(truth.astype(np.uint8)).save(path)
+    for each in found.scenes.values():
+        pair = each.open()
+        assert np.isnan(pair.truth_px[0, :5]).all() and (pair.truth_px[1:] == 3).all()
+        np.testing.assert_array_equal(pair.visible[1:], np.arange(30) >= 3 + np.zeros((19, 1)))
+    with pytest.raises(ConfigError, match="two scenes are called 'b'"):
+        load("{folder: pairs}, {folder: pairs/a/../b}")
+    (tmp_path / "pairs/a/disparity.png").unlink()
+    with pytest.raises(ConfigError, match="true disparity"):
+        measurements(load("{folder: pairs/a}"))

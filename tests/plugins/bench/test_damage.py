@@ -10,20 +10,6 @@ from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 GREY = np.full((64, 64), 100, np.uint8)
 
 
-def test_noise_has_its_standard_deviation_and_seed():
-    noisy = damage.noise(GREY, 5, 0).astype(float)
-    assert noisy.std() == pytest.approx(5, rel=0.05)
-    assert noisy.mean() == pytest.approx(100, abs=0.3)
-    np.testing.assert_array_equal(noisy, damage.noise(GREY, 5, 0))
-    assert (noisy != damage.noise(GREY, 5, 1)).any()
-
-
-def test_noise_is_independent_in_each_channel():
-    changes = damage.noise(np.full((64, 64, 3), 100, np.uint8), 5, 0).astype(float) - 100
-    correlations = np.corrcoef(changes.reshape(-1, 3).T)
-    assert np.abs(correlations - np.eye(3)).max() < 0.1
-
-
 def test_gain_and_gamma_follow_their_formulas():
     assert (damage.gain(GREY, 0.8) == 80).all()
     assert (damage.gain(GREY, 5) == 255).all()
@@ -60,20 +46,21 @@ def test_shift_down_interpolates_and_repeats_the_border(rows: float, expected: l
     assert damage.shift_down(ramp, rows)[:, 0].tolist() == expected
 
 
+def test_noise_has_its_standard_deviation_and_seed_and_is_independent_in_each_channel():
+    changes = damage.noise(np.full((64, 64, 3), 100, np.uint8), 5, 0).astype(float) - 100
+    assert changes.std() == pytest.approx(5, rel=0.05) and changes.mean() == pytest.approx(0, abs=0.3)
+    assert np.abs(np.corrcoef(changes.reshape(-1, 3).T) - np.eye(3)).max() < 0.1
+    np.testing.assert_array_equal(damage.noise(GREY, 5, 0), damage.noise(GREY, 5, 0))
+    assert (damage.noise(GREY, 5, 0) != damage.noise(GREY, 5, 1)).any()
+
+
 @pytest.mark.parametrize(
-    "picture",
-    [
-        np.full((8, 8), 0.5, np.float32),
-        np.full((8, 8, 4), 32768, np.uint16),
-        np.ones((1, 1), np.bool_),
-        np.full((8, 8, 3), -3.0),
-    ],
+    "picture", [np.full((8, 8), 0.5, np.float32), np.full((8, 8, 4), 32768, np.uint16), np.ones((1, 1), np.bool_)]
 )
 def test_damage_accepts_every_kind_of_picture(picture: np.ndarray):
-    changes = [damage.jpeg(picture, 50), damage.blur(picture, 1), damage.noise(picture, 1, 0), damage.gamma(picture, 2)]
-    for changed in [*changes, damage.shift_down(picture, 0.5), damage.gain(picture, 1)]:
-        assert changed.dtype == np.uint8
-        assert changed.shape == (picture.shape[:2] if picture.ndim == 2 else (*picture.shape[:2], 3))
+    for change in (damage.jpeg, damage.blur, damage.gamma, damage.shift_down, damage.gain):
+        changed = change(picture, 1)
+        assert changed.dtype == np.uint8 and changed.shape == (*picture.shape[:2], 3)[: picture.ndim]
 
 
 @pytest.mark.parametrize(
@@ -82,16 +69,9 @@ def test_damage_accepts_every_kind_of_picture(picture: np.ndarray):
 def test_perturbation_of_a_pair_changes_its_views_only(name: str, value: float):
     pair = synthetic_pair("steps", 64, 32)
     changed = PERTURBATIONS[name].apply(pair, value)
-    assert (changed.views.right != pair.views.right).any()
-    assert (changed.views.left != pair.views.left).any() == (name in ("noise", "jpeg", "blur"))
+    off = [
+        np.subtract(getattr(changed.views, side), getattr(pair.views, side), dtype=int) for side in ("left", "right")
+    ]
+    assert off[1].any() and off[0].any() == (name in ("noise", "jpeg", "blur"))
+    assert name != "noise" or abs(np.corrcoef(off[0].ravel(), off[1].ravel())[0, 1]) < 0.1
     np.testing.assert_array_equal(changed.truth_px, pair.truth_px)
-
-
-def test_noise_of_a_pair_differs_between_its_views():
-    pair = synthetic_pair("steps", 64, 32)
-    changed = PERTURBATIONS["noise"].apply(pair, 5)
-    left, right = (
-        new.astype(float) - old
-        for new, old in zip((changed.views.left, changed.views.right), (pair.views.left, pair.views.right), strict=True)
-    )
-    assert abs(np.corrcoef(left.ravel(), right.ravel())[0, 1]) < 0.1

@@ -31,13 +31,6 @@ def test_nearest_point_no_other_point_is_nearer(name: str):
         assert np.sum((found - hand) ** 2) <= min(squares) + 1e-15
 
 
-@pytest.mark.parametrize("name", SMOOTH)
-def test_nearest_point_lies_along_the_normal(name: str):
-    known = SURFACES[name].known((16, 16))
-    for hand, found in zip(hands(name), SURFACES[name].nearest(hands(name)), strict=True):
-        assert np.linalg.norm(np.cross(known.normal(*found[:2]), found - hand)) <= 1e-12
-
-
 def test_nearest_point_on_ridge_stays_on_its_face():
     """Slope 1, 1 mm under the top: the foot on the left is at x / 2 - 0.5 mm, and leaves its face at x = 1 mm."""
     across = np.linspace(-0.004, 0.004, 801)

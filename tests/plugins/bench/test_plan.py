@@ -1,6 +1,5 @@
 """The plan of a comparison: keys of the same content, and scenes that cannot be read; and the row of a key."""
 
-from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -9,11 +8,8 @@ from PIL import Image
 
 from tangible_bench.config.reading import Comparison, parse_comparison
 from tangible_bench.measuring.plan import measurements
-from tangible_bench.measuring.rows import Row, append, read_rows
 from tangible_core.errors import ConfigError
 from tangible_core.plugins.registry import Registry
-
-ROW = Row("k", "depth", "m", "m", {}, "d 1", "s", "digest", "none", (), 0, {}, {"processor": "p"})
 
 
 def parse(registry: Registry, folder: Path, *scenes: str) -> Comparison:
@@ -43,12 +39,3 @@ def test_all_scenes_that_cannot_be_read_are_named(registry: Registry, tmp_path: 
         measurements(parse(registry, tmp_path, *scenes))
     assert len(error.value.args) == 2
     assert "aa_left.png" in error.value.args[0] and "cc_right.png" in error.value.args[1]
-
-
-def test_last_row_of_a_key_counts(tmp_path: Path):
-    path = tmp_path / "rows.jsonl"
-    for row in (replace(ROW, error="no"), replace(ROW, key="other"), replace(ROW, seconds=2.0)):
-        append(path, row)
-    found = read_rows(path)
-    assert {key: (row.seconds, row.error) for key, row in found.items()} == {"k": (2.0, None), "other": (None, None)}
-    assert asdict(found["k"]) == asdict(replace(ROW, seconds=2.0))

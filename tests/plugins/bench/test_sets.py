@@ -3,6 +3,7 @@
 import csv
 import io
 import math
+import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -13,18 +14,17 @@ import pytest
 from command_line import tangible
 from standard_sets import LAYOUTS, known, put
 from tangible_bench.config.reading import Comparison, parse_comparison
-from tangible_bench.datasets import MarkedPair, StandardPair
-from tangible_bench.datasets.submissions import write_pfm, write_png16, write_submission
+from tangible_bench.datasets import MarkedPair
+from tangible_bench.datasets.submissions import write_png16
 from tangible_bench.measuring.rows import Row, append
 from tangible_bench.results import set_tables
 from tangible_bench.results.summary import cells
-from tangible_bench.results.table import Results, tables
+from tangible_bench.results.table import Results
 from tangible_bench.submitting import submit
 from tangible_bench.tasks.depth import TASK, measure, range_px
 from tangible_bench.tasks.depth_scenes import DepthScene
-from tangible_bench.tasks.texture_scenes import TextureScene
 from tangible_core.data import DisparityMap
-from tangible_core.errors import ConfigError, OutputError, PictureError
+from tangible_core.errors import ConfigError
 from tangible_core.plugins.registry import Registry
 from tangible_core.scene.formats.pictures import read_map, read_truth
 
@@ -50,15 +50,11 @@ def parse(registry: Registry, folder: Path, scenes: str, methods: str = "constan
 @pytest.mark.parametrize(
     ("scene", "names"),
     [
-        ("{set: kitti-2015}", ["kitti-2015/000000_10"]),
         ("kitti-2015", ["kitti-2015/000000_10"]),
-        ("kitti-2015@test", ["kitti-2015@test/000000_10"]),
         ("{set: kitti-2015, only: [000000_10]}", ["kitti-2015/000000_10"]),
-        ("{set: middlebury-eval3, folder: middlebury-eval3}", ["middlebury-eval3@Q/Adirondack"]),
-        ("{set: middlebury-2014, resolution: Q}", ["middlebury-2014@Q/Adirondack-perfect"]),
-        ("middlebury-2014@H", ["middlebury-2014@H/Adirondack-perfect"]),
-        ("middlebury-2014", ["middlebury-2014/Adirondack-perfect"]),
         ("{set: middlebury-eval3, split: test}", ["middlebury-eval3@Q@test/Australia"]),
+        ("{set: middlebury-2014, resolution: Q}", ["middlebury-2014@Q/Adirondack-perfect"]),
+        ("middlebury-2014@H, middlebury-2014", [f"middlebury-2014{at}/Adirondack-perfect" for at in ("@H", "")]),
         ("kitti-2015, kitti-2015@test", ["kitti-2015/000000_10", "kitti-2015@test/000000_10"]),
     ],
 )
@@ -73,21 +69,18 @@ def test_set_expands_to_its_pairs(scene: str, names: list[str], registry: Regist
 @pytest.mark.parametrize(
     ("scene", "why"),
     [
-        ("kitti-2016", "no scene is named 'kitti-2016'"),
-        ("{set: eth3d, folder: nowhere}", "nowhere: there is no such folder; fetch two_view_training.7z"),
-        ("{set: kitti-2015, resolution: Q}", "resolution: kitti-2015 has none called 'Q'"),
-        ("{set: kitti-2015, builtin: motorcycle}", "this one is builtin and set"),
-        ("{folder: x, resolution: Q}", "resolution needs a standard set; name it: `set: ...`"),
-        ("{set: kitti-2015, only: [x]}", "no pair in it is named 'x'"),
-        ("{pairs: {left: 'L*', right: 'R*'}}", "no file in it matches left: 'L*'"),
-        ("{pairs: {left: 'L*'}}", "scenes.0.pairs.right: Field required"),
+        ("kitti-2016", "'kitti-2016'"),
+        ("{set: eth3d, folder: nowhere}", "two_view_training.7z"),
+        ("{set: kitti-2015, builtin: motorcycle}", "builtin and set"),
+        ("{folder: x, resolution: Q}", "`set: ...`"),
+        ("{pairs: {left: 'L*', right: 'R*'}}", "left: 'L*'"),
+        ("{pairs: {left: 'L*'}}", "scenes.0.pairs.right"),
     ],
 )
 def test_set_with_a_mistake_is_refused_with_its_place(scene: str, why: str, registry: Registry, folder: Path):
     with pytest.raises(ConfigError) as error:
         parse(registry, folder, scene)
-    said = str(error.value)
-    assert why in said and "c.yaml:3:" in said and "\n" not in said
+    assert why in str(error.value) and "c.yaml:3:" in str(error.value)
 
 
 def test_custom_pairs_are_matched_by_their_stars(registry: Registry, tmp_path: Path):
@@ -105,23 +98,6 @@ def test_custom_pairs_are_matched_by_their_stars(registry: Registry, tmp_path: P
     np.testing.assert_array_equal(first.noc, k.visible)
     assert isinstance(second, MarkedPair) and second.truth_px is None
     assert measure(DisparityMap(np.zeros(second.views.shape, np.float32)), second) == {}
-
-
-def test_custom_pictures_and_labels_are_matched_by_their_stars(tmp_path: Path):
-    for name in ("x", "y"):
-        put(tmp_path / f"pictures/{name}.png", np.arange(12, dtype=np.uint8).reshape(3, 4))
-        put(tmp_path / f"truth/{name}_seg.png", np.eye(3, 4, dtype=np.uint8))
-    spec = TextureScene.model_validate(
-        {"folder": tmp_path, "pairs": {"picture": "pictures/*.png", "labels": "truth/*_seg.png"}}
-    )
-    assert list(spec.expand()) == ["x", "y"]
-    scene = spec.expand()["y"].open()
-    assert scene.count == 2 and scene.labels.shape == (3, 4)
-    again = TextureScene.model_validate(spec.expand()["y"].model_dump(mode="json"))
-    assert again.open().digest() == scene.digest()
-    put(tmp_path / "truth/y_seg.png", np.eye(4, 4, dtype=np.uint8))
-    with pytest.raises(PictureError, match=r"y\.png is 4 x 3 and .*y_seg\.png 4 x 4; they must be of the same size"):
-        again.open()
 
 
 class TestMeasures:
@@ -150,29 +126,18 @@ class TestMeasures:
         figures = measure(DisparityMap(wrong), pair)
         assert figures["d1_noc"] == figures["bad3_noc"] == 0 < figures["d1"] == figures["bad3"]
         assert figures["pixels_bg"] + figures["pixels_fg"] == figures["pixels"] > figures["pixels_noc"]
-
-    def test_sparse_truth_without_a_mask_has_no_noc_measures(self, folder: Path):
-        pair = replace(self.pair(folder, {"set": "kitti-2015"}), noc=None)
-        figures = measure(DisparityMap(np.zeros(pair.views.shape, np.float32)), pair)
-        assert figures["bad2"] > 0 and not [name for name in figures if name.endswith("_noc")]
+        without = measure(DisparityMap(wrong), replace(pair, noc=None))
+        assert without["bad2"] > 0 and not [name for name in without if name.endswith("_noc")]
 
     def test_estimates_are_clipped_to_the_range_of_the_set(self, folder: Path):
         pair = self.pair(folder, {"set": "middlebury-2014"})
-        truth = np.full(pair.views.shape, 19.5, np.float32)
-        figures = measure(DisparityMap(np.full(pair.views.shape, 500.0, np.float32)), replace(pair, truth_px=truth))
-        assert figures["average_px"] == 0.5 and figures["bad0.5"] == 0
+        truth, found = np.full(pair.views.shape, 19.5, np.float32), np.full(pair.views.shape, 500.0, np.float32)
+        assert measure(DisparityMap(found), replace(pair, truth_px=truth))["average_px"] == 0.5
 
     def test_range_for_methods_follows_the_set(self, folder: Path):
         assert range_px(self.pair(folder, {"set": "middlebury-2014"})) == 32
         assert range_px(self.pair(folder, {"set": "kitti-2015"})) == 16
         assert range_px(self.pair(folder, {"set": "kitti-2015", "split": "test"})) == 256
-
-    def test_measures_all_have_a_heading(self, folder: Path):
-        pair = self.pair(folder, {"set": "middlebury-eval3"})
-        figures = measure(DisparityMap(np.zeros(pair.views.shape, np.float32)), pair)
-        assert {name for name in figures if not name.startswith("pixels")} <= set(TASK.measures)
-        columns = {each.measure for columns in set_tables.COLUMNS.values() for each in columns}
-        assert columns <= set(TASK.measures)
 
 
 def row(method: str, scene: str, **measures: float) -> Row:
@@ -229,71 +194,41 @@ def test_set_table_leaves_out_a_method_without_a_pair():
     assert list(table.rows) == ["m"] and 1.5 in table.rows["m"]
 
 
-def test_headings_name_the_size_of_pixels():
-    def headings(*scenes: str) -> tuple[str, ...]:
-        return tables(results(*(row("m", scene, bad2=1.0) for scene in scenes)), detail=False)[0].headings
-
-    assert "bad2@Q %" in headings("builtin/motorcycle")
-    assert "bad2@H noc %" in headings("middlebury-2014@H/a", "middlebury-2014@H/b")
-    assert results(row("m", "builtin/motorcycle")).heading("bad2") == "bad2@Q %"
-    for scenes in (["kitti-2015/a"], ["builtin/motorcycle", "synthetic"], ["middlebury-2014/a"]):
-        assert "bad2 %" in headings(*scenes)
-
-
-def test_detail_tables_have_benchmark_measures_for_sets_only():
-    old = tables(results(row("m", "planes 64x32", bad2=1.0)), detail=True)[1]
-    assert old.headings[4:] == tuple(each.title for each in TASK.measures.values() if not each.of_sets)
-    assert len(old.headings) == 20 and "A90 px" not in old.headings
-    new = tables(results(row("m", "kitti-2015/a", bad2=1.0, d1=2.0)), detail=True)[1]
-    assert new.headings[-1] == "D1-all %"
-
-
 class TestSubmissions:
-    def submit_files(self, registry: Registry, folder: Path, scenes: str, methods: str = "half") -> dict[str, Path]:
-        comparison = parse(registry, folder, scenes, methods)
-        found = list(submit(comparison, folder / "sent"))
-        assert not [each.error for each in found if each.error]
-        return {str(path.relative_to(folder / "sent")): path for each in found for path in each.files}
-
-    def test_middlebury_submission_has_the_layout_of_its_kit(self, registry: Registry, folder: Path):
-        files = self.submit_files(
-            registry, folder, "middlebury-eval3, middlebury-eval3@test", "{use: half, label: my half}"
+    @pytest.mark.parametrize(
+        ("scenes", "files", "time"),
+        [
+            (
+                "middlebury-eval3",
+                "trainingQ/Adirondack/disp0my-half.pfm trainingQ/Adirondack/timemy-half.txt",
+                r"[\d.e-]+",
+            ),
+            ("middlebury-eval3@test", "testQ/Australia/disp0my-half.pfm testQ/Australia/timemy-half.txt", r"[\d.e-]+"),
+            ("kitti-2015@test", "disp_0/000000_10.png", ""),
+            ("kitti-2012@test", "000000_10.png", ""),
+            (
+                "eth3d",
+                "low_res_two_view/delivery_area_1l.pfm low_res_two_view/delivery_area_1l.txt",
+                r"runtime [\d.e-]+",
+            ),
+        ],
+    )
+    def test_submission_has_the_layout_of_its_kit(self, scenes, files, time, registry: Registry, folder: Path):
+        comparison = parse(registry, folder, scenes, "{use: half, label: my half, value_px: 4.126}")
+        (found,) = submit(comparison, folder / "sent")
+        assert (
+            not found.error
+            and [str(path.relative_to(folder / "sent/my-half")) for path in found.files] == files.split()
         )
-        assert list(files) == [
-            "my-half/trainingQ/Adirondack/disp0my-half.pfm", "my-half/trainingQ/Adirondack/timemy-half.txt",
-            "my-half/testQ/Australia/disp0my-half.pfm", "my-half/testQ/Australia/timemy-half.txt",
-        ]  # fmt: skip
-        first, time = list(files.values())[:2]
-        found = read_map(first)
-        assert (found[:, :48] == 4).all() and np.isnan(found[:, 48:]).all()
-        assert b"\x00\x00\x80\x7f" in first.read_bytes(), "unknown is infinite"
-        assert 0 < float(time.read_text()) < 60
+        first = found.files[0]
+        disparity_px = read_truth(first, 256) if first.suffix == ".png" else read_map(first)
+        assert np.isnan(disparity_px[:, 48:]).all() and np.abs(disparity_px[:, :48] - 4.126).max() <= 1 / 512
+        assert first.suffix == ".png" or b"\x00\x00\x80\x7f" in first.read_bytes(), "unknown is infinite"
+        assert not time or re.fullmatch(time, found.files[1].read_text().strip())
 
-    def test_kitti_submission_has_the_layout_of_its_kit(self, registry: Registry, folder: Path):
-        files = self.submit_files(registry, folder, "kitti-2015@test, kitti-2012@test", "{use: half, value_px: 4.126}")
-        assert list(files) == ["half/disp_0/000000_10.png", "half/000000_10.png"]
-        for path in files.values():
-            assert path.read_bytes()[24] == 16, "bits"
-            found = read_truth(path, 256)
-            assert np.isnan(found[:, 48:]).all() and np.abs(found[:, :48] - 4.126).max() <= 1 / 512
-
-    def test_eth3d_submission_has_the_layout_of_its_kit(self, registry: Registry, folder: Path):
-        files = self.submit_files(registry, folder, "eth3d")
-        assert list(files) == [
-            "half/low_res_two_view/delivery_area_1l.pfm", "half/low_res_two_view/delivery_area_1l.txt"
-        ]  # fmt: skip
-        found, time = files.values()
-        assert (read_map(found)[:, :48] == 4).all()
-        word, seconds = time.read_text().split()
-        assert word == "runtime" and float(seconds) > 0
-
-    @pytest.mark.parametrize("shape", [(1, 1), (3, 5)])
-    def test_float_map_is_read_as_it_was_written(self, shape: tuple[int, int], tmp_path: Path):
-        values = np.random.default_rng(3).normal(0, 1e3, shape).astype(np.float32)
-        values[-1, 0] = np.nan
-        write_pfm(tmp_path / "d.pfm", values)
-        np.testing.assert_array_equal(read_map(tmp_path / "d.pfm"), values)
-        assert (tmp_path / "d.pfm").read_bytes().startswith(f"Pf\n{shape[1]} {shape[0]}\n-1.0\n".encode())
+    def test_set_without_submissions_is_refused(self, registry: Registry, folder: Path):
+        with pytest.raises(ConfigError, match="takes submissions"):
+            list(submit(parse(registry, folder, "{synthetic: steps}"), folder / "sent"))
 
     def test_png16_clips_values_to_16_bits(self, tmp_path: Path):
         values = np.float32([[0, -3, 1e-4, 255.99, 300, np.nan, np.inf]])
@@ -308,23 +243,6 @@ class TestSubmissions:
         assert errors["fails"] and not errors["constant"]
         assert [path.name for path in (folder / "sent").iterdir()] == ["constant"]
 
-    def test_submission_on_a_full_disk_leaves_no_partial_file(self, registry: Registry, folder: Path, monkeypatch):
-        monkeypatch.setattr("tangible_core.files.writing.os.fdopen", _full)
-        with pytest.raises(OutputError, match="No space left"):
-            list(submit(parse(registry, folder, "eth3d"), folder / "sent"))
-        assert not [path for path in (folder / "sent").rglob("*") if path.is_file()]
-
-    def test_set_without_submissions_is_refused(self, registry: Registry, folder: Path):
-        with pytest.raises(ConfigError, match="no scene is from a set that takes submissions: middlebury-eval3"):
-            list(submit(parse(registry, folder, "{synthetic: steps}"), folder / "sent"))
-        pair = StandardPair("x", Path("l.png"), Path("r.png"))
-        with pytest.raises(ConfigError, match="sintel takes no submissions; sets that do are middlebury-eval3"):
-            write_submission(folder, "sintel", "m", pair, np.zeros((1, 1), np.float32), 1.0)
-
-
-def _full(handle: int, mode: str):
-    raise OSError(28, "No space left on device")
-
 
 class TestCommand:
     @pytest.fixture(autouse=True)
@@ -332,49 +250,38 @@ class TestCommand:
         monkeypatch.setattr("tangible_core.plugins.registry.default_registry", lambda: registry)
 
     @pytest.mark.usefixtures("cells_here")
-    def test_command_measures_a_set_by_its_name(self, registry: Registry, folder: Path):
+    def test_command_measures_a_set_by_its_name(self, folder: Path):
         methods = "methods=[constant, {use: constant, label: other, value_px: 2}]"
-        words = ("compare", "kitti-2015", "--set", methods, "--set", "warmups=0")
-        done = tangible(*words, cwd=folder)
+        done = tangible("compare", "kitti-2015", "--set", methods, "--set", "warmups=0", cwd=folder)
         assert done.returncode == 0, done.stderr
         assert "KITTI 2015, 1 pair" in done.stdout and "D1-all" in done.stdout
         out = folder / "out" / "kitti-2015"
-        for name in ("results.jsonl", "table.csv", "table.tex", "kitti-2015.csv", "kitti-2015.tex"):
-            assert (out / name).is_file() and str(Path("out", "kitti-2015", name)) in done.stdout
         rows = list(csv.DictReader((out / "kitti-2015.csv").read_text().splitlines()))
         assert {each["method"] for each in rows} == {"constant", "other"}
         assert all(0 <= float(each["D1-all noc"]) <= 100 for each in rows)
-        for form, file in (("latex", "kitti-2015.tex"), ("csv", "kitti-2015.csv")):
+        for form, end in (("latex", "tex"), ("csv", "csv")):
             again = tangible("compare", out / "results.jsonl", "--table", form, cwd=folder)
-            assert again.stdout == (out / file).read_text()
+            assert again.stdout == (out / f"kitti-2015.{end}").read_text()
+        append(folder / "r.jsonl", row("m", "planes 64x32", bad2=1.0))  # of no set: the means
+        done = tangible("compare", "r.jsonl", "--table", "latex", cwd=folder)
+        assert done.stdout == (folder / "table.tex").read_text()
 
-    def test_command_with_a_missing_set_reports_one_line(self, tmp_path: Path):
-        done = tangible("compare", "eth3d", cwd=tmp_path)
-        assert done.returncode == 2 and done.stderr.count("\n") == 1
-        assert f"{tmp_path / 'eth3d'}: there is no such folder; fetch two_view_training.7z" in done.stderr
-
-    def test_command_writes_submissions(self, registry: Registry, folder: Path):
+    def test_command_writes_submissions(self, folder: Path):
         (folder / "elsewhere").symlink_to(folder / "eth3d")
         words = ("compare", "eth3d", "--folder", "elsewhere", "--submission", "sent")
         done = tangible(*words, "--set", "methods=[half]", cwd=folder)
         assert done.returncode == 0, done.stderr
         assert "half: 2 files in sent" in done.stdout and not (folder / "out").exists()
         done = tangible(*words, "--set", "methods=[half, raises]", cwd=folder)
-        assert done.returncode == 1
-        assert "no result of raises on eth3d/delivery_area_1l: not this picture" in done.stderr
-
-    def test_command_prints_the_means_of_other_scenes(self, tmp_path: Path):
-        append(tmp_path / "r.jsonl", row("m", "planes 64x32", bad2=1.0))
-        done = tangible("compare", "r.jsonl", "--table", "latex", cwd=tmp_path)
-        assert done.stdout == (tmp_path / "table.tex").read_text()
+        assert done.returncode == 1 and "raises on eth3d/delivery_area_1l" in done.stderr
 
     @pytest.mark.parametrize(
         ("words", "why"),
         [
-            (["c.yaml", "--folder", "x"], "--folder: is the folder of a standard set, and c.yaml is not one"),
-            (["r.jsonl", "--submission", "x"], "--submission: r.jsonl holds figures alone; name the comparison file"),
-            (["c.yaml", "--table", "csv", "--json"], "--table: decides what is printed"),
-            (["kitti-2015@X"], "resolution: kitti-2015 has none called 'X'"),
+            (["c.yaml", "--folder", "x"], "--folder"),
+            (["r.jsonl", "--submission", "x"], "--submission"),
+            (["c.yaml", "--table", "csv", "--json"], "--table"),
+            (["kitti-2015@X"], "'X'"),
         ],
     )
     def test_command_with_conflicting_options_exits_with_2(self, words: list[str], why: str, folder: Path):

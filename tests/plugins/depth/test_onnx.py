@@ -1,7 +1,9 @@
-"""Depth by a network that the user brings; here, networks whose answer is known."""
+"""Depth by a network that the user brings: else its map is wrong, or a bad file harms.
+
+Networks whose answer is known.
+"""
 
 import hashlib
-import logging
 import signal
 import threading
 from collections.abc import Callable
@@ -18,17 +20,16 @@ import onnx_models
 from ctrl_c import hearing
 from tangible_core import Pipeline, Scene
 from tangible_core.data import Calibration, Views
-from tangible_core.errors import BrokenMethod, ConfigError, ModelAbsent, PictureError
+from tangible_core.errors import ConfigError, ModelAbsent, PictureError
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.plugins.notes import collected
 from tangible_core.scene.workspace import SUITS, FeltSize
 from tangible_core.testing import run_checks
 from tangible_core.testing.synthetic.scenes import wall
-from tangible_depth import Auto, Contour, Luminance, Onnx, SemiGlobal
-from tangible_depth.network import onnx_file, runtimes
-from tangible_depth.network.card import PRESETS
+from tangible_depth import Auto, Luminance, Onnx, SemiGlobal
+from tangible_depth import onnx as method
+from tangible_depth.network import runtimes
 from tangible_depth.network.onnx_file import read_inputs
-from tangible_depth.network.runtimes import Runtime
 
 RUNTIMES = ("opencv", "onnxruntime")
 STEREO = "input: {left: left, right: right}\noutput: {means: disparity-px}\n"
@@ -89,18 +90,6 @@ def test_stereo_network_gives_pixels(networks: Path, runtime):
     assert np.median(np.abs(found.disparity_px - 6)) < 0.2
 
 
-@pytest.mark.parametrize("name", ["vit_like", "raft_like"])
-def test_both_runtimes_run_operators_of_transformers_and_rafts(tmp_path: Path, card, name: str):
-    model = getattr(onnx_models, name)(tmp_path / f"{name}.onnx")
-    mono = name == "vit_like"
-    text = "input: {size_px: [56, 70]}\noutput: {means: inverse-depth}" if mono else (
-        "input: {left: left, right: right, size_px: [48, 64]}\noutput: {means: disparity-px}"
-    )  # fmt: skip
-    one, other = (card(model, text, runtime=runtime).estimate(wall(4.0)) for runtime in RUNTIMES)
-    assert np.ptp(one.disparity_px) > 0
-    np.testing.assert_allclose(one.disparity_px, other.disparity_px, atol=1e-3 * np.ptp(one.disparity_px))
-
-
 def test_input_is_normalised_as_in_the_card(tmp_path: Path, card):
     """The network gives the mean of what it gets."""
     model, seen = onnx_models.mono(tmp_path / "m.onnx"), picture()
@@ -132,104 +121,59 @@ def test_resized_pair_gives_pixels_of_the_picture(tmp_path: Path, card, text: st
     assert abs(np.median(found.disparity_px) - 6) < 1
 
 
-def test_padded_pair_gives_its_own_pixels(tmp_path: Path, card):
-    model = onnx_models.stereo(tmp_path / "s.onnx")
-    told = card(model, "input: {left: left, right: right, multiple: 128}\noutput: {means: disparity-px}")
-    assert np.median(np.abs(told.estimate(wall(6.0, (90, 150))).disparity_px - 6)) < 0.2
-
-
-def test_card_that_is_named_goes_before_the_one_next_to_the_network(networks: Path, card):
-    assert card(networks / "mono.onnx", "output: {means: disparity-px}").estimate(Views(picture())).unit == "px"
-
-
 def test_strips_bound_the_input_and_blend(networks: Path, monkeypatch: pytest.MonkeyPatch):
-    from tangible_depth import onnx as method
-
     sizes: list[int] = []
+    real = method.run
 
     def run(model, runtime, inputs, outputs):
         sizes.extend(each.shape[2] * each.shape[3] for each in inputs.values())
         return real(model, runtime, inputs, outputs)
 
-    real = method.run
     monkeypatch.setattr(method, "run", run)
     views = wall(6.0, (400, 90))
     whole = Onnx(model=networks / "stereo.onnx").estimate(views).disparity_px
-    assert sizes == [36_000, 36_000]
-    sizes.clear()
     parts = Onnx(model=networks / "stereo.onnx", most_px=9_000).estimate(views).disparity_px
-    assert len(sizes) > 6
-    assert max(sizes) <= 9_000
-    assert np.median(np.abs(parts - whole)) < 0.02
+    assert sizes[:2] == [36_000, 36_000]
+    assert max(sizes[2:]) <= 9_000
     assert np.abs(parts - whole).max() < 0.5
     sizes.clear()
     near = Onnx(model=networks / "mono.onnx", most_px=9_000).estimate(Views(views.left))
     assert near.disparity_px.shape == (400, 90)
-    assert max(sizes) <= 9_000 * 1.02
     assert len(sizes) == 1, "nearness of strips would have no common scale"
+    assert sizes[0] <= 9_000 * 1.02
 
 
-class TestMeaning:
-    DEPTH = np.linspace(1, 5, 2000).reshape(40, 50).astype(np.float32)
+def test_metres_with_known_cameras_become_disparity(card, networks: Path):
+    """The network gives what is in the picture."""
+    depth = np.linspace(1, 5, 2000).reshape(40, 50).astype(np.float32)
+    seen = np.repeat(depth[..., None] / 5, 3, axis=2)
+    told = card(networks / "mono.onnx", "input: {white: 5}\noutput: {means: depth-m}")
+    found = told.estimate(Views(seen, None, Calibration(900.0, 0.2, 31.0)))
+    assert (found.unit, told.estimate(Views(seen)).unit) == ("px", "relative")
+    np.testing.assert_allclose(found.disparity_px, 900 * 0.2 / depth - 31, rtol=1e-4)
 
-    def estimate(self, card, networks: Path, means: str, calibration: Calibration | None = None):
-        """The network gives what is in the picture."""
-        seen = np.repeat(self.DEPTH[..., None] / 5, 3, axis=2)
-        text = f"input: {{white: 5}}\noutput: {{means: {means}}}"
-        return card(networks / "mono.onnx", text).estimate(Views(seen, None, calibration))
 
-    def test_depth_is_inverted(self, card, networks: Path):
-        found = self.estimate(card, networks, "depth")
-        assert found.unit == "relative"
-        np.testing.assert_allclose(found.disparity_px, nearness(1 / self.DEPTH), atol=1e-4)
-
-    def test_metres_with_known_cameras_become_disparity(self, card, networks: Path):
-        found = self.estimate(card, networks, "depth-m", Calibration(900.0, 0.2, 31.0))
-        assert found.unit == "px"
-        np.testing.assert_allclose(found.disparity_px, 900 * 0.2 / self.DEPTH - 31, rtol=1e-4)
-        assert self.estimate(card, networks, "depth-m").unit == "relative"
-
-    def test_invalid_distances_are_unknown(self, card, networks: Path):
-        text = "input: {mean: [0.5, 0.5, 0.5]}\noutput: {means: depth-m}"
-        seen = picture()
-        found = card(networks / "mono.onnx", text).estimate(Views(seen))
-        unknown = seen.mean(axis=2) - 0.5 <= 0
-        assert (np.isnan(found.disparity_px) == unknown).mean() > 0.999
-        assert (found.confidence[np.isnan(found.disparity_px)] == 0).all()
-
-    def test_confidence_output_is_used(self, card, tmp_path: Path):
-        model = onnx_models.mono(tmp_path / "c.onnx", confidence=True)
-        text = "output: {name: inverse_depth, means: inverse-depth, confidence: sure}"
-        seen = picture()
-        found = card(model, text).estimate(Views(seen))
-        np.testing.assert_allclose(found.confidence, seen.mean(axis=2) / 2, atol=1e-5)
-
-    def test_flat_output_is_flat(self, card, networks: Path):
-        found = card(networks / "mono.onnx", "output: {means: depth}").estimate(Views(np.full((9, 9), 0.5, np.float32)))
-        assert (found.disparity_px == 0).all()
+def test_confidence_output_is_used(card, tmp_path: Path):
+    model = onnx_models.mono(tmp_path / "c.onnx", confidence=True)
+    found = card(model, "output: {name: inverse_depth, means: inverse-depth, confidence: sure}").estimate(
+        Views(picture())
+    )
+    np.testing.assert_allclose(found.confidence, picture().mean(axis=2) / 2, atol=1e-5)
 
 
 class TestMistakes:
-    def test_missing_model_option_is_refused(self):
-        with pytest.raises(ModelAbsent, match=r"^onnx needs a network from you: .*nothing is downloaded"):
-            Onnx().estimate(wall())
-
     def test_missing_network_is_refused_with_its_address(self, tmp_path: Path):
-        with pytest.raises(
-            ModelAbsent, match="does not exist, and nothing is downloaded; fetch Depth Anything V2 Small"
-        ):
+        with pytest.raises(ModelAbsent, match="needs a network"):
+            Onnx().estimate(wall())
+        with pytest.raises(ModelAbsent, match="fetch Depth Anything V2 Small"):
             Onnx(model=tmp_path / "no.onnx", card="depth-anything-v2-small").estimate(wall())
 
     def test_file_of_another_digest_is_refused(self, networks: Path, card):
         digest = hashlib.sha256((networks / "mono.onnx").read_bytes()).hexdigest()
         text = "sha256: {}\noutput: {{means: inverse-depth}}"
         card(networks / "mono.onnx", text.format(digest)).estimate(Views(picture()))
-        with pytest.raises(ConfigError, match=f"its SHA-256 is {digest}, not {'f' * 64}"):
+        with pytest.raises(ConfigError, match=digest):
             card(networks / "mono.onnx", text.format("f" * 64)).estimate(Views(picture()))
-
-    def test_missing_card_is_refused(self, networks: Path):
-        with pytest.raises(ConfigError, match=r"depth-anythin-v2-small is neither a file .*did you mean"):
-            Onnx(model=networks / "mono.onnx", card="depth-anythin-v2-small").estimate(wall())
 
     @pytest.mark.parametrize(
         ("text", "said"),
@@ -239,40 +183,21 @@ class TestMistakes:
             ("input: {std: [0, 1, 1]}\noutput: {means: depth}", r"card.yaml:1:.*std"),
             ("outptu: {means: depth}", "outptu"),
             ("output: [", "card.yaml"),
+            ("input: {left: nothing}\noutput: {means: depth}", "cannot be run"),
+            ("output: {name: nothing, means: depth}", "cannot be run"),
         ],
     )
     def test_invalid_card_is_refused_with_the_place(self, networks: Path, card, text: str, said: str):
-        with pytest.raises(ConfigError, match=said):
-            card(networks / "mono.onnx", text).estimate(wall())
-
-    @pytest.mark.parametrize("runtime", RUNTIMES)
-    def test_file_without_a_network_is_refused(self, tmp_path: Path, card, runtime):
-        (tmp_path / "no.onnx").write_bytes(b"not a network at all")
-        method = card(tmp_path / "no.onnx", "output: {means: depth}", runtime=runtime)
-        with pytest.raises(ConfigError, match=r"no\.onnx is not an ONNX file, or is damaged; fetch it again") as told:
-            method.estimate(wall())
-        assert "\n" not in str(told.value)
-
-    @pytest.mark.parametrize("runtime", RUNTIMES)
-    def test_unknown_input_or_output_is_refused(self, networks: Path, card, runtime):
-        for text in ("input: {left: nothing}\noutput: {means: depth}", "output: {name: nothing, means: depth}"):
-            with pytest.raises(ConfigError, match="cannot be run"):
+        for runtime in RUNTIMES:
+            with pytest.raises(ConfigError, match=said):
                 card(networks / "mono.onnx", text, runtime=runtime).estimate(wall())
 
     def test_stereo_network_needs_a_pair(self, networks: Path):
-        method = Onnx(model=networks / "stereo.onnx")
-        assert method.needs_pair
+        stereo = Onnx(model=networks / "stereo.onnx")
+        assert stereo.needs_pair
         assert not Onnx(model=networks / "mono.onnx").needs_pair
-        with pytest.raises(PictureError, match="compares two views, and this scene has one"):
-            method.estimate(Views(picture()))
-        plan = Pipeline(Scene.photo(picture()), depth=method, cached=False).plan("disparity")
-        assert [step.outcome for step in plan.steps if step.product == "disparity"] == ["refused"]
-
-    def test_missing_onnxruntime_is_refused(self, networks: Path, monkeypatch: pytest.MonkeyPatch):
-        monkeypatch.setitem(__import__("sys").modules, "onnxruntime", None)
-        runtimes._load.cache_clear()
-        with pytest.raises(BrokenMethod, match=r"pip install onnxruntime"):
-            Onnx(model=networks / "mono.onnx", runtime="onnxruntime").estimate(wall())
+        with pytest.raises(PictureError):
+            stereo.estimate(Views(picture()))
 
 
 def test_identical_views_are_skipped(networks: Path):
@@ -315,54 +240,29 @@ def test_network_of_one_size_is_refused_with_another(tmp_path: Path, card, runti
     assert card(model, told, runtime=runtime).estimate(wall(2.0)).unit == "px"
 
 
-def test_size_far_from_that_of_the_training_is_reported(networks: Path, card, caplog: pytest.LogCaptureFixture):
-    def reported(rows: int, columns: int) -> bool:
-        caplog.clear()
-        method = card(networks / "mono.onnx", "input: {trained_px: [40, 50]}\noutput: {means: inverse-depth}")
-        with caplog.at_level(logging.INFO):
-            method.estimate(Views(picture(rows, columns)))
-        said = f"trained with pictures of 40 x 50 pixels and sees this one at {rows} x {columns}; if near and far are "
-        return f"{said}confused, try `most_px: 2000`" in caplog.text
-
-    assert [reported(*size) for size in ((28, 34), (29, 36), (40, 50), (56, 69), (57, 71))] == [
-        True,
-        *[False] * 3,
-        True,
-    ]
-
-
-def test_size_far_from_that_of_the_training_is_reported_once_for_all_strips(networks: Path, card):
-    text = STEREO.replace("right: right", "right: right, trained_px: [1000, 1000]")
-    pair = Views(picture(400, 50, 1), picture(400, 50, 2))
+@pytest.mark.parametrize(
+    ("size", "reported"), [((28, 34), True), ((29, 36), False), ((56, 69), False), ((57, 71), True)]
+)
+def test_size_far_from_that_of_the_training_is_reported(networks: Path, card, size, reported: bool):
+    told = card(networks / "mono.onnx", "input: {trained_px: [40, 50]}\noutput: {means: inverse-depth}")
     with collected() as notes:
-        card(networks / "stereo.onnx", text, most_px=4096).estimate(pair)
-    assert len([each for each in notes if "trained with pictures" in each]) == 1
+        told.estimate(Views(picture(*size)))
+    assert any("trained with" in each and "most_px: 2000" in each for each in notes) == reported
 
 
-def test_card_of_midas_leaves_the_colours_to_the_network():
-    """Its file begins with the subtraction of the mean and the division by the deviation."""
-    takes = PRESETS["midas-v2.1-small"].input
-    assert (takes.mean, takes.std, takes.white) == ((0, 0, 0), (1, 1, 1), 1)
-
-
-class TestReliefOfOnePicture:
-    def size(self, depth: object, **workspace: float) -> FeltSize:
+def test_depth_of_a_network_gets_other_heights_than_a_photograph(
+    networks: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    def size(depth: object, **workspace: float) -> FeltSize:
         return Pipeline(Scene.photo(picture()), depth=depth, workspace=workspace).config.size
 
-    def test_depth_of_a_network_gets_depths_height_and_smoothing(self, networks: Path):
-        assert self.size(Onnx(model=networks / "mono.onnx"))[1:3] == SUITS["depth"]
-        assert self.size(Onnx(model=networks / "mono.onnx"), relief_m=0.006)[1:3] == (0.006, SUITS["depth"][1])
-
-    @pytest.mark.parametrize("method", [Luminance(), Contour(), None])
-    def test_brightness_gets_those_of_a_photograph(self, method: object):
-        assert self.size(method)[1:3] == SUITS["photograph"]
-
-    def test_auto_gets_those_of_what_it_chooses(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-        monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path))
-        assert self.size(Auto())[1:3] == SUITS["photograph"]
-        onnx_models.mono(tmp_path / "a.onnx")
-        (tmp_path / "a.yaml").write_text("output: {means: inverse-depth}")
-        assert self.size(Auto())[1:3] == SUITS["depth"]
+    monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path))
+    assert size(Onnx(model=networks / "mono.onnx"))[1:3] == SUITS["depth"]
+    assert size(Onnx(model=networks / "mono.onnx"), relief_m=0.006)[1:3] == (0.006, SUITS["depth"][1])
+    assert size(Auto())[1:3] == SUITS["photograph"]
+    onnx_models.mono(tmp_path / "a.onnx")
+    (tmp_path / "a.yaml").write_text("output: {means: inverse-depth}")
+    assert size(Auto())[1:3] == SUITS["depth"]
 
 
 class TestAuto:
@@ -370,9 +270,6 @@ class TestAuto:
     def folder(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path / "models"))
         return tmp_path / "models"
-
-    def test_pair_is_matched_by_semi_global(self):
-        assert Auto().estimate(wall(6.0)).digest() == SemiGlobal().estimate(wall(6.0)).digest()
 
     def test_pair_is_matched_though_there_is_a_network(self, folder: Path):
         folder.mkdir()
@@ -386,21 +283,18 @@ class TestAuto:
         assert found != SemiGlobal().follow(wall(6.0))(wall(6.0)).digest()
 
     def test_picture_without_a_network_is_luminance_with_a_warning(self, caplog: pytest.LogCaptureFixture):
-        with caplog.at_level(logging.WARNING):
-            found = Auto().estimate(Views(picture()))
+        found = Auto().estimate(Views(picture()))
         assert found.digest() == Luminance().estimate(Views(picture())).digest()
-        assert "one picture contains no depth" in caplog.text
+        assert "no depth" in caplog.text
 
-    def test_first_network_for_one_picture_is_taken(self, folder: Path, caplog: pytest.LogCaptureFixture):
+    def test_first_network_for_one_picture_is_taken(self, folder: Path):
         folder.mkdir()
         for name, text in (("a", STEREO), ("b", ""), ("c", "output: {means: inverse-depth}"), ("d", "output: [")):
             onnx_models.mono(folder / f"{name}.onnx")
             if text:
                 (folder / f"{name}.yaml").write_text(text)
-        with caplog.at_level(logging.INFO):
-            found = Auto().estimate(Views(picture()))
+        found = Auto().estimate(Views(picture()))
         np.testing.assert_allclose(found.disparity_px, nearness(picture().mean(axis=2)), atol=1e-5)
-        assert f"the network {folder / 'c.onnx'}" in caplog.text
         assert {path.name for path in Auto().reads()} == {"c.onnx", "c.yaml"}
 
 
@@ -415,6 +309,8 @@ def test_networks_conform(networks: Path, name: str, kept: list[str]):
 class TestHostileFiles:
     """A network from somewhere is as little to be trusted as a picture: OpenCV dies of some of these."""
 
+    MONO = "output: {means: inverse-depth}"
+
     def altered(self, folder: Path, alter: Callable[[onnx.TensorProto], None]) -> Path:
         """A copy of the network for one picture, with one of its weights altered."""
         model = onnx.load(onnx_models.mono(folder / "m.onnx"))
@@ -423,45 +319,53 @@ class TestHostileFiles:
         (folder / "m.onnx").write_bytes(model.SerializeToString())
         return folder / "m.onnx"
 
-    def refusal(self, model: Path, card, runtime: Runtime) -> str:
-        with pytest.raises(ConfigError) as refused:
-            card(model, "output: {means: inverse-depth}", runtime=runtime).estimate(Views(picture()))
-        return str(refused.value)
+    def demand_refusal(self, model: Path, card, said: str) -> None:
+        for runtime in RUNTIMES:
+            with pytest.raises(ConfigError, match=said):
+                card(model, self.MONO, runtime=runtime).estimate(Views(picture()))
 
-    @pytest.mark.parametrize("runtime", RUNTIMES)
     @pytest.mark.parametrize("size", [-1, -(2**40), 2**40, 2**62])
-    def test_impossible_size_of_a_weight_is_refused(self, tmp_path: Path, card, runtime: Runtime, size: int):
+    def test_impossible_size_of_a_weight_is_refused(self, tmp_path: Path, card, size: int):
         def alter(weight: onnx.TensorProto) -> None:
             weight.dims[0] = size
 
-        assert f"'grey' has the impossible size [{size}, 3, 1, 1]" in self.refusal(
-            self.altered(tmp_path, alter), card, runtime
-        )
+        self.demand_refusal(self.altered(tmp_path, alter), card, f"'grey' has the impossible size .{size}, 3, 1, 1")
 
-    @pytest.mark.parametrize("runtime", RUNTIMES)
     @pytest.mark.parametrize("place", ["../secret.bin", "{}/secret.bin", "in/../../secret.bin", "link.bin"])
-    def test_weights_outside_the_folder_are_refused(self, tmp_path: Path, card, runtime: Runtime, place: str):
+    def test_weights_outside_the_folder_are_refused(self, tmp_path: Path, card, place: str):
         (tmp_path / "secret.bin").write_bytes(bytes(12))
         folder = tmp_path / "models"
         folder.mkdir()
         (folder / "link.bin").symlink_to(tmp_path / "secret.bin")
-        assert "outside its folder" in self.refusal(
-            self.altered(folder, partial(put_outside, place.format(tmp_path))), card, runtime
-        )
+        model = self.altered(folder, partial(put_outside, place.format(tmp_path)))
+        self.demand_refusal(model, card, "outside its folder")
 
     def test_weights_in_the_folder_are_read(self, tmp_path: Path, card):
         model = self.altered(tmp_path, partial(put_outside, "weights.bin"))
         (tmp_path / "weights.bin").write_bytes(np.float32([1, 0, 0]).tobytes())
-        seen = picture()
-        found = card(model, "output: {means: disparity-px}").estimate(Views(seen))
-        np.testing.assert_allclose(found.disparity_px, seen[..., 0], atol=1e-6)
+        found = card(model, "output: {means: disparity-px}").estimate(Views(picture()))
+        np.testing.assert_allclose(found.disparity_px, picture()[..., 0], atol=1e-6)
 
-    @pytest.mark.parametrize("runtime", RUNTIMES)
     @pytest.mark.parametrize("kept", [0, 1, 20, 60])
-    def test_cut_file_is_refused(self, tmp_path: Path, card, runtime: Runtime, kept: int):
+    def test_cut_file_is_refused(self, tmp_path: Path, card, kept: int):
         model = onnx_models.mono(tmp_path / "m.onnx")
         model.write_bytes(model.read_bytes()[:kept])
-        assert "fetch it again" in self.refusal(model, card, runtime)
+        self.demand_refusal(model, card, "fetch it again")
+
+    def test_weights_of_a_loops_own_graph_are_checked(self, tmp_path: Path, card):
+        """A loop's body has weights of its own, and a node has constants."""
+        bad = onnx.numpy_helper.from_array(np.zeros(1, np.float32), "bad")
+        bad.dims[0] = -1
+        model = onnx.load(onnx_models.endless(tmp_path / "m.onnx"))
+        (loop,) = (node for node in model.graph.node if node.op_type == "Loop")
+        for put in (
+            lambda: loop.attribute[0].g.initializer.append(bad),
+            lambda: model.graph.node.append(onnx.helper.make_node("Constant", [], ["k"], value=bad)),
+        ):
+            del loop.attribute[0].g.initializer[:]
+            put()
+            (tmp_path / "m.onnx").write_bytes(model.SerializeToString())
+            self.demand_refusal(tmp_path / "m.onnx", card, "'bad' has the impossible size")
 
     def test_declared_inputs_are_those_of_the_library(self, tmp_path: Path):
         model = onnx_models.stereo(tmp_path / "m.onnx", 4, (48, "w"))
@@ -473,43 +377,22 @@ class TestHostileFiles:
         model.write_bytes(old.SerializeToString())
         assert read_inputs(model) == {"left": (1, 3, 48, None), "right": (1, 3, None, None)}
 
-    def test_weights_of_a_loops_own_graph_are_checked(self, tmp_path: Path, card):
-        """A loop's body has weights of its own, and a node has constants."""
-        bad = onnx.numpy_helper.from_array(np.zeros(1, np.float32), "bad")
-        bad.dims[0] = -1
-        model = onnx.load(onnx_models.endless(tmp_path / "m.onnx"))
-        (loop,) = (node for node in model.graph.node if node.op_type == "Loop")
-        loop.attribute[0].g.initializer.append(bad)
-        (tmp_path / "m.onnx").write_bytes(model.SerializeToString())
-        assert "'bad' has the impossible size [-1]" in self.refusal(tmp_path / "m.onnx", card, "opencv")
-        del loop.attribute[0].g.initializer[:]
-        model.graph.node.append(onnx.helper.make_node("Constant", [], ["k"], value=bad))
-        (tmp_path / "m.onnx").write_bytes(model.SerializeToString())
-        assert "'bad' has the impossible size [-1]" in self.refusal(tmp_path / "m.onnx", card, "opencv")
 
-    def test_integers_are_those_of_the_encoding(self):
-        """https://protobuf.dev/programming-guides/encoding/#varints; negative ones take ten bytes."""
-        for number, encoded in ((1, b"\x01"), (150, b"\x96\x01"), (-2, b"\xfe" + b"\xff" * 8 + b"\x01")):
-            assert onnx_file._varint(memoryview(encoded + b"\0"), 0) == (number, len(encoded))
-        with pytest.raises(ValueError, match="ten bytes"):
-            onnx_file._varint(memoryview(b"\xff" * 20 + b"\0"), 0)
+@pytest.mark.whole
+@pytest.mark.timeout(60)
+def test_network_without_end_hears_ctrl_c(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """Pressed while it computes, not while its library is imported."""
+    model = onnx_models.endless(tmp_path / "m.onnx")
+    (tmp_path / "m.yaml").write_text("output: {means: inverse-depth}")
+    submit = ThreadPoolExecutor.submit
 
-    @pytest.mark.timeout(60)
-    def test_network_without_end_hears_ctrl_c(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-        """Pressed while it computes, not while its library is imported."""
-        model = onnx_models.endless(tmp_path / "m.onnx")
-        (tmp_path / "m.yaml").write_text("output: {means: inverse-depth}")
-        main = threading.main_thread().ident
-        assert main is not None
-        submit = ThreadPoolExecutor.submit
+    def submit_and_interrupt(pool: ThreadPoolExecutor, *work: Any):
+        threading.Timer(0.3, signal.pthread_kill, [threading.main_thread().ident, signal.SIGINT]).start()
+        return submit(pool, *work)
 
-        def submit_and_interrupt(pool: ThreadPoolExecutor, *work: Any):
-            threading.Timer(0.3, signal.pthread_kill, [main, signal.SIGINT]).start()
-            return submit(pool, *work)
-
-        monkeypatch.setattr(ThreadPoolExecutor, "submit", submit_and_interrupt)
-        with hearing(), pytest.raises(KeyboardInterrupt):
-            Onnx(model=model, runtime="onnxruntime").estimate(Views(picture()))
+    monkeypatch.setattr(ThreadPoolExecutor, "submit", submit_and_interrupt)
+    with hearing(), pytest.raises(KeyboardInterrupt):
+        Onnx(model=model, runtime="onnxruntime").estimate(Views(picture()))
 
 
 def put_outside(place: str, weight: onnx.TensorProto) -> None:

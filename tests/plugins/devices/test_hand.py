@@ -1,4 +1,4 @@
-"""The simulated hand: its motion, free and on ground."""
+"""The simulated hand would gain energy or press too hard: its motion, free and on ground."""
 
 import math
 
@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from level_ground import GROUND, GROUND_M, feel
-from tangible_core.data import Force, HapticState, HapticSurface
+from tangible_core.data import Force
 from tangible_devices.hand import MovingHand, VirtualHand, free_motion
 from tangible_devices.mock import Mock
 from tangible_render.penalty_gradient import PenaltyGradient
@@ -32,11 +32,6 @@ class TestHand:
         angle = 20 * 0.03
         assert (xx, xv) == pytest.approx((math.cos(angle), math.sin(angle) / 20), rel=1e-12)
         assert (vx, vv) == pytest.approx((-20 * math.sin(angle), math.cos(angle)), rel=1e-12)
-
-    def test_hand_at_critical_damping_matches_the_formula(self):
-        hand = VirtualHand(mass_kg=0.25, damping_n_s_per_m=10, stiffness_n_per_m=100)  # both roots at -20 / s
-        (xx, xv), _ = free_motion(hand, 0.05)
-        assert (xx, xv) == pytest.approx((2 * math.exp(-1), 0.05 * math.exp(-1)), rel=1e-12)
 
     def test_hand_rests_where_spring_balances_force(self):
         hand = MovingHand(VirtualHand(press_n=100), (0.0, 0.0, 0.03), 0.001)
@@ -71,21 +66,3 @@ class TestHand:
         kinetic = 0.05 * np.square(ticks[landed][0].velocity_m_per_s).sum()
         given_back = np.sum(force[:-1] * np.diff(place, axis=0))
         assert given_back < 0.25 * kinetic
-
-    def test_hand_follows_hills(self):
-        """By default the demo's hand is in contact nearly all the time, and follows heights of 2 to 18 mm."""
-        x = np.linspace(-3, 3, 256)
-        heights = 0.01 + 0.008 * np.sin(2 * x)[None, :] * np.cos(2 * x)[:, None]
-        surface = HapticSurface.from_heights(heights)
-        with Mock().open() as link:
-            ticks = feel(link, PenaltyGradient().touch(surface), 8000)
-        force = np.linalg.norm([force for _, force in ticks], axis=1)
-        assert np.mean(force > 0) > 0.95
-        assert 1.0 < np.median(force) < 3.0
-        z = [state.position_m[2] for state, _ in ticks[500:]]
-        assert max(z) - min(z) > 0.01
-
-    def test_hand_starts_lifted_and_at_rest(self):
-        with Mock(lift_m=0.025).open() as link:
-            first = link.read()
-        assert first == HapticState((-0.03, 0.02, 0.025), (0, 0, 0), 0.0)

@@ -1,15 +1,14 @@
-"""The mock device: its paths, its link, its clock, and invalid files."""
+"""A mock device would follow another path than its options say, or play a broken file."""
 
 import math
 import os
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from level_ground import positions, read
-from tangible_core.data import NO_FORCE, Force
+from tangible_core.data import Force
 from tangible_core.errors import DeviceError, OptionError
 from tangible_devices.mock import Mock
 
@@ -54,23 +53,6 @@ class TestPaths:
         assert places[[0, 500, 1000, 1500], 2] == pytest.approx([0.03, -0.01, 0.03, -0.01], abs=1e-15)
         assert places[250, 2] == pytest.approx(0.01, abs=1e-15)
 
-    @pytest.mark.parametrize("path", ["raster", "circle", "spiral", "press"])
-    def test_lap_at_any_speed_is_whole_ticks(self, path: str):
-        mock = Mock(hand=None, path=path, speed_m_per_s=0.8123, lines=3)
-        places = positions(mock, 1500)
-        lap = next(n for n in range(2, 750) if np.array_equal(places[: 1500 - n], places[n:]))
-        steps = np.linalg.norm(np.diff(places, axis=0), axis=1) / mock.period_s
-        assert lap > 10
-        assert steps.max() <= 0.8123 * (1 + 1e-9)
-
-    def test_velocity_is_the_last_step_over_the_period(self):
-        with Mock(hand=None, path="circle").open() as link:
-            states = read(link, 100)
-        for before, after in pairwise(states):
-            step = np.subtract(after.position_m, before.position_m) / 0.001
-            assert np.allclose(after.velocity_m_per_s, step, atol=1e-12)
-        assert np.linalg.norm(states[0].velocity_m_per_s) == pytest.approx(0.08, rel=1e-3)
-
     def test_time_rises_by_the_period(self):
         with Mock(period_s=0.002).open() as link:
             assert [state.time_s for state in read(link, 200)] == [tick * 0.002 for tick in range(200)]
@@ -100,99 +82,44 @@ class TestCsv:
         assert np.array_equal(positions(Mock(hand=None, path="csv", csv_file=path), 3), [[0.001, 0.002, 0.003]] * 3)
 
     @pytest.mark.parametrize(
-        ("text", "place", "cure"),
+        ("text", "place"),
         [
-            ("", ":1:", "the first line names time_s,x_m,y_m,z_m"),
-            ("time_s,x_m,y_m\n0,0,0\n", ":1:", "no column z_m"),
-            ("time_s,x_m,y_m,z_mm\n0,0,0,0\n", ":1:", "did you mean 'z_mm'"),
-            ("time_s,x_m,y_m,z_m\n", ": has no rows", "write one row per moment"),
-            ("time_s,x_m,y_m,z_m\n0,0,0,0\n1,0,abc,0\n", ":3:", "y_m is 'abc'; write a finite number"),
-            ("time_s,x_m,y_m,z_m\n0,0,0,nan\n", ":2:", "z_m is 'nan'"),
-            ("time_s,x_m,y_m,z_m\n0,inf,0,0\n", ":2:", "x_m is 'inf'"),
-            ("time_s,x_m,y_m,z_m\n0,0,0\n", ":2:", "z_m is None"),
-            ("time_s,x_m,y_m,z_m\n0,0,0,0\n2,0,0,0\n2,0,0,0\n", ":4:", "sort the rows"),
-            (b"\xff\xfe\x00\x01", "", "save it as CSV in UTF-8"),
-            (b'time_s,x_m,y_m,z_m\n"' + b"0" * 200_000, "", "save it as CSV"),
+            ("", ":1:"),
+            ("time_s,x_m,y_m\n0,0,0\n", ":1: "),
+            ("time_s,x_m,y_m,z_m\n", ": has no rows"),
+            ("time_s,x_m,y_m,z_m\n0,0,0,0\n1,0,abc,0\n", ":3: y_m"),
+            ("time_s,x_m,y_m,z_m\n0,0,0,nan\n", ":2: z_m"),
+            ("time_s,x_m,y_m,z_m\n0,0,0\n", ":2: z_m"),
+            ("time_s,x_m,y_m,z_m\n0,0,0,0\n2,0,0,0\n2,0,0,0\n", ":4:"),
+            (b"\xff\xfe\x00\x01", ""),
+            (b'time_s,x_m,y_m,z_m\n"' + b"0" * 200_000, ""),
         ],
     )
-    def test_csv_with_fault_names_place_and_cure(self, tmp_path: Path, text: str, place: str, cure: str):
+    def test_csv_with_fault_is_refused_at_its_place(self, tmp_path: Path, text: str, place: str):
         path = write_csv(tmp_path, text)
         with pytest.raises(DeviceError) as caught:
             Mock(path="csv", csv_file=path).open()
         assert str(caught.value).startswith(f"{path}{place}")
-        assert cure in str(caught.value)
 
     def test_csv_missing_is_refused(self, tmp_path: Path):
         for path in (tmp_path / "none.csv", tmp_path):
-            with pytest.raises(DeviceError, match=r"cannot be read.*check csv_file"):
+            with pytest.raises(DeviceError, match="cannot be read"):
                 Mock(path="csv", csv_file=path).open()
 
     @pytest.mark.timeout(20)
     def test_csv_from_pipe_or_device_is_refused_at_once(self, tmp_path: Path):
         os.mkfifo(tmp_path / "pipe.csv")
         for path in (tmp_path / "pipe.csv", Path("/dev/zero")):
-            with pytest.raises(DeviceError, match=r"not a file but a folder or a device; check csv_file"):
+            with pytest.raises(DeviceError, match="not a file"):
                 Mock(path="csv", csv_file=path).open()
-
-    def test_csv_long_text_is_shortened_in_message(self, tmp_path: Path):
-        path = write_csv(tmp_path, "time_s,x_m,y_m,z_m\n0,0,0," + "x" * 100_000 + "\n")
-        with pytest.raises(DeviceError, match="write a finite number") as error:
-            Mock(path="csv", csv_file=path).open()
-        assert len(str(error.value)) < 400
 
 
 class TestLink:
-    @pytest.mark.parametrize("size", [8.1, 1e3, 1e200, 1.7e308])
-    def test_link_strong_force_is_scaled_down(self, size: float):
-        with Mock().open() as link:
-            link.write(Force(-size, 0.0, size))
-            assert link.applied == pytest.approx((-8 / math.sqrt(2), 0, 8 / math.sqrt(2)))
-
     def test_link_force_at_limit_is_kept_and_above_is_scaled(self):
         with Mock().open() as link:
             for wanted, held in ((Force(0.0, 4.8, -6.4), (0, 4.8, -6.4)), (Force(0.0, 8.0001, 0.0), (0, 8, 0))):
                 link.write(wanted)
                 assert link.applied == pytest.approx(held, rel=1e-12)
-
-    def test_link_closed_holds_no_force(self):
-        link = Mock().open()
-        link.write(Force(1.0, 0.0, 0.0))
-        link.close()
-        assert link.applied == NO_FORCE
-
-    @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
-    def test_link_nonfinite_force_becomes_none(self, bad: float):
-        with Mock().open() as link:
-            link.write(Force(1.0, 1.0, 1.0))
-            link.write(Force(0.0, bad, 1.0))
-            assert link.applied == NO_FORCE
-
-    def test_link_after_exception_holds_no_force(self):
-        with Mock().open() as link:
-            link.write(Force(1.0, 0.0, 0.0))
-        assert link.applied == NO_FORCE
-        with pytest.raises(ZeroDivisionError), Mock().open() as link:
-            link.write(Force(1.0, 0.0, 0.0))
-            raise ZeroDivisionError
-        assert link.applied == NO_FORCE
-
-    def test_link_closed_refuses_calls(self):
-        link = Mock().open()
-        link.close()
-        link.close()
-        with pytest.raises(DeviceError, match="open it again"):
-            link.read()
-        with pytest.raises(DeviceError, match="open it again"):
-            link.write(NO_FORCE)
-
-    def test_open_gives_a_new_device_each_time(self):
-        mock = Mock()
-        with mock.open() as one, mock.open() as other:
-            one.write(Force(0.0, 0.0, 5.0))
-            first = read(one, 50)
-            second = read(other, 50)
-        assert first[0] == second[0]
-        assert first[-1].position_m[2] > second[-1].position_m[2]
 
 
 def test_spec_is_that_of_a_falcon():
@@ -206,15 +133,12 @@ def test_spec_is_that_of_a_falcon():
     [
         ({"path": "zigzag"}, "path"),
         ({"path": "csv"}, "csv_file go together"),
-        ({"csv_file": "hand.csv"}, "csv_file go together"),
         ({"lift_m": -0.01}, "must be above z_m"),
         ({"size_m": (0, 0.04)}, "size_m"),
-        ({"size_m": (0.04,)}, "size_m"),
         ({"speed_m_per_s": 0}, "speed_m_per_s"),
         ({"z_m": math.nan}, "z_m"),
         ({"lines": 1}, "lines"),
         ({"hand": {"mass_kg": 0}}, "mass_kg"),
-        ({"hand": {"mass": 1}}, "mass"),
         ({"seed": -1}, "seed"),
         ({"period_s": 0}, "period_s"),
     ],

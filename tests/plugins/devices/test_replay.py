@@ -1,11 +1,11 @@
-"""The device that plays a recording: state by state, then at rest; and messages for invalid recordings."""
+"""A recording would be played differently from how it was felt, or a broken one would be played at all."""
 
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tangible_core.data import NO_FORCE, Force, HapticSurface
+from tangible_core.data import Force, HapticSurface
 from tangible_core.errors import DeviceError
 from tangible_core.session import Recording, run_simulated
 from tangible_devices.mock import Mock
@@ -59,19 +59,6 @@ def test_replay_at_end_rests_while_time_advances(tmp_path: Path):
     assert [state.velocity_m_per_s for state in states[3:]] == [(0, 0, 0)] * 2
 
 
-def test_replay_of_one_tick_rests(tmp_path: Path):
-    with Replay(file=save_recording(tmp_path, rows(1))).open() as link:
-        first, second = link.read(), link.read()
-    assert second.time_s == pytest.approx(first.time_s + 0.001)
-
-
-def test_replay_nonfinite_ticks_are_skipped(tmp_path: Path):
-    table = rows(9)
-    table[[0, 4], 2], table[6, 6], table[2, 8:14] = np.nan, np.inf, np.nan
-    with Replay(file=save_recording(tmp_path, table)).open() as link:
-        assert [link.read().time_s for _ in range(6)] == table[[1, 2, 3, 5, 7, 8], 0].tolist()
-
-
 def test_replay_of_a_session_gives_the_same_forces(tmp_path: Path):
     touch = PenaltyGradient().touch(HapticSurface.from_heights(np.random.default_rng(0).uniform(0, 0.004, (9, 9))))
     first = run_simulated(touch, Mock(speed_m_per_s=0.2), 0.5)
@@ -89,36 +76,23 @@ def test_replay_without_file_goes_down_and_up_once():
 
 
 @pytest.mark.parametrize(
-    ("change", "complaint"),
+    "change",
     [
-        (lambda table: table[:0], "has no complete tick"),
-        (lambda table: np.where(np.arange(17) < 14, np.nan, table), "has no complete tick"),
-        (lambda table: table[::-1], "does not increase after 7."),
-        (lambda table: table[[0, 1, 1]], "does not increase after 7."),
+        lambda table: table[:0],
+        lambda table: np.where(np.arange(17) < 14, np.nan, table),
+        lambda table: table[::-1],
+        lambda table: table[[0, 1, 1]],
     ],
 )
-def test_replay_of_invalid_recording_is_refused(tmp_path: Path, change, complaint: str):
-    path = save_recording(tmp_path, rows(5))
+def test_replay_of_invalid_recording_is_refused(tmp_path: Path, change):
     with np.errstate(invalid="ignore"):
         path = save_recording(tmp_path, change(rows(5)))
-    with pytest.raises(DeviceError, match=rf"{path}: .*{complaint}"):
+    with pytest.raises(DeviceError, match="hand"):
         Replay(file=path).open()
 
 
 def test_replay_of_unreadable_file_is_refused(tmp_path: Path):
     (tmp_path / "text.nc").write_text("no recording")
-    for name, complaint in (("none.nc", "cannot be read"), ("text.nc", "is not a recording")):
-        with pytest.raises(DeviceError, match=complaint):
+    for name in ("none.nc", "text.nc"):
+        with pytest.raises(DeviceError, match=name):
             Replay(file=tmp_path / name).open()
-
-
-def test_replay_link_holds_forces_until_closed():
-    with Replay().open() as link:
-        link.write(Force(0.0, 6.0, -8.0))
-        assert link.applied == pytest.approx((0, 4.8, -6.4))
-        link.write(Force(0.0, float("nan"), 1.0))
-        assert link.applied == NO_FORCE
-        link.write(Force(1.0, 0.0, 0.0))
-    assert link.applied == NO_FORCE
-    with pytest.raises(DeviceError, match="open it again"):
-        link.read()

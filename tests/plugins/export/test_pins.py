@@ -1,9 +1,8 @@
-"""Pins, compared with borders that other code found, and read by other programs."""
+"""Pins, compared with borders that other code found: if a case fails, a display lacks a border or has a false one."""
 
 import base64
 import json
 import re
-from pathlib import Path
 from xml.etree import ElementTree
 
 import cv2
@@ -12,15 +11,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from exported_pictures import PICTURES, alpha, labels_work, work_of
+from exported_pictures import alpha, labels_work, work_of
 from tangible_core.data import PartMap, Relief
-from tangible_core.errors import PictureError, TangibleError
+from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import collected
 from tangible_export.pin_display import raising
 from tangible_export.pin_display.displays import Display
 from tangible_export.pins import Pins
-
-SIZES = {"monarch": (96, 40, 1), "graphiti": (60, 40, 4), "dotpad": (60, 40, 1)}
 
 
 def heights_in(files) -> np.ndarray:
@@ -49,20 +46,6 @@ def near(pins: np.ndarray) -> np.ndarray:
 def shares(up: np.ndarray, want: np.ndarray) -> tuple[float, float]:
     """Of borders that have a pin within one pin, and of pins that have no border within one."""
     return float((want & near(up)).sum() / want.sum()), float((up & ~near(want)).sum() / up.sum())
-
-
-@pytest.mark.parametrize("display", SIZES)
-@pytest.mark.parametrize("name", PICTURES)
-def test_pins_of_pictures_show_all_borders_and_no_others(tmp_path, name, display):
-    pins = Pins(display=display)
-    work = work_of(name, pins)
-    heights = heights_in(pins.write(work, tmp_path / name))
-    columns, rows, levels = SIZES[display]
-    assert heights.shape == (rows, columns)
-    shown, false = shares(heights == levels, wanted(work.simplified.labels, columns, rows))
-    assert shown >= 0.99
-    assert false == 0
-    assert 0.03 < (heights == levels).mean() < 0.25
 
 
 @given(st.data())
@@ -108,18 +91,6 @@ def test_pins_with_heights_keep_areas_below_borders(tmp_path):
     assert re.findall(r'fill-opacity="([\d.]+)" d="M(\d+) 0h(\d+)', svg) == [("0.75", "30", "30")]
 
 
-def test_pins_with_heights_show_a_picture_of_one_part(tmp_path):
-    work = labels_work(FLAT)
-    work.products["relief"] = Relief(
-        np.linspace(0.002, 0.004, 40, dtype=np.float32)[:, None].repeat(60, 1), (0.15, 0.1)
-    )
-    heights = heights_in(Pins(display="graphiti").write(work, tmp_path / "slope"))
-    assert (heights[0, 0], heights[-1, 0]) == (0, 3)
-    work.products["relief"] = Relief(np.full((40, 60), 0.002, np.float32), (0.15, 0.1))
-    with pytest.raises(PictureError, match="no pin would rise, as one part fills the display"):
-        Pins(display="graphiti").write(work, tmp_path / "flat")
-
-
 def test_pin_heights_are_counted_from_the_lowest_and_rounded():
     relief = Relief(np.float32([[2, 3.8, 5.4, 8]]) / 1000, (0.04, 0.01))
     assert raising.heights(relief, 1, 4, 3).tolist() == [[0, 1, 2, 3]]
@@ -147,49 +118,11 @@ def test_picture_on_a_display_is_as_large_as_it_can_be(aspect: float, size: tupl
     assert Display(columns=10, rows=8).picture_size(aspect) == size
 
 
-@pytest.mark.parametrize(("aspect", "width_m"), [(1.0, 0.1), (2.4, 0.24), (3.0, 0.24)])
-def test_pins_picture_width_is_that_on_the_display(aspect: float, width_m: float):
-    assert Pins().picture_width_m(aspect) == pytest.approx(width_m)
-
-
-def test_pins_note_tells_size_and_share_of_raised_pins(tmp_path):
-    labels = np.zeros((60, 90), np.int32)
-    labels[:30, :45] = 1
-    with collected() as notes:
-        Pins().write(labels_work(labels), tmp_path / "quarter")
-    assert notes == ["60 x 40 of 96 x 40 pins; 1 % are up"]
-
-
-def test_pins_layers_have_the_borders_above_and_to_the_left(tmp_path):
-    labels = np.zeros((40, 40), np.int32)
-    labels[20:, 20:] = 1
-    files = Pins(display={"columns": 6, "rows": 4}).write(labels_work(labels), tmp_path / "map")
-    assert [each.name for each in files] == [
-        f"map-pins-6x4{end}" for end in (".png", ".json", ".txt", ".svg", "-graphic.json")
-    ]
-    [svg] = [each for each in files if each.suffix == ".svg"]
-    paths = [[path.get("d") for path in layer] for layer in ElementTree.parse(svg).getroot()[1:]]
-    assert paths == [["M3 1h2v1h-2zM2 2h1v1h-1zM2 3h1v1h-1z"]] * 2
-
-
 def test_pins_png_has_a_pixel_a_pin(tmp_path):
     pins = Pins(display="graphiti")
     files = pins.write(work_of("coffee", pins), tmp_path / "coffee")
     picture = cv2.imread(str(files[0]), cv2.IMREAD_UNCHANGED)
     assert np.array_equal(np.rint((255 - picture) / 255 * 4), heights_in(files))
-
-
-def test_pins_text_has_the_pins_as_braille_patterns(tmp_path):
-    pins = Pins(display={"columns": 31, "rows": 22})  # neither is a multiple of a cell
-    files = pins.write(work_of("coffee", pins), tmp_path / "coffee")
-    [text] = [each.read_text() for each in files if each.suffix == ".txt"]
-    up, lines = heights_in(files) > 0, text.splitlines()
-    assert (len(lines), {len(line) for line in lines}) == (6, {16})
-    dots = {(0, 0): 1, (1, 0): 2, (2, 0): 3, (0, 1): 4, (1, 1): 5, (2, 1): 6, (3, 0): 7, (3, 1): 8}
-    for row in range(22):
-        for column in range(31):
-            bit = dots[row % 4, column % 2] - 1
-            assert bool(ord(lines[row // 4][column // 2]) - 0x2800 >> bit & 1) == up[row, column]
 
 
 def test_pins_hexadecimal_digits_fit_dot_pad(tmp_path):
@@ -205,7 +138,9 @@ def test_pins_hexadecimal_digits_fit_dot_pad(tmp_path):
     assert not [each for each in Pins().write(work_of("coffee", Pins()), tmp_path / "b") if each.suffix == ".hex"]
 
 
-@pytest.mark.parametrize("display", [*SIZES, {"columns": 33, "rows": 21, "levels": 2}])
+@pytest.mark.parametrize(
+    "display", [{"columns": 33, "rows": 21, "levels": 2}, pytest.param("monarch", marks=pytest.mark.whole)]
+)
 def test_pins_svg_alpha_equals_the_pins(tmp_path, display):
     pins = Pins(display=display)
     files = pins.write(work_of("astronaut", pins), tmp_path / "astronaut")
@@ -229,17 +164,11 @@ def test_pins_svg_layers_are_named_parts(tmp_path):
     assert [each.get("aria-label") for each in root[1:]] == ["sea & <sky>", "Teil 2"]
     head = json.loads(next(each for each in files if each.name == "map-monarch.json").read_text())
     assert head.pop("heights")
-    assert head == {
-        "title": "Bay & <isle>", "language": "de", "display": "monarch", "columns": 96, "rows": 40, "levels": 1,
-        "parts": ["sea & <sky>", "Teil 2"],
-    }  # fmt: skip
+    assert [*head.values()] == ["Bay & <isle>", "de", "monarch", 96, 40, 1, ["sea & <sky>", "Teil 2"]]
     assert root[0].text == "Bay & <isle>"
     assert all(len(each) for each in root[1:])  # both sides of a border have it
     [content] = [json.loads(each.read_text()) for each in files if each.name.endswith("-graphic.json")]
-    assert list(content) == ["graphic"]
-    head, data = content["graphic"].split(",")
-    assert head == "data:image/svg+xml;base64"
-    assert base64.b64decode(data) == svg.read_bytes()
+    assert content == {"graphic": f"data:image/svg+xml;base64,{base64.b64encode(svg.read_bytes()).decode()}"}
 
 
 def test_pins_note_names_part_without_a_pin(tmp_path):
@@ -249,41 +178,23 @@ def test_pins_note_names_part_without_a_pin(tmp_path):
         files = Pins().write(labels_work(labels, ("left", "right", "speck")), tmp_path / "map")
     [svg] = [each for each in files if each.suffix == ".svg"]
     assert [layer.get("aria-label") for layer in ElementTree.parse(svg).getroot()[1:]] == ["left", "right"]
-    assert notes[0] == "too small for a pin: speck"
-
-
-def test_pins_part_of_one_pin_is_not_called_too_small(tmp_path):
-    labels = np.zeros((40, 96), np.int32)
-    labels[:, 48:], labels[10, 10] = 1, 2
-    with collected() as notes:
-        Pins().write(labels_work(labels), tmp_path / "map")
-    assert len(notes) == 1
+    assert notes == ["too small for a pin: speck", "60 x 40 of 96 x 40 pins; 1 % are up"]
 
 
 FLAT = np.zeros((40, 60), np.int32)
-STRIP = np.zeros((3, 600), np.int32)
-STRIP[:, 300:] = 1
-HUNDREDS = np.arange(900, dtype=np.int32).reshape(30, 30).repeat(10, 0).repeat(10, 1)
+STRIP = np.arange(2, dtype=np.int32).repeat(300)[None].repeat(3, 0)
 
 
 @pytest.mark.parametrize(
     ("labels", "message"),
-    [
-        (FLAT, "one part"),
-        (FLAT[:1, :1], "one part"),
-        (STRIP, "96 pins wide and 1 long"),
-        (STRIP.T.copy(), "1 pins? wide and 40 long"),
-        (HUNDREDS, None),
-    ],
+    [(None, "no parts"), (FLAT, "one part"), (STRIP, "96 pins wide and 1 long"), (STRIP.T.copy(), "wide and 40 long")],
 )
-def test_pins_without_border_are_refused_in_one_line(tmp_path: Path, labels, message):
-    if message is None:
-        assert Pins().write(labels_work(labels), tmp_path / "map")
-        return
-    with pytest.raises(TangibleError) as refusal:
-        Pins().write(labels_work(labels), tmp_path / "map")
-    assert re.search(message, str(refusal.value))
-    assert "\n" not in str(refusal.value)
+def test_pins_without_border_are_refused(tmp_path, labels, message):
+    work = labels_work(FLAT if labels is None else labels)
+    if labels is None:
+        work.products["simplified"] = None
+    with pytest.raises(PictureError, match=message):
+        Pins().write(work, tmp_path / "map")
     assert not list(tmp_path.iterdir())
 
 
@@ -294,21 +205,7 @@ def test_pins_picture_of_three_pins_is_written_and_of_two_refused(tmp_path):
         pins.write(labels_work(labels.repeat(20, 0)), tmp_path / "map")
 
 
-def test_pins_without_parts_are_refused(tmp_path):
-    work = labels_work(FLAT)
-    work.products["simplified"] = None
-    with pytest.raises(PictureError, match="no parts"):
-        Pins().write(work, tmp_path / "map")
-
-
-@pytest.mark.parametrize(
-    "display", ["braillex", {"columns": 2, "rows": 40}, {"columns": 60, "rows": 40, "levels": 0}, 7]
-)
+@pytest.mark.parametrize("display", ["braillex", {"columns": 2, "rows": 40}, {"columns": 60, "rows": 40, "levels": 0}])
 def test_pins_with_invalid_display_are_refused(display):
     with pytest.raises(ValueError):
         Pins(display=display)
-
-
-def test_pins_written_twice_have_the_same_bytes(tmp_path):
-    first, second = (Pins().write(work_of("coffee", Pins()), tmp_path / each) for each in ("a", "b"))
-    assert [each.read_bytes() for each in first] == [each.read_bytes() for each in second]

@@ -1,8 +1,7 @@
-"""Pages for swell paper, read and measured again by programs that did not draw them."""
+"""Pages for swell paper, measured by programs that did not draw them: if a case fails, a finger cannot read a page."""
 
 import re
 import subprocess
-import sys
 from functools import partial
 from pathlib import Path
 from xml.etree import ElementTree
@@ -13,10 +12,9 @@ import pytest
 import shapely
 from scipy import ndimage
 
-from exported_pictures import PICTURES, labels_work, pdf_pixels, pixels, work_of
-from tangible_core.errors import BrailleError, BrokenMethod, GeometryError, PictureError, TangibleError
+from exported_pictures import labels_work, pdf_pixels, pixels, work_of
+from tangible_core.errors import GeometryError, PictureError
 from tangible_core.plugins.notes import collected
-from tangible_export.braille import DOT_PITCH_M
 from tangible_export.paper import fills, page
 from tangible_export.paper.marks import gaps
 from tangible_export.swell import Swell
@@ -28,7 +26,10 @@ ROUNDING_MM = 1e-5
 SIZES_MM = {"a4": (210, 297), "letter": (215.9, 279.4), "a3": (297, 420)}
 
 
-@pytest.fixture(scope="module", params=PICTURES)
+@pytest.fixture(
+    scope="module",
+    params=["coffee", *(pytest.param(each, marks=pytest.mark.whole) for each in ("astronaut", "motorcycle"))],
+)
 def exported(request, tmp_path_factory) -> tuple[str, tuple[Path, ...], list[str]]:
     swell, folder = Swell(), tmp_path_factory.mktemp("swell")
     with collected() as notes:
@@ -92,48 +93,6 @@ def test_page_marks_keep_the_gap_of_a_finger(exported):
         assert least_gap_mm(svg) >= GAP_MM - ROUNDING_MM, svg.name
 
 
-def test_page_outlines_leave_room_for_a_finger(exported):
-    """A disc as wide as the gap reaches nearly all between the lines; what is left are tips of corners."""
-    _, files, _ = exported
-    root = ElementTree.parse(files[0]).getroot()
-    for element in root.iter():
-        for child in list(element):
-            if child.get("data-mark") in ("fill", "braille", "corner"):
-                element.remove(child)
-    alone = files[0].with_name("outlines.svg")
-    ElementTree.ElementTree(root).write(alone)
-    free = pixels(alone, 25.4 * PER_MM) >= 128
-    room = distances(free) >= GAP_MM / 2 * PER_MM
-    beyond = distances(~room) / PER_MM - GAP_MM / 2
-    assert beyond[free].max() <= GAP_MM + 0.5
-    assert (beyond[free] > 0.2).mean() < 0.02
-
-
-def test_page_parts_have_outline_and_name(exported):
-    name, files, notes = exported
-    work = work_of(name, Swell())
-    root = ElementTree.parse(files[0]).getroot()
-    areas = [each for each in root if each.find("./*[@data-mark='outline']") is not None]
-    assert all(each.find("./*[@data-mark='outline']").get("d") for each in areas)
-    there = set(np.unique(work.simplified.labels).tolist())
-    assert {each.get("aria-label") for each in areas} == {work.names[number] for number in there}
-    unlettered = [each.get("aria-label") for each in areas if each.find("./*[@data-mark='braille']") is None]
-    noted = next((note for note in notes if note.startswith("no room for a letter")), "")
-    assert not unlettered or all(each in noted for each in list(dict.fromkeys(unlettered))[:6])
-
-
-def test_page_svg_has_black_shapes_alone(exported):
-    _, files, _ = exported
-    for svg in svgs(files):
-        root = ElementTree.parse(svg).getroot()
-        assert {each.tag.rpartition("}")[2] for each in root.iter()} <= {"svg", "title", "desc", "g", "path", "circle"}
-        assert {each.get("fill") for each in root.iter()} <= {None, "none"}
-        assert {each.get("stroke") for each in root.iter()} <= {None, "#000"}
-        assert root.get("lang") == "en"
-        assert root.findtext("{*}title")
-        assert root.findtext("{*}desc")
-
-
 def test_key_lists_every_part_with_letter_and_fill(exported):
     _, files, _ = exported
     picture, *keys = (ElementTree.parse(each).getroot() for each in svgs(files))
@@ -152,11 +111,6 @@ def test_key_lists_every_part_with_letter_and_fill(exported):
     assert len(set(letters.values())) == len(letters)
     assert fill_of.keys() == parts
     assert len({*fill_of.values()}) <= 5
-
-
-def test_page_neighbours_have_different_fills(exported):
-    _, _, notes = exported
-    assert not any("neighbours with one fill" in note for note in notes)
 
 
 def test_pdf_has_all_pages_in_true_size(exported):
@@ -193,19 +147,15 @@ def test_ink_copy_has_names_and_letters_where_the_parts_are_and_a_scale(tmp_path
     assert {"Coast", "5 cm"} < texts.keys() and any("nicht schwellen" in each for each in texts)
     (scale,) = re.findall(r"M([\d.]+) [\d.]+L([\d.]+) ", ink.find(".//*[@data-mark='scale']").get("d"))
     assert float(scale[1]) - float(scale[0]) == 50
-    (note,) = (at for each, at in texts.items() if "nicht schwellen" in each)
-    word = texts["5 cm"]
-    assert float(scale[1]) < word[0] and word[0] + 9 < note[0] < 150, "side by side: the bar, its length, the note"
-    assert word[1] == note[1] and 200 < note[1] < 210, "in the lower margin of A4 on its side"
-    marks = [len(list(root.iterfind(".//{*}circle"))) for root in (page_root, ink)]
-    assert marks[0] == marks[1] > 0
     words = ["pdftotext", "-layout", str(named(files, "-swell-ink.pdf")), "-"]
     pages = subprocess.run(words, check=True, capture_output=True, text=True).stdout.split("\f")[:-1]
     assert len(pages) == len(svgs(files))
     assert all("land" in each and "sea <1> & $x$" in each and "5 cm" in each for each in pages)
 
 
-@pytest.mark.parametrize(("paper", "shape"), [("a4", (300, 450)), ("letter", (450, 300)), ("a3", (300, 450))])
+@pytest.mark.parametrize(
+    ("paper", "shape"), [("letter", (450, 300)), pytest.param("a3", (300, 450), marks=pytest.mark.whole)]
+)
 def test_page_picture_has_largest_or_given_width(tmp_path, paper, shape):
     for width_m in (None, 0.1):
         swell = Swell(page=paper, width_m=width_m)
@@ -227,49 +177,7 @@ def test_page_picture_has_largest_or_given_width(tmp_path, paper, shape):
             assert min(size[0] - 20 - width, size[1] - 20 - length) < 13  # the title takes 12 mm
 
 
-def test_page_of_letter_f_is_upright(tmp_path):
-    labels = np.zeros((70, 50), np.int32)
-    labels[10:60, 10:20] = labels[10:20, 10:40] = labels[30:40, 10:32] = 1
-    svg = Swell().write(labels_work(labels.repeat(8, 0).repeat(8, 1), ("ground", "letter")), tmp_path / "f")[0]
-    ink = pixels(svg, 254) < 128
-    root = ElementTree.parse(svg).getroot()
-    rim = np.array(re.findall(r"[ML]([\d.]+) ([\d.]+)", root.find(".//*[@aria-label='ground']/*").get("d")), float)
-    (left, top), (right, bottom) = rim.min(axis=0), rim.max(axis=0)
-    row, column = np.mgrid[0:70, 0:50]
-    inner = ndimage.binary_erosion(labels == 1, iterations=3)
-    x = ((left + (column[inner] + 0.5) / 50 * (right - left)) * 10).astype(int)
-    y = ((top + (row[inner] + 0.5) / 70 * (bottom - top)) * 10).astype(int)
-    places = ndimage.label(~ink)[0]
-    outside = places[int((top + 2) * 10), int((right - 2) * 10)]
-    assert (places[y, x] != outside).all()
-
-
-def test_page_written_twice_has_the_same_bytes(tmp_path):
-    first, second = (Swell().write(labels_work(halves()), tmp_path / each) for each in ("a", "b"))
-    assert [each.read_bytes() for each in first] == [each.read_bytes() for each in second]
-
-
-def test_page_parts_of_one_name_share_letter(tmp_path):
-    labels = np.zeros((300, 600), np.int32)
-    labels[:, 200:400], labels[:, 400:] = 1, 2
-    svg = Swell().write(labels_work(labels, ("sea", "land", "sea")), tmp_path / "map")[0]
-    root = ElementTree.parse(svg).getroot()
-    outlined = [each.get("aria-label") for each in root if each.find("./*[@data-mark='outline']") is not None]
-    assert sorted(outlined) == ["land", "sea", "sea"]
-    letters = [each.get("aria-label") for each in root.iterfind("./{*}g/*[@data-mark='braille']")]
-    assert sorted(letters) == ["l", "s", "s"]
-
-
-def test_page_letter_is_braille_in_true_size(tmp_path):
-    svg = Swell().write(labels_work(halves(), ("land", "sea")), tmp_path / "map")[0]
-    root = ElementTree.parse(svg).getroot()
-    dots = {each.get("aria-label"): each for each in root.iterfind("./{*}g/*[@data-mark='braille']")}
-    at = np.array([(float(dot.get("cx")), float(dot.get("cy"))) for dot in dots["l"]])  # dots 1, 2, 3
-    assert np.diff(at, axis=0) == pytest.approx(np.array([[0, 1000 * DOT_PITCH_M]] * 2), abs=0.011)
-    assert {dot.get("r") for dot in dots["l"]} == {"0.72"}
-
-
-@pytest.mark.parametrize("clear_mm", [0.5, 2.0])
+@pytest.mark.parametrize("clear_mm", [0.5, pytest.param(2.0, marks=pytest.mark.whole)])
 def test_page_marks_drawn_too_near_are_moved_or_left_out(tmp_path, monkeypatch, clear_mm):
     """The drawing keeps too little from outlines; the page that is measured does not pass until that is corrected."""
     monkeypatch.setattr(fills, "CLEAR_MM", clear_mm)
@@ -307,84 +215,32 @@ def test_page_options_for_a_width_are_those_of_the_least_page_that_takes_it(widt
     assert Swell(page="a3").options_for_width(0.27, 1.0) == {}
 
 
-def test_page_long_title_is_complete_on_the_key(tmp_path):
-    title = "A map of the harbour and of all the islands before it as they were in the year of the great flood"
-    with collected() as notes:
-        files = Swell().write(labels_work(halves(shape=(300, 460)), title=title), tmp_path / "map")
-    assert any("title" in note for note in notes)
-    above = [ElementTree.parse(svg).getroot().find("./*[@data-mark='braille']") for svg in svgs(files)]
-    assert len(above[1]) > len(above[0])
-
-
-def test_page_with_many_parts_has_pairs_of_letters(tmp_path):
-    labels = np.arange(30, dtype=np.int32).reshape(5, 6).repeat(60, 0).repeat(60, 1)
-    with collected() as notes:
-        files = Swell(page="a3").write(labels_work(labels), tmp_path / "map")
-    assert any("30 parts" in note for note in notes)
-    root = ElementTree.parse(files[0]).getroot()
-    letters = [each.get("aria-label") for each in root.iterfind("./{*}g/*[@data-mark='braille']")]
-    assert len(set(letters)) == len(letters) > 0
-    assert all(len(each) == 2 for each in letters)
-    names = [each.name for each in svgs(files)]
-    assert len(names) > 2
-    assert names[:3] == ["map-swell.svg", "map-swell-key.svg", "map-swell-key-2.svg"]
-
-
 HUNDREDS = np.arange(900, dtype=np.int32).reshape(30, 30).repeat(20, 0).repeat(20, 1)
 
 
 @pytest.mark.parametrize(
     ("labels", "options", "message", "error"),
     [
+        (None, {}, "no parts", PictureError),
         (np.zeros((40, 60), np.int32), {}, "one part", PictureError),
-        (np.zeros((1, 1), np.int32), {}, "one part", PictureError),
-        (halves(shape=(3, 600)), {}, "a finger needs 12.7 mm", GeometryError),
-        (halves(shape=(600, 3)), {}, "a finger needs 12.7 mm", GeometryError),
-        (halves(), {"width_m": 0.4}, "has no room on a4", GeometryError),
-        (halves(), {"width_m": 0.005}, "a finger needs 12.7 mm", GeometryError),
-        (HUNDREDS, {}, "900 parts are more than anybody can tell apart", PictureError),
-        (
-            np.arange(101, dtype=np.int32)[:, None].repeat(90, 1),
-            {"page": "a3"},
-            "narrower|apart|one part",
-            TangibleError,
-        ),
+        (halves(shape=(3, 600)), {}, "a finger needs", GeometryError),
+        (halves(), {"width_m": 0.4}, "no room", GeometryError),
+        (HUNDREDS, {}, "900 parts", PictureError),
     ],
 )
-def test_page_unreadable_by_finger_is_refused_in_one_line(tmp_path, labels, options, message, error):
-    with pytest.raises(error) as refusal:
-        Swell(**options).write(labels_work(labels), tmp_path / "map")
-    assert re.search(message, str(refusal.value))
-    assert "\n" not in str(refusal.value)
-    assert not list(tmp_path.iterdir())
-
-
-def test_page_without_parts_is_refused(tmp_path):
-    work = labels_work(halves())
-    work.products["simplified"] = None
-    with pytest.raises(PictureError, match="no parts"):
-        Swell().write(work, tmp_path / "map")
-
-
-def test_name_without_braille_is_refused_before_writing(tmp_path):
-    with pytest.raises(BrailleError):
-        Swell().write(labels_work(halves(), ("地", "海"), title="Map"), tmp_path / "map")
+def test_page_unreadable_by_finger_is_refused(tmp_path, labels, options, message, error):
+    work = labels_work(halves() if labels is None else labels)
+    if labels is None:
+        work.products["simplified"] = None
+    with pytest.raises(error, match=message):
+        Swell(**options).write(work, tmp_path / "map")
     assert not list(tmp_path.iterdir())
 
 
 def test_title_without_braille_is_left_out_of_page_and_key(tmp_path):
     with collected() as notes:
         page, key, *_ = Swell().write(labels_work(halves(), ("sea", "land"), title="東京"), tmp_path / "map")
-    assert any(each.startswith("the title is left out: '東京': character 1") for each in notes)
+    assert any(each.startswith("the title is left out: '東京'") for each in notes)
     plain, plain_key, *_ = Swell().write(labels_work(halves(), ("sea", "land"), title=""), tmp_path / "plain")
     assert page.read_text().replace("東京", "") == plain.read_text()
     assert key.read_text() == plain_key.read_text()
-
-
-def test_page_without_shapely_names_what_to_install(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "shapely", None)
-    for name in [name for name in sys.modules if name.startswith("tangible_export.paper.")]:
-        monkeypatch.delitem(sys.modules, name)
-    with pytest.raises(BrokenMethod, match=r"pip install shapely"):
-        Swell().write(labels_work(halves()), tmp_path / "map")
-    assert not list(tmp_path.iterdir())

@@ -1,7 +1,6 @@
-"""The proxy against exact nearest points, and its materials."""
+"""The default force law would push the wrong way or too hard: against exact nearest points."""
 
 from dataclasses import replace
-from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -9,14 +8,9 @@ import pytest
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import Force, HapticState, HapticSurface, Material, Relief
 from tangible_core.plugins.interfaces import Touch
-from tangible_core.testing.synthetic.reliefs import cone, waves
+from tangible_core.testing.synthetic.reliefs import waves
 from tangible_core.testing.synthetic.scenes import KnownSurface, plane, ramp, sphere_cap
-from tangible_render.contact import approach as contact
-from tangible_render.contact import closest
-from tangible_render.contact import spring as holding
 from tangible_render.proxy import Proxy
-from tangible_render.surface import spline
-from tangible_render.surface.coefficients import spline_surface
 
 RNG = np.random.default_rng(23)
 K = 800.0
@@ -102,74 +96,6 @@ class TestAccuracy:
             assert np.allclose(force, K * np.array((px - qx, py - qy, c + a * px + b * py - qz)), rtol=0, atol=1e-4)
         assert clamped > 20
 
-    @pytest.mark.parametrize("shape", [(26, 256), (256, 26)])
-    def test_force_on_a_moving_hand_matches_one_at_rest(self, shape: tuple[int, int]):
-        """Cells may be long: the last step of a tick is small against their shorter side."""
-        rows, columns = np.indices(shape) + 0.5
-        x, y = (columns / shape[1] - 0.5) * 0.08, (0.5 - rows / shape[0]) * 0.08
-        heights = 0.008 + 0.004 * np.sin(x * 2 * np.pi / 0.03) * np.cos(y * 2 * np.pi / 0.03)
-        surface = HapticSurface(Relief(heights.astype(np.float32), (0.08, 0.08)))
-        t = np.linspace(0.001, 0.007, 1000)
-        path = np.column_stack([t, 0.8 * t[::-1], 0.0065 + 0.004 * np.sin(t * 210) * np.cos(0.8 * t * 210)])
-        still = Proxy().touch(surface).path(np.repeat(path, 6, axis=0))[5::6]
-        assert (still[:, 2] > 0).all()
-        assert np.linalg.norm(Proxy().touch(surface).path(path) - still, axis=1).max() <= K * 1e-9
-
-    def test_smooth_surface_on_fine_cells_is_read_twice_a_tick(self, monkeypatch: pytest.MonkeyPatch):
-        """A step long for the cells but short for their detail is the last: at most 0.01 um off."""
-        c = ((np.arange(512) + 0.5) / 512 - 0.5) * 0.01
-        wave = 2 * np.pi / 0.02
-        surface = HapticSurface(
-            Relief((0.004 * (1 + np.sin(wave * (c + c[:, None])))).astype(np.float32), (0.01, 0.01))
-        )
-        x = np.arange(-0.004, 0.003, 4e-5)
-        path = np.column_stack([x, -0.7 * x, 0.004 * (1 + np.sin(wave * 1.7 * x)) - 0.0008])
-        still = Proxy().touch(surface).path(np.repeat(path, 20, axis=0))[19::20]
-        assert np.linalg.norm(Proxy().touch(surface).path(path) - still, axis=1)[10:].max() <= K * 1e-8
-        read = 0
-
-        def count_reads(*arguments: Any) -> Any:
-            nonlocal read
-            read += 1
-            return spline.bend(*arguments)
-
-        monkeypatch.setattr(closest, "bend", count_reads)
-        shape, place = spline_surface(surface, "never"), tuple(path[0, :2].tolist())
-        for i, hand in enumerate(path.tolist()):
-            read = read if i > 10 else 0
-            place = cast(Any, closest.settle)(*shape, *place[:2], *hand, 0.0, 0.0, 0.0)
-        assert read <= 2.1 * (len(path) - 11)
-
-    @pytest.mark.parametrize("friction", [False, True])
-    def test_prefetch_is_of_coefficients_two_ticks_later(self, monkeypatch: pytest.MonkeyPatch, friction: bool):
-        known = waves()
-        hands, memory = stroke(known, 0.2, 0.0008), np.zeros(contact.REMEMBERED)
-        touch = cast(CompiledTouch, Proxy().touch(known.surface))  # compiled before its parts are exchanged
-        asked: list[tuple[float, float]] = []
-        monkeypatch.setattr(holding, "prefetch", lambda *arguments: asked.append(arguments[3:]))
-        shape, tiles_m = touch.fixed[:5], touch.fixed[5]
-        material = np.zeros((4, 4), np.int32), np.array([[K, 0.0, 0.1, 0.05]])
-        law, law_arguments = (holding.spring_and_damper, material) if friction else (holding.spring, (K,))
-        proxies = []
-        for hand in hands.tolist():
-            cast(Any, law)(shape, tiles_m, *law_arguments, memory, *hand, 0.0, 0.0, 0.0)
-            proxies.append(memory[:2].copy())
-        assert len(asked) == len(hands)
-        off_m = np.linalg.norm(np.subtract(asked[5:-2], proxies[7:]), axis=1)
-        assert off_m.max() <= 1e-5 < 4e-5 < np.linalg.norm(np.diff(proxies, axis=0), axis=1)[5:].min()
-
-    def test_hand_below_a_whole_tile_needs_no_reading(self, monkeypatch: pytest.MonkeyPatch):
-        known = waves()
-        path = stroke(known, 4, 0.0008)
-        felt, unsure = (cast(CompiledTouch, Proxy().touch(known.surface)) for _ in range(2))
-        tiles_m = felt.fixed[5].copy()
-        tiles_m[..., 1] = -np.inf
-        unsure.fixed = (*unsure.fixed[:5], tiles_m, *unsure.fixed[6:])
-        assert (felt.path(path) == unsure.path(path)).all()
-        monkeypatch.setattr(contact, "height", None)
-        shape, bounds, memory = felt.fixed[:5], felt.fixed[5], np.zeros(contact.REMEMBERED)
-        assert cast(Any, contact.approach)(*shape, bounds, memory, 0.0, 0.0, float(bounds[..., 1].min()) - 1e-6, 0.0)
-
     @pytest.mark.parametrize("depth_m", [0.0002, 0.0008])
     def test_proxy_on_waves_at_the_speed_of_a_hand_is_exact(self, depth_m: float):
         known = waves()
@@ -180,19 +106,6 @@ class TestAccuracy:
         sines = np.linalg.norm(np.cross(force, exact), axis=1) / np.linalg.norm(force, axis=1)
         assert np.percentile(off_m, 99) <= 1e-8
         assert np.percentile(np.degrees(sines / np.linalg.norm(exact, axis=1)), 99) <= 1e-3
-
-    def test_proxy_at_half_a_metre_a_second_is_tracked(self):
-        known = waves()
-        path = stroke(known, 2, 0.0005, speed=4.4)
-        assert np.linalg.norm(np.diff(path, axis=0), axis=1).max() > 0.0005
-        off_m = np.linalg.norm(Proxy().touch(known.surface).path(path) / K + path - nearest(known, path), axis=1)
-        assert off_m.max() < 1e-7
-
-    def test_force_on_a_cone_is_that_of_its_side(self):
-        known = cone(slope=0.5)
-        for x, y in ((0.02, 0.01), (-0.015, 0.02), (0.0, -0.025)):
-            force = np.array(at(Proxy().touch(known.surface), *known.at(x, y, 0.001)))
-            assert np.allclose(force, K * 0.001 * known.normal(x, y)[2] * known.normal(x, y), rtol=2e-3, atol=1e-4)
 
 
 class TestMaterials:

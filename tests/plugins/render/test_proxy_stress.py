@@ -1,4 +1,4 @@
-"""The proxy on surfaces that break careless force laws: energy, bounds, and short cuts against the long way."""
+"""The proxy would get stuck on rough ground, or its short cuts would feel different from the long way."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rough_surfaces import rough_surfaces
-from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import NO_FORCE, HapticState, HapticSurface, Material
 from tangible_core.testing.synthetic.scenes import plane
 from tangible_render.proxy import Proxy
@@ -24,41 +23,6 @@ def rough(request) -> HapticSurface:
 
 
 class TestStress:
-    @pytest.mark.parametrize("depth_m", [0.0, 0.004])
-    def test_closed_paths_gain_no_energy(self, rough: HapticSurface, depth_m: float):
-        """Work of the device on the hand over the second of two turns, by the trapezoidal rule."""
-        turn = np.arange(20000) / 20000
-        x, y = 0.032 * np.sin(2 * np.pi * 5 * turn), 0.041 * np.sin(2 * np.pi * 3 * turn + 0.4)  # over the borders too
-        loop = np.column_stack([x, y, 0.002 + 0.001 * np.sin(2 * np.pi * 7 * turn) - depth_m])
-        force = Proxy().touch(rough).path(np.vstack([loop, loop, loop[:1]]))[20000:]
-        parts = (force[1:] + force[:-1]) / 2 * np.diff(np.vstack([loop, loop[:1]]), axis=0)
-        assert parts.sum() <= 1e-5 * np.abs(parts).sum()
-
-    @pytest.mark.parametrize(
-        "renderer", [Proxy(), Proxy(static_friction=0.6, dynamic_friction=0.4, damping_n_s_per_m=1)]
-    )
-    def test_force_on_a_wild_hand_is_bounded(self, rough: HapticSurface, renderer: Proxy):
-        """Walks of 0.5 m/s and more with leaps, 15000 ticks a map, have finite forces within their bound."""
-        random = np.random.default_rng(9)
-        steps = random.normal(0, 1, (15000, 3)) * random.choice([1e-5, 2e-4, 1e-3], (15000, 1))
-        path = np.cumsum(steps, axis=0) * [1, 1, 0.05] + [0, 0, 0.002]
-        path[:, :2] = (path[:, :2] + 0.042) % 0.084 - 0.042  # leaps at the borders
-        leaps = random.integers(0, 15000, 100)
-        path[leaps] = random.uniform(-0.04, 0.04, (100, 3)) * [1, 1, 0.2]
-        force = renderer.touch(rough).path(path)
-        assert np.isfinite(force).all()
-        deepest = max(0.02, float(rough.height_m.max()) * 2 - path[:, 2].min())
-        speed = np.linalg.norm(np.diff(path, axis=0), axis=1).max() / 0.001
-        most = K * (deepest + 0.005) + renderer.damping_n_s_per_m * min(speed, 100)
-        assert np.linalg.norm(force, axis=1).max() <= most
-
-    def test_proxy_of_a_hand_at_rest_only_comes_nearer(self, rough: HapticSurface):
-        for x, y in RNG.uniform(-0.038, 0.038, (10, 2)):
-            rest = Proxy().touch(rough).path(np.tile([x, y, -0.001], (60, 1)))
-            size = np.linalg.norm(rest, axis=1)
-            assert (np.diff(size) <= 1e-6).all()  # of newtons: the last step follows a Taylor series
-            assert np.abs(rest[-1] - rest[-2]).max() < 1e-3
-
     def test_proxy_at_rest_has_the_hand_along_its_normal(self, rough: HapticSurface):
         """The search gets stuck on no rough ground."""
         coefficients, *_, across, down = spline_surface(rough, "auto")
@@ -69,24 +33,6 @@ class TestStress:
             assert hand[2] + pull[2] == pytest.approx(height, abs=1e-8)
             normal = np.array([-slope_x, -slope_y, 1]) / np.sqrt(1 + slope_x**2 + slope_y**2)
             assert np.linalg.norm(np.cross(pull, normal)) <= 1e-6 * np.linalg.norm(pull)
-
-    @pytest.mark.parametrize(("step_m", "ticks"), [(3e-4, 4000), (1e-3, 3000)])
-    def test_proxy_in_each_tick_comes_nearer(self, rough: HapticSurface, step_m: float, ticks: int):
-        """The work of the moving hand is the only energy."""
-        random = np.random.default_rng(4)
-        path = np.cumsum(random.normal(0, step_m, (ticks, 3)) * [1, 1, 0.1], axis=0) + np.array([0, 0, -0.002])
-        path[:, :2] = (path[:, :2] + 0.03) % 0.06 - 0.03
-        touch = Proxy().touch(rough)
-        assert isinstance(touch, CompiledTouch)
-        before, stayed = np.full(3, np.nan), 0
-        for hand in path:
-            touch.force(HapticState(tuple(hand.tolist())))
-            proxy, moved = touch.memory[:3].copy(), np.linalg.norm(touch.memory[:2] - before[:2])
-            if moved <= 0.0021:  # and not let go, or new
-                stayed += 1
-                assert np.linalg.norm(proxy - hand) <= np.linalg.norm(before - hand) + 1e-9
-            before = proxy
-        assert stayed > ticks / 2
 
 
 class TestShortCuts:
@@ -118,12 +64,3 @@ class TestShortCuts:
         assert (Proxy().touch(surface).force(HapticState((x, y, z))) == NO_FORCE) == (
             z >= spline.height(coefficients, across, down, x, y)
         )
-
-    def test_level_ground_is_level_in_tiles_and_spline(self):
-        heights = np.full((256, 256), 0.004)
-        heights[100:120, 100:120] = 0.009
-        path = np.column_stack([np.linspace(-0.039, 0.039, 3000), np.linspace(0.03, -0.02, 3000), np.full(3000, 0.003)])
-        surface = HapticSurface.from_heights(heights)
-        general, quick = Proxy(damping_n_s_per_m=1e-300).touch(surface), Proxy().touch(surface)
-        assert general.tick is not quick.tick
-        assert np.allclose(general.path(path), quick.path(path), rtol=0, atol=1e-7)

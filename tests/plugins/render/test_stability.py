@@ -1,4 +1,4 @@
-"""Millions of ticks on surfaces that break a careless law: nothing runs away, gains energy or loses its track.
+"""A hand would be kicked: on surfaces that break a careless law nothing runs away, gains energy or loses its track.
 
 CI feels four million ticks in all; `pytest --nightly tests/plugins/render/test_stability.py` forty times as many.
 """
@@ -91,6 +91,7 @@ def test_proxy_never_loses_the_exact_nearest_point(ticks: int):
     assert worst.lost == 0 and worst.touched > 0.1 * ticks
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("ticks", [15_000, pytest.param(1_000_000, marks=pytest.mark.nightly)])
 @pytest.mark.parametrize("name", MAPS)
 @pytest.mark.parametrize("law", LAWS)

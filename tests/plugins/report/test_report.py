@@ -1,16 +1,13 @@
+"""The sheet of a run: if a case fails, its picture shows something else than was computed, or there is none."""
+
 import json
-import math
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import replace
-from itertools import combinations, pairwise
-from math import log
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-import matplotlib
 import numpy as np
 import pytest
 from hypothesis import given
@@ -27,27 +24,22 @@ from tangible_core.data import (
     HapticSurface,
     Material,
     MaterialMap,
-    Outcome,
     PartMap,
     Relief,
     SegmentMap,
     Views,
 )
-from tangible_core.data.part_words import name_part
 from tangible_core.errors import OutputError, PictureError
 from tangible_core.files.json_text import write_figures
 from tangible_core.materials.assignment import library
-from tangible_core.metrics import disparity_errors
 from tangible_core.plugins import hooks
 from tangible_core.plugins.hooks import Panel, hookimpl
-from tangible_core.plugins.notes import collected
 from tangible_core.plugins.registry import Registry
 from tangible_core.session import Recording
 from tangible_render.haptic_textures import peak_wavelength_m
 from tangible_report import block
-from tangible_report.description import describe
-from tangible_report.drawing.layout import ROW_IN, TALLEST_IN, Cell, _height, arrange
-from tangible_report.drawing.sheet import DPI, WIDTH_IN, draw_figure, draw_sheet, show
+from tangible_report.drawing.layout import Cell, arrange
+from tangible_report.drawing.sheet import DPI, WIDTH_IN, draw_figure, draw_sheet
 from tangible_report.material_sheet import draw_material, spectra
 from tangible_report.panels import PANELS
 from tangible_report.panels.force import round_number, spread
@@ -86,79 +78,29 @@ def whole_run() -> dict[str, object]:
     }
 
 
-class TestDisparityErrors:
-    def test_errors_of_a_small_map_are_exact(self) -> None:
-        truth = np.float32([[10, 10, 10, 10, 10], [10, 10, 10, NAN, np.inf]])
-        found = np.float32([[10, 10.25, 10.75, 8.5, 13], [15, NAN, np.inf, 10, 10]])
-        errors = disparity_errors(found, truth)  # 0, .25, .75, 1.5, 3, 5 and two that are missing, of 8 with truth
-        assert errors == {
-            "bad0.5": 75.0,
-            "bad1": 62.5,
-            "bad2": 50.0,
-            "bad4": 37.5,
-            "average_px": 10.5 / 6,
-            "rms_px": pytest.approx(math.sqrt((0.25**2 + 0.75**2 + 1.5**2 + 9 + 25) / 6), rel=1e-12),
-            "density": 75.0,
-        }
-
-    def test_error_equal_to_the_bound_is_not_bad(self) -> None:
-        assert disparity_errors(np.float32([[2.0]]), np.float32([[0.0]]))["bad2"] == 0
-
-    def test_map_without_estimates_is_all_bad(self) -> None:
-        errors = disparity_errors(np.full((2, 2), NAN, np.float32), np.ones((2, 2), np.float32))
-        assert errors["bad4"] == 100
-        assert errors["density"] == 0
-        assert math.isnan(errors["average_px"])
-        assert math.isnan(errors["rms_px"])
-
-    def test_errors_without_truth_are_unknown(self) -> None:
-        errors = disparity_errors(np.ones((2, 2), np.float32), np.full((2, 2), NAN, np.float32))
-        assert all(map(math.isnan, errors.values()))
-
-    @pytest.mark.usefixtures("unchecked_shapes")
-    def test_errors_of_two_sizes_are_refused(self) -> None:
-        with pytest.raises(PictureError, match=r"\(1, 2\).*\(2, 1\)"):
-            disparity_errors(np.ones((1, 2), np.float32), np.ones((2, 1), np.float32))
-
-
 class TestFigures:
     def test_figures_that_are_not_finite_become_null(self, tmp_path: Path) -> None:
         figures = {
             "bad": {"bad1": NAN, "rms": np.float32(np.inf)},
             "map": np.array([[1.0, NAN]]),
             "count": np.int32(3),
-            "outcomes": (Outcome("disparity", "ran", "asked for"),),
             "file": Path("a") / "b",
             "flag": np.bool_(True),
             7: "é",
         }
-        write_figures(tmp_path / "deep" / "figures.json", figures)  # pyright: ignore[reportArgumentType]
-        assert json.loads((tmp_path / "deep" / "figures.json").read_text(encoding="utf-8")) == {
+        path = tmp_path / "deep" / "figures.json"
+        write_figures(path, figures)  # pyright: ignore[reportArgumentType]
+        with pytest.raises(TypeError):
+            write_figures(path, {"a": {1, 2}})
+        assert list(path.parent.iterdir()) == [path]
+        assert json.loads(path.read_text(encoding="utf-8")) == {
             "bad": {"bad1": None, "rms": None},
             "map": [[1.0, None]],
             "count": 3,
-            "outcomes": [
-                {
-                    "product": "disparity",
-                    "outcome": "ran",
-                    "why": "asked for",
-                    "method": "",
-                    "seconds": 0.0,
-                    "notes": [],
-                },
-            ],
             "file": str(Path("a") / "b"),
             "flag": True,
             "7": "é",
         }
-
-    def test_figures_that_json_cannot_hold_keep_the_old_file(self, tmp_path: Path) -> None:
-        path = tmp_path / "figures.json"
-        write_figures(path, {"a": 1})
-        with pytest.raises(TypeError):
-            write_figures(path, {"a": {1, 2}})
-        assert json.loads(path.read_text()) == {"a": 1}
-        assert list(tmp_path.iterdir()) == [path]
 
 
 class TestLayout:
@@ -167,11 +109,6 @@ class TestLayout:
         boxes, width_in, height_in = arrange([cell, cell], 12.0)
         np.testing.assert_allclose(boxes, [(0.5, 0.4, 5.0, 2.5), (6.5, 0.4, 5.0, 2.5)])
         assert (width_in, height_in) == (pytest.approx(12.0), pytest.approx(3.2))
-
-    def test_layout_of_one_cell_is_a_small_sheet(self) -> None:
-        boxes, width_in, _ = arrange([Cell(1.0, 0.1, 0.2, 0.3, 0.4)], 12.0)
-        assert boxes[0].height_in == TALLEST_IN
-        assert width_in == pytest.approx(TALLEST_IN + 0.3)
 
     def test_layout_of_a_narrow_cell_has_room_for_its_text(self) -> None:
         narrow = Cell(0.1, 0.0, 0.0, 0.0, 0.0, least_in=3.0)
@@ -191,39 +128,8 @@ class TestLayout:
         assert width_in <= WIDTH_IN + 1e-6
         assert [(box.top_in, box.left_in) for box in boxes] == sorted((box.top_in, box.left_in) for box in boxes)
 
-    @given(st.lists(st.floats(0.5, 5.0), min_size=1, max_size=7))
-    def test_layout_rows_are_nearest_to_the_preferred_height(self, aspects: list[float]) -> None:
-        cells = [Cell(aspect, 0.2, 0.8, 0.5, 0.4, 2.9) for aspect in aspects]
-        boxes, _, _ = arrange(cells, 12.0)
-        tops = [box.top_in for box in boxes]
-        made = (0, *(i for i in range(1, len(cells)) if tops[i] != tops[i - 1]), len(cells))
-
-        def far(cut: tuple[int, ...]) -> float:
-            rows = [cells[a:b] for a, b in pairwise(cut)]
-            return sum(log(_height(row, 12.0) / each.wanted_in) ** 2 for row in rows for each in row)
-
-        inner = range(1, len(cells))
-        cuts = [(0, *cut, len(cells)) for count in range(len(cells)) for cut in combinations(inner, count)]
-        assert far(made) <= min(map(far, cuts)) + 1e-9  # several may be as near
-
-    def test_layout_of_many_cells_is_fast(self) -> None:
-        """Trying all ways is impossible: 40 cells have half a million millions."""
-        boxes, _, _ = arrange([Cell(1.5, 0.1, 0.5, 0.3, 0.4)] * 40, WIDTH_IN)
-        assert len(boxes) == 40
-
-    def test_layout_rows_are_near_the_preferred_height(self) -> None:
-        boxes, _, _ = arrange([Cell(1.5, 0.1, 0.5, 0.3, 0.4)] * 6, WIDTH_IN)
-        assert len({box.top_in for box in boxes}) == 2
-        assert abs(boxes[0].height_in - ROW_IN) < 0.5
-
 
 class TestBlock:
-    def test_projection_is_upright_for_the_reader(self) -> None:
-        axes = np.vstack([block.PAPER, block.SIGHT])
-        np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)
-        assert np.linalg.det(axes) == pytest.approx(1)
-        assert block.on_paper(np.array([0.0, 0, 1]))[1] > 0
-
     def test_points_with_border_have_the_surface_extent(self) -> None:
         relief = Relief(np.float32([[1, 2]]), (0.4, 0.1))
         points_m = block.points_of(relief)
@@ -244,11 +150,6 @@ class TestBlock:
         points_m = np.array([[-0.05, 0.05, 9], [0.05, 0.05, 0], [-0.05, -0.05, 0], [0.099, -0.099, 0], [0.2, 0, 0]])
         np.testing.assert_array_equal(block.heights_under(relief, points_m), [1, 2, 3, 4, NAN])
 
-    def test_drawn_size_has_at_most_n_cells(self) -> None:
-        relief = Relief(np.ones((10, 1000), np.float32), (1.0, 0.01))
-        assert block.drawn_size(relief, 100).height_m.shape == (1, 100)
-        assert block.drawn_size(relief, 2000).height_m.shape == (10, 1000)
-
 
 class TestForces:
     def test_arrows_are_at_equal_steps_of_the_path(self) -> None:
@@ -257,14 +158,8 @@ class TestForces:
         some = spread(at_mm, np.ones(101, bool), 6)
         np.testing.assert_array_equal(at_mm[some, 0], [0, 10, 20, 30, 40, 50])
 
-    def test_arrows_are_in_contact_only(self) -> None:
-        at_mm = np.arange(30.0).reshape(10, 3)
-        touching = np.arange(10) >= 6
-        assert set(spread(at_mm, touching, 100)) == {6, 7, 8, 9}
-        assert spread(at_mm, np.zeros(10, bool), 5).size == 0
-
-    def test_arrows_without_motion_are_at_equal_steps_of_time(self) -> None:
-        np.testing.assert_array_equal(spread(np.zeros((9, 3)), np.ones(9, bool), 3), [0, 4, 8])
+        np.testing.assert_array_equal(spread(np.zeros((9, 3)), np.ones(9, bool), 3), [0, 4, 8])  # by time
+        assert spread(at_mm, np.zeros(101, bool), 5).size == 0
 
     @given(st.floats(1e-9, 1e9))
     def test_round_number_is_the_largest_below_the_value(self, value: float) -> None:
@@ -311,6 +206,7 @@ def draw_figure_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[
         return figures[-1]
 
     monkeypatch.setattr("tangible_report.drawing.sheet.draw_figure", keep)
+    monkeypatch.setattr("tangible_report.drawing.sheet.DPI", 40)
     return draw
 
 
@@ -325,20 +221,17 @@ def raises(axes: Axes, **_: Any) -> str:
     raise ZeroDivisionError("no\nheights")
 
 
-class Adds:
-    """A hook module that adds panels."""
-
-    def __init__(self, *panels: Any) -> None:
-        self.panels = panels
-
-    @hookimpl
-    def tangible_panels(self) -> tuple[Any, ...]:
-        return self.panels
-
-
 @pytest.fixture
 def adding(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
-    """Installs hook modules that add panels, one each."""
+    """Return a function that installs hook modules that add panels, one each."""
+
+    class Adds:
+        def __init__(self, panel: Any) -> None:
+            self.panel = panel
+
+        @hookimpl
+        def tangible_panels(self) -> tuple[Any, ...]:
+            return (self.panel,)
 
     def add(*panels: Any) -> None:
         plugins = hooks.manager()
@@ -357,39 +250,23 @@ class TestAddedPanels:
         run = whole_run()
         assert panel_headlines(draw_figure_of(**run))["h"] == "Heights, felt"
         assert panel_headlines(draw_figure_of(relief=run["relief"]))["b"] == "Heights, unfelt"
-
-    def test_added_panel_without_its_products_is_left_out(self, adding: Any, draw_figure_of: Any) -> None:
-        adding(Panel(histogram, {"relief"}))
-        assert len(panel_headlines(draw_figure_of(views=whole_run()["views"]))) == 1
-
-    def test_added_panel_may_be_the_only_one(self, adding: Any, draw_figure_of: Any) -> None:
-        adding(Panel(lambda axes, recording: "Ticks", {"recording"}))
-        assert "Ticks" in panel_headlines(draw_figure_of(recording=record())).values()
+        assert len(panel_headlines(draw_figure_of(views=run["views"]))) == 1
 
     def test_added_panels_may_be_many(self, adding: Any, draw_figure_of: Any) -> None:
-        adding(*[Panel(histogram, {"relief"}, aspect=1.5)] * 30)
+        adding(*[Panel(histogram, {"relief"}, aspect=1.5)] * 26)
         found = panel_headlines(draw_figure_of(relief=whole_run()["relief"]))
-        assert list(found) == [*"abcdefghijklmnopqrstuvwxyz", "aa", "ab", "ac", "ad", "ae"]
+        assert list(found) == [*"abcdefghijklmnopqrstuvwxyz", "aa"]
 
-    def test_added_panel_that_fails_shows_its_error(
-        self, adding: Any, draw_figure_of: Any, caplog: pytest.LogCaptureFixture
+    def test_added_panel_that_fails_shows_its_error_and_what_is_no_panel_is_left_out(
+        self, adding: Any, draw_figure_of: Any
     ) -> None:
-        adding(Panel(raises, {"relief"}), Panel(histogram, {"relief"}))
+        adding((histogram, {"relief"}), Panel(raises, {"relief"}), Panel(histogram, {"relief"}))
         figure = draw_figure_of(relief=whole_run()["relief"])
         assert list(panel_headlines(figure).values())[1:] == [
             "Not drawn, ZeroDivisionError: no\\nheights",
             "Heights, unfelt",
         ]
         assert not figure.axes[-2].lines
-        assert "could not be drawn" in caplog.text
-
-    @pytest.mark.parametrize("junk", [(histogram, {"relief"}), "panel", 3])
-    def test_added_object_that_is_not_a_panel_is_left_out(
-        self, junk: Any, adding: Any, draw_figure_of: Any, caplog: pytest.LogCaptureFixture
-    ) -> None:
-        adding(junk, Panel(histogram, {"relief"}))
-        assert len(panel_headlines(draw_figure_of(relief=whole_run()["relief"]))) == 2
-        assert "is not a Panel; it is left out" in caplog.text
 
 
 class TestSheet:
@@ -401,11 +278,7 @@ class TestSheet:
     @pytest.mark.parametrize(
         ("names", "expected"),
         [
-            ("views", ["Input: left, inset right"]),
             ("views segments", ["Input: left, inset right", "Segments"]),
-            ("disparity", ["Disparity"]),
-            ("segments", ["Segments"]),
-            ("views relief", ["Input: left, inset right", "Relief and its normals"]),
             ("truth views materials", ["Input: left, inset right"]),
             ("recording", ["Force and tip over time: peak 0.55 N, contact 50 %"]),
         ],
@@ -414,61 +287,10 @@ class TestSheet:
         run = {name: value for name, value in whole_run().items() if name in names.split()}
         assert list(headlines(run).values()) == expected
 
-    def test_title_stands_a_tenth_of_an_inch_below_the_upper_edge(self) -> None:
-        figure = draw_figure(whole_run(), "title", PANELS)
-        width_in, height_in = figure.get_size_inches()
-        x, y = figure.texts[0].get_position()
-        assert (width_in * x, height_in * y) == pytest.approx((0.15, height_in - 0.1))
-
-    @pytest.mark.parametrize("turned", [False, True])
-    def test_sheet_texts_are_inside_and_apart(self, turned: bool) -> None:
-        run = whole_run()
-        if turned:
-            heights_m = np.zeros((90, 60), np.float32)
-            tall = np.zeros((90, 60, 3), np.uint8)
-            found = DisparityMap(np.full((90, 60), NAN, np.float32))
-            run |= {
-                "views": Views(tall, tall),
-                "relief": HapticSurface.from_heights(heights_m).relief,
-                "disparity": found,
-            }
-            del run["truth"], run["segments"]
-        figure = draw_figure(run, "title", PANELS)
-        canvas = FigureCanvasAgg(figure)
-        canvas.draw()
-        texts = [*figure.texts, *(axes.xaxis.label for axes in figure.axes)]
-        boxes = [text.get_window_extent() for text in texts if text.get_text()]
-        assert len(boxes) > 10
-        for number, box in enumerate(boxes):
-            assert figure.bbox.x0 <= box.x0 <= box.x1 <= figure.bbox.x1
-            assert figure.bbox.y0 <= box.y0 <= box.y1 <= figure.bbox.y1
-            assert not any(box.overlaps(other) for other in boxes[:number])
-
-    def test_sheet_file_has_its_size(self, tmp_path: Path) -> None:
-        path = tmp_path / "made" / "sheet.png"
-        draw_sheet(path, title="$both^{ $ signs", **whole_run())  # pyright: ignore[reportArgumentType]
-        with Image.open(path) as sheet:
-            assert sheet.format == "PNG"
-            assert sheet.width == pytest.approx(WIDTH_IN * DPI, abs=1)
-        assert list(path.parent.iterdir()) == [path]
-
-    def test_sheet_ignores_the_reader_s_style(self, tmp_path: Path) -> None:
-        run = {"views": whole_run()["views"], "disparity": whole_run()["disparity"]}
-        draw_sheet(tmp_path / "a.png", **run)  # pyright: ignore[reportArgumentType]
-        with matplotlib.rc_context({"font.size": 40, "text.usetex": True, "axes.grid": True, "savefig.dpi": 20}):
-            draw_sheet(tmp_path / "b.png", **run)  # pyright: ignore[reportArgumentType]
-            assert matplotlib.rcParams["font.size"] == 40
-        assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
-
     def test_sheet_without_products_is_refused(self, tmp_path: Path) -> None:
         with pytest.raises(OutputError, match="nothing to draw"):
             draw_sheet(tmp_path / "sheet.png", title="demo", truth=np.ones((4, 4), np.float32))
         assert not list(tmp_path.iterdir())
-
-    def test_sheet_in_an_unwritable_place_is_refused(self, tmp_path: Path) -> None:
-        (tmp_path / "file").touch()
-        with pytest.raises(OutputError, match="cannot be written"):
-            draw_sheet(tmp_path / "file" / "sheet.png", views=Views(np.zeros((4, 4), np.uint8)))
 
     @pytest.mark.usefixtures("unchecked_shapes")
     def test_sheet_with_truth_of_another_size_is_refused(self, tmp_path: Path) -> None:
@@ -485,34 +307,6 @@ class TestSheet:
         assert axes.images[0].get_clim() == pytest.approx(np.percentile([0, 0.25, 0.5, 1], (0.5, 99.5)))
         assert [bar.get_ylabel() for bar in axes.child_axes] == ["nearness, 0 far to 1 near"]
         assert axes.get_xlabel() == "known everywhere"
-
-    @pytest.mark.parametrize(
-        "run",
-        [
-            pytest.param({"views": Views(np.zeros((1, 1), np.uint8))}, id="one pixel"),
-            pytest.param({"views": Views(np.ones((1, 300, 4)))}, id="one row, RGBA, float"),
-            pytest.param({"views": Views(np.ones((300, 1), bool))}, id="one column, bool"),
-            pytest.param({"views": Views(np.full((9, 9, 3), 65535, np.uint16))}, id="uint16"),
-            pytest.param({"disparity": DisparityMap(np.full((4, 4), NAN, np.float32))}, id="nothing known"),
-            pytest.param({"disparity": DisparityMap(np.full((1, 1), 3.0, np.float32))}, id="one disparity"),
-            pytest.param({"disparity": DisparityMap(np.float32([[1e30, -1e30]]))}, id="huge"),
-            pytest.param({"surface": HapticSurface.from_heights(np.zeros((1, 1)))}, id="one flat cell"),
-            pytest.param({"surface": HapticSurface.from_heights(np.full((2, 90), 1e-4), 1e-3)}, id="a strip"),
-            pytest.param({"surface": HapticSurface.from_heights(np.eye(5) * 50)}, id="taller than wide"),
-        ],
-    )
-    def test_sheet_of_hostile_products_is_drawn(self, tmp_path: Path, run: dict[str, object]) -> None:
-        draw_sheet(tmp_path / "sheet.png", title="nasty", **run)  # pyright: ignore[reportArgumentType]
-        with Image.open(tmp_path / "sheet.png") as sheet:
-            assert min(sheet.size) > 100
-
-    def test_sheet_with_truth_nowhere_is_drawn(self, draw_figure_of: Callable[..., Figure]) -> None:
-        found = DisparityMap(np.full(SHAPE, 8.0, np.float32))
-        figure = draw_figure_of(disparity=found, truth=np.full(SHAPE, NAN, np.float32))
-        assert panel_headlines(figure) == {"a": "Disparity", "b": "Error: bad1 nan %, bad2 nan %"}
-        white, error = images(figure.axes[1])
-        assert not np.ma.getmaskarray(white).any() and (white == 1).all()
-        assert np.ma.getmaskarray(error).all()
 
     def test_sheet_with_truth_everywhere_is_drawn(self, draw_figure_of: Callable[..., Figure]) -> None:
         estimate = np.full(SHAPE, 8.0, np.float32)
@@ -531,15 +325,7 @@ class TestSheet:
         figure = draw_figure_of(views=Views(np.zeros(SHAPE, np.uint8)), segments=SegmentMap(labels))
         assert panel_headlines(figure) == {"a": "Input", "b": "Segments"}
         axes = figure.axes[1]
-        assert axes.get_xlabel() == "2400 segments"
         assert not axes.texts  # none of them is large enough for its name
-        legend = axes.get_legend()
-        assert legend is not None
-        *listed, more = [text.get_text() for text in legend.get_texts()]
-        assert (
-            listed == [f"{name_part(label, noun='segment')}, 0 %" for label in range(len(listed))] and len(listed) > 9
-        )
-        assert more == f"and {2400 - len(listed)} more"
         (picture,) = images(axes)
         assert picture.shape == (13 * ROWS, 13 * COLUMNS, 3)
         for label in (0, 1, 7, 8, 2399):
@@ -548,7 +334,7 @@ class TestSheet:
         outlined = 0.2 * 0.45 * colours(2400)[61]
         np.testing.assert_allclose(picture[13, 13], outlined)
 
-    @pytest.mark.parametrize(("count", "arrows", "contact"), [(1, 1, 100), (2, 1, 50), (5000, 150, 50)])
+    @pytest.mark.parametrize(("count", "arrows", "contact"), [(1, 1, 100), (5000, 150, 50)])
     def test_sheet_of_recordings_of_any_length_is_drawn(
         self, draw_figure_of: Callable[..., Figure], count: int, arrows: int, contact: int
     ) -> None:
@@ -570,7 +356,6 @@ class TestSheet:
         (force,), (tip,) = upper.lines, lower.lines
         np.testing.assert_allclose(force.get_xydata(), np.c_[hand.time_s, np.linalg.norm(hand.force_n, axis=1)])
         np.testing.assert_allclose(tip.get_xydata(), np.c_[hand.time_s, 1000 * hand.position_m[:, 2]])
-        assert (upper.get_ylabel(), lower.get_ylabel(), lower.get_xlabel()) == ("force [N]", "height [mm]", "time [s]")
 
     def test_sheet_leaves_out_an_empty_recording(self, tmp_path: Path) -> None:
         surface = HapticSurface.from_heights(np.zeros((5, 5)))
@@ -585,24 +370,6 @@ class TestSheet:
         recording = Recording(rows)
         surface = HapticSurface.from_heights(np.zeros((5, 5)))
         assert headlines({"relief": surface.relief, "recording": recording})["b"] == "Path, never in contact"
-
-
-def test_report_imports_no_pyplot_and_little_before_drawing() -> None:
-    subprocess.run([sys.executable, "-c", LIGHT], check=True)
-
-
-LIGHT = """
-import sys, tempfile
-from pathlib import Path
-import numpy as np
-from tangible_report.drawing.sheet import draw_sheet
-assert "matplotlib" not in sys.modules
-from tangible_core import HapticSurface
-with tempfile.TemporaryDirectory() as folder:
-    draw_sheet(Path(folder) / "sheet.png", surface=HapticSurface.from_heights(np.eye(4)))
-assert "matplotlib" in sys.modules
-assert "matplotlib.pyplot" not in sys.modules
-"""
 
 
 def scene(rows: int, columns: int, count: int = 14) -> dict[str, Any]:
@@ -638,43 +405,28 @@ class TestParts:
         assert "Segmente" not in says and says.startswith("Bildseite von Haus, 3 Bilder.")
         assert "Ihre Teile sind, von nah nach fern, a very long name (rechts" in says
 
-    @pytest.mark.parametrize(
-        ("language", "said", "noted"),
-        [
-            ("fr-CA", " La scène se touche comme une surface de 8 cm de large", []),
-            ("pt", " The scene is felt as a surface 8 cm wide", ["described in English: there are no words for the "]),
-        ],
-    )
-    def test_sheet_describes_the_surface_in_the_language_of_its_names(
-        self, tmp_path: Path, language: str, said: str, noted: list[str]
-    ) -> None:
-        surface = HapticSurface.from_heights(np.eye(8) * 1e-3, 0.08)
-        with collected() as notes:
-            assert said in draw_sheet(tmp_path / "sheet.svg", surface=surface, title="x", language=language)
-        assert [each[:46] for each in notes] == [each[:46] for each in noted]
-
-    def test_parts_without_surface_are_in_their_order(self, tmp_path: Path) -> None:
-        parts = PartMap(np.int32([[0, 0, 0, 1]]), (0, 1))
-        assert draw_sheet(tmp_path / "parts.png", parts=parts).endswith("Parts: 2 parts; 1, 75 %; 2, 25 %.")
-        assert show(parts).get_title() == "Parts"
-        assert parts._repr_html_().startswith("<img alt='PartMap'")  # pyright: ignore[reportPrivateUsage]
-
-    def test_parts_with_materials_list_them_in_the_legend(self) -> None:
-        chosen = Material("ice", 900.0, 1.0, 0.5, 0.4)
-        html = MaterialMap((chosen,), ("part 0 (wall): its own -> ice",))._repr_html_()  # pyright: ignore[reportPrivateUsage]
-        assert ">part</th>" in html and ">segment</th>" not in html
-
 
 class TestEveryShape:
-    """Square, portrait, panorama; a map of heights alone."""
+    """Portrait and panorama; a map of heights alone."""
 
-    @pytest.mark.parametrize("alone", [False, True], ids=["run", "heights"])
-    @pytest.mark.parametrize("shape", [(90, 90), (180, 60), (50, 200), (600, 30)])
+    @pytest.mark.parametrize(
+        ("shape", "alone"),
+        [
+            ((180, 60), False),
+            ((600, 30), True),
+            pytest.param((50, 200), False, marks=pytest.mark.whole),
+            pytest.param((90, 90), True, marks=pytest.mark.whole),
+        ],
+    )
     def test_sheet_of_any_shape_is_filled_without_overlap(self, shape: tuple[int, int], alone: bool) -> None:
         run = scene(*shape)
         if alone:
             run = {name: run[name] for name in ("relief", "recording")}
         figure = draw_figure(run, "title", PANELS)
+        if not alone:
+            views, _, segments, _, way, _ = figure.axes
+            for axes in (views, segments, way):
+                assert axes.bbox.width / axes.bbox.height == pytest.approx(shape[1] / shape[0], rel=1e-6)
         FigureCanvasAgg(figure).draw()
         bars = [bar for axes in figure.axes for bar in axes.child_axes if axes.images or axes.collections]
         texts = [
@@ -695,13 +447,6 @@ class TestEveryShape:
             ]
             assert max(ends) > 0.65
 
-    @pytest.mark.parametrize("shape", [(90, 90), (180, 60), (50, 200)])
-    def test_pictures_of_any_shape_keep_their_proportion(self, shape: tuple[int, int]) -> None:
-        figure = draw_figure(scene(*shape), "title", PANELS)
-        views, _, segments, _, way, _ = figure.axes
-        for axes in (views, segments, way):
-            assert axes.bbox.width / axes.bbox.height == pytest.approx(shape[1] / shape[0], rel=1e-6)
-
 
 class TestSegments:
     def test_segments_are_numbered_in_the_order_of_the_legend(self) -> None:
@@ -719,12 +464,7 @@ class TestSegments:
         shown = {key.get_facecolor() for key in legend.get_patches()}
         assert len(shown) == 14
 
-    def test_segments_of_one_material_share_an_entry(self) -> None:
-        legend = draw_figure(whole_run(), "title", PANELS).axes[3].get_legend()
-        assert legend is not None
-        assert [text.get_text() for text in legend.get_texts()] == ["1, 3: ice, 67 %", "2: sandpaper, 33 %"]
-
-    @pytest.mark.parametrize("count", [0, 3, 8, 24, 25, 3000])
+    @pytest.mark.parametrize("count", [0, 24, 25, 3000])
     def test_colours_are_all_different(self, count: int) -> None:
         found = colours(count)
         assert found.shape == (count, 3) and (found >= 0).all() and (found <= 1).all()
@@ -763,22 +503,15 @@ class TestFiles:
         else:
             assert first.startswith(b"%PDF") and b"/Subject" in first
 
-    def test_sheet_file_describes_the_surface(self, tmp_path: Path) -> None:
-        surface = HapticSurface.from_heights(np.linspace(0, 0.01, 12).reshape(3, 4))
-        assert draw_sheet(tmp_path / "s.png", surface=surface, title="ramp").endswith(f". {describe(surface, '')}")
-
     def test_sheet_with_another_suffix_is_refused(self, tmp_path: Path) -> None:
         with pytest.raises(OutputError, match=r"drawn as \.png, \.svg or \.pdf"):
             draw_sheet(tmp_path / "sheet.jpg", views=Views(np.zeros((4, 4), np.uint8)))
 
 
 class TestMaterial:
-    @pytest.mark.parametrize("name", ["ice", "water", "wood", "skin"])
+    @pytest.mark.parametrize("name", ["ice", "skin"])
     def test_material_sheet_is_drawn(self, tmp_path: Path, name: str) -> None:
         draw_material(tmp_path / "a.png", library()[name])
-        if name == "skin":
-            draw_material(tmp_path / "b.png", library()[name])
-            assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
         with Image.open(tmp_path / "a.png") as sheet:
             assert sheet.width == pytest.approx(WIDTH_IN * DPI, abs=1)
 

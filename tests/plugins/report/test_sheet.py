@@ -1,12 +1,10 @@
-"""The exporter of sheets: the file that it writes, and the products that it draws."""
+"""The exporter of sheets: if a case fails, an export lacks its sheet, or a sheet lacks products of the run."""
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from tangible_core import Pipeline, Scene, show
-from tangible_core.data import Work
-from tangible_core.errors import OutputError
 from tangible_core.scene.workspace import Workspace
 from tangible_depth import Luminance
 from tangible_report import Sheet
@@ -34,11 +32,6 @@ def test_sheet_of_an_export_describes_all_of_its_products(pipeline, tmp_path):
     [path] = pipeline.export(tmp_path, ["sheet"]).files["sheet"]
     described = Image.open(path).text["Description"]
     assert all(each in described for each in ("Input", "Segments and their materials", "Relief"))
-
-
-def test_sheet_without_products_is_refused(tmp_path):
-    with pytest.raises(OutputError, match="there is nothing to draw"):
-        Sheet().write(Work("nothing", "en"), tmp_path / "nothing")
 
 
 def test_show_draws_what_the_exporter_draws(pipeline):

@@ -1,4 +1,4 @@
-"""The exporter of words: what it says of which parts, in which language, and in braille."""
+"""The exporter of words: if a case fails, parts are missing, in a false language, or unreadable on an embosser."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -78,13 +78,6 @@ def test_text_is_in_the_language_of_the_pipeline_by_default(tmp_path: Path):
     assert notes == ["described in English: there are no words for the language 'pt-BR'; there are for en, de and fr"]
 
 
-def test_text_without_materials_names_none(tmp_path: Path):
-    names = "ciel", "lac", "île", "eau"
-    assert "Au toucher, comme du verre." in write_texts(work(*names), Text(), tmp_path)[0][".txt"]
-    texts, _ = write_texts(work(*names), Text(materials=False), tmp_path)
-    assert not any("toucher" in text or "matière" in text or "verre" in text for text in texts.values())
-
-
 def test_braille_has_the_lines_and_pages_of_embossers(tmp_path: Path):
     exporter = Text(braille=True, cells=20, lines=6)
     texts, [*_, note] = write_texts(work("ciel", "lac", "île", "eau"), exporter, tmp_path)
@@ -102,20 +95,6 @@ def test_braille_has_the_lines_and_pages_of_embossers(tmp_path: Path):
     told = texts[".txt"].splitlines()
     assert 1 + len(starts) == sum(map(bool, told)), "a line begins at the margin for each line of the text"
     assert lines[:-1].count("") == told.count("") > 0
-
-
-def test_braille_is_in_the_language_of_the_text(tmp_path: Path):
-    brf = write_texts(work("ciel", "lac", "île", "eau"), Text(braille=True, language="de"), tmp_path)[0][".brf"]
-    assert f"\n{as_ascii(translate('- eau.', 'de'))} " in brf
-
-
-def test_text_of_heights_lists_parts_from_high_to_low(tmp_path: Path):
-    names = "ciel", "lac", "île", "eau"
-    heights = replace(work(*names), picture=None)
-    assert "\nParties, de la plus haute à la plus basse\n" in write_texts(heights, Text(), tmp_path)[0][".txt"]
-    assert (
-        "\nParties, de la plus proche à la plus lointaine\n" in write_texts(work(*names), Text(), tmp_path)[0][".txt"]
-    )
 
 
 def test_name_without_braille_is_refused_for_braille_only(tmp_path: Path):

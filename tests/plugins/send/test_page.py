@@ -16,7 +16,7 @@ from PIL import Image
 from page_files import built_page
 from sent_pages import HOSTILE, MATERIALS, WIDE_M, finer, picture_to_send
 from tangible_core import Pipeline, Scene
-from tangible_core.data import MaterialMap, Relief, Work
+from tangible_core.data import Work
 from tangible_core.errors import OutputError
 from tangible_core.plugins.notes import collect_notes
 from tangible_depth import Luminance
@@ -89,6 +89,7 @@ def test_policy_allows_this_script_and_style_alone(tmp_path: Path):
     }  # fmt: skip
 
 
+@pytest.mark.whole
 def test_file_is_as_small_as_is_asked(tmp_path: Path):
     """Rough heights and a picture of noise, which do not become smaller."""
     work = finer(picture_to_send(), 8)
@@ -127,12 +128,6 @@ def test_numbers_are_packed_as_the_page_unpacks_them():
     assert (found[1:, 1:] == numbers).all()
 
 
-def test_data_have_the_materials_of_each_part(tmp_path: Path):
-    (path,) = Page().write(picture_to_send(), tmp_path / "it")
-    data = json.loads(Elements(path.read_text("utf-8")).texts("script")[0])
-    assert data["rows"] == [[300.0, 1.5, 0.5, 0.4], [900.0, 0.5, 0.2, 0.1], [1200.0, 0.0, 0.0, 0.0]]
-
-
 def data_of(work: Work, folder: Path) -> dict[str, Any]:
     """The data of the page of a picture."""
     (path,) = Page().write(work, folder / "it")
@@ -161,17 +156,6 @@ def test_surface_without_parts_is_sent_plainly(tmp_path: Path):
     assert data["meta"]["rows"] * data["meta"]["columns"] == pytest.approx(MOST_CELLS, rel=0.01)
 
 
-def test_materials_that_the_force_law_has_not_are_named_and_not_felt(tmp_path: Path):
-    """They are named only where there is one for each part."""
-    work = picture_to_send()
-    surface = replace(work.surface, materials=None)
-    for materials, named in ((MATERIALS, 3), (MATERIALS[:2], 0)):
-        given = {"surface": surface, "materials": MaterialMap(materials, ("made up",) * len(materials))}
-        data = data_of(replace(work, products=given), tmp_path)
-        assert data["kinds"] == list(range(named))
-        assert data["rows"] == [[800.0, 0.0, 0.0, 0.0]]
-
-
 @pytest.mark.parametrize(
     ("named_in", "language"), [("de", "de"), ("de-AT", "de"), ("fr", "fr"), ("en-GB", "en"), ("he", "en")]
 )
@@ -184,15 +168,6 @@ def test_words_and_title_are_marked_with_their_languages(tmp_path: Path, named_i
         assert marks == [("html", language), ("h1", named_in if title else language), ("section", language)]
         assert page.texts("title") == page.texts("h1") == [shown]
         assert NO_SCRIPT[language] in page.texts("p")
-
-
-def test_high_surface_has_larger_steps():
-    work = picture_to_send()
-    relief = Relief(work.surface.height_m * np.float32(40), work.surface.extent_m)
-    high = replace(work, products={**work.products, "surface": replace(work.surface, relief=relief)})
-    sent = next(surface_to_send(high))
-    assert sent.step_m > 1e-6
-    assert np.abs(sent.coefficients - spline_coefficients(relief.height_m)).max() < 0.51 * sent.step_m
 
 
 def test_drawn_heights_are_those_of_the_spline():
@@ -223,13 +198,6 @@ def test_script_that_would_end_its_element_is_refused():
             page_of("title", "en", "en", {}, script, style, "")
 
 
-def test_first_frame_of_a_film_is_named(tmp_path: Path):
-    with collect_notes() as notes:
-        (path,) = Page().write(replace(picture_to_send(), film=True, language="de"), tmp_path / "it")
-    assert "the page shows the first frame of the film" in [note.text for note in notes]
-    assert "Dies ist das erste Bild eines Films." in path.read_text("utf-8")
-
-
 def test_film_is_sent_by_its_first_frame(tmp_path: Path):
     """A file of a video, through the whole pipeline: its first frame is dark on the left, the others on the right."""
     first, other = (np.zeros((48, 64, 3), np.uint8) for _ in range(2))
@@ -244,18 +212,3 @@ def test_film_is_sent_by_its_first_frame(tmp_path: Path):
     assert "the page shows the first frame of the film" in str([note.text for note in notes]) + str(done)
     picture = np.asarray(Image.open(BytesIO(b64decode(json.loads(page.texts("script")[0])["photo"]))).convert("L"))
     assert picture[:, :20].mean() < 50 < 150 < picture[:, -20:].mean()
-
-
-def test_surface_without_parts_or_picture_is_written(tmp_path: Path):
-    work = picture_to_send()
-    bare = replace(work.surface, labels=None, materials=None, names=None)
-    work = replace(work, products={"surface": bare, "materials": None}, picture=None)
-    (path,) = Page().write(work, tmp_path / "it")
-    data = json.loads(Elements(path.read_text("utf-8")).texts("script")[0])
-    assert data["photo"] == data["labels"] == "" and data["rows"] == [[800.0, 0.0, 0.0, 0.0]]
-
-
-def test_page_that_was_not_built_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("tangible_ui.address.static", lambda: tmp_path)
-    with pytest.raises(Exception, match="the page was not built"):
-        Page().write(picture_to_send(), tmp_path / "it")

@@ -1,6 +1,7 @@
-"""Studies on force loops in real time: what is left when a device is pulled out, and procedures of other packages."""
+"""Studies on force loops in real time: a force that stays between intervals, or after a device is pulled out."""
 
 import sys
+import time
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -10,12 +11,13 @@ import pytest
 from command_line import tangible
 from distributions import distribution
 from loop_devices import Failing, FailingLink
-from studies import Scripted, first_key, write_study
-from tangible_core.data import HapticState
-from tangible_core.errors import ConfigError, DeviceError
+from studies import Scripted, first_key, sit_down, write_study
+from tangible_core.data import TICK_COLUMNS, HapticState
+from tangible_core.errors import ConfigError, DeviceError, OutputError
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.session import Recording
 from tangible_study.desks.desk import Left
+from tangible_study.presenting.held_loop import HeldLoop
 from tangible_study.presenting.stimuli import Stimuli
 from tangible_study.procedures.installed import load_procedure
 from tangible_study.session.start import begin
@@ -107,20 +109,14 @@ def test_procedure_of_another_package_runs_a_study(tmp_path: Path, monkeypatch: 
     distribution(
         tmp_path / "site",
         "acme-staircase",
-        {"tangible.procedure": {"acme-staircase": "acme_staircase.staircase:Staircase"}},
+        {"tangible.procedure": {"acme-staircase": "acme_staircase.staircase:Staircase", "oddity": "acme:Oddity"}},
     )
     monkeypatch.syspath_prepend(tmp_path / "site")
     assert load_procedure("acme-staircase").__name__ == "Staircase"
+    assert load_procedure("oddity").__module__ == "tangible_study.procedures.pairs", "ours are not replaced"
     file = load_study(example / "study.yaml")
     assert len(file.recipes()) == 6
     sys.modules.pop("acme_staircase", None)
-
-
-def test_procedure_of_another_package_does_not_replace_ours(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    points = {"tangible.procedure": {"oddity": "acme_oddity:Oddity"}}
-    distribution(tmp_path, "acme-oddity", points)
-    monkeypatch.syspath_prepend(tmp_path)
-    assert load_procedure("oddity").__module__ == "tangible_study.procedures.oddity"
 
 
 def test_command_checks_and_names_a_level_that_the_device_cannot_render(tmp_path: Path):
@@ -142,3 +138,48 @@ def test_surfaces_that_cannot_be_made_are_not_counted_as_ready(tmp_path: Path):
     with pytest.raises(ConfigError, match=r"study.yaml:4:14: .*holds only NaN"):
         Stimuli(parse_study(text, study)).make(ready.append)
     assert ready == [1]
+
+
+FORCE = [TICK_COLUMNS.index(each) for each in ("fx_n", "fy_n", "fz_n")]
+
+
+def test_nothing_is_felt_between_intervals(tmp_path: Path, loop_in_thread: None):
+    study = write_study(tmp_path)
+    stimuli = Stimuli(parse_study(study.read_text(), study))
+    comparison, stimulus = next(iter(stimuli.recipes))
+    rows = list[np.ndarray]()
+    with HeldLoop() as loop:
+        for _ in range(2):
+            loop.feel(stimuli.feeling(comparison, stimulus), 0.3, rows.append, Scripted(first_key), lambda: None, None)
+            assert np.abs(np.concatenate(rows)[:, FORCE]).max() > 0.1
+            rows.clear()
+            time.sleep(0.1)
+            assert loop._servo is not None and loop._servo.running
+            newest = loop._servo.ring.latest()
+            assert newest is not None and not newest[FORCE].any()
+    assert loop._servo is None
+
+
+def test_recording_that_cannot_be_kept_ends_the_loop(tmp_path: Path, loop_in_thread: None):
+    """No force goes on while the participant reads that the disk is full."""
+
+    def fail(rows: np.ndarray) -> None:
+        raise OutputError("the disk is full")
+
+    study = write_study(tmp_path)
+    stimuli = Stimuli(parse_study(study.read_text(), study))
+    feeling = stimuli.feeling(*next(iter(stimuli.recipes)))
+    with HeldLoop() as loop:
+        with pytest.raises(OutputError, match="disk is full"):
+            loop.feel(feeling, 60.0, fail, Scripted(first_key), lambda: None, None)
+        assert loop._servo is None
+        rows = list[np.ndarray]()
+        loop.feel(feeling, 0.1, rows.append, Scripted(first_key), lambda: None, None)
+        assert rows, "the next interval opens the device anew"
+
+
+def test_stop_of_one_trial_does_not_end_the_next(tmp_path: Path):
+    session = sit_down(write_study(tmp_path))
+    session.desk.stop.set()
+    assert session.run() == 7
+    assert session.faults == []

@@ -2,10 +2,8 @@
 
 import json
 import re
-from base64 import b64decode
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from urllib.error import HTTPError
@@ -14,15 +12,13 @@ from urllib.request import Request, urlopen
 import numpy as np
 import pytest
 
-from sent_pages import HOSTILE, MATERIALS, picture_to_send
 from studies import write_study
-from tangible_core.data import TICK_COLUMNS, HapticSurface
+from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import DeviceError
 from tangible_core.translation import translate
 from tangible_study.desks.desk import Left
 from tangible_study.desks.page import Page
 from tangible_study.desks.page_hand import PageHand
-from tangible_study.desks.page_surface import surface_for_page
 from tangible_study.presenting.held_loop import HeldLoop
 from tangible_study.presenting.stimuli import Stimuli
 from tangible_study.session.start import begin
@@ -142,49 +138,24 @@ class TestHand:
         with pytest.raises(HTTPError, match="404"):
             fetch(page, "surface?1")
 
-    def test_hand_that_leaves_feels_nothing(self, feel: Any):
-        page, rows, _ = feel()
-        begun(page)
-        press_until_felt(page, rows)
-        state = exchange(page, RELEASE_FRAME.pack(RELEASE))
-        assert not page.hand._hand.holding, "released by the message, not by the silence after it"
-        until(lambda: not newest_n(rows), "the force falls to zero")
-        assert len(state) == STATE_FRAME.size
-
-    def test_silent_page_is_released(self, feel: Any):
-        page, rows, _ = feel()
-        begun(page)
-        press_until_felt(page, rows)
-        until(lambda: not newest_n(rows), "the force falls to zero")
-
-    def test_hand_takes_whole_messages_alone(self, feel: Any):
+    def test_hand_that_leaves_or_falls_silent_feels_nothing(self, feel: Any):
         page, rows, _ = feel()
         begun(page)
         for message in (b"", b"x", pointer()[:-1], pointer() + b"0", bytes([ACK]) * 8):
-            assert exchange(page, message) == b""
+            assert exchange(page, message) == b"", "whole messages alone are taken"
         assert not newest_n(rows)
+        press_until_felt(page, rows)
+        assert len(exchange(page, RELEASE_FRAME.pack(RELEASE))) == STATE_FRAME.size
+        assert not page.hand._hand.holding, "released by the message, not by the silence after it"
+        until(lambda: not newest_n(rows), "the force falls to zero")
+        press_until_felt(page, rows)
+        until(lambda: not newest_n(rows), "the force falls to zero in silence")
 
     def test_page_that_does_not_answer_interrupts_the_trial(self, feel: Any, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr("tangible_study.desks.page.SURFACE_S", 0.05)
         _, rows, done = feel()
         assert "does not answer" in str(done.exception())
         assert not newest_n(rows)
-
-
-def test_surface_of_the_page_has_no_name():
-    """Its cells and labels are those of the surface, in their order."""
-    work = picture_to_send()
-    surface = replace(work.surface, materials=MATERIALS)
-    sent = surface_for_page(surface, 3)
-    text = json.dumps(sent)
-    assert not any(name in text for name in (*HOSTILE, "felt", "ice"))
-    assert [each["roughness_m"] for each in sent["meta"]["materials"]] == [each.roughness_m for each in MATERIALS]
-    labels = np.frombuffer(b64decode(sent["labels"]), "<u2").reshape(surface.height_m.shape)
-    assert surface.labels is not None and (labels == surface.labels).all()
-    heights = np.frombuffer(b64decode(sent["heights"]), "<f4").reshape(surface.height_m.shape)
-    assert (heights == surface.height_m).all()
-    bare = surface_for_page(HapticSurface(surface.relief), 1)
-    assert bare["labels"] == "" and bare["meta"]["materials"] == bare["kinds"] == []
 
 
 def begun(page: Page) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from tangible_study.analysis.results_folder import Kept
 from tangible_study.analysis.rows import ALL, Result, Row, What
 from tangible_study.analysis.sentences import is_sure
 from tangible_study.design.study import Comparison, Study
-from tangible_study.statistics.intervals import Estimate, difference, proportion, wider
+from tangible_study.statistics.intervals import Estimate, proportion
 from tangible_study.trials import Answer
 
 T_2 = 0.95 / sqrt(2 * 0.025 * 0.975)
@@ -66,18 +66,15 @@ def test_p_of_right_answers_is_the_greater_of_trials_and_participants(right: tup
     assert both.estimate == pytest.approx(
         (mean(shares), min(exact.low, mean(shares) - half), max(exact.high, mean(shares) + half))
     )
+    chosen = analyse_comparison(
+        Comparison(name="c", question="rougher", conditions=("one", "two")), {"S01": hits(2, 10)}
+    )
+    two_sided = table(chosen)["proportion chosen", "one", "two", "S01"].p
+    assert two_sided == pytest.approx(2 * at_least(8, 10, 0.5)), "choices count on both sides, right answers on one"
     for name, each in zip(given, right, strict=True):
         own = rows["proportion correct", "one", "two", name]
         assert own.p == pytest.approx(at_least(each, 10, 1 / 3))
         assert own.estimate == proportion(each, 10)
-
-
-def test_p_of_choices_counts_both_sides_and_that_of_right_answers_one():
-    chosen = {"S01": hits(2, 10)}
-    rows = table(analyse_comparison(Comparison(name="c", question="rougher", conditions=("one", "two")), chosen))
-    assert rows["proportion chosen", "one", "two", "S01"].p == pytest.approx(2 * at_least(8, 10, 0.5))
-    worse = table(analyse_comparison(Comparison(name="c", question="same"), chosen))
-    assert worse["proportion correct", "one", "two", "S01"].p == pytest.approx(at_least(2, 10, 1 / 3))
 
 
 def test_interval_over_participants_stays_within_what_the_measure_can_be():
@@ -115,34 +112,6 @@ def test_difference_is_that_of_participants_who_have_both_conditions():
     assert isnan(rows["mean rating", "one", "", ALL].p), "a rating has no value by chance"
     assert rows["standard deviation", "one", "", "S01"].estimate.value == pytest.approx(sqrt(2))
     assert ("standard deviation", "one", "", "S03") not in rows, "of one value"
-
-
-def test_difference_of_one_participant_follows_from_both_intervals():
-    given = {
-        "S01": [answer(name, f"{each}") for name, some in (("one", (1, 2, 3)), ("two", (4, 6, 8))) for each in some]
-    }
-    rows = table(analyse_comparison(Comparison(name="c", question="rating"), given))
-    one, two = 1 * T_2 / sqrt(3), 2 * T_2 / sqrt(3)  # half the intervals of 2 and 6
-    assert rows["difference of mean rating", "two", "one", "S01"].estimate == pytest.approx(
-        (4.0, 4 - sqrt(one**2 + two**2), 4 + sqrt(one**2 + two**2))
-    )
-
-
-def test_difference_of_shares_holds_that_of_all_trials_too():
-    """Three participants whose differences are alike: Student's interval is narrow, and the trials are few."""
-    given = {
-        name: [answer(of, correct=int(n < right)) for of, right in (("one", 1), ("two", two)) for n in range(4)]
-        for name, two in (("S01", 3), ("S02", 3), ("S03", 2))
-    }
-    rows = table(analyse_comparison(Comparison(name="c", question="name", names=("ear", "eye")), given))
-    found = rows["difference of proportion correct", "two", "one", ALL]
-    apart = [0.5, 0.5, 0.25]
-    half = T_2 * stdev(apart) / sqrt(3)
-    of_trials = difference(proportion(8, 12), proportion(3, 12))
-    assert found.estimate == pytest.approx(
-        wider(Estimate(mean(apart), mean(apart) - half, mean(apart) + half), of_trials)
-    )
-    assert found.p == pytest.approx(p_of_three(apart, 0.0))
 
 
 def test_constant_error_is_counted_from_the_standard():

@@ -4,12 +4,9 @@ from math import nan
 
 import pytest
 
-from tangible_study.analysis.analysing import analyse_comparison
 from tangible_study.analysis.rows import Result, Row, What
 from tangible_study.analysis.sentences import sentences
-from tangible_study.design.study import Comparison
 from tangible_study.statistics.intervals import Estimate
-from tangible_study.trials import Answer
 
 FEW = "The result is about 1 participant, and says little about other people."
 
@@ -105,29 +102,3 @@ def test_three_differences_are_said_to_show_one_by_chance(count: int, warned: bo
     found = text_of("rating", "mean rating", *rows)[count:]
     expected = "3 differences were looked for: if there were none, about one in 20 would seem to be there."
     assert found == ([expected] if warned else [])
-
-
-def answers(question: str, *given: tuple[str, float | None, str, int | None]) -> dict[str, list[Answer]]:
-    """Return answers of one participant: condition, level, response, and 1 if right."""
-    return {
-        "S01": [
-            Answer(number, "test", "c", question, "any", condition, level=level, response=response, correct=correct)
-            for number, (condition, level, response, correct) in enumerate(given, start=1)
-        ]
-    }
-
-
-def values(result: Result, measure: str) -> dict[str, float]:
-    return {each.what.condition: each.estimate.value for each in result.of_all(measure)}
-
-
-def test_ratings_are_averaged_for_each_level():
-    given = answers("rating", ("one", 0.1, "2", None), ("one", 0.1, "3", None), ("one", 0.2, "6", None))
-    found = analyse_comparison(Comparison(name="c", question="rating"), given)
-    assert values(found, "mean rating") == {"one at 0.1": 2.5, "one at 0.2": 6.0}
-
-
-def test_names_are_right_for_each_level():
-    given = answers("name", ("one", 0.1, "ear", 1), ("one", 0.1, "eye", 0), ("one", 0.2, "eye", 1))
-    found = analyse_comparison(Comparison(name="c", question="name", names=("ear", "eye")), given)
-    assert values(found, "proportion correct") == {"one at 0.1": 0.5, "one at 0.2": 1.0}

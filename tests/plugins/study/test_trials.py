@@ -9,7 +9,6 @@ from tangible_core.errors import OutputError, ResultsError
 from tangible_study.analysis.results_folder import read_results
 from tangible_study.session.folder import Participant, participants
 from tangible_study.trials import COLUMNS, Answer, AnswerFile, read_answers
-from unreadable import unreadable
 
 FIRST = Answer(
     1, "test", "a", "same", "oddity", "one", "two", None, None, 3, "2", None, 0, 1.25, 1, False, "why", "r.nc"
@@ -64,14 +63,6 @@ def test_full_disk_leaves_the_table_as_it_was_and_the_answer_can_be_added_again(
 def test_two_programs_do_not_write_one_table(tmp_path: Path):
     with AnswerFile(tmp_path / "a.tsv"), pytest.raises(OutputError, match="another program runs this participant"):
         AnswerFile(tmp_path / "a.tsv")
-
-
-def test_table_that_cannot_be_read_says_why(tmp_path: Path):
-    assert read_answers(tmp_path / "missing.tsv") == []
-    for path, why in unreadable(tmp_path, ".tsv"):
-        with pytest.raises(ResultsError) as error:
-            read_answers(path)
-        assert str(error.value) == f"{path}: cannot be read as a table of answers: {why}; name another folder"
 
 
 def test_damaged_line_is_named(tmp_path: Path):

@@ -42,12 +42,6 @@ def test_optional_part_may_be_missing(tmp_path: Path):
     assert found["1"]["truth"] == tmp_path / "D1.pfm" and "truth" not in found["2"]
 
 
-def test_absolute_patterns_are_matched(tmp_path: Path):
-    touch(tmp_path, "L1.png", "R1.png")
-    patterns = {"left": f"{tmp_path}/L*.png", "right": f"{tmp_path}/R*.png"}
-    assert list(matched(Path("elsewhere"), patterns, NEEDED)) == ["1"]
-
-
 @pytest.mark.parametrize(
     ("patterns", "error", "why"),
     [

@@ -55,6 +55,7 @@ def test_adjusted_rand_index_counts_pairs(labels, truth):
     both, first, second = np.sum(np.logical_and(one, other)), sum(one), sum(other)
     chance = first * second / len(pairs)
     found = adjusted_rand_index(contingency(labels, truth))
+    assert rand_index(contingency(labels, truth)) == pytest.approx(np.mean(np.equal(one, other)))
     if first == second == len(pairs) or first == second == 0:
         assert found == 1
     else:
@@ -65,14 +66,6 @@ def test_adjusted_rand_index_is_exact_where_products_of_counts_do_not_fit_64_bit
     size = 10**8
     assert adjusted_rand_index(np.array([[size, 0], [0, size]])) == 1
     assert adjusted_rand_index(np.array([[size, size], [size, size]])) == pytest.approx(-1 / (4 * size - 2), rel=1e-12)
-
-
-@given(SMALL, SMALL)
-def test_rand_index_is_the_share_of_pairs_on_which_both_agree(labels, truth):
-    pairs = list(combinations(zip(labels.ravel().tolist(), truth.ravel().tolist(), strict=True), 2))
-    agreeing = sum((one[0] == other[0]) == (one[1] == other[1]) for one, other in pairs)
-    expected = agreeing / len(pairs) if pairs else 1.0
-    assert rand_index(contingency(labels, truth)) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(
@@ -94,30 +87,9 @@ def test_accuracy_equals_the_best_of_all_matchings(labels, truth):
     assert matched_accuracy(contingency(labels, truth)) == pytest.approx(best)
 
 
-@given(SMALL)
-def test_measures_ignore_the_numbers_of_labels(labels):
-    renamed = np.array([40, -3, 0, 7], np.int32)[labels]
-    assert segment_errors(renamed, labels) == {
-        "ari": 1,
-        "accuracy": 1,
-        "boundary_px": 0,
-        "segments": np.unique(labels).size,
-    }
-
-
-def test_accuracy_of_too_many_segments_counts_pixels_without_partner():
-    found = segment_errors(halves(8) + halves(16), halves(16))
-    assert found["accuracy"] == 0.75
-    assert found["segments"] == 3
-
-
-@pytest.mark.parametrize("shift", [1, 2, 7])
-def test_boundary_distance_of_a_moved_border_is_the_move(shift: int):
-    assert boundary_distance(halves(16 + shift), halves(16)) == shift
-
-
 def test_boundary_distance_of_an_extra_border_counts_in_one_direction():
-    """The extra points are 6 px from the true border; those of the true border are at 0."""
+    """The extra points are 6 px from the true border; those of the true border are at 0. A moved one is off by that."""
+    assert [boundary_distance(halves(16 + shift), halves(16)) for shift in (1, 2, 7)] == [1, 2, 7]
     extra = halves(16) + halves(22)
     assert boundary_distance(extra, halves(16)) == pytest.approx((6 / 2 + 0) / 2)
     assert boundary_distance(halves(16), extra) == pytest.approx((0 + 6 / 2) / 2)
@@ -132,13 +104,6 @@ def test_boundary_distance_equals_the_mean_over_pairs_of_points(labels, truth):
     else:
         expected = 5 if len(one) or len(other) else 0
     assert boundary_distance(labels, truth) == pytest.approx(expected, rel=1e-6)
-
-
-@given(SMALL, SMALL)
-def test_boundary_distance_of_turned_maps_is_the_same(labels, truth):
-    expected = pytest.approx(segment_errors(labels, truth), rel=1e-6)
-    assert segment_errors(labels.T, truth.T) == expected
-    assert segment_errors(labels[::-1], truth[::-1]) == expected
 
 
 def test_boundary_distance_without_borders_is_zero_or_the_diagonal():

@@ -10,25 +10,19 @@ from tangible_core.metrics import disparity_errors
 NAN = np.nan
 
 
-def areas(figures: dict[str, float]) -> dict[str, float]:
-    return {name: value for name, value in figures.items() if name.startswith("ausc")}
-
-
 def curve(figures: dict[str, float], end: str = "") -> list[float]:
     return [figures[f"left_{removed}{end}"] for removed in LEFT]
 
 
-def test_curve_equals_that_computed_by_hand():
-    wrong = np.array([True, False, True, False])
-    curve = sparsification_curve(np.array([0.1, 0.9, 0.5, 0.3]), wrong)
-    np.testing.assert_allclose(curve, [0, 1 / 2, 1 / 3, 1 / 2])
-
-
-def test_curve_of_equal_confidence_is_the_mean_over_all_orders():
-    """A wrong pixel among the three at .5 counts as a third with each."""
-    wrong = np.array([False, True, False, False])
-    curve = sparsification_curve(np.array([0.9, 0.5, 0.5, 0.5]), wrong)
-    np.testing.assert_allclose(curve, [0, (1 / 3) / 2, (2 / 3) / 3, 1 / 4])
+@pytest.mark.parametrize(
+    ("confidence", "wrong", "expected"),
+    [
+        ([0.1, 0.9, 0.5, 0.3], [1, 0, 1, 0], [0, 1 / 2, 1 / 3, 1 / 2]),
+        ([0.9, 0.5, 0.5, 0.5], [0, 1, 0, 0], [0, (1 / 3) / 2, (2 / 3) / 3, 1 / 4]),  # a third with each of three equals
+    ],
+)
+def test_curve_equals_that_computed_by_hand(confidence: list[float], wrong: list[int], expected: list[float]):
+    np.testing.assert_allclose(sparsification_curve(np.array(confidence), np.array(wrong, bool)), expected)
 
 
 def test_areas_of_best_worst_and_constant_order_are_exact():
@@ -38,9 +32,9 @@ def test_areas_of_best_worst_and_constant_order_are_exact():
     worst = sparsification_errors(found, np.float32([[0, 1], [0, 0]]), truth)
     none = sparsification_errors(found, np.ones((2, 2), np.float32), truth)
     quarter = 100 * (1 / 4) / 4
-    assert areas(best) == pytest.approx({"ausc": quarter, "ausc_by_oracle": 1})
+    assert (best["ausc"], best["ausc_by_oracle"]) == pytest.approx((quarter, 1))
     area = 100 * (1 + 1 / 2 + 1 / 3 + 1 / 4) / 4
-    assert areas(worst) == pytest.approx({"ausc": area, "ausc_by_oracle": area / quarter})
+    assert (worst["ausc"], worst["ausc_by_oracle"]) == pytest.approx((area, area / quarter))
     assert none["ausc"] == pytest.approx(disparity_errors(found, truth)["bad2"])
 
 
@@ -56,18 +50,15 @@ def test_curve_of_the_best_order_falls_to_zero():
     unsure = sparsification_errors(found, np.ones_like(found), truth)
     assert curve(unsure) == pytest.approx([20] * len(LEFT))
     assert curve(unsure, "_by_oracle") == pytest.approx(by_hand)
-
-
-def test_curve_of_one_pixel_keeps_it():
-    figures = sparsification_errors(np.float32([[3]]), np.float32([[1]]), np.float32([[0]]))
-    assert curve(figures) == [100] * len(LEFT)
+    one = sparsification_errors(np.float32([[3]]), np.float32([[1]]), np.float32([[0]]))
+    assert curve(one) == [100] * len(LEFT), "it keeps one pixel"
 
 
 def test_missing_estimate_is_wrong_and_least_confident():
     found = np.float32([[0, NAN, 9, 0]])
     truth = np.float32([[0, 0, NAN, 0]])
     figures = sparsification_errors(found, np.float32([[0.1, 1, 1, 0]]), truth)
-    assert areas(figures) == pytest.approx({"ausc": 100 * (1 / 3) / 3, "ausc_by_oracle": 1})
+    assert (figures["ausc"], figures["ausc_by_oracle"]) == pytest.approx((100 * (1 / 3) / 3, 1))
 
 
 def test_area_without_wrong_pixels_is_zero_and_without_truth_nan():

@@ -1,15 +1,25 @@
-"""The choice of a cost: its thresholds, its trials, and the reasons that it gives."""
+"""The choice of a cost and the steps round it: else noisy, exchanged or large pairs are matched wrongly."""
 
 import numpy as np
 import pytest
 
+from tangible_core.data import DisparityMap, Views
+from tangible_core.plugins.notes import collected
+from tangible_depth.dense.refinement import DenseMatches
 from tangible_depth.dense.span import UNKNOWN, Span
 from tangible_depth.dense.speckles import ISLAND_PX, remove_speckles
 from tangible_depth.matching import adaptive as module
-from tangible_depth.matching.adaptive import Fixed
+from tangible_depth.matching import chain, feature_chain, scaling
+from tangible_depth.matching.adaptive import Fixed, Matched, MatchedView
+from tangible_depth.matching.chain import Search, low_confidence_share, match_in_order, zero_disparity
+from tangible_depth.matching.scaling import Scaling
+from tangible_depth.matching.window_matching import match_by_correlation, match_by_difference
+from tangible_depth.rectify.rectified_pair import warp_pair
 from tangible_depth.row_alignment.row_offset import shift_rows
 from tangible_depth.search.pairs import Pair
 from tangible_depth.sgm.costs import LEVELS, SHARP
+from tangible_depth.sgm.strips import StripMatches
+from tangible_depth.sparse.matches import NO_MATCHES
 
 
 @pytest.mark.parametrize(
@@ -142,3 +152,140 @@ def test_best_effort_matches_the_exchanged_pair_at_the_same_cost_and_rows(row_of
     assert np.array_equal(found.mirrored_right.matches.disparity, again.disparity)
     if not row_offset_px:
         assert np.mean(np.abs(found.mirrored_right.matches.disparity[:, 8:-8] - 80) <= 8) > 0.9
+
+
+PAIR = Pair.of(*np.random.default_rng(0).integers(0, 256, (2, 6, 9), np.uint8))
+SEARCH = Search("auto", "auto", "auto", fill=True)
+
+
+def asked_by(span: Span) -> tuple[DisparityMap, Pair, Span]:
+    """Match the pair within a span by what grows along the rows of the left picture that was given."""
+    asked = []
+
+    def match(pair: Pair, span: Span) -> DenseMatches:
+        asked.append((pair, span))
+        columns = np.indices(pair.left.shape)[1]
+        return DenseMatches((16 * columns).astype(np.int16), (columns / 10).astype(np.float32))
+
+    found = match_in_order(PAIR, span, True, match)
+    return found, *asked[0]
+
+
+@pytest.mark.parametrize("span", [Span(-9, 1), Span(0, 30)])
+def test_range_with_positive_disparities_is_matched_as_it_is(span: Span):
+    found, pair, asked = asked_by(span)
+    assert (asked, pair is PAIR) == (span, True)
+    assert found.disparity_px[0].tolist() == list(range(9))
+
+
+@pytest.mark.parametrize(("span", "turned"), [(Span(-9, -2), Span(2, 9)), (Span(-30, 0), Span(0, 30))])
+def test_range_without_positive_disparities_is_matched_in_a_mirror(span: Span, turned: Span):
+    found, pair, asked = asked_by(span)
+    assert asked == turned
+    assert np.array_equal(pair.left, PAIR.left[:, ::-1])
+    assert np.array_equal(pair.right, PAIR.right[:, ::-1])
+    assert found.disparity_px[0].tolist() == list(range(-8, 1))
+    assert found.confidence[0] == pytest.approx(np.arange(8, -1, -1) / 10)
+
+
+def test_identical_views_are_unknown_where_they_are_flat_unless_filled():
+    left = np.full((9, 14), 80, np.uint8)
+    left[:, 9:] = np.arange(5) * 30
+    for fill in (True, False):
+        found = zero_disparity(Pair.of(left, left), fill)
+        assert np.array_equal(np.isnan(found.disparity_px), (np.arange(14) < 7) & (not fill) & (left > -1))
+        assert np.array_equal(found.confidence, (np.arange(14) >= 7) * np.ones((9, 1)))
+        assert np.isnan(zero_disparity(Pair.of(left[:, :5], left[:, :5]), fill).disparity_px).all()
+
+
+def test_pixel_of_just_the_least_confidence_is_not_low():
+    confidence = np.float32([[0.1, 0.15, 0.2, 0.14]])
+    assert chain.LOW_CONFIDENCE == 0.15
+    confidence[0, 1] = 0.15000001
+    assert low_confidence_share(DisparityMap(np.zeros((1, 4), np.float32), confidence)) == 0.5
+    exact = np.array([[0.1, 0.125, 0.2, 0.14]], np.float32)
+    assert low_confidence_share(DisparityMap(np.zeros((1, 4), np.float32), exact)) == 0.75
+
+
+@pytest.mark.parametrize(("better", "worse"), [((0.2, 0.2), (0.2, 0.1)), ((0.2, 0.1), (0.2, 0.1))])
+def test_first_map_stays_unless_the_rectified_one_is_better(better, worse, monkeypatch: pytest.MonkeyPatch):
+    again, first = (
+        DisparityMap(np.zeros((1, 2), np.float32), np.array([each], np.float32)) for each in (better, worse)
+    )
+    monkeypatch.setattr(chain, "_match_rectified", lambda *_: again)
+    views = Views(PAIR.left, PAIR.right)
+    with collected() as notes:
+        found = chain._retry_rectified(views, "", SEARCH, lambda *_: None, first)
+    assert found is (again if better != worse else first)
+    assert notes == ["retried with rectification: 50% of the pixels have low confidence"]
+
+
+OPTIONS = Scaling("auto", "balanced", "auto", "soft", realign_rows=True, skip_flat=True)
+
+
+@pytest.mark.parametrize(
+    ("resolution", "disparities", "factor"),
+    [("auto", 256, 1), ("auto", 257, 2), ("auto", 600, 4), ("full", 512, 1), ("full", 513, 2), ("half", 20, 2)],
+)
+def test_pictures_are_smaller_where_more_disparities_are_tried_than_fit(resolution, disparities: int, factor: int):
+    with collected() as notes:
+        found = scaling._factor(Span(0, disparities - 1), OPTIONS._replace(resolution=resolution))
+    assert found == factor
+    assert notes == [f"skipped: full resolution, matched at 1/{factor}"] * (factor > 1)
+
+
+def test_strip_has_texture_if_a_window_of_its_rows_has():
+    grey = np.full((40, 30), 90, np.uint8)
+    grey[20, 7] = 91
+    assert [scaling._has_texture(grey, y, y + 4) for y in (14, 15, 20, 22, 23)] == [False, True, True, True, False]
+
+
+def test_confidence_of_a_match_falls_from_one_to_that_of_the_worst_with_its_cost(monkeypatch: pytest.MonkeyPatch):
+    """In a picture without steps or gaps: of 96 bits on four paths."""
+    grey = np.random.default_rng(0).integers(0, 256, (20, 60), np.uint8)
+    sums = np.tile(np.repeat([0, 24, 48, 96, 255], 12), (20, 1)).astype(np.uint8)
+    disparity = np.full(grey.shape, np.int16(64))
+    assert (disparity != UNKNOWN).all()
+    view = MatchedView(StripMatches(disparity.copy(), sums), grey)
+    monkeypatch.setattr(scaling, "match", lambda *_: Matched(view, None, SHARP))
+    found = scaling.match_scaled(Pair.of(grey, grey), Span(0, 15), OPTIONS)
+    np.testing.assert_allclose(found.confidence[0], np.repeat([1, 0.75, 0.5, 0.2, 0.2], 12), atol=1e-6)
+
+
+def test_right_view_is_completed_by_the_picture_that_was_matched(monkeypatch):
+    """The given one before its rows were realigned would put its edges on other rows than the matches have."""
+    left, right, moved = np.random.default_rng(0).integers(0, 256, (3, 20, 60), np.uint8)
+    known, other = (StripMatches(np.full((20, 60), np.int16(each)), np.zeros((20, 60), np.uint8)) for each in (64, 80))
+    views = MatchedView(known, left), MatchedView(other, np.ascontiguousarray(moved[:, ::-1]))
+    monkeypatch.setattr(scaling, "match", lambda *_: Matched(*views, SHARP))
+    seen = {}
+
+    def complete(disparity, sums, by_sum, grey, *more):
+        seen[int(disparity[0, 0])] = grey
+        return module_complete(disparity, sums, by_sum, grey, *more)
+
+    module_complete = scaling.complete
+    monkeypatch.setattr(scaling, "complete", complete)
+    scaling.match_scaled(Pair.of(left, right), Span(0, 15), OPTIONS._replace(effort="best"))
+    assert np.array_equal(seen[64], left)
+    assert np.array_equal(seen[80], moved[:, ::-1])
+
+
+VIEWS = Views(*np.random.default_rng(0).integers(0, 256, (2, 20, 90), np.uint8))
+
+
+@pytest.mark.parametrize(("start_px", "most", "span"), [(0, 40, (0, 40)), (-8, 40, (8, 48)), (5, 40, (-5, 35))])
+def test_requested_range_counts_from_the_original_picture(start_px: int, most: int, span: tuple[int, int]):
+    rectified = warp_pair(VIEWS, (np.eye(3), np.eye(3)), "", start_px)
+    assert feature_chain._range(NO_MATCHES, rectified, most) == span
+
+
+@pytest.mark.parametrize("window_px", [3, 7])
+@pytest.mark.parametrize("brighter", [0, 10, 20])
+def test_confidence_of_squared_differences_is_that_of_their_mean(window_px: int, brighter: int):
+    """It falls to 1 / e at a difference of 20 levels."""
+    left = np.random.default_rng(0).integers(0, 230, (30, 60), np.uint8)
+    pair = Pair.of(left, left + np.uint8(brighter))
+    found = match_by_difference(pair, Span(0, 0), window_px).confidence[10:-10, 10:-10]
+    np.testing.assert_allclose(found, np.exp(-((brighter / 20) ** 2)), atol=1 / 255)
+    assert match_by_correlation(pair, Span(0, 0), window_px).confidence[15, 20] == pytest.approx(1, abs=1e-4)

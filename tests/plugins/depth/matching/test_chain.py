@@ -1,31 +1,23 @@
-"""The steps after matching, and those before it, one by one."""
+"""The steps after matching, one by one: else specks are felt as needles, and edges and gaps at wrong depths."""
 
 from collections import deque
 
-import cv2
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from stereo_scenes import known_pair, slanted, step, texture
 from tangible_core.compiled import threads
-from tangible_core.data import Views
 from tangible_depth.dense.confidence import confidence, flat_pixels
-from tangible_depth.dense.edges import median, sharpen_edges
-from tangible_depth.dense.filling.candidates import project_to_right
+from tangible_depth.dense.edges import median
 from tangible_depth.dense.filling.eight_directions import fill_from_eight_directions
 from tangible_depth.dense.filling.four_directions import GEODESIC, choose_of_four, fill_from_four_directions
-from tangible_depth.dense.refinement import Cleaning, DenseMatches, complete, enlarge, to_disparity_map
+from tangible_depth.dense.refinement import DenseMatches, enlarge, to_disparity_map
 from tangible_depth.dense.span import UNKNOWN
 from tangible_depth.dense.speckles import Specks, remove_speckles, remove_specks
-from tangible_depth.dense.subpixel import equiangular, parabola
-from tangible_depth.row_alignment.row_offset import row_offset, shift_rows
-from tangible_depth.search.disparity_range import find_disparity_range
-from tangible_depth.search.pairs import Pair, grey_pair
-from tangible_depth.search.range_in_bands import find_range
-from tangible_depth.sgm.census import census
+from tangible_depth.sgm.aggregation import equiangular
+from tangible_depth.windows.correlation import parabola
 
 MAPS = arrays(
     np.int16, st.tuples(st.integers(1, 40), st.integers(1, 12)), elements=st.sampled_from([-32768, 0, 16, 40, 48])
@@ -42,17 +34,6 @@ def test_parabola_through_samples_gives_its_vertex(vertex, bend, level):
 @given(st.floats(-0.5, 0.5), st.floats(0.1, 100), st.floats(-100, 100))
 def test_v_through_samples_gives_its_tip(tip, slope, level):
     assert equiangular(*[slope * abs(x - tip) + level for x in (-1, 0, 1)]) == pytest.approx(tip, abs=1e-6)
-
-
-def test_equal_samples_give_no_offset():
-    assert parabola(2.0, 2.0, 2.0) == equiangular(2.0, 2.0, 2.0) == 0
-
-
-def test_census_of_a_ramp_is_its_darker_half():
-    grey = np.tile(np.arange(40, dtype=np.uint8), (9, 1))
-    bits = np.unpackbits(census(grey)[:, :, :40], axis=1).sum(axis=1)
-    assert (bits[:, 2:-2] == 10).all()  # the two columns to the left, five rows high
-    assert np.array_equal(census(grey), census(grey // 2 * 2 + grey % 2 * 2 // 2))
 
 
 def islands(disparity, step):
@@ -107,60 +88,6 @@ def test_island_is_removed_by_size_and_share_of_matches_near_it(far_px: int, alo
     assert np.count_nonzero(disparity[:, 200:] == 300) == left
 
 
-def test_preview_counts_matches_near_an_island_in_fewer_pixels():
-    """Many are matched within 10 pixels of the preview, few within 20."""
-    disparity = np.full((60, 60), UNKNOWN)
-    disparity[20:41, 20:41] = 100
-    disparity[30:32, 28:33] = 300
-    for factor, left in ((2, 10), (1, 0)):
-        cleaned = disparity.copy()
-        remove_specks(cleaned, Specks(5 * factor**2, 15 * factor**2, 15 * factor**2), factor)
-        assert np.count_nonzero(cleaned == 300) == left
-
-
-def test_matches_near_an_island_are_counted_across_blocks_of_rows(monkeypatch: pytest.MonkeyPatch):
-    """Four threads, of a block of rows each, remove what one removes."""
-    disparity = np.full((120, 80), UNKNOWN)
-    disparity[::4, ::8] = disparity[::4, 1::8] = 160
-    disparity[16:30] = disparity[60:70] = 0
-    found = []
-    for count in (1, 4):
-        monkeypatch.setattr(threads, "thread_count", lambda count=count: count)
-        found.append(disparity.copy())
-        remove_specks(found[-1], Specks(0, 0, 30), 2)
-    assert 0 < np.count_nonzero(found[0] == 160) < np.count_nonzero(disparity == 160)
-    assert np.array_equal(*found)
-
-
-def test_preview_is_cleaned_of_smaller_islands():
-    matched, grey = np.full((50, 50), np.int16(100)), np.zeros((50, 50), np.uint8)
-    matched[20:22, 20:25] = 300
-    for factor, left in ((1, 0), (2, 10)):
-        cleaned = matched.copy()
-        complete(cleaned, grey, np.ones(256), grey, Cleaning(specks=Specks(20, 60, 60), factor=factor))
-        assert np.count_nonzero(cleaned == 300) == left
-
-
-def test_small_island_among_few_matches_is_removed():
-    """Every third row matched, and islands of 40 pixels between them, which nothing joins."""
-    for rows, left in ((slice(0, 100, 3), 0), (slice(None), 40)):
-        disparity = np.full((100, 100), UNKNOWN)
-        disparity[rows] = 100
-        disparity[50:54, 40:50] = 300
-        remove_specks(disparity, Specks(20, 60, 60))
-        assert np.count_nonzero(disparity == 300) == left
-
-
-@given(MAPS, st.integers(0, 255))
-def test_filling_keeps_known_pixels_and_leaves_none_unknown(disparity, seed):
-    grey = np.random.default_rng(seed).integers(0, 255, disparity.shape, np.uint8)
-    filled = fill_from_four_directions(disparity, grey)
-    known = disparity != UNKNOWN
-    assert np.array_equal(filled[known], disparity[known])
-    assert (filled != UNKNOWN).all() or not known.any()
-    assert set(np.unique(filled)) <= set(np.unique(disparity))
-
-
 @pytest.mark.parametrize("fill", [fill_from_four_directions, fill_from_eight_directions])
 def test_filling_with_any_number_of_threads_is_the_same(fill, monkeypatch):
     rng = np.random.default_rng(3)
@@ -173,29 +100,6 @@ def test_filling_with_any_number_of_threads_is_the_same(fill, monkeypatch):
         maps.append(fill(disparity, grey))
     assert np.array_equal(maps[0], maps[1])
     assert np.array_equal(maps[0], maps[2])
-
-
-def test_candidate_contradicted_by_both_views_is_not_taken():
-    """A gap between two near bars, over a far wall that is seen through it from the right: it is wall."""
-    disparity = np.full((9, 60), 64, np.int16)
-    disparity[:, 20:26] = disparity[:, 34:40] = 320
-    disparity[3:6, 26:34] = UNKNOWN
-    filled = fill_from_four_directions(disparity, np.full(disparity.shape, 100, np.uint8))
-    assert (filled[3:6, 26:34] == 64).all()
-
-
-def test_right_view_shows_the_nearest_surface_at_each_column():
-    """Of either sign; what lies beyond the picture is nearest of all, and two pixels may be seen at one column."""
-    row = np.array([UNKNOWN, 16, -40, 39, 40, 80, -48, UNKNOWN, 16], np.int16)
-    seen, columns = np.empty(row.size + 2, np.int16), np.empty(row.size, np.int32)
-    project_to_right(row, columns, seen)
-    expected = np.full(row.size, UNKNOWN)
-    for x, value in enumerate(row.tolist()):
-        column = x - (value + 8) // 16
-        if value != UNKNOWN and 0 <= column < row.size:
-            expected[column] = max(expected[column], value)
-    assert expected.tolist()[:2] == [80, 40]
-    assert seen.tolist() == [32767, *expected.tolist(), 32767]
 
 
 def score(value, path, farthest, row_farthest, there):
@@ -269,21 +173,6 @@ def test_grey_steps_on_a_path_add_up(left, right, levels, near):
     assert np.flatnonzero(fill_from_four_directions(disparity, grey)[0, 40:52] == 320).tolist() == near
 
 
-def test_depth_edge_moves_to_the_edge_of_the_picture():
-    grey = np.full((30, 40), 60, np.uint8)
-    grey[:, 20:] = 200
-    fattened = np.where(np.indices(grey.shape)[1] >= 19, np.int16(320), np.int16(64))
-    sharp = sharpen_edges(fattened.astype(np.int16), grey)
-    assert np.array_equal(sharp, np.where(grey == 200, 320, 64))
-
-
-def test_map_without_depth_edges_is_not_sharpened():
-    disparity = np.tile(np.arange(0, 400, 10, dtype=np.int16), (20, 1))
-    assert np.array_equal(
-        sharpen_edges(disparity, np.random.default_rng(0).integers(0, 255, (20, 40), np.uint8)), disparity
-    )
-
-
 def test_median_takes_25_pixels():
     disparity = np.random.default_rng(0).integers(0, 900, (40, 30)).astype(np.int16)
     windows = np.lib.stride_tricks.sliding_window_view(np.pad(disparity, 2, mode="edge"), (5, 5))
@@ -316,30 +205,10 @@ def test_confidence_next_to_depth_steps_and_in_gaps_falls():
     assert np.allclose(column, expected, atol=0.003)
 
 
-def test_confidence_with_any_number_of_threads_is_the_same(monkeypatch):
-    rng = np.random.default_rng(5)
-    disparity = np.where(rng.random((150, 70)) < 0.6, UNKNOWN, rng.integers(0, 900, (150, 70))).astype(np.int16)
-    quality, grey = rng.integers(0, 255, (2, *disparity.shape), np.uint8)
-    maps = []
-    for count in (1, 7):
-        monkeypatch.setattr(threads, "thread_count", lambda count=count: count)
-        maps.append(
-            complete(disparity.copy(), quality, np.linspace(1, 0.2, 256), grey, Cleaning(specks=Specks(0, 0, 0)))
-        )
-    assert np.array_equal(maps[0].disparity, maps[1].disparity)
-    assert np.array_equal(maps[0].confidence, maps[1].confidence)
-
-
 def test_flat_pixels_have_one_grey_value_near_them():
     grey = np.full((12, 12), 7, np.uint8)
     grey[6, 6] = 8
     assert np.array_equal(flat_pixels(grey), np.maximum(*np.abs(np.indices(grey.shape) - 6)) > 2)
-
-
-def test_pixels_of_constant_rows_are_flat():
-    level = np.tile(np.arange(0, 240, 20, dtype=np.uint8)[:, None], (1, 12))
-    assert flat_pixels(level).all()
-    assert not flat_pixels(np.ascontiguousarray(level.T)).any()
 
 
 def test_plane_is_enlarged_exactly():
@@ -367,18 +236,6 @@ def test_disparity_beyond_16_bits_is_enlarged_to_the_largest(value: int, large: 
     assert (enlarge(small, np.full((8, 12), 9, np.uint8)).disparity == large).all()
 
 
-def test_enlarged_map_in_pixels_is_the_same_with_any_number_of_threads(monkeypatch):
-    rng = np.random.default_rng(4)
-    small = DenseMatches(rng.choice([0, 64, 400], (70, 30)).astype(np.int16), rng.random((70, 30)).astype(np.float32))
-    grey = (rng.integers(0, 2, (140, 60)) * 3).astype(np.uint8)
-    grey[60:80] = 5
-    maps = []
-    for count in (1, 7):
-        monkeypatch.setattr(threads, "thread_count", lambda count=count: count)
-        maps.append(to_disparity_map(enlarge(small, grey), grey, fill=True))
-    assert maps[0].digest() == maps[1].digest()
-
-
 def test_flat_pixels_keep_their_disparity_without_trust():
     grey = np.full((9, 12), 40, np.uint8)
     grey[:, 8:] = np.arange(4) * 20
@@ -400,96 +257,3 @@ def test_map_in_pixels_has_nan_where_unknown():
     assert (filled.disparity_px[1:] == 2.5).all()
     assert np.isnan(bare.disparity_px[:2]).all()
     assert (bare.confidence[:2] == 0).all()
-
-
-@pytest.mark.parametrize("offset", [-7.0, 5.0, 21.0])
-def test_estimated_range_covers_all_disparities_and_little_more(offset):
-    views, truth = slanted(shape=(160, 320), down=0.05, offset=offset)
-    found = find_range(grey_pair(views, "test"))
-    assert found.span.low <= truth.min()
-    assert truth.max() <= found.span.high
-    assert found.span.high - found.span.low <= np.ptp(truth) + 16
-    assert found.swapped == bool(truth.max() < 0)
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_thin_object_before_a_wall_widens_the_range(seed):
-    pair = known_pair("bars", 480, 360, seed)
-    span = find_disparity_range(grey_pair(pair.views, "test"), "auto", "auto").span
-    assert np.mean((pair.truth_px >= span.low) & (pair.truth_px <= span.high)) >= 0.999
-    assert span.lanes <= 64
-
-
-def test_rods_of_four_pixels_widen_the_range():
-    rng = np.random.default_rng(1)
-    wall_px, covered = 12, 0
-    for _ in range(20):
-        wall, rod = (cv2.GaussianBlur(rng.integers(0, 255, (480, 700), np.uint8), (0, 0), 1.5) for _ in range(2))
-        left, right = wall[:, :640].copy(), wall[:, wall_px : wall_px + 640].copy()
-        at, near_px = rng.integers(200, 600), rng.integers(30, 80)
-        for view, column in ((left, at), (right, at - near_px)):
-            view[:, column : column + 4] = rod[:, :4]
-        found = find_range(Pair.of(left, right))
-        covered += found.span.low <= wall_px and near_px <= found.span.high
-    assert covered >= 18
-
-
-def test_pair_without_matches_has_no_range():
-    assert find_range(Pair.of(np.zeros((40, 60), np.uint8), np.zeros((40, 60), np.uint8))) is None
-
-
-@pytest.mark.parametrize("rows", [-1.0, 0.0, 0.5, 1.0])
-def test_row_offset_is_measured_and_corrected(rows):
-    y, x = np.indices((160, 240), float)
-    pair = Pair.of(texture(x, y), texture(x + 5, y - rows))
-    at, disparity = np.arange(6, 160, 12), np.full((13, 240), 80, np.int16)
-    measured = row_offset(pair, at, disparity)
-    assert measured == pytest.approx(rows, abs=0.12)
-    again = shift_rows(pair, measured)
-    assert row_offset(again, at, disparity) == pytest.approx(0, abs=0.12)
-
-
-def test_row_offset_without_votes_is_zero():
-    pair = Pair.of(*np.full((2, 60, 60), 9, np.uint8))
-    assert row_offset(pair, np.arange(6, 60, 12), np.zeros((5, 60), np.int16)) == 0
-
-
-def test_bytes_keep_their_values_and_dark_pictures_are_brightened():
-    views, _, _ = step(shape=(20, 40), back=1, front=3, box=(4, 12, 10, 30))
-    assert np.array_equal(grey_pair(views, "test").left, views.left)
-    twelve_bits = Views(views.left.astype(np.uint16) * 16, views.right.astype(np.uint16) * 16)
-    assert np.abs(grey_pair(twelve_bits, "test").left.astype(int) - views.left).max() <= 1
-    assert np.array_equal(grey_pair(Views(views.left > 127, views.right > 127), "test").left, (views.left > 127) * 255)
-
-
-def test_failing_block_fails_all_blocks(monkeypatch):
-    monkeypatch.setattr(threads, "thread_count", lambda: 4)
-
-    def work(start, stop):
-        if start > 0:
-            raise ValueError("no")
-
-    with pytest.raises(ValueError, match="no"):
-        threads.in_blocks(100, work)
-
-
-def test_blocks_cover_every_row_once(monkeypatch):
-    monkeypatch.setattr(threads, "thread_count", lambda: 3)
-    seen = np.zeros(50, int)
-
-    def work(start, stop):
-        seen[start:stop] += 1
-
-    threads.in_blocks(50, work)
-    assert (seen == 1).all()
-
-
-@pytest.mark.parametrize("kind", [np.uint8, np.uint16, np.float32])
-@pytest.mark.parametrize("colour", [False, True])
-def test_pictures_of_a_pair_are_read_only_however_they_came(kind: type, colour: bool):
-    """Kernels are compiled for each kind of array: there is one."""
-    picture = texture(*np.indices((24, 40))[::-1]).astype(kind)
-    view = np.dstack([picture] * 3) if colour else picture
-    pair = grey_pair(Views(view, view), "test")
-    for each in (pair, pair.mirror(), pair.downsample(2), shift_rows(pair, 0.5)):
-        assert not any(picture.flags.writeable for picture in each)

@@ -1,14 +1,13 @@
+"""Frames of a film: else each is searched and rectified anew, or the range goes stale."""
+
 import numpy as np
 import pytest
 
 from films import layered
 from stereo_scenes import slanted, step
-from tangible_core.data import Calibration, Views
-from tangible_core.errors import PictureError
+from tangible_core.data import Views
 from tangible_core.plugins.interfaces import Following
-from tangible_core.plugins.notes import collected, silently
-from tangible_depth import Auto, SemiGlobal, Ssd, Zncc
-from tangible_depth.dense.span import Span
+from tangible_depth import SemiGlobal, Ssd, Zncc
 from tangible_depth.matching import film
 from tangible_depth.matching.film import SEARCH_EVERY, FilmMatcher
 from tangible_depth.rectify import rectification
@@ -62,15 +61,6 @@ def test_range_ignores_empty_frames_and_forgets_old_searches(monkeypatch):
     assert estimate._span.high < wide.high
 
 
-def test_slightly_changed_range_uses_the_same_kernel():
-    estimate = Zncc().follow(slanted(offset=6.0)[0])
-    sizes = set()
-    for high in (66, 83, 101):
-        estimate._spans.append(Span(-3, high))
-        sizes.add(estimate._span.lanes)
-    assert sizes == {128}
-
-
 def test_given_range_is_kept_without_a_search(searches):
     views = step()[0]
     estimate = SemiGlobal(min_disparity_px=0, max_disparity_px=24, rectify="never").follow(views)
@@ -99,49 +89,8 @@ def test_unrectified_film_is_rectified_by_its_first_frame(monkeypatch):
     assert counted == [1]
 
 
-def test_constant_row_offset_is_corrected_in_each_frame():
-    views, true, hidden = step((120, 200))
-    lower = Views(views.left, np.roll(views.right, 1, axis=0))
-    estimate = SemiGlobal(resolution="half").follow(lower)
-    assert share_wrong(estimate(lower), true, hidden) < 0.1
-
-
 def test_row_offset_of_a_film_is_corrected_within_a_given_range():
     views, true, hidden = step((120, 200))
     lower = Views(views.left, np.roll(views.right, 1, axis=0))
     estimate = SemiGlobal(resolution="half", min_disparity_px=0, max_disparity_px=24).follow(lower)
     assert share_wrong(estimate(lower), true, hidden) < 0.1
-
-
-def test_calibrated_film_is_not_rectified(monkeypatch):
-    monkeypatch.setattr(film, "align_rows", None)
-    views, true, hidden = step()
-    views = Views(views.left, views.right, Calibration(100.0, 0.1))
-    assert share_wrong(SemiGlobal(resolution="half").follow(views)(views), true, hidden) < 0.1
-
-
-def test_identical_views_of_a_film_are_skipped_per_frame():
-    views, _true, _hidden = step()
-    same = Views(views.left, views.left)
-    estimate = SemiGlobal(resolution="half").follow(same)
-    assert not estimate(same).disparity_px[~np.isnan(estimate(same).disparity_px)].any()
-
-
-def test_single_view_of_a_film_is_refused():
-    with pytest.raises(PictureError, match="two views"):
-        SemiGlobal().follow(Views(step()[0].left))
-
-
-def test_auto_follows_pairs_and_single_pictures():
-    views, _true, _hidden = step()
-    assert isinstance(Auto().follow(views), FilmMatcher)
-    with collected() as notes:
-        assert Auto().follow(Views(views.left))(Views(views.left)).unit == "relative"
-    assert any("no depth" in each for each in notes)
-
-
-def test_silent_notes_are_neither_logged_nor_kept(caplog):
-    caplog.set_level("INFO")
-    with collected() as notes, silently():
-        SemiGlobal().estimate(Views(step()[0].left, step()[0].left))
-    assert notes == [] and "identical" not in caplog.text

@@ -1,10 +1,11 @@
-"""Sizes of a network's input, pictures as its numbers, and maps put together from strips; without a network."""
+"""Sizes, numbers and meanings of a network's pictures and maps; else its relief is shifted or upside down."""
 
 import numpy as np
 import pytest
 
+from tangible_core.data import Views
 from tangible_depth.network.card import NetworkInput
-from tangible_depth.network.fitting import Fit, fit_size, map_in_strips, resize, restore_size, tensor
+from tangible_depth.network.fitting import Fit, fit_size, map_in_strips, restore_size, tensor, to_disparity
 
 PAD, RESIZE = NetworkInput(multiple=32), NetworkInput(multiple=14, fit="resize")
 
@@ -49,10 +50,6 @@ def test_map_of_half_the_size_is_enlarged_with_its_padding():
     assert found[:, :3].tolist() == [[1, 1, 1]] * 8
 
 
-def test_picture_that_shrinks_is_averaged():
-    assert resize(np.float32([[0, 0, 3, 3, 3, 3]] * 6), (2, 2)).tolist() == [[1, 3]] * 2
-
-
 @pytest.mark.parametrize(
     ("height", "most_px", "multiple", "strips"),
     [
@@ -81,3 +78,31 @@ def test_strips_fade_into_each_other():
     assert (found[0, 0], found[-1, 0]) == (1, 2)
     assert np.flatnonzero(np.diff(found[:, 0]) > 0).tolist() == list(range(47, 64))
     assert np.diff(found[:, 0]).max() == pytest.approx(1 / 17, abs=1e-5)
+
+
+VIEWS = Views(np.zeros((1, 4), np.uint8))
+NAN = np.nan
+
+
+@pytest.mark.parametrize(
+    ("means", "numbers", "wanted"),
+    [
+        ("depth", [1, 2, 0, -1], [1, 0, NAN, NAN]),
+        ("depth-m", [4, 2, 0, np.inf], [0, 1, NAN, NAN]),
+        ("inverse-depth", [-3, -1, 0, 1], [0, 0.5, 0.75, 1]),
+        ("inverse-depth", [2, 6, NAN, 4], [0, 1, NAN, 0.5]),
+        ("disparity-px", [-2, 0, NAN, 5], [-2, 0, NAN, 5]),
+        ("inverse-depth", [1, 1 + 2e-7, 1, 1], [0, 0, 0, 0]),
+        ("depth", [NAN, NAN, 0, -1], [NAN] * 4),
+    ],
+)
+def test_numbers_become_nearness_or_pixels(means, numbers, wanted):
+    found = to_disparity(np.float32([numbers]), None, means, VIEWS)
+    assert found.disparity_px.tolist() == [pytest.approx(wanted, nan_ok=True)]
+    assert found.confidence.tolist() == [[float(not np.isnan(each)) for each in wanted]]
+    assert found.unit == ("px" if means == "disparity-px" else "relative")
+
+
+def test_confidence_is_a_share_and_none_where_nothing_is_known():
+    found = to_disparity(np.float32([[1, 2, 3, NAN]]), np.float32([[0.25, 7, NAN, 0.5]]), "inverse-depth", VIEWS)
+    assert found.confidence.tolist() == [[0.25, 1, 0, 0]]

@@ -1,7 +1,5 @@
-"""An open Falcon: homing, forces, the wire at the end, several devices, and the memory of an exchange."""
+"""An open Falcon would push before it is homed, keep its force at the end, or be mistaken for another one."""
 
-import gc
-import tracemalloc
 from array import array
 
 import numpy as np
@@ -42,42 +40,11 @@ class TestHoming:
         assert sorted(infos, reverse=True) == infos
         assert set(infos) == {HOMING | RED, HOMING | GREEN}
 
-    def test_homing_without_leds_keeps_lights_off(self, monkeypatch: pytest.MonkeyPatch):
-        bus, clock = held_bus()
-        sent = record_writes(bus, monkeypatch)
-        open_on(bus, clock, leds=False)
-        assert {each[13] - 0x41 for each in sent if len(each) == 16 and each != NULL} == {HOMING}
-
-    def test_homing_guides_once(self, caplog: pytest.LogCaptureFixture):
-        open_on(*held_bus())
-        assert [
-            each.message for each in caplog.records if "pull its grip all the way out" in each.message
-        ].__len__() == 1
-
     def test_homing_without_a_hand_times_out(self):
         bus, clock = held_bus()
-        with pytest.raises(DeviceError, match=r"0 of 3 arms are homed after 0\.2 s; pull its grip"):
+        with pytest.raises(DeviceError, match="0 of 3 arms are homed"):
             open_on(bus, clock, home_within_s=0.2)
         assert bus.units[0].claimed_by is None
-
-    def test_homing_done_gives_true_positions(self):
-        bus, clock = held_bus()
-        link = open_on(bus, clock)
-        state = link.read()
-        x, y, z = bus.units[0].chip.processor.body.tip[:3]
-        assert state.position_m == pytest.approx((x, 0.125 - z, y), abs=1e-3)  # one or two ticks later
-
-    def test_homing_lost_for_good_is_an_error(self):
-        bus, clock = held_bus()
-        link = open_on(bus, clock)
-        link.write(PUSH)
-        monitor = bus.units[0].chip.processor.body
-        monitor._hand.wants = lambda tip, homing, homed: tip[:3]  # pyright: ignore
-        monitor._homed = 0
-        with pytest.raises(DeviceError, match="lost its homing"):
-            for _ in range(5):
-                link.read()
-        assert monitor.torque_counts == (0, 0, 0)
 
 
 class TestForce:
@@ -94,16 +61,6 @@ class TestForce:
             rows = kinematics.jacobian(*kinematics.inverse(x, y, z), x, y, z)
             fx, fy, fz = kinematics.force(rows, tuple(-each / 1e4 for each in body.torque_counts))
             assert (fx, -fz, fy) == pytest.approx(PUSH, abs=0.05)
-
-    def test_force_moves_the_hand(self):
-        def height(force: Force) -> float:
-            bus, clock = held_bus()
-            with open_on(bus, clock) as link:
-                for _ in range(200):
-                    link.write(force)
-                return link.read().position_m[2]
-
-        assert height(Force(0.0, 0.0, 3.0)) > height(NO_FORCE) + 0.005
 
     def test_force_ends_with_null_packets(self, monkeypatch: pytest.MonkeyPatch):
         bus, clock = held_bus()
@@ -152,17 +109,12 @@ class TestForce:
                 for _ in range(1000):
                     link.exchange()
         assert tuple(link.applied) == NO_FORCE
-        with pytest.raises(DeviceError, match={"closed": "is closed; open", "failed": "was closed after"}[ended]):
+        with pytest.raises(DeviceError, match="closed"):
             link.exchange()
         _, write, fixed = link.kernels()
         write(*fixed, *PUSH)
         assert tuple(link.applied) == NO_FORCE
         assert fixed[1][1:13].tobytes() == b"A" * 12
-
-    def test_closed_link_leaves_no_packet_in_flight(self):
-        bus, clock = held_bus()
-        open_on(bus, clock).close()
-        assert not bus.units[0].chip._waiting
 
 
 class TestRate:
@@ -179,18 +131,6 @@ class TestRate:
             assert 1 / np.median(np.diff(times)) == pytest.approx(hertz, rel=0.01)
             assert np.diff(times).min() > 0
             assert link.health().rate_hz == pytest.approx(hertz, rel=0.02)
-
-    def test_lost_packet_is_counted_and_skipped(self):
-        bus, clock = held_bus()
-        chip = bus.units[0].chip
-        with open_on(bus, clock, in_flight=1) as link:
-            spoil, chip._spoil = chip._spoil, lambda sent, data: b""
-            lost_s = clock()
-            chip._spoil = lambda sent, data: b"" if clock() < lost_s + 0.03 else data
-            first, second = link.read(), link.read()
-            assert 0.03 < second.time_s - lost_s < 0.1
-            assert link.health().lost >= 1 and first.time_s < second.time_s
-            chip._spoil = spoil
 
     def test_silences_with_answers_between_are_tolerated(self):
         """Four at a time, of five that are one too many."""
@@ -217,10 +157,12 @@ class TestRate:
             for _ in range(100):
                 link.exchange()
         assert 0.05 < clock() - silent_s < 0.3
+        assert bus.units[0].chip.processor.body.torque_counts == (0, 0, 0)
 
     def test_read_without_position_fails_soon(self):
         bus, clock = held_bus()
         link = open_on(bus, clock)
+        link.write(PUSH)
         body = bus.units[0].chip.processor.body
         body._hand.wants = lambda tip, homing, homed: tip[:3]  # pyright: ignore
         body._homed = 0
@@ -229,15 +171,7 @@ class TestRate:
             for _ in range(5):
                 link.read()
         assert clock() - lost_s < 0.2
-
-    def test_silence_is_an_error(self):
-        bus, clock = held_bus()
-        with pytest.raises(DeviceError, match="no longer answers"), open_on(bus, clock) as link:
-            link.write(PUSH)
-            bus.units[0].chip._spoil = lambda sent, data: b""
-            for _ in range(1000):
-                link.read()
-        assert bus.units[0].chip.processor.body.torque_counts == (0, 0, 0)
+        assert body.torque_counts == (0, 0, 0)
 
 
 class TestSeveral:
@@ -267,46 +201,11 @@ class TestSeveral:
         with pytest.raises(DeviceAbsent, match="none is connected"):
             open_on(bus, clock)
 
-    @pytest.mark.parametrize(
-        ("options", "why"),
-        [({"serial": "C3"}, "connected are A1, B2"), ({"index": 2}, "index 2 does not exist, 2 are")],
-    )
-    def test_open_with_unknown_serial_or_index_is_refused(self, options: dict, why: str):
+    def test_open_with_unknown_serial_or_index_is_refused(self):
         bus, clock = held_bus(("A1", "B2"))
-        with pytest.raises(DeviceError, match=why):
-            open_on(bus, clock, **options)
-
-
-def test_close_returns_device_to_kernel_driver():
-    bus, clock = held_bus()
-    with open_on(bus, clock):
-        assert not bus.units[0].kernel_driver
-    assert bus.units[0].kernel_driver
-
-
-def test_exchange_keeps_no_memory():
-    bus, clock = held_bus()
-    with open_on(bus, clock) as link:
-
-        def exchange(count: int) -> None:
-            for _ in range(count):
-                link.write(PUSH)
-                link.read()
-
-        exchange(500)
-        tracemalloc.start()
-        try:
-            exchange(200)
-            gc.collect()
-            before = tracemalloc.take_snapshot()
-            exchange(2000)
-            gc.collect()
-            after = tracemalloc.take_snapshot()
-        finally:
-            tracemalloc.stop()
-    here = [tracemalloc.Filter(True, "*tangible_devices*"), tracemalloc.Filter(True, "*usb*")]
-    grown = after.filter_traces(here).compare_to(before.filter_traces(here), "filename")
-    assert sum(each.size_diff for each in grown) < 20_000
+        for options in ({"serial": "C3"}, {"index": 2}):
+            with pytest.raises(DeviceError):
+                open_on(bus, clock, **options)
 
 
 def test_kernels_work_on_the_link_s_buffers():

@@ -1,8 +1,7 @@
-"""The findings of the doctor about a Falcon; measuring and saving a calibration."""
+"""The doctor would send a user after the wrong fault of a Falcon, or a calibration would be measured wrongly."""
 
 import math
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +16,6 @@ from tangible_devices.falcon.calibration import Calibration
 from tangible_devices.falcon.falcon import Falcon
 from tangible_devices.falcon.kernels import kinematics
 from tangible_devices.falcon.service import calibrate, findings, units
-from tangible_devices.falcon.simulator.falcons import synthetic_image
 from tangible_devices.falcon.simulator.faults import Fault
 
 
@@ -52,28 +50,10 @@ class TestDoctor:
         assert "sudo udevadm control --reload-rules" in finding.cure
         assert "\n" not in finding.says
 
-    def test_doctor_of_falcon_in_use_names_the_other_program(self):
-        [finding] = failures(examine(Fault(at="claim", error="busy", after=1, times=99)))
-        assert "another program is using it" in finding.cure
-
     def test_doctor_without_firmware_and_file_fails(self):
         [finding] = failures(examine(loaded=False))
         assert "no file is given" in finding.says
         assert "nvent_firmware.bin" in finding.cure
-
-    def test_doctor_without_firmware_but_file_is_fine(self, tmp_path: Path):
-        image = tmp_path / "image.bin"
-        image.write_bytes(synthetic_image())
-        listed = examine(loaded=False, firmware=image)
-        assert not failures(listed)
-        assert listed[1].says.endswith("bytes, whole")
-        assert "is sent when it is opened" in listed[-1].says
-
-    def test_doctor_of_invalid_firmware_file_fails(self, tmp_path: Path):
-        image = tmp_path / "image.bin"
-        image.write_bytes(synthetic_image()[:-2])
-        [finding] = failures(examine(firmware=image))
-        assert finding.check == "firmware file"
 
     def test_doctor_of_slow_line_names_latency_timer(self, monkeypatch: pytest.MonkeyPatch):
         """A chip that leaves its timer at 16 ms."""
@@ -99,30 +79,12 @@ class TestDoctor:
             "not asked",
         ]
 
-    def test_doctor_calls_a_missing_firmware_file_fine_only_while_the_firmware_answers(self):
-        running, powered = (
-            [each for each in examine(loaded=on) if each.check == "firmware file"] for on in (True, False)
-        )
-        assert [each.verdict for each in (*running, *powered)] == ["fine", "not asked"]
-        assert powered[0].says.endswith("--set firmware=FILE")
-
-    def test_doctor_of_failing_bus_fails(self):
-        bus, clock = held_bus(faults=(Fault(at="look", error="access-denied"),))
-        [finding] = findings(Falcon().settings(), None, bus, clock)
-        assert finding.verdict == "failed"
-
 
 class TestConnected:
     def test_units_have_their_serial_numbers(self):
         bus, _ = held_bus(("A1", "B2"))
         assert [unit.serial for unit in units(bus)] == ["A1", "B2"]
         assert units(bus)[0] == Unit("Novint Falcon", "A1", "USB bus 1, address 5")
-
-    def test_units_without_permission_are_listed_with_the_problem(self):
-        bus, _ = held_bus(("A1", "B2"), (Fault(at="open", error="access-denied"),))
-        first, second = units(bus)
-        assert "no permission" in first.problem and "doctor" in first.problem
-        assert second.serial == "B2"
 
 
 class Grip(Link):
@@ -168,27 +130,22 @@ class Grip(Link):
 
 class TestMeasuring:
     def test_measured_axes_are_those_of_the_moves(self):
-        """Right is the device's x, away its -z, up its y: the published guess."""
-        grip = Grip([(0, 0, 0), (0.03, 0.002, 0), (0.03, 0.002, -0.03), (0.03, 0.03, -0.03)])
-        assert measuring.measure_axes(grip, grip.ask()) == Calibration().axes
+        """Right is the first device's x, away its -z, up its y: the published guess."""
+        for moves, axes in (
+            ([(0, 0, 0), (0.03, 0.002, 0), (0.03, 0.002, -0.03), (0.03, 0.03, -0.03)], Calibration().axes),
+            ([(0, 0, 0), (0, -0.03, 0), (-0.02, -0.03, 0), (-0.02, -0.03, 0.04)], ("-y", "-x", "z")),
+        ):
+            grip = Grip(moves)
+            assert measuring.measure_axes(grip, grip.ask()) == axes
 
-    def test_measured_axes_of_another_device_differ(self):
-        grip = Grip([(0, 0, 0), (0, -0.03, 0), (-0.02, -0.03, 0), (-0.02, -0.03, 0.04)])
-        assert measuring.measure_axes(grip, grip.ask()) == ("-y", "-x", "z")
-
-    @pytest.mark.parametrize(
-        ("moves", "words"),
-        [
-            ([(0, 0, 0), (0.003, 0, 0)], "did not move to the right by 10 mm"),
+    def test_measured_axes_of_short_or_equal_moves_are_refused(self):
+        for moves, words in (
+            ([(0, 0, 0), (0.003, 0, 0)], "did not move"),
             ([(0, 0, 0), (0.03, 0, 0), (0, 0, 0), (0, 0, 0.03)], "went along one axis"),
-        ],
-    )
-    def test_measured_axes_of_short_or_equal_moves_are_refused(
-        self, moves: list[tuple[float, float, float]], words: str
-    ):
-        grip = Grip(moves)
-        with pytest.raises(DeviceError, match=words):
-            measuring.measure_axes(grip, grip.ask())
+        ):
+            grip = Grip(moves)
+            with pytest.raises(DeviceError, match=words):
+                measuring.measure_axes(grip, grip.ask())
 
     def test_measured_offsets_make_arms_equal_on_the_axis(self):
         """A device whose second arm stands 1.5 degrees farther than its offset says."""
@@ -221,10 +178,6 @@ class TestMeasuring:
         with pytest.raises(DeviceError, match="is not a weight"):
             measuring.measure_strength(grip, grip.ask({"grams": grams}), 9000.0)
 
-    def test_measured_strength_out_of_range_is_refused(self):
-        with pytest.raises(DeviceError, match="calibrate again"):
-            measuring.strength(0.5, 0.5, 2.0)
-
 
 class TestKept:
     def test_saved_calibration_is_used_for_its_serial_number(self):
@@ -240,15 +193,10 @@ class TestKept:
         save_calibration("falcon", "A1", Calibration(counts_per_newton_metre=20_000.0))
         assert Falcon(serial="A1").spec().max_force_n < Falcon(serial="B2").spec().max_force_n
 
-    def test_calibration_option_overrides_the_saved_one(self):
-        save_calibration("falcon", "A1", Calibration(counts_per_newton_metre=20_000.0))
-        own = Calibration()
-        assert Falcon(serial="A1", calibration=own).settings().calibration_of("A1") == own
-
     def test_damaged_calibration_stops_opening_and_releases_device(self):
         save_calibration("falcon", "SIM0001", Calibration()).write_text("{")
         bus, clock = held_bus()
-        with pytest.raises(DeviceError, match="run `tangible devices calibrate falcon` again"):
+        with pytest.raises(DeviceError, match="calibrate falcon"):
             open_on(bus, clock)
         assert bus.units[0].claimed_by is None
 
@@ -256,11 +204,3 @@ class TestKept:
         bus, clock = held_bus(())
         with pytest.raises(DeviceAbsent, match="plug in"):
             calibrate(Falcon().settings(), None, input, bus, clock)
-
-    def test_calibrate_without_moves_is_refused(self, tmp_path: Path):
-        image = tmp_path / "image.bin"
-        image.write_bytes(synthetic_image())
-        bus, clock = held_bus()
-        with pytest.raises(DeviceError, match=r"did not move|went along one axis"):
-            calibrate(Falcon().settings(), Falcon(firmware=image).image(), lambda _: "", bus, clock)
-        assert bus.units[0].claimed_by is None

@@ -1,5 +1,9 @@
-"""The pointer: the exchange of two processes; torn blocks, silence, killed processes, second users."""
+"""A mouse or robot that moves the pointer would feel a force that nobody holds, or keep one after it died.
 
+The exchange of two processes: torn blocks, silence, killed processes, second users.
+"""
+
+import io
 import json
 import os
 import signal
@@ -7,7 +11,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from threading import Event, Thread
 from types import ModuleType
 
@@ -19,19 +22,17 @@ from numba import njit
 
 from tangible_core.compiled.kernels import Address
 from tangible_core.compiled.touch import CompiledLink
-from tangible_core.data import NO_FORCE, TICK_COLUMNS, Force, HapticState
+from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.mapping import WorkspaceMapping, map_device
 from tangible_core.plugins.interfaces import Link
-from tangible_core.servo import Safety, Servo, null_touch
+from tangible_core.servo import Safety
 from tangible_core.servo.guard import guard
-from tangible_core.session import About, Recording, keeping
 from tangible_devices.pointer import PointerClient, channel, kernels
-from tangible_devices.pointer.channel import Channel, checksum, pack_block, unpack_block
+from tangible_devices.pointer.channel import Channel, checksum, unpack_block
 from tangible_devices.pointer.following import follow, parse
 from tangible_devices.pointer.pointer import HIGH_M, Pointer, PointerLink
 
-TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 words = st.lists(st.integers(0, 2**64 - 1), min_size=1, max_size=9)
 
 
@@ -58,18 +59,6 @@ class TestExchange:
             link.write(Force(1.0, -2.0, 3.0))
             assert client.force() == link.applied == Force(1.0, -2.0, 3.0)
 
-    def test_kernels_read_the_same_as_the_link(self, link: CompiledLink):
-        kernels = link.kernels()
-        with PointerClient() as client:
-            client.send((0.01, -0.02, 0.003), buttons=5, velocity_m_per_s=(1.0, 2.0, 3.0))
-            fresh, state = run_tick(link)
-            assert fresh == 1
-            assert state.tolist() == [0.01, -0.02, 0.003, 1.0, 2.0, 3.0, 5.0]
-            kernels.write(*kernels.fixed, 1.0, -2.0, 3.0)
-            assert client.force() == link.applied == Force(1.0, -2.0, 3.0)
-        assert not link.exchanges
-        link.exchange()
-
     def test_velocity_not_sent_is_way_over_time(self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch):
         with PointerClient() as client:
             client.send((0.0, 0.0, 0.0))
@@ -79,28 +68,6 @@ class TestExchange:
             monkeypatch.setattr(time, "monotonic", lambda: then + 0.25)
             client.send((0.01, -0.02, 0.0))
             assert run_tick(link)[1][3:6] == pytest.approx([0.04, -0.08, 0.0])
-
-    def test_link_through_mapping_stays_compiled(self):
-        with map_device(Pointer(), WorkspaceMapping(scale=2.0)).open() as link, PointerClient() as client:
-            assert isinstance(link, CompiledLink) and not link.exchanges
-            client.send((0.02, 0.0, 0.01))
-            assert run_tick(link)[1][:3].tolist() == [0.01, 0.0, 0.005]
-
-    def test_kernels_are_callable_by_address(self, link: CompiledLink):
-        @njit(nogil=True)
-        def loop(read, write, fixed, state):
-            while read(*fixed, state) == 0 or state[2] == 1.0:
-                pass
-            write(*fixed, state[0], state[1], state[2])
-
-        kernels = link.kernels()
-        ends = Address(kernels.read), Address(kernels.write)
-        thread = Thread(target=loop, args=(*ends, kernels.fixed, np.zeros(7)))
-        with PointerClient() as client:
-            thread.start()
-            client.send((0.5, 0.25, 0.125))
-            thread.join(30)
-            assert client.force() == (0.5, 0.25, 0.125)
 
 
 def as_compiled(link: Link) -> CompiledLink:
@@ -242,11 +209,6 @@ class TestLettingGo:
             client.release()
             assert spring.ticks(10)[-1] == 2.0
 
-    def test_release_of_closed_device_raises_nothing(self, grip):
-        client, _ = grip
-        client._channel.set_flag(channel.DEVICE_OPEN, False)
-        client.release()
-
     def test_silence_ends_force_after_stale_times(self, grip):
         _, spring = grip
         forces = spring.ticks(200)
@@ -255,37 +217,13 @@ class TestLettingGo:
         assert set(forces[end:]) == {0.0}
 
 
-BUTTONS = TICK_COLUMNS.index("buttons")
-TAGS = [0, 1, 0x2AAAAA, 0x555555, 0x7FFFFF]
-"""In bits 8 to 30 of the buttons."""
-
-
-@pytest.mark.parametrize("tag", TAGS)
+@pytest.mark.parametrize("tag", [0, 0x2AAAAA, 0x7FFFFF])
 def test_clutch_ignores_client_number_in_buttons(tag: int):
     with map_device(Pointer(), WorkspaceMapping(scale=2.0, clutch_button=1)).open() as link, PointerClient() as client:
         for x, buttons, seen in ((0.02, 0, 0.01), (0.04, 1, 0.02), (0.06, 2, 0.02), (0.06, 3, 0.02), (0.08, 5, 0.03)):
             client.send((x, 0.0, 0.01), tag << 8 | buttons)
             state = run_tick(as_compiled(link))[1]
             assert (state[0], state[6]) == (pytest.approx(seen), tag << 8 | buttons)
-
-
-def test_client_number_in_buttons_returns_with_its_tick(tmp_path: Path):
-    device = map_device(Pointer(follow_s=FOLLOW_S), WorkspaceMapping(scale=2.0, clutch_button=1))
-    sent = [tag << 8 | 5 for tag in TAGS]
-    with Servo(null_touch(), device) as servo, PointerClient() as client:
-        for buttons in sent:
-            end = time.monotonic() + 30
-            while (row := servo.ring.latest()) is None or row[BUTTONS] != buttons:
-                client.send((0.02, 0.0, 0.01), buttons)
-                assert time.monotonic() < end
-                time.sleep(0.001)
-        servo.stop()
-        rows, _ = servo.ring.since(0)
-    with keeping(tmp_path / "hand.nc", About()) as writer:
-        writer.append(rows)
-    recorded = Recording.load(tmp_path / "hand.nc").rows[:, BUTTONS]
-    assert set(recorded.tolist()) <= {0, *sent}
-    assert recorded[-1] == sent[-1]
 
 
 def before_a_device(force_n: tuple[float, float, float]) -> Channel:
@@ -300,12 +238,6 @@ def before_a_device(force_n: tuple[float, float, float]) -> Channel:
 
 
 class TestNobody:
-    def test_tip_without_client_is_high_above(self, link: CompiledLink):
-        assert link.read()[:2] == (HIGH_M, (0.0, 0.0, 0.0))
-        fresh, state = run_tick(link)
-        assert fresh == 1
-        assert state.tolist() == [*HIGH_M, 0, 0, 0, 0]
-
     def test_tip_after_client_left_is_high_above(self, link: CompiledLink):
         with PointerClient() as client:
             client.send((0.0, 0.0, 0.0))
@@ -355,13 +287,6 @@ class TestNobody:
             client.send((0.1, 0.0, 0.0))
             assert run_tick(link)[1][0] == 0.1
 
-    def test_first_sample_of_next_client_is_new(self, link: CompiledLink):
-        for x in (0.1, 0.2):
-            with PointerClient() as client:
-                client.send((x, 0.0, 0.0), velocity_m_per_s=(0.0, 0.0, 0.0))
-                assert run_tick(link)[1][0] == x
-                assert link.read().position_m[0] == x
-
     def test_closed_device_shows_no_force(self, link: CompiledLink):
         link.write(Force(0.0, 0.0, 1.0))
         link.close()
@@ -396,15 +321,6 @@ class TestNobody:
         assert open_then[0] is False
         shown.close()
 
-    def test_sample_of_killed_client_is_ignored_from_first_read(self):
-        """The last sample of a killed client must not count as new during the time allowed for silence."""
-        shown = before_a_device(force_n=(0.0, 0.0, 0.0))
-        with Pointer(stale_after_s=10.0).open() as link:
-            assert isinstance(link, CompiledLink)
-            assert [run_tick(link)[0] for _ in range(3)] == [0, 0, 0]
-            assert link.read().position_m == HIGH_M
-        shown.close()
-
     @pytest.mark.parametrize("size", [8.1, 1e3, 1e200])
     def test_force_above_limit_is_scaled_down(self, link: CompiledLink, size: float):
         link.write(Force(0.0, size, 0.0))
@@ -423,23 +339,6 @@ class TestNobody:
             link.write(Force(0.0, 0.0, 1.0))
             assert client.force() == (0, 0, 1)
 
-    def test_silent_device_shows_no_force(self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch):
-        with PointerClient() as client:
-            link.write(Force(0.0, 0.0, 1.0))
-            assert client.force() == (0, 0, 1)
-            now = time.monotonic()
-            monkeypatch.setattr(time, "monotonic", lambda: now + 1.0)
-            assert client.force() == NO_FORCE
-            link.write(Force(0.0, 0.0, 2.0))
-            assert client.force() == (0, 0, 2)
-
-    def test_sample_of_foreign_client_is_refused(self, link: CompiledLink):
-        with PointerClient() as client:
-            client.send((0.0, 0.0, 0.0))
-            client._channel.put(channel.SAMPLE, 2**63, (np.nan,) * 7)
-            assert run_tick(link)[0] == 0
-            assert np.isfinite(link.read().position_m).all()
-
     @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
     @pytest.mark.parametrize("place", range(7))
     def test_sample_with_nonfinite_number_is_refused(self, link: CompiledLink, place: int, bad: float):
@@ -455,7 +354,7 @@ class TestNobody:
     @pytest.mark.usefixtures("unchecked_shapes")
     @pytest.mark.parametrize("bad", [(np.nan, 0, 0), (0, np.inf, 0), (0, 0), (0, 0, 0, 0)])
     def test_client_sending_invalid_position_is_refused(self, link: CompiledLink, bad: tuple[float, ...]):
-        with PointerClient() as client, pytest.raises(DeviceError, match="three finite numbers in metres"):
+        with PointerClient() as client, pytest.raises(DeviceError, match="three finite numbers"):
             client.send(bad, velocity_m_per_s=(0.0, 0.0, 0.0))
 
 
@@ -464,16 +363,30 @@ class TestTorn:
     def test_checksum_of_kernel_equals_python_s(self, block: list[int]):
         assert kernels.checksum(np.array(block, np.uint64), 0, len(block)) == checksum(tuple(block))
 
-    @given(st.data())
-    def test_checksum_detects_mixed_blocks(self, data: st.DataObject):
-        """Signs of two numbers that change at once, equal numbers: nothing cancels out."""
-        number = st.floats(-1, 1) | st.sampled_from([0.0, -0.0, 1.0, -1.0])
-        old = pack_block(7, tuple(data.draw(st.lists(number, min_size=7, max_size=7))))
-        new = pack_block(8, tuple(data.draw(st.lists(number, min_size=7, max_size=7))))
-        taken = data.draw(st.lists(st.booleans(), min_size=9, max_size=9))
-        mix = b"".join((new if of_new else old)[8 * i : 8 * i + 8] for i, of_new in enumerate(taken))
-        assert unpack_block(mix) is None or mix in (old, new)
+    @pytest.mark.parametrize("bit", [0, 63])
+    @pytest.mark.parametrize("word", range(channel.SAMPLE_WORDS + 1))
+    def test_sample_with_one_wrong_bit_is_refused(self, link: CompiledLink, word: int, bit: int):
+        kernels = link.kernels()
+        words = kernels.fixed[0]
+        with PointerClient() as client:
+            client.send((0.5, 0.25, 0.125), 1, (0.5, 0.25, 0.125))
+            assert run_tick(link)[0] == 1
+            words[channel.SAMPLE + word] ^= np.uint64(1 << bit)
+            assert run_tick(link)[0] == 0
+            assert link.read().position_m == HIGH_M
+            words[channel.SAMPLE + word] ^= np.uint64(1 << bit)
+            assert run_tick(link)[0] == 1
+            assert link.read().position_m == (0.5, 0.25, 0.125)
 
+    @pytest.mark.parametrize("word", range(channel.FORCE_WORDS + 1))
+    def test_force_with_one_wrong_bit_is_zero(self, link: CompiledLink, word: int):
+        with PointerClient() as client:
+            link.write(Force(1.0, 2.0, 3.0))
+            assert client.force() == (1, 2, 3)
+            client._channel.memory[(channel.FORCE + word) * 8 + 3] ^= 16
+            assert client.force() == NO_FORCE
+
+    @pytest.mark.whole
     def test_reader_never_sees_half_of_a_busy_writer_s_block(self, link: CompiledLink):
         """Every sample holds one number seven times; a hundred thousand reads see no mixture."""
         stop = Event()
@@ -504,29 +417,6 @@ class TestTorn:
             stop.set()
             thread.join()
 
-    @pytest.mark.parametrize("bit", [0, 63])
-    @pytest.mark.parametrize("word", range(channel.SAMPLE_WORDS + 1))
-    def test_sample_with_one_wrong_bit_is_refused(self, link: CompiledLink, word: int, bit: int):
-        kernels = link.kernels()
-        words = kernels.fixed[0]
-        with PointerClient() as client:
-            client.send((0.5, 0.25, 0.125), 1, (0.5, 0.25, 0.125))
-            assert run_tick(link)[0] == 1
-            words[channel.SAMPLE + word] ^= np.uint64(1 << bit)
-            assert run_tick(link)[0] == 0
-            assert link.read().position_m == HIGH_M
-            words[channel.SAMPLE + word] ^= np.uint64(1 << bit)
-            assert run_tick(link)[0] == 1
-            assert link.read().position_m == (0.5, 0.25, 0.125)
-
-    @pytest.mark.parametrize("word", range(channel.FORCE_WORDS + 1))
-    def test_force_with_one_wrong_bit_is_zero(self, link: CompiledLink, word: int):
-        with PointerClient() as client:
-            link.write(Force(1.0, 2.0, 3.0))
-            assert client.force() == (1, 2, 3)
-            client._channel.memory[(channel.FORCE + word) * 8 + 3] ^= 16
-            assert client.force() == NO_FORCE
-
     def test_block_being_written_is_read_again(self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch):
         with PointerClient() as client:
             link.write(Force(1.0, 2.0, 3.0))
@@ -534,15 +424,10 @@ class TestTorn:
             monkeypatch.setattr(channel, "unpack_block", lambda block: next(torn, unpack_block(block)))
             assert client.force() == (1, 2, 3)
 
-    def test_block_left_half_written_gives_no_force(self, link: CompiledLink):
-        with PointerClient() as client:
-            client._channel.memory[channel.FORCE * 8 + 8] ^= 1
-            assert client.force() == NO_FORCE
-
 
 class TestPlaces:
     def test_second_device_is_refused_until_first_is_closed(self, link: CompiledLink):
-        with pytest.raises(DeviceError, match=r"has a device already .*use another channel"):
+        with pytest.raises(DeviceError, match="has a device already"):
             Pointer().open()
         with Pointer(channel="other").open() as other:
             assert other.read().position_m == HIGH_M
@@ -551,7 +436,7 @@ class TestPlaces:
             pass
 
     def test_client_without_device_is_refused(self):
-        with pytest.raises(DeviceError, match="no device is open on pointer 'pointer'; start"):
+        with pytest.raises(DeviceError, match="no device is open"):
             PointerClient()
 
     def test_client_waits_for_a_device(self):
@@ -562,19 +447,15 @@ class TestPlaces:
             assert client.force() == NO_FORCE
         thread.join()
 
-    def test_client_of_closed_device_is_refused(self, link: CompiledLink):
-        with PointerClient() as client:
-            link.write(Force(0.0, 0.0, 1.0))
-            link.close()
-            for call in (client.force, lambda: client.send((0.0, 0.0, 0.0))):
-                with pytest.raises(DeviceError, match="was closed; start it again"):
-                    call()
-
-    def test_closed_client_refuses_calls(self, link: CompiledLink):
+    def test_client_of_closed_device_and_closed_client_are_refused(self, link: CompiledLink):
         client = PointerClient()
+        link.close()
+        for call in (client.force, lambda: client.send((0.0, 0.0, 0.0))):
+            with pytest.raises(DeviceError, match="was closed"):
+                call()
         client.close()
         client.close()
-        with pytest.raises(DeviceError, match="is closed; make another"):
+        with pytest.raises(DeviceError, match="is closed"):
             client.force()
 
     def test_client_of_another_version_is_refused(self, link: CompiledLink):
@@ -586,7 +467,7 @@ class TestPlaces:
 
     @pytest.mark.parametrize("name", ["../x", "A", "", "a/b", "x" * 65])
     def test_channel_with_invalid_name_is_refused(self, name: str):
-        with pytest.raises(DeviceError, match="lower-case letters"):
+        with pytest.raises(DeviceError):
             Channel(name, "device")
 
     def test_channel_file_is_private(self, link: CompiledLink):
@@ -626,6 +507,7 @@ def child() -> Iterator[object]:
         process.communicate()
 
 
+@pytest.mark.whole
 class TestKilled:
     def test_killed_client_gives_no_force_and_is_replaceable(self, link: CompiledLink, child):
         process = child("client")
@@ -653,21 +535,18 @@ class TestKilled:
         client.close()
 
 
-@pytest.mark.parametrize(
-    ("channel", "words"), [("pointer", "`tangible pointer`"), ("b", "`tangible pointer --channel b`")]
-)
+@pytest.mark.parametrize(("channel", "words"), [("pointer", "pointer`"), ("b", "pointer --channel b`")])
 def test_unattended_names_the_command_to_start(channel: str, words: str):
     device = Pointer(channel=channel)
     with device.open():
         assert words in (device.unattended() or "")
         with PointerClient(channel):
             assert device.unattended() is None
-        assert words in (device.unattended() or "")
 
 
 class TestCommand:
-    def test_command_with_typed_positions_moves_the_device(self, link: CompiledLink):
-        """A spring of 1 N/mm under z = 0, in this process; the hand in another."""
+    def test_command_with_typed_positions_moves_the_device(self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch):
+        """A spring of 1 N/mm under z = 0."""
         stop = Event()
 
         def feel() -> None:
@@ -675,33 +554,25 @@ class TestCommand:
                 state: HapticState = link.read()
                 link.write(Force(0.0, 0.0, max(0.0, -1000 * state.position_m[2])))
 
-        thread = Thread(target=feel)
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"0 0 1\n\n10 -5\n\xff\n10 -5 -2.5\n")))
+        thread, complaints = Thread(target=feel), list[str]()
         thread.start()
         try:
-            ran = subprocess.run(
-                [TANGIBLE, "pointer", "--json"], input=b"0 0 1\n\n10 -5\n\xff\n10 -5 -2.5\n", capture_output=True
-            )
+            lines = list(follow("", "pointer", 1.0, 0.0, 0.08, 0.0, True, complaints.append))
         finally:
             stop.set()
             thread.join()
-        assert [json.loads(line) for line in ran.stdout.splitlines()] == [
+        assert [json.loads(line) for line in lines] == [
             {"position_m": [0.0, 0.0, 0.001], "force_n": [0.0, 0.0, 0.0]},
             {"position_m": [0.01, -0.005, -0.0025], "force_n": [0.0, 0.0, 2.5]},
         ]
-        complaints = ran.stderr.decode().splitlines()
-        assert ["'10 -5' is not a position; type x y z in millimetres" in each for each in complaints] == [True, False]
-        assert ran.returncode == 0, complaints
+        assert ["'10 -5' is not a position" in complaint for complaint in complaints] == [True, False]
 
     def test_command_with_path_follows_it_for_its_time(self, link: CompiledLink):
         heading, *lines = follow("circle", "pointer", 0.5, 0.002, 0.08, 0.0, False, pytest.fail)
         assert heading.split() == ["x", "mm", "y", "mm", "z", "mm", "fx", "N", "fy", "N", "fz", "N"]
         assert 2 <= len(lines) <= 5
         assert {line.split()[2] for line in lines} == {"2.000"}
-
-    def test_command_without_device_names_what_to_start(self):
-        ran = subprocess.run([TANGIBLE, "pointer"], input="", capture_output=True, text=True)
-        assert ran.returncode == 2
-        assert "start `tangible feel`" in ran.stderr
 
     @pytest.mark.parametrize(
         ("path", "seconds", "speed"), [("cricle", 1, 1), ("circle", 0, 1), ("circle", 1, float("nan"))]
@@ -712,5 +583,5 @@ class TestCommand:
 
     @pytest.mark.parametrize("line", ["1 2", "1 2 3 4 5", "a b c", "1 2 3 inf", "nan 2 3", "1 2 3 -1", "1 2 3 0.5"])
     def test_command_line_without_position_is_refused(self, line: str):
-        with pytest.raises(DeviceError, match="type x y z in millimetres"):
+        with pytest.raises(DeviceError, match="is not a position"):
             parse(line)

@@ -1,4 +1,4 @@
-"""Where the dots of braille lie, and lines that are no wider than there is room."""
+"""Places of braille dots and the breaking of lines: if a case fails, braille is unreadable or runs off the page."""
 
 import numpy as np
 import pytest
@@ -44,12 +44,6 @@ def test_wrapped_number_stays_with_its_unit(text: str):
     assert (first, second) == (translate("noted", "en"), translate(text[6:], "en"))
 
 
-def test_wrapped_later_lines_are_indented():
-    first, *others = wrapped(TEXT, "en", WIDE_M, indent=2)
-    assert first[:2] == translate("In", "en")[:2]
-    assert all(line[:2] == (0, 0) and line[2] and len(line) <= 16 for line in others)
-
-
 def test_wrapped_lines_have_room_for_their_indent_and_a_single_one_has_none():
     first, *others = wrapped("abcd abcd abc abcd", "en", width_m((0,) * 9), indent=2)
     assert first == translate("abcd abcd", "en")
@@ -65,7 +59,7 @@ def test_wrapped_wide_word_is_broken_after_a_hyphen():
 
 
 def test_wrapped_without_room_is_refused():
-    with pytest.raises(BrailleError, match=r"^'ab': not even its first letter and a hyphen have room in 5 mm of brai"):
+    with pytest.raises(BrailleError, match="have room in 5 mm"):
         wrapped("ab", "de", 0.005)
     assert wrapped("a b", "de", DOT_PITCH_M + DOT_DIAMETER_M) == [(1,), (3,)]
     with pytest.raises(ConfigError, match="width_m"):

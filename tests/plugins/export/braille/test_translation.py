@@ -1,13 +1,8 @@
-"""Text in braille: by liblouis and by our own tables, which agree; and what neither can write."""
+"""Text in braille, by liblouis and by our own tables: if a case fails, a blind reader reads other letters."""
 
 import ctypes
 import os
-import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
-from itertools import product
-from threading import Barrier
-from typing import Any
 
 import pytest
 
@@ -15,7 +10,7 @@ from tangible_core.errors import BrailleError
 from tangible_core.plugins.notes import collected
 from tangible_export.braille import as_ascii, as_unicode, translate, translation, written_by
 from tangible_export.braille.latin import LANGUAGES, LETTERS, code_of, translate_by_table
-from tangible_export.braille.louis import TABLES, Louis, _units, louis
+from tangible_export.braille.louis import TABLES, Louis, louis
 
 ORDINARY = {
     "en": (
@@ -67,52 +62,16 @@ def without(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[object], None
     louis.cache_clear()
 
 
-@pytest.mark.parametrize(("language", "text"), [(each, text) for each in ORDINARY for text in ORDINARY[each]])
-def test_liblouis_and_our_tables_agree_on_texts(installed: Louis, language: str, text: str):
-    plain = translation._plain(text, language)
-    assert as_unicode(translate(text, language)) == as_unicode(translate_by_table(plain, language))
-
-
-@pytest.mark.parametrize(("text", "braille"), [
-    ("1 000", "⠼⠁⠐⠚⠚⠚"),
-    ("1 0000", "⠼⠁⠀⠼⠚⠚⠚⠚"),
-    ("12 345 6", "⠼⠁⠃⠐⠉⠙⠑⠀⠼⠋"),
-    ("3 12", "⠼⠉⠀⠼⠁⠃"),
-])  # fmt: skip
-def test_groups_of_three_digits_alone_are_of_one_number(text: str, braille: str):
-    """Liblouis takes any two numbers for one."""
-    assert as_unicode(translate_by_table(text, "en")) == braille
-
-
-@pytest.mark.parametrize("language", ["de", "fr"])
-def test_groups_of_digits_are_numbers_of_their_own_where_no_sign_joins_them(language: str):
-    first, second = (translate_by_table(number, language) for number in ("1", "000"))
-    assert translate_by_table("1 000", language) == (*first, 0, *second)
+@pytest.mark.parametrize("language", ORDINARY)
+def test_liblouis_and_our_tables_agree_on_texts(installed: Louis, language: str):
+    for text in ORDINARY[language]:
+        plain = translation._plain(text, language)
+        assert as_unicode(translate(text, language)) == as_unicode(translate_by_table(plain, language)), text
 
 
 def test_quotation_mark_between_spaces_closes():
     """More often a space was left before the closing mark than after the opening one."""
     assert as_unicode(translate_by_table('a " b', "de")) == "⠁⠀⠴⠀⠃"
-
-
-@pytest.mark.parametrize("odd", ["\x07", "\ud800", "\ue000", "\U0010fffd", "\u0378"])
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_character_that_nobody_can_read_is_refused_with_its_place(odd: str, language: str):
-    """Control characters, halves of pairs, private ones and unassigned ones: whatever a table might have for them."""
-    with pytest.raises(BrailleError, match=rf"character 3, .*\(U\+{ord(odd):04X}\), is not in any braille"):
-        translate(f"ab{odd}c", language)
-
-
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_letter_with_an_accent_that_the_code_lacks_is_refused(language: str):
-    """A circumflex and a dot below."""
-    with pytest.raises(BrailleError, match="character 2, 'ệ'"):
-        translate_by_table("aệ", language)
-
-
-def test_characters_beyond_two_bytes_are_written_in_two_units():
-    assert _units("a", 2) == _units("a", 4) == [97]
-    assert (_units("🙂", 2), _units("🙂", 4)) == ([0xD83D, 0xDE42], [0x1F642])
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -129,15 +88,8 @@ def test_liblouis_and_our_tables_agree_on_every_letter_and_digit(installed: Loui
         if language == "fr" and word[0] == "Ø":  # liblouis has another letter for the capital
             continue
         assert as_unicode(translate(word, language)) == as_unicode(translate_by_table(word, language)), word
-    for number in range(1100):
+    for number in (*range(120), 999, 1000, 1099):
         assert translate(str(number), language) == translate_by_table(str(number), language), number
-
-
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_our_tables_have_every_sign_of_a_keyboard_and_of_usual_titles(language: str):
-    signs = [chr(code) for code in range(32, 127)] + list("×±²³½¼¾©®™€£¥§°…–—‘’“”„«»¿¡→←éèêëàâäáåãçíîïñóôöúûüœæøß")  # noqa: RUF001
-    for sign in signs:
-        assert translate_by_table(translation._plain(f"a {sign} b", language), language)
 
 
 @pytest.mark.parametrize(("language", "text", "braille"), [
@@ -221,11 +173,8 @@ def test_liblouis_breaking_later_is_replaced_with_a_note(without: Callable[[obje
     ("text", "language", "says"),
     [
         ("Tokyo 日本", "en", "'Tokyo 日本': character 7, '日' (U+65E5), is not in "),
-        ("ok 🙂", "de", "'ok 🙂': character 4, '🙂' (U+1F642), is not in "),
         ("ale ł", "fr", "'ale ł': character 5, 'ł' (U+0142), is not in "),
-        ("a\x07", "en", r"'a\x07': character 2, '\x07' (U+0007), is not in "),
         ("a\ud800", "en", r"'a\ud800': character 2, '\ud800' (U+D800), is not in any braille;"),
-        ("a\ue000", "de", r"'a\ue000': character 2, '\ue000' (U+E000), is not in any braille;"),
         ("a\u0378", "fr", r"'a\u0378': character 2, '\u0378' (U+0378), is not in any braille;"),
     ],
 )
@@ -246,51 +195,7 @@ def test_translation_unifies_spaces_and_composed_letters():
     assert translate(" ", "fr") == (0,)
 
 
-def test_translation_in_threads_gives_the_same_cells(installed: Louis):
-    jobs = [
-        (f"{text} {number}", each) for number, (each, texts) in product(range(6), ORDINARY.items()) for text in texts
-    ]
-    alone = [translate(*job) for job in jobs]
-    start = Barrier(8)
-
-    def all_of_them(_: int) -> list[tuple[int, ...]]:
-        start.wait()
-        return [translate(*job) for job in jobs]
-
-    with ThreadPoolExecutor(8) as pool:
-        assert all(each == alone for each in pool.map(all_of_them, range(8)))
-
-
-def test_liblouis_is_called_by_one_thread_at_a_time(without: Callable[[object], None]):
-    """Seen from within a library, as liblouis itself ends the process where it is disturbed."""
-    library, inside, most = odd(), list[None](), list[int]()
-    write: Any = library.lou_translateString  # pyright: ignore[reportAttributeAccessIssue]
-
-    def watch(*given: Any) -> int:
-        inside.append(None)
-        time.sleep(1e-3)
-        most.append(len(inside))
-        inside.pop()
-        return write(*given)
-
-    library.lou_translateString = watch  # pyright: ignore[reportAttributeAccessIssue]
-    without(library)
-    with ThreadPoolExecutor(4) as pool:
-        assert set(pool.map(translate, ["abc"] * 40)) == {(1, 3, 9)}
-    assert set(most) == {1}
-
-
-def test_liblouis_with_missing_table_prints_nothing(installed: Louis, capfd: pytest.CaptureFixture[str]):
-    with pytest.raises(OSError, match=r"cannot use its table nowhere\.ctb"):
-        installed._call("abc", "nowhere.ctb", 0)
-    assert capfd.readouterr() == ("", "")
-
-
 def test_as_ascii_has_a_character_for_every_cell():
     cells = tuple(range(64))
     assert len(set(as_ascii(cells))) == 64
     assert as_ascii(translate("Hello, 12.", "en")) == ",HELLO1 #AB4"
-
-
-def test_each_language_has_a_table_of_liblouis():
-    assert set(LANGUAGES) == TABLES.keys()

@@ -1,4 +1,4 @@
-"""The rows of a key, and the mark of a page's corner."""
+"""The key: if a case fails, a sample stands by the wrong name, or the page can be laid the wrong way up."""
 
 import re
 

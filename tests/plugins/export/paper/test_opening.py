@@ -1,4 +1,4 @@
-"""Parts opened where a finger has no room, on maps of one cell a millimetre."""
+"""Parts opened where a finger has no room: if a case fails, a page keeps a slit, or loses a part without a note."""
 
 import numpy as np
 

@@ -1,7 +1,6 @@
-"""What a page is made of, before it is drawn."""
+"""What a page is made of: if a case fails, its key or its fills do not fit its parts."""
 
 import numpy as np
-import pytest
 import shapely
 
 from exported_pictures import labels_work
@@ -35,10 +34,6 @@ def test_fill_has_room_where_the_largest_part_has():
     assert page._has_room(symbols("sea", 0, 1, kind="dots"), shapes)
     assert page._has_room(symbols("sea", 1, 0, kind="dots"), shapes)
     assert not page._has_room(symbols("sea", 0, kind="dots"), shapes)
-
-
-def test_places_on_the_picture_are_shares_of_its_width():
-    assert page._on_picture([(60, 45), (10, 20)], SHEET) == pytest.approx(np.array([[0.5, 0.25], [0, 0]]))
 
 
 def test_key_has_the_letters_and_fills_that_are_on_the_page():

@@ -1,4 +1,4 @@
-"""Places of picture and title on a sheet, in millimetres that were worked out by hand."""
+"""Places on a sheet: if a case fails, the picture is smaller than it could be or runs off the paper."""
 
 import pytest
 
@@ -39,7 +39,7 @@ def test_picture_is_moved_below_its_title(spare_mm: float, title_mm: float, down
 def test_picture_of_the_largest_and_of_the_least_width_is_taken():
     for width_m, aspect in ((0.189, 1.0), (0.0127, 1.0), (0.0254, 2.0)):
         check_readable("a4", sheet_for("a4", aspect, width_m))
-    for width_m, message in ((0.1891, "has no room on a4, which takes 189 mm"), (0.0126, "a finger needs 12.7 mm")):
+    for width_m, message in ((0.1891, "no room"), (0.0126, "a finger needs")):
         with pytest.raises(GeometryError, match=message):
             check_readable("a4", sheet_for("a4", 1.0, width_m))
 

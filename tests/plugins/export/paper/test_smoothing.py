@@ -1,4 +1,4 @@
-"""Outlines of parts against shapes that are known exactly."""
+"""Smooth outlines: if a case fails, a finger follows stairs of pixels, or another shape than the part's."""
 
 import numpy as np
 import pytest
@@ -23,8 +23,9 @@ def points_along(shape, every_mm: float = 0.1) -> np.ndarray:
     return shapely.get_coordinates(shapely.line_interpolate_point(line, np.arange(0, line.length, every_mm)))
 
 
-@pytest.mark.parametrize("columns", [180, 400, 720])
-@pytest.mark.parametrize("radius_mm", [20.0, 60.0])
+@pytest.mark.parametrize(
+    ("columns", "radius_mm"), [(180, 60.0), (400, 20.0), pytest.param(720, 60.0, marks=pytest.mark.whole)]
+)
 def test_smooth_border_of_a_disc_is_the_circle_without_stairs(columns, radius_mm):
     disc = smooth_borders(disc_and_halves(columns, radius_mm), WIDTH_MM)[2]
     off = np.abs(np.hypot(*points_along(disc).T) - radius_mm)
@@ -44,27 +45,11 @@ def test_smooth_borders_are_shared_and_fill_the_picture():
     assert shapely.coverage_is_valid(list(shapes))
 
 
-def test_smooth_border_of_an_enclosed_part_is_round():
-    parts = disc_and_halves(400, 20)
-    alone = PartMap(np.where(parts.labels == 2, 1, 0).astype(np.int32), (0, 1))
-    ground, disc = smooth_borders(alone, WIDTH_MM)
-    assert np.abs(np.hypot(*points_along(disc).T) - 20).max() < 0.3
-    assert len(ground.interiors) == 1 and ground.area + disc.area == pytest.approx(WIDTH_MM**2)
-
-
 def test_smooth_border_of_a_small_disc_keeps_its_area():
     """A Gaussian shrinks a circle by s^2 / 2 r, the second pass takes it back."""
     labels = (disc_and_halves(720, 6).labels == 2).astype(np.int32)
     _, disc = smooth_borders(PartMap(labels, (0, 1)), WIDTH_MM)
     assert disc.area == pytest.approx(labels.sum() * (WIDTH_MM / 720) ** 2, rel=5e-3)
-
-
-def test_smooth_borders_keep_every_part_and_its_pieces():
-    labels = np.zeros((90, 90), np.int32)
-    labels[10:30, 10:30] = labels[60:80, 50:80] = 2
-    shapes = smooth_borders(PartMap(labels, (0, 1, 2)), WIDTH_MM)
-    assert shapes[1].is_empty and len(shapely.get_parts(shapes[2])) == 2
-    assert sum(each.area for each in shapes) == pytest.approx(WIDTH_MM**2)
 
 
 def test_lines_have_no_more_points_than_they_need():

@@ -1,4 +1,4 @@
-"""The change of a force in one tick under a surface that moves, and the rise that does the same work."""
+"""A moving surface would kick the hand: the change of a force in one tick, and the rise that does the same work."""
 
 import numpy as np
 import pytest

@@ -1,9 +1,11 @@
-"""Textures: exact against formulas, passive, sampled without aliasing, the same on every machine."""
+"""A material's texture would feel wrong, buzz, or push the hand on.
+
+Exact against formulas, passive, sampled without aliasing, the same on every machine.
+"""
 
 import math
 from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -85,28 +87,9 @@ class TestWaves:
         assert np.sum(made.amplitude_m**2) == pytest.approx(material.roughness_m**2, rel=1e-12)
         assert 0 < len(made.phase) <= WAVES
 
-    @pytest.mark.parametrize("name", ["plain", "ice", "glass", "water"])
-    def test_smooth_material_has_no_waves(self, name: str):
-        assert len(waves(library()[name]).phase) == 0
-
-    def test_another_seed_is_another_specimen(self):
-        tiles = [sample_tile(replace(PLAIN, seed=seed), 0.01, 64) for seed in (1, 1, 2)]
-        assert np.array_equal(tiles[0], tiles[1])
-        assert np.corrcoef(tiles[0].ravel(), tiles[2].ravel())[0, 1] < 0.3
-
-    def test_materials_of_one_seed_have_different_textures(self):
-        tiles = [sample_tile(replace(PLAIN, name=name), 0.01, 64).ravel() for name in ("sand", "snow")]
-        assert abs(np.corrcoef(*tiles)[0, 1]) < 0.3
-
     def test_seed_gives_the_same_waves_on_every_machine(self):
         made = waves(replace(PLAIN, name="sand", seed=3))
         assert made.phase[:3] == pytest.approx([0.5365125855, 0.9444867216, 0.2684379101], abs=1e-9)
-
-    def test_lines_run_in_their_direction(self):
-        for direction_deg in (0.0, 30.0, 90.0, 135.0):
-            made = waves(replace(PLAIN, direction_deg=direction_deg, anisotropy=1.0))
-            along = np.cos(np.deg2rad(direction_deg)), np.sin(np.deg2rad(direction_deg))
-            assert made.fx * along[0] + made.fy * along[1] == pytest.approx(0, abs=1e-9)
 
     @pytest.mark.parametrize(("texture", "count"), [("stochastic", 24), ("drag", 24), ("stick-slip", 8)])
     def test_noise_fills_one_octave_and_its_fan(self, texture: str, count: int):
@@ -137,16 +120,6 @@ class TestWaves:
         assert turned_deg[0] == pytest.approx(0, abs=1e-9)
         assert np.sort(turned_deg[1:]) == pytest.approx(np.linspace(-6, 6, 7), abs=1e-9)
 
-    def test_noise_does_not_repeat(self):
-        made = waves(library()["sand"])
-        lags_m = np.linspace(-32, 32, 513) * library()["sand"].grain_m
-        share = made.amplitude_m**2 / np.sum(made.amplitude_m**2)
-        alike = np.real(
-            (np.exp(2j * np.pi * np.outer(lags_m, made.fx)) * share) @ np.exp(2j * np.pi * np.outer(made.fy, lags_m))
-        )
-        far = np.hypot(*np.meshgrid(lags_m, lags_m)) > 3 * library()["sand"].grain_m
-        assert alike[far].max() < 0.75
-
 
 class TestHeights:
     @given(points)
@@ -158,14 +131,6 @@ class TestHeights:
         assert slope_x == pytest.approx(0, abs=1e-12)
         assert slope_y == pytest.approx(-ROUGH_M * turn * np.sin(turn * at[1]), abs=1e-8)
 
-    @given(points)
-    def test_weave_is_two_cosines(self, at: tuple[float, float]):
-        turn = 2 * np.pi / GRAIN_M
-        expected = ROUGH_M / np.sqrt(2) * (np.cos(turn * at[0]) + np.cos(turn * at[1]))
-        assert heights(replace(PLAIN, texture="periodic"), *np.transpose([at]))[0, 0] == pytest.approx(
-            expected, abs=1e-9 * ROUGH_M
-        )
-
     @pytest.mark.parametrize("material", ROUGH, ids=by_name)
     def test_gradient_is_that_of_the_height(self, material: Material):
         x, y = np.random.default_rng(0).uniform(-0.05, 0.05, (2, 50))
@@ -176,17 +141,6 @@ class TestHeights:
         steep = 2 * np.pi * material.roughness_m / material.grain_m
         assert found[:, 1] == pytest.approx(across / (2 * step_m), abs=1e-5 * steep)
         assert found[:, 2] == pytest.approx(away / (2 * step_m), abs=1e-5 * steep)
-
-    @pytest.mark.parametrize("material", WAVING, ids=lambda each: each.texture)
-    def test_closed_path_has_no_work(self, material: Material):
-        """Integrate -N grad h around a square by the rule of Gauss and Legendre."""
-        nodes, weights = np.polynomial.legendre.leggauss(60)
-        corners_m = 0.003 * np.array([(0, 0), (1, 0.2), (0.9, 1), (-0.1, 0.7), (0, 0)])
-        total = 0.0
-        for a, b in pairwise(corners_m):
-            x, y = (a + np.outer((nodes + 1) / 2, b - a)).T
-            total += np.sum(weights / 2 * (heights(material, x, y)[:, 1:] @ (b - a)))
-        assert abs(total) < 1e-8 * ROUGH_M
 
     @given(st.tuples(*[st.floats()] * 4))
     def test_height_is_finite_everywhere(self, state: tuple[float, ...]):
@@ -216,11 +170,6 @@ class TestHeights:
 class TestSampling:
     def test_wave_is_whole_gone_or_between(self):
         assert [remaining(turns) for turns in (0.0, WHOLE, GONE, 0.5, 1e300)] == [1, 1, 0, 0, 0]
-        assert remaining((WHOLE + GONE) / 2) == pytest.approx(0.5)
-        assert np.all(np.diff([remaining(turns) for turns in np.linspace(0, 0.5, 101)]) <= 0)
-
-    def test_wave_is_whole_over_five_ticks_and_gone_over_three(self):
-        """Check the bounds on which the other tests rely."""
         assert (WHOLE, GONE) == (1 / 5, 1 / 3)
         assert remaining(0.25) == pytest.approx(1 - 3 * 0.375**2 + 2 * 0.375**3)
 
@@ -228,24 +177,6 @@ class TestSampling:
         x = np.linspace(0, 0.02, 100)
         slow = 0.99 * WHOLE * GRAIN_M / np.sqrt(2) / TICK_S  # the shortest wave is half an octave below the grain
         assert np.array_equal(heights(PLAIN, x, 0 * x, slow), heights(PLAIN, x, 0 * x))
-
-    def test_fast_hand_gets_a_smooth_plane(self):
-        fast = GONE * GRAIN_M * np.sqrt(2) / TICK_S
-        lines = replace(PLAIN, direction_deg=90.0, anisotropy=1.0)
-        assert not heights(lines, *np.random.default_rng(0).uniform(-1, 1, (2, 50)), fast).any()
-
-    @pytest.mark.parametrize("speed_m_per_s", [0.02, 0.1, 0.2, 0.3, 0.5, 1.0])
-    @pytest.mark.parametrize("material", [*WAVING, replace(PLAIN, grain_m=2e-4)])
-    def test_vibration_stays_below_a_third_of_the_rate(self, material: Material, speed_m_per_s: float):
-        """Check the bound under a window with side lobes at -92 dB."""
-        count = 4096
-        x = np.arange(count) * speed_m_per_s * TICK_S
-        found = heights(material, x, 0.3 * x, speed_m_per_s, 0.3 * speed_m_per_s)
-        turns = 2 * np.pi * np.arange(count) / (count - 1)
-        window = 0.35875 - 0.48829 * np.cos(turns) + 0.14128 * np.cos(2 * turns) - 0.01168 * np.cos(3 * turns)
-        power = np.abs(np.fft.rfft(found * window[:, None], axis=0)) ** 2
-        above = np.fft.rfftfreq(count) > GONE + 0.005
-        assert power[above].max() <= 1e-8 * max(power.max(), 1e-30)
 
 
 class TestDrag:
@@ -259,9 +190,6 @@ class TestDrag:
         table = compile_textures([library()["water"]])
         assert texture_force(table, 0, np.zeros(STATE), 0.0, 0.0, 1.0, 1.0, 0.0) == (0.0, 0.0)
 
-    def test_material_of_heights_only_has_no_texture_force(self):
-        assert not forces(PLAIN, line(0.01, 1e-4)).any()
-
 
 class TestStickSlip:
     def test_sliding_starts_at_the_static_friction(self):
@@ -274,48 +202,11 @@ class TestStickSlip:
         assert sliding_n.mean() == pytest.approx(RUBBER.dynamic_friction, rel=0.005)
         assert sliding_n.min() == pytest.approx(2 * RUBBER.dynamic_friction - RUBBER.static_friction, rel=0.01)
 
-    @pytest.mark.parametrize("normal_n", [0.5, 1.0, 2.0])
-    def test_friction_slips_once_a_grain(self, normal_n: float):
-        path_m = line(0.066, 2e-5)
-        sliding_n = forces(RUBBER, path_m, normal_n)[300:, 0]
-        spectrum = line_spectrum(sliding_n, len(sliding_n) * 2e-5)
-        assert peak_wavelength_m(spectrum) == pytest.approx(GRAIN_M, rel=0.02)
-
     def test_friction_is_a_spring_until_it_slips(self):
         way_m = np.append(np.linspace(0, 5e-4, 50), np.linspace(5e-4, 0, 50))
         found = forces(RUBBER, way_m[:, None] * (0.6, -0.8))
         rise = RUBBER.stiffness_n_per_m * RUBBER.static_friction / RUBBER.dynamic_friction
         assert found == pytest.approx(-rise * way_m[:, None] * (0.6, -0.8), abs=1e-12)
-
-    @given(st.integers(0, 2**32), st.floats(1e-6, 1e-2), st.floats(0.01, 100))
-    def test_friction_never_gives_energy(self, seed: int, step_m: float, hard_n: float):
-        """Sum, over any path and pressure, the force at a tick's end times its step."""
-        random = np.random.default_rng(seed)
-        path_m = np.cumsum(random.normal(0, step_m, (200, 2)), axis=0)
-        found_n = forces(RUBBER, path_m, hard_n * random.random(200))
-        given_j = np.cumsum(np.sum(found_n[1:] * np.diff(path_m, axis=0), axis=1))
-        assert given_j.max() <= 1e-12 * np.abs(found_n).max() * step_m
-
-    @pytest.mark.parametrize("hard_n", [3.0, 10.0, 30.0])
-    @pytest.mark.parametrize("static_friction", [0.6, 0.9])
-    def test_hand_that_presses_at_low_levels_gains_no_energy(self, hard_n: float, static_friction: float):
-        """Stretch the bristle at its lowest level, slide until the level is highest, and let the bristle go under a
-        light hand. Without a bound on the rise of the level, the hand gains 17 mJ here, or 1 J.
-        """
-        sticky, light_n = replace(RUBBER, static_friction=static_friction), 0.01 * hard_n
-        far_m, near_m = (sticky.dynamic_friction * n / sticky.stiffness_n_per_m for n in (hard_n, light_n))
-        ways = [(near_m + 0.05 * GRAIN_M, light_n)] + 5 * [
-            (far_m - near_m + 0.85 * GRAIN_M, hard_n),
-            (-far_m, hard_n),
-            (near_m + 0.15 * GRAIN_M, light_n),
-        ]
-        steps = [np.full(count := int(np.ceil(abs(way_m) / 2e-5)), way_m / count) for way_m, _ in ways]
-        normals = np.repeat([normal_n for _, normal_n in ways], [len(each) for each in steps])
-        path_m = np.cumsum(np.append(0, np.concatenate(steps)))[:, None] * (0.6, -0.8)
-        found_n = forces(sticky, path_m, np.append(light_n, normals))
-        given_j = np.cumsum(np.sum(found_n[1:] * np.diff(path_m, axis=0), axis=1))
-        assert given_j.max() <= 0
-        assert given_j[-1] < -1e-3
 
     @pytest.mark.parametrize("static_friction", [0.5, 0.6, 5.0])
     def test_bristle_stores_no_more_than_the_hand_puts_in(self, static_friction: float):
@@ -363,15 +254,6 @@ class TestStickSlip:
             assert -found == pytest.approx(level * RUBBER.dynamic_friction * normal_n, rel=1e-5)
             assert 0 <= state[4] < 1  # turns are left out, so that a phase keeps its digits
 
-    @given(st.lists(st.tuples(*[st.floats()] * 5), max_size=5))
-    def test_friction_is_finite_for_any_state(self, states: list[tuple[float, ...]]):
-        table, state = compile_textures([replace(RUBBER, drag_n_s_per_m=2.0)]), np.zeros(STATE)
-        for each in states:
-            assert np.isfinite(texture_force(table, 0, state, *each)).all()
-        for x in np.linspace(0, 0.01, 20):  # and it works as ever afterwards
-            found = texture_force(table, 0, state, x, 0.0, 0.0, 0.0, 1.0)
-            assert np.hypot(*found) <= 1.001 * RUBBER.static_friction
-
     @pytest.mark.parametrize(
         ("material", "between"),
         [
@@ -397,39 +279,6 @@ class TestStickSlip:
         assert texture_force(table, material, state, *between) == (0.0, 0.0)
         assert strokes() == first
 
-    def test_large_difference_of_frictions_is_limited(self):
-        sticky = replace(RUBBER, static_friction=5.0)
-        pull_n = -forces(sticky, line(0.02, 2e-5))[:, 0]
-        assert 0 < pull_n[500:].min() < 0.2 * sticky.dynamic_friction
-        assert pull_n.max() == pytest.approx(1.9 * sticky.dynamic_friction, rel=0.03)
-
-    def test_rubbing_dissipates_the_work_of_friction(self):
-        way_m = 0.02 * np.sin(np.linspace(0, 2 * np.pi, 8000))
-        found_n = forces(RUBBER, way_m[:, None] * (1.0, 0.0))[:, 0]
-        work_j = np.sum(found_n[1:] * np.diff(way_m))
-        assert work_j == pytest.approx(-RUBBER.dynamic_friction * 0.08, rel=0.06)
-
-    def test_fast_stroke_has_plain_friction(self):
-        found_n = forces(RUBBER, line(0.2, GONE * GRAIN_M))[20:, 0]
-        assert found_n == pytest.approx(-RUBBER.dynamic_friction, rel=1e-9)
-
-    def test_contact_starts_afresh_on_another_material(self):
-        table, state = (
-            compile_textures([RUBBER, replace(RUBBER, name="hard", stiffness_n_per_m=5000.0)]),
-            np.zeros(STATE),
-        )
-        for x in (0.0, 0.0005):
-            texture_force(table, 0, state, x, 0.0, 0.0, 0.0, 1.0)
-        assert texture_force(table, 1, state, 0.0006, 0.0, 0.0, 0.0, 1.0) == (0.0, 0.0)
-
-    @pytest.mark.parametrize("lifted", [(0.0, 0.0, 0.0, 0.0, 0.0), (np.nan, 0.0, 0.0, 0.0, 1.0), (0, 0, 0, 0, np.inf)])
-    def test_contact_starts_afresh_after_lifting(self, lifted: tuple[float, ...]):
-        table, state = compile_textures([RUBBER]), np.zeros(STATE)
-        for x in (0.0, 0.0005):
-            texture_force(table, 0, state, x, 0.0, 0.0, 0.0, 1.0)
-        assert texture_force(table, 0, state, *map(float, lifted)) == (0.0, 0.0)
-        assert texture_force(table, 0, state, 0.02, 0.0, 0.0, 0.0, 1.0) == (0.0, 0.0)
-
 
 class TestTile:
     def test_tile_has_the_heights_at_its_pixel_centres(self):
@@ -440,39 +289,24 @@ class TestTile:
             expected = heights(material, x.ravel(), y.ravel())[:, 0].reshape(40, 40)
             assert tile == pytest.approx(expected, abs=1e-6 * ROUGH_M)
 
-    def test_tile_of_another_resolution_shows_the_same_texture(self):
-        coarse, fine = sample_tile(PLAIN, 0.006, 40), sample_tile(PLAIN, 0.006, 120)
-        assert fine[1::3, 1::3] == pytest.approx(coarse, abs=1e-6 * ROUGH_M)
-
     @pytest.mark.parametrize("direction_deg", [0.0, 90.0])
     def test_tile_leaves_out_undersampled_waves(self, direction_deg: float):
         lines = replace(PLAIN, texture="periodic", anisotropy=1.0, direction_deg=direction_deg)
         assert not sample_tile(lines, 0.1, 299).any()
         assert sample_tile(lines, 0.1, 301).any()
 
-    def test_tile_of_one_pixel(self):
-        assert sample_tile(library()["ice"], 0.01, 1).tolist() == [[0.0]]
-
     @pytest.mark.parametrize(("width_m", "pixels"), [(0.0, 8), (np.nan, 8), (np.inf, 8), (-1.0, 8), (0.01, 0)])
     def test_tile_of_wrong_size_is_refused(self, width_m: float, pixels: int):
-        with pytest.raises(MaterialError, match="a tile needs a positive width"):
+        with pytest.raises(MaterialError):
             sample_tile(PLAIN, width_m, pixels)
 
 
 class TestSpectrum:
-    @pytest.mark.parametrize("seed", [0, 1, 2])
     @pytest.mark.parametrize("material", ROUGH, ids=by_name)
-    def test_spectrum_peaks_at_the_stated_wavelength(self, material: Material, seed: int):
+    def test_spectrum_peaks_at_the_stated_wavelength(self, material: Material):
         width_m = 96 * material.grain_m
-        tile = sample_tile(replace(material, seed=seed), width_m, 480)
+        tile = sample_tile(material, width_m, 480)
         assert peak_wavelength_m(radial_spectrum(tile, width_m)) == pytest.approx(material.grain_m, rel=0.05)
-
-    def test_spectrum_of_a_wave_has_one_peak(self):
-        way_m = np.arange(1000) * 1e-4
-        wavelength_m, power = spectrum = line_spectrum(np.cos(2 * np.pi * way_m / 0.005), 0.1)
-        assert peak_wavelength_m(spectrum) == pytest.approx(0.005, rel=0.02)
-        assert power.sum() == pytest.approx(1)
-        assert np.all(np.diff(wavelength_m) < 0)
 
     def test_spectrum_of_a_line_is_blurred_over_an_eighth_of_an_octave(self):
         for spectrum in (
@@ -480,34 +314,16 @@ class TestSpectrum:
             radial_spectrum(np.cos(2 * np.pi * np.arange(512) / 8) * np.ones((512, 1)), 0.1),
         ):
             octaves, power = np.log2(spectrum[0]), spectrum[1]
+            assert power.sum() == pytest.approx(1)
+            assert np.all(np.diff(octaves) < 0)
             middle = octaves @ power
             assert np.sqrt((octaves - middle) ** 2 @ power) == pytest.approx(1 / 8, rel=0.05)
 
-    def test_spectrum_of_a_plane_is_zero(self):
-        spectrum = radial_spectrum(np.zeros((16, 16), np.float32), 0.01)
-        assert not spectrum[1].any()
-        assert np.isnan(peak_wavelength_m(spectrum))
-
 
 class TestStroke:
-    def test_stroke_over_ice_is_its_friction(self):
-        felt = stroke(library()["ice"], speed_m_per_s=0.05, normal_n=2.0, length_m=0.01)
-        assert felt.way_m == pytest.approx(np.arange(200) * 5e-5)
-        assert felt.force_n[1:] == pytest.approx(-0.06)
-        assert felt.force_n[0] == 0
-
-    def test_stroke_over_lines_pushes_back_where_they_rise(self):
-        lines = replace(PLAIN, texture="periodic", anisotropy=1.0, direction_deg=90.0)
-        felt = stroke(lines, 0.02)
-        turn = 2 * np.pi / GRAIN_M
-        assert felt.force_n[1:] == pytest.approx(
-            -lines.dynamic_friction + ROUGH_M * turn * np.sin(turn * felt.way_m[1:]), abs=1e-6
-        )
-
-    @pytest.mark.parametrize("speed_m_per_s", [0.02, 0.1])
-    def test_stroke_takes_any_direction_and_rate(self, speed_m_per_s: float):
+    def test_stroke_takes_any_direction_and_rate(self):
         """Stroke lines along x away from the user at 2 kHz: a wave of 1 mm at 100 mm/s spans 20 ticks."""
-        lines = replace(PLAIN, texture="periodic", anisotropy=1.0)
+        lines, speed_m_per_s = replace(PLAIN, texture="periodic", anisotropy=1.0), 0.1
         felt = stroke(lines, speed_m_per_s, 2.0, 0.005, 0.0005, 90.0)
         turn = 2 * np.pi / GRAIN_M
         assert felt.way_m == pytest.approx(np.arange(round(0.005 / speed_m_per_s * 2000)) * speed_m_per_s / 2000)
@@ -516,13 +332,6 @@ class TestStroke:
             -2 * lines.dynamic_friction + 2 * ROUGH_M * turn * np.sin(turn * felt.way_m[1:]), abs=1e-6
         )
         assert not np.any(stroke(lines, speed_m_per_s, 2.0, 0.005, 0.0005, 0.0).height_m - ROUGH_M)
-
-    @pytest.mark.parametrize("period_s", [1e-3, 1e-4])
-    def test_stroke_is_sampled_at_its_own_rate(self, period_s: float):
-        water = library()["water"]
-        felt = stroke(water, 0.1, period_s=period_s)
-        friction_n = 0.1 * water.drag_n_s_per_m + water.dynamic_friction
-        assert felt.force_n[1:] == pytest.approx(-friction_n)
 
     def test_stroke_does_not_add_friction_twice(self):
         assert stroke(RUBBER, 0.02).force_n.min() == pytest.approx(-RUBBER.static_friction, rel=0.02)
@@ -541,5 +350,5 @@ class TestStroke:
         "wrong", [{"speed_m_per_s": 0.0}, {"normal_n": -1.0}, {"length_m": np.nan}, {"direction_deg": np.inf}]
     )
     def test_wrong_stroke_is_refused(self, wrong: dict[str, float]):
-        with pytest.raises(MaterialError, match="a stroke needs positive numbers"):
+        with pytest.raises(MaterialError):
             stroke(PLAIN, **wrong)

@@ -1,4 +1,4 @@
-"""The cubic B-spline's recursive filter."""
+"""The surface's coefficients would differ from SciPy's, and a cached one from one made anew."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Heights in steps: their slopes after smoothing, and the heights left alone."""
+"""Steps of 8 bit heights would be felt, or real terraces would be smoothed away."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A surface in words, of surfaces whose every word can be checked."""
+"""A surface in a few sentences: if a case fails, a blind reader is told something else than a hand feels."""
 
 import re
 from dataclasses import replace
@@ -28,8 +28,6 @@ def bump(x: float, y: float) -> np.ndarray:
     ("height", "says"),
     [
         (bump(0.15, 0.15), "highest at the upper left and lowest nearly everywhere else"),
-        (bump(0.85, 0.5), "highest on the right, halfway down and lowest nearly everywhere else"),
-        (bump(0.5, 0.5), "highest in the middle"),
         (10 - bump(0.5, 0.9), "lowest at the bottom in the middle"),
         (10 * X, "highest on the right and lowest on the left; hardly any of it is flat"),
         (10 * (1 - Y), "highest along the top and lowest along the bottom"),
@@ -62,18 +60,11 @@ def test_sentence_says_everywhere_else_of_more_than_half_alone():
     assert "nearly everywhere else" in describe(surface(np.where(height == 5, 0, height)), "it")
 
 
-def test_sentence_names_a_pin_as_the_highest_place():
-    pin = np.zeros((60, 80))
-    pin[50, 70] = 9
-    assert "up to 9 mm high. It is highest at the lower right" in describe(surface(pin), "pin")
-
-
 @pytest.mark.parametrize(
     ("height_m", "width_m", "says"),
     [
         (np.eye(8) * 4e-3, 0.08, "a surface 8 cm wide and 8 cm long, up to 4 mm high."),
         (np.eye(4, 9) * 1.234e-4, 0.123, "a surface 12 cm wide and 5.5 cm long, up to 0.12 mm high."),
-        (np.full((3, 3), 0.01), 10.0, "a surface 1000 cm wide and 1000 cm long. It is flat everywhere."),
         (np.zeros((1, 1)), 1e-6, "a surface 0.0001 cm wide and 0.0001 cm long. It is flat everywhere."),
         (np.array([[0.0, 1e-3]]), 0.02, "a surface 2 cm wide and 1 cm long, up to 1 mm high. High and low"),
     ],
@@ -95,25 +86,6 @@ def test_sentence_has_materials_with_shares_and_places():
     many = (np.arange(4800) % 7).reshape(60, 80).astype(np.int32)
     names = ("ice", "wood", "sand", "foam", "glass", "metal", "skin")
     assert re.search(r"7 materials: .* and 3 others on 43 %\.$", describe(surface(flat, *names, labels=many), "it"))
-
-
-def test_sentence_leaves_out_materials_without_a_place_and_counts_one_more():
-    flat, few = np.zeros((60, 80)), (X >= 0.5).astype(np.int32)
-    assert describe(surface(flat, "ice", "wood", "sand", labels=few), "it").endswith(
-        "It has 2 materials: ice on 50 % (on the left) and wood on 50 % (on the right)."
-    )
-    five = (np.arange(4800) % 5).reshape(60, 80).astype(np.int32)
-    names = ("ice", "wood", "sand", "foam", "glass")
-    assert describe(surface(flat, *names, labels=five), "it").endswith("and one other on 20 %.")
-    speck = np.zeros((60, 80), np.int32)
-    speck[:2, :2] = 1
-    assert "wood on 1 % (" in describe(surface(flat, "ice", "wood", labels=speck), "it")
-
-
-def test_sentence_lists_parts_of_one_height_in_their_order_and_none_without_cells():
-    labels = np.where(X < 0.5, 0, 2).astype(np.int32)
-    flat = replace(surface(np.zeros((60, 80)), labels=labels), names=("land", "", "sea"))
-    assert describe(flat, "it").endswith("are land (on the left) and sea (on the right).")
 
 
 def in_parts(names: tuple[str, ...], *materials: str) -> HapticSurface:
@@ -151,30 +123,6 @@ def test_sentence_on_many_parts_lists_the_nearest():
     assert describe(one, "it").endswith("It is of one part, plate.")
 
 
-def test_sentence_in_german_has_these_words():
-    labels = (X > 0.7).astype(np.int32)
-    hill = surface(bump(0.15, 0.15), "wood", "ice", labels=labels)
-    assert describe(hill, "builtin/hügel", "de", "heights") == (
-        "Die Höhenkarte hügel ist als Fläche zu fühlen, 8 cm breit und 6 cm lang, bis zu 10 mm hoch. "
-        "Am höchsten ist sie oben links, am tiefsten fast überall sonst; etwa 86 % davon sind eben. "
-        "Sie hat 2 Materialien: Holz auf 71 % und Eis auf 29 % (rechts)."
-    )
-
-
-def test_sentence_in_french_has_these_words():
-    hill = surface(bump(0.15, 0.15), "wood", "ice", labels=(X > 0.7).astype(np.int32))
-    assert describe(hill, "colline", "fr", "heights").replace("\u00a0", "~") == (
-        "La carte de hauteurs colline se touche comme une surface de 8 cm de large et 6 cm de long, jusqu'à 10 mm de "
-        "haut. Le relief culmine en haut à gauche~; il est le plus bas presque partout ailleurs~; environ 86~% de la "
-        "surface sont plats. On y trouve 2 matières~: bois sur 71~% et glace sur 29~% (à droite)."
-    )
-    assert describe(in_parts(("mur", "table", "tasse"), "stone", "wood", "water"), "x", "fr").endswith(
-        " Ses parties sont, de la plus proche à la plus lointaine, tasse (à droite, à mi-hauteur, 4,3 mm de haut, au "
-        "toucher comme de l'eau), table (le long du bord inférieur, 2 mm de haut, au toucher comme du bois) et mur (le "
-        "long du bord supérieur, au toucher comme de la pierre)."
-    )
-
-
 @pytest.mark.usefixtures("unchecked_shapes")
 def test_unknown_language_is_refused():
     with pytest.raises(ArgumentError, match="language: is the str 'pt'; it must be one of en, de, fr"):
@@ -186,8 +134,3 @@ def test_scene_kinds_all_have_words():
     starts = {kind: describe(hill, "x\n", "en", kind) for kind in ("photograph", "depth", "heights")}
     assert len(set(starts.values())) == 3
     assert all("\n" not in each for each in starts.values())
-
-
-def test_large_surface_is_described_on_a_coarse_grid():
-    large = HapticSurface.from_heights(np.tile(np.linspace(0, 0.01, 3000, dtype=np.float32), (20, 1)), 0.08)
-    assert "highest on the right and lowest on the left" in describe(large, "x")

@@ -1,32 +1,30 @@
-"""The steps of the Gabor segmenter against plain formulas."""
+"""The steps of the Gabor segmenter against plain formulas: else textures are joined or divided wrongly."""
 
-from typing import Literal
+from math import exp, log
 
 import numpy as np
 import pytest
 
 from tangible_core.compiled.small_matrices import eigen, solve
+from tangible_core.plugins.notes import collected
 from tangible_texture.clusters import planes as matrices
-from tangible_texture.clusters.classes import _resample_labels, classes
-from tangible_texture.clusters.discriminants import discriminant_axes, evidence, principal_axes, scatters
-from tangible_texture.clusters.dividing import divide, one_hot
+from tangible_texture.clusters.counting import Weights, largest_number, likeliest_division, number_likelihoods
+from tangible_texture.clusters.discriminants import discriminant_axes, evidence, scatters
+from tangible_texture.clusters.dividing import one_hot
 from tangible_texture.clusters.full_size import pixel_labels
-from tangible_texture.clusters.joining import axes_between, join_clusters
+from tangible_texture.clusters.joining import Step, axes_between, join_clusters, measure_pairs
 from tangible_texture.clusters.neighbourhood import (
     INSIDE_CELLS,
     interior_shares,
     mean_field,
-    refit_labels,
     smooth_memberships,
 )
-from tangible_texture.clusters.pairs import measure_pairs
 from tangible_texture.clusters.planes import (
     combine_planes,
     inner_products,
     scatter_matrix,
     scatter_matrix_in_kernel,
 )
-from tangible_texture.features.features import Features, Window
 from tangible_texture.features.patterns import COUNTERS, RADII, pattern_frequencies
 from tangible_texture.signal.smoothing import gaussian
 
@@ -45,17 +43,7 @@ def test_eigenvalues_and_solutions_match_lapack(random: np.random.Generator, siz
     np.testing.assert_allclose(vectors @ matrix @ vectors.T, np.diag(values), atol=1e-8)
     rows = random.standard_normal((3, size))
     np.testing.assert_allclose(solve(matrix, rows), np.linalg.solve(matrix, rows.T).T, rtol=1e-6, atol=1e-8)
-
-
-@pytest.mark.parametrize("diagonal", [[0, 0, 0], [2, 2, 2, 2], [5, 0, 3, 0, 0], [1e-30, 1, 1e30]])
-def test_eigenvalues_zero_or_equal_are_found(diagonal: list[float]):
-    values, vectors = eigen(np.diag(diagonal).astype(float))
-    assert values.tolist() == sorted(diagonal, reverse=True)
-    np.testing.assert_array_equal(np.abs(vectors).sum(axis=0), 1)
-    rank_one = np.outer(diagonal, diagonal)
-    values, vectors = eigen(rank_one)
-    np.testing.assert_allclose(values[:1], np.trace(rank_one))
-    np.testing.assert_allclose(vectors @ vectors.T, np.eye(len(diagonal)), atol=1e-12)
+    assert eigen(np.diag([5.0, 0, 3, 0, 0]))[0].tolist() == [5, 3, 0, 0, 0]
 
 
 def test_products_of_planes_match_matrix_products(random: np.random.Generator):
@@ -65,14 +53,6 @@ def test_products_of_planes_match_matrix_products(random: np.random.Generator):
     np.testing.assert_allclose(combine_planes(mix, planes), mix @ planes, atol=1e-4)
     np.testing.assert_allclose(inner_products(others, planes), others.astype(float) @ planes.T, atol=1e-2)
     np.testing.assert_allclose(scatter_matrix(planes, weights), (planes * weights) @ planes.T.astype(float), atol=1e-2)
-
-
-@pytest.mark.parametrize("count", [2, 5])
-def test_product_of_many_rows_has_the_bits_of_each_alone(count: int, random: np.random.Generator):
-    planes = random.standard_normal((9, 2500)).astype(np.float32)
-    mix = random.standard_normal((count, 9))
-    alone = np.vstack([combine_planes(row[None].copy(), planes) for row in mix])
-    assert np.array_equal(combine_planes(mix, planes), alone)
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3, 8])
@@ -115,28 +95,6 @@ def test_scatter_of_few_cells_is_shrunk_further(random: np.random.Generator, cou
     np.testing.assert_allclose(scatters(planes, one_hot(labels, 2)).within, expected, rtol=1e-3, atol=1e-3)
 
 
-def test_principal_axes_half_whitened_have_the_root_of_their_variance(random: np.random.Generator):
-    planes, _ = two_groups(random)
-    variances = combine_planes(principal_axes(planes, 3, 0.25), planes).var(axis=1)
-    values = np.sort(np.linalg.eigvalsh(np.cov(planes, bias=True)))[::-1][:3]
-    np.testing.assert_allclose(variances, np.sqrt(values), rtol=1e-4)
-
-
-def test_division_halves_the_widest_group_first_and_equal_cells_never(random: np.random.Generator):
-    planes, labels = two_groups(random)
-    found = divide(planes, 2)
-    assert np.mean((found == found[0]) == (labels == 0)) > 0.99
-    same = np.repeat(np.array([[-1.0, 1.0]], np.float32), 50, axis=1)
-    assert divide(same, 9).max() == 1
-
-
-def test_division_of_cells_in_another_order_is_the_same(random: np.random.Generator):
-    planes, _ = two_groups(random)
-    order = random.permutation(planes.shape[1])
-    one, other = divide(planes, 6)[order], divide(np.ascontiguousarray(planes[:, order]), 6)
-    assert len(set(zip(one.tolist(), other.tolist(), strict=True))) == one.max() + 1
-
-
 @pytest.mark.parametrize("renewed", [0, 3])
 def test_halves_of_one_group_cost_the_least_to_join(random: np.random.Generator, renewed: int):
     planes, labels = two_groups(random)
@@ -152,12 +110,6 @@ def test_halves_of_one_group_cost_the_least_to_join(random: np.random.Generator,
     sizes = np.bincount(thirds)
     assert steps[0].size == sizes[0] * sizes[1] / (sizes[0] + sizes[1]) / 400
     assert steps[0].distance == pytest.approx(steps[0].cost / (3 * steps[0].size) ** 0.4)
-
-
-def test_clusters_without_differences_are_joined_into_one():
-    steps = list(join_clusters([np.zeros((3, 64), np.float32)], (np.arange(64) % 4).astype(np.int32), (8, 8), 9))
-    assert [each.clusters for each in steps] == [1]
-    assert not steps[0].labels.any()
 
 
 def quarters(random: np.random.Generator) -> tuple[list[np.ndarray], np.ndarray, tuple[int, int]]:
@@ -187,14 +139,6 @@ def test_joining_costs_the_geometric_mean_of_its_costs_in_two_sets(random: np.ra
             )
         ]
         assert step.cost == pytest.approx(np.sqrt(costs[0] * costs[1]).min(), rel=tolerance)
-
-
-def test_set_without_differences_does_not_count(random: np.random.Generator):
-    sets, labels, shape = quarters(random)
-    alone = list(join_clusters(sets[1:], labels, shape, 9))
-    for one, other in zip(alone, join_clusters([sets[1], 0 * sets[0]], labels, shape, 9), strict=True):
-        np.testing.assert_array_equal(one.labels, other.labels)
-        assert one.cost == other.cost
 
 
 def four_clusters(random: np.random.Generator) -> tuple[np.ndarray, np.ndarray, tuple[int, int]]:
@@ -256,39 +200,6 @@ def test_pairs_left_by_a_joining_have_the_moments_and_distances_of_the_joined_ce
     np.testing.assert_array_equal(pairs.distances, before)
 
 
-def test_patterns_of_a_flat_picture_are_all_bright():
-    found = pattern_frequencies(np.zeros((8, 12), np.float32)).reshape(len(RADII), COUNTERS, 2, 3)
-    expected = np.zeros(COUNTERS)
-    expected[[8, *range(14, COUNTERS)]] = 1
-    np.testing.assert_array_equal(found, np.broadcast_to(expected[:, None, None], found.shape))
-
-
-def test_frequencies_of_classes_in_cut_cells_sum_to_one(random: np.random.Generator):
-    found = pattern_frequencies(random.standard_normal((10, 7)).astype(np.float32)).reshape(3, COUNTERS, 3, 2)
-    np.testing.assert_allclose(found[:, :10].sum(axis=1), 1, rtol=1e-6)
-    assert found.min() >= 0
-    assert found.max() <= 1
-
-
-def test_patterns_of_a_flipped_picture_are_flipped(random: np.random.Generator):
-    """The planes agree as sets: a flip exchanges the counters of directions."""
-    picture = random.standard_normal((16, 24)).astype(np.float32)
-    one = pattern_frequencies(picture)[:, :, ::-1]
-    other = pattern_frequencies(np.ascontiguousarray(picture[:, ::-1]))
-    for radius in range(len(RADII)):
-        part = slice(radius * COUNTERS, (radius + 1) * COUNTERS)
-        sets = [sorted(map(tuple, planes[part].reshape(COUNTERS, -1).round(5).tolist())) for planes in (one, other)]
-        assert sets[0] == sets[1]
-
-
-def test_patterns_of_a_negative_are_exchanged(random: np.random.Generator):
-    """Counts of k bright neighbours become 8 - k, and pairs of bright neighbours dark ones."""
-    picture = random.permutation(16 * 24).reshape(16, 24).astype(np.float32)
-    plain, negative = (pattern_frequencies(each).reshape(len(RADII), COUNTERS, 4, 6) for each in (picture, -picture))
-    exchanged = [*range(8, -1, -1), 9, *range(14, 18), *range(10, 14), *range(18, COUNTERS)]
-    np.testing.assert_array_equal(negative[:2, exchanged, 1:-1, 1:-1], plain[:2, :, 1:-1, 1:-1])
-
-
 def plain_patterns(grey: np.ndarray, radius: int) -> np.ndarray:
     """Count classes and agreements pixel by pixel; neighbours in turn from the right, upwards."""
     near = round(radius * np.sqrt(0.5))
@@ -336,22 +247,6 @@ def test_evidence_is_the_log_likelihood_up_to_a_common_term(random: np.random.Ge
     np.testing.assert_allclose(found[0] - found[1], logs[0] - logs[1], rtol=1e-3, atol=1e-3)
 
 
-def test_cluster_of_the_largest_sum_of_squares_is_halved_next():
-    """300 cells that spread by 1, and 100 that spread by 1.5: halved again is the larger one."""
-    planes = np.concatenate([np.linspace(-1, 1, 300), np.linspace(38.5, 41.5, 100)]).astype(np.float32)[None]
-    found = divide(planes, 3)
-    assert len(set(found[:300].tolist())) == 2
-    assert len(set(found[300:].tolist())) == 1
-
-
-def test_divided_cells_lie_in_the_cluster_of_the_nearest_mean(random: np.random.Generator):
-    planes = random.permutation(np.concatenate([random.normal(at, 1, (60, 3)) for at in (5, 30, 70)])).T
-    found = divide(planes.astype(np.float32), 3)
-    means = np.stack([planes[:, found == each].mean(axis=1) for each in range(3)])
-    away = np.square(planes.T[:, None] - means).sum(axis=2)
-    assert np.array_equal(away.argmin(axis=1), found)
-
-
 @pytest.mark.parametrize("shape", [(7, 12), (40, 41)])
 def test_neighbours_are_averaged_by_a_gaussian_of_four_deviations(shape: tuple[int, int], random: np.random.Generator):
     from scipy.ndimage import gaussian_filter
@@ -378,30 +273,6 @@ def test_memberships_are_those_of_evidence_and_four_times_the_neighbours(offset:
     np.testing.assert_allclose(found, expected, atol=1e-3)
 
 
-def test_memberships_and_what_is_made_of_them_are_no_denormal_numbers(random: np.random.Generator):
-    """A processor takes many times as long for these, and they change no label."""
-    evidence = (60 * random.standard_normal((5, 2500))).astype(np.float32)
-    found = mean_field(evidence, np.full(evidence.shape, np.float32(0.2)), (50, 50), 1.5, 1)
-    weights = found * smooth_memberships(found, (50, 50), INSIDE_CELLS) ** 2
-    for values in found, weights:
-        assert values[values > 0].min() >= np.finfo(np.float32).tiny
-
-
-def test_labels_stay_without_gaps_where_a_class_vanishes(random: np.random.Generator):
-    """The class in the middle is single cells, whose neighbours take them."""
-    labels = (2 * (np.arange(30 * 20) % 30 >= 15)).astype(np.int32)
-    planes = (random.normal(0, 0.1, (2, 600)) + labels).astype(np.float32)
-    truth = labels.copy()
-    labels[[100, 250, 400]] = 1
-    found = refit_labels(planes, labels, (20, 30), 4, 1)
-    assert np.array_equal(found, truth // 2)
-
-
-def test_coarse_cells_lie_under_the_middles_of_finer_ones():
-    assert _resample_labels(np.arange(3, dtype=np.int32), (1, 3), (2, 5)).tolist() == [0, 0, 1, 2, 2] * 2
-    assert _resample_labels(np.arange(6, dtype=np.int32), (2, 3), (4, 3)).tolist() == [0, 1, 2] * 2 + [3, 4, 5] * 2
-
-
 @pytest.mark.parametrize("turned", [False, True])
 def test_border_of_pixels_lies_between_the_centres_of_cells(turned: bool):
     memberships = np.array([[[0.9, 0.1]], [[0.1, 0.9]]], np.float32)
@@ -414,22 +285,61 @@ def test_border_of_pixels_lies_between_the_centres_of_cells(turned: bool):
     assert confidence[0, 0] == pytest.approx(1 - 1 / 9)
 
 
-def test_pixel_half_way_between_two_classes_is_of_the_first():
-    alike = np.full((2, 1, 2), 0.5, np.float32)
-    labels, confidence = pixel_labels(alike, 3, (2, 6))
-    assert not labels.any()
-    assert not confidence.any()
+LAST = (np.inf, 0.0)
 
 
-@pytest.mark.parametrize(("segments", "power"), [(7, 0.4), (8, 0.8), (16, 0.8), ("auto", 0.8)])
-def test_sizes_count_more_of_eight_segments_and_more(
-    monkeypatch: pytest.MonkeyPatch, random: np.random.Generator, segments: Literal["auto"] | int, power: float
-):
-    used: list[float] = []
-    monkeypatch.setattr(
-        "tangible_texture.clusters.pairs._powers", lambda sizes, power: used.append(power) or np.ones_like(sizes)
-    )
-    planes = random.standard_normal((6, 400)).astype(np.float32) + (np.arange(400) // 25 % 20).astype(np.float32)
-    window = Window(planes.astype(np.float32), (20, 20))
-    classes(Features(window, window, window), None, segments, "fast")
-    assert set(used) == {power}
+def steps(*pairs: tuple[float, float], cells: int = 16384) -> list[Step]:
+    """Return divisions down to one cluster, from the distance and size of each next joining."""
+    counts = range(len(pairs) + 1, 0, -1)
+    labels = np.arange(cells, dtype=np.int32)
+    return [Step(labels % count, count, 1.0, *each) for count, each in zip(counts, (*pairs, LAST), strict=True)]
+
+
+def test_probability_of_a_number_is_that_of_all_joinings_before_and_not_of_the_next():
+    """Log-odds here: 0.5 + log D + 2 log size + 3 log cells."""
+    weights = Weights(constant=0.5, distance=1, size=2, cells=3)
+    odds = [0.5 + log(distance) + 2 * log(size) + 3 * log(4) for distance, size in ((1, 0.25), (2, 0.125), (3, 0.125))]
+    two = [1 / (1 + exp(-each)) for each in odds]
+    expected = [two[0], (1 - two[0]) * two[1], (1 - two[0]) * (1 - two[1]) * two[2]]
+    found = [exp(each) for each in number_likelihoods(steps((1, 0.25), (2, 0.125), (3, 0.125), cells=4), weights)]
+    assert found == pytest.approx([*expected, 1 - sum(expected)])
+
+
+@pytest.mark.parametrize(
+    ("pairs", "segments", "other"),
+    [
+        ([(20, 0.02), (25, 0.02), (200, 0.1), (200, 0.2)], 3, 4),
+        ([(20, 0.02), (25, 0.02), (14, 0.1), (500, 0.2)], 2, 3),
+        ([(20, 0.02), (25, 0.02), (8, 0.1), (8, 0.2)], 1, 2),
+        ([(500, 0.1), (500, 0.1)], 3, 2),
+    ],
+)
+def test_joining_ends_before_two_textures_become_one(pairs: list[tuple[float, float]], segments: int, other: int):
+    with collected() as notes:
+        assert likeliest_division(steps(*pairs)).max() + 1 == segments
+    [note] = notes
+    assert note.startswith(f"segments: {segments}, estimated with confidence ")
+    assert f"the next best number is {other}, with " in note
+
+
+@pytest.mark.parametrize(("cells", "most"), [(1, 2), (287, 2), (288, 3), (1536, 16), (10**6, 16)])
+def test_small_picture_has_few_textures(cells: int, most: int):
+    assert largest_number(cells) == most
+
+
+def test_confidence_is_the_probability_among_the_numbers_that_were_possible():
+    rest = steps((25, 0.1), (60, 0.2))
+    probabilities = np.exp(number_likelihoods(rest))
+    assert probabilities.sum() == pytest.approx(1)
+    with collected() as notes:
+        likeliest_division(rest[:2])  # which never ends at one cluster
+    assert f"confidence {probabilities[:2].max() / probabilities[:2].sum():.2f}" in notes[0]
+
+
+def test_clusters_without_any_difference_are_one_texture():
+    with collected() as notes:
+        assert not likeliest_division(steps((0, 0.1), (0, 0.25))).any()
+    assert notes == ["segments: 1, estimated with confidence 1.00: the next best number is 3, with 0.00"]
+    with collected() as notes:
+        likeliest_division(steps())
+    assert notes == ["segments: 1, estimated with confidence 1.00: no two parts differ"]

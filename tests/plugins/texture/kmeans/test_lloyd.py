@@ -1,4 +1,4 @@
-"""Clusters of a known division, and the estimate of their number."""
+"""Clusters of a known division, their number and their map of labels: else `report` and `kornia-gabor` are wrong."""
 
 import numpy as np
 import pytest
@@ -6,9 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangible_core.compiled import threads
+from tangible_texture.energies.filter_choice import is_flat, is_one_texture
 from tangible_texture.kmeans import lloyd as module
-from tangible_texture.kmeans.count import choose_count
+from tangible_texture.kmeans.labelling import choose_count, label_map_of_cells, margins, segment_by_kmeans
 from tangible_texture.kmeans.lloyd import kmeans
+from tangible_texture.regions.small_parts import remove_seams
 
 
 def blobs(count, each=200, dims=5, seed=0, apart=20.0):
@@ -34,15 +36,6 @@ def test_clusters_of_distant_points_are_exact(start, count):
     assert found.cost == pytest.approx(np.square(rows - found.centres[found.labels]).sum(), rel=1e-4)
 
 
-def test_rows_have_the_nearest_centre_and_centres_are_means():
-    rows = np.random.default_rng(0).normal(size=(3000, 7)).astype(np.float32)
-    found = kmeans(rows, 6, seed=3)
-    away = np.square(rows[:, None] - found.centres).sum(axis=2)
-    assert np.array_equal(away.argmin(axis=1), found.labels)
-    means = [rows[found.labels == k].mean(axis=0) for k in range(6)]
-    assert found.centres == pytest.approx(np.array(means), abs=1e-5)
-
-
 def test_clusters_of_one_seed_are_the_same_with_any_threads(monkeypatch):
     rows = np.random.default_rng(0).normal(size=(2000, 4)).astype(np.float32)
     monkeypatch.setattr(module, "BLOCK", 300)
@@ -52,13 +45,6 @@ def test_clusters_of_one_seed_are_the_same_with_any_threads(monkeypatch):
     assert np.array_equal(expected.labels, again.labels)
     assert np.array_equal(expected.centres, again.centres)
     assert not np.array_equal(kmeans(rows, 5, seed=8, start="random").labels, expected.labels)
-
-
-def test_cost_with_more_restarts_is_not_higher():
-    rows = np.random.default_rng(0).normal(size=(500, 3)).astype(np.float32)
-    costs = [kmeans(rows, 8, restarts, seed=0).cost for restarts in (1, 3, 10)]
-    assert costs == sorted(costs, reverse=True)
-    assert costs[2] < costs[0]
 
 
 @given(
@@ -84,17 +70,6 @@ def test_cluster_without_any_row_is_dropped(empty: int):
     assert found.cost == pytest.approx(2.8)
 
 
-def test_cluster_losing_all_its_rows_is_dropped():
-    """The second cluster starts with the first two rows, and its neighbours take them."""
-    rows = np.array([[0, 4], [9, 8], [8, 4], [1, 0], [4, 2], [9, 5], [2, 0]], np.float32)
-    starts = np.array([[6, 0], [6, 5], [7, 3]], np.float32)
-    assert np.square(rows[:, None] - starts).sum(axis=2).argmin(axis=1).tolist() == [1, 1, 2, 0, 0, 2, 0]
-    found = module._settle(rows, starts, 100)
-    assert found.labels.tolist() == [0, 1, 1, 0, 0, 1, 0]
-    assert found.centres == pytest.approx(np.array([[1.75, 1.5], [26 / 3, 17 / 3]]))
-    assert found.cost == pytest.approx(np.square(rows - found.centres[found.labels]).sum())
-
-
 def test_rows_differing_by_rounding_are_one_cluster():
     """The threshold is a hundred thousandth of the longest row; a ten thousandth is above it."""
     away = np.random.default_rng(0).random((100, 3))
@@ -114,14 +89,6 @@ def test_starts_are_drawn_by_squared_distance_or_uniformly(weighted: bool):
             weights = np.cumsum(away if weighted else away > 0)
             chosen.append(int(np.searchsorted(weights, u * weights[-1], side="right")))
         np.testing.assert_array_equal(module._start(rows, uniform, weighted, np.float32(0)), rows[chosen])
-
-
-@pytest.mark.parametrize("count", [2, 3, 5])
-def test_count_of_distant_groups_is_exact(count):
-    guess = choose_count(blobs(count)[0], 8, seed=0)
-    assert guess.segments == count
-    assert 0.5 < guess.confidence < 1
-    assert str(count) in guess.reason
 
 
 def silhouette(rows: np.ndarray, labels: np.ndarray) -> float:
@@ -152,16 +119,6 @@ def test_confidence_of_a_count_is_where_its_silhouette_lies_between_a_quarter_an
         assert found.reason.endswith(f"silhouette, {every[best]:.2f}")
 
 
-def test_row_between_two_centres_goes_to_the_first():
-    rows = np.array([[0, 0], [2, 0], [4, 0], [2, 5]], np.float32)
-    assert module._settle(rows, np.array([[0, 0], [4, 0]], np.float32), 1).labels.tolist() == [0, 0, 1, 0]
-
-
-def test_least_of_several_numbers_that_are_as_good_is_chosen(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("tangible_texture.kmeans.count._silhouette", lambda rows, labels: 0.5)
-    assert choose_count(blobs(3, each=20)[0], 6).segments == 2
-
-
 def test_count_of_one_group_is_one():
     rows = np.random.default_rng(0).normal(size=(4000, 12)).astype(np.float32)
     assert choose_count(rows, 8).segments == 1
@@ -170,13 +127,56 @@ def test_count_of_one_group_is_one():
     assert choose_count(np.ones((1, 4), np.float32), 8).segments == 1
 
 
-def test_count_with_a_bound_stays_within_it():
-    assert choose_count(blobs(5)[0], 3).segments <= 3
-    assert choose_count(blobs(5)[0], 1).segments == 1
-    for most in (2, 3, 4):
-        assert choose_count(blobs(5, each=20)[0], most).segments <= most
+def test_cells_at_full_size_repeat_label_and_confidence():
+    found = label_map_of_cells(np.array([[1, 0]], np.int32), np.array([0.25, 1], np.float32), 3, (2, 5))
+    assert found.labels.tolist() == [[0, 0, 0, 1, 1]] * 2
+    assert found.confidence.tolist() == [[0.25] * 3 + [1] * 2] * 2
 
 
-def test_count_of_one_seed_is_the_same():
-    rows, _ = blobs(4, each=900, apart=4.0)
-    assert choose_count(rows, 8, seed=5) == choose_count(rows, 8, seed=5)
+def test_margins_are_1_at_a_centre_and_0_half_way():
+    centres = np.array([[0, 0], [4, 0], [100, 0]], np.float32)
+    rows = np.array([[0, 0], [1, 0], [2, 0], [4, 0]], np.float32)
+    assert margins(rows, centres) == pytest.approx([1, 2 / 3, 0, 1])
+    assert margins(rows, centres[:1]).tolist() == [1] * 4
+
+
+def test_features_in_two_halves_are_two_segments():
+    features = np.zeros((4, 6, 2), np.float32)
+    features[:, 4:] = 1
+    found = segment_by_kmeans(features, 2, (7, 12), 5, seed=0)
+    assert np.array_equal(found.labels, (np.arange(12) >= 8).astype(np.int32)[None].repeat(7, axis=0))
+    assert (found.confidence == 1).all()
+
+
+def test_picture_of_rounding_or_one_pixel_is_flat():
+    assert is_flat(np.full((9, 9), np.float32(0.1)))
+    assert is_flat(np.float32(1e20) * (1 + 1e-7 * np.random.default_rng(0).random((9, 9))).astype(np.float32))
+    assert is_flat((np.arange(81) == 40).astype(np.float32).reshape(9, 9))
+    assert not is_flat(np.float32(1e-20) * (np.indices((9, 9))[0] > 4).astype(np.float32))
+
+
+def test_features_equal_or_too_coarse_are_one_texture():
+    grey = np.random.default_rng(0).random((64, 64)).astype(np.float32)
+    even = np.ones((3, 16, 16), np.float32)
+    assert is_one_texture(even, 1, grey)
+    halves = even + (np.arange(16) > 7)
+    assert not is_one_texture(halves, 1, grey)
+    folded = np.pad(0.001 * halves[:, 4:-4, 4:-4], ((0, 0), (4, 4), (4, 4)), constant_values=1)
+    assert is_one_texture(folded, 1, grey)
+    framed = np.pad(0 * grey[16:-16, 16:-16], 16, constant_values=1) * grey
+    assert not is_one_texture(folded, 1, framed)
+
+
+@pytest.mark.parametrize(("spread", "one"), [(0.02, True), (0.05, False), (0.16, False)])
+def test_features_spread_by_under_three_percent_are_one_texture(spread: float, one: bool):
+    grey = np.random.default_rng(0).random((64, 64)).astype(np.float32)
+    checks = np.indices((16, 16)).sum(axis=0) % 2 * 2 - 1
+    assert is_one_texture((1 + spread * checks)[None].astype(np.float32), 0.25, grey) == one
+
+
+def test_a_narrow_strip_goes_to_its_neighbours():
+    labels = np.repeat([0, 2, 1], [20, 4, 20]).astype(np.int32)[None].repeat(30, axis=0)
+    found, same = remove_seams(labels, 3)
+    assert np.array_equal(found, np.repeat([0, 1], 22).astype(np.int32)[None].repeat(30, axis=0))
+    assert np.array_equal(same, labels != 2)
+    assert np.array_equal(remove_seams(labels, 1)[0], labels)

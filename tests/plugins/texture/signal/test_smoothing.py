@@ -1,10 +1,11 @@
-"""Smoothing before slopes removes specks and keeps structure."""
+"""Smoothing and slopes against plain formulas: else noise is taken for edges."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tangible_texture.signal.slopes import slopes
 from tangible_texture.signal.smoothing import WIDER, gaussian, remove_specks, smooth_at_two_scales
 
 
@@ -34,17 +35,6 @@ class TestSmoothing:
         assert np.all(found[20:] == 0)
         assert found.sum() == pytest.approx(1, abs=1e-5)
 
-    @pytest.mark.parametrize(("shape", "step"), [((512, 512), 2), ((511, 301), 2), ((30, 40), 1), ((1, 1), 1)])
-    def test_two_scales_have_their_shapes_and_deviations(self, shape: tuple[int, int], step: int):
-        noise = np.random.default_rng(0).normal(0, 1, (*shape, 2)).astype(np.float32)
-        near, wide, found = smooth_at_two_scales(noise, 2.0)
-        assert found == step
-        assert near.shape == noise.shape
-        assert wide.shape == (-(-shape[0] // step), -(-shape[1] // step), 2)
-        if min(shape) > 300:  # what a Gaussian leaves of white noise
-            assert near.std() == pytest.approx(1 / (np.sqrt(4 * np.pi) * 2), rel=0.05)
-            assert wide.std() == pytest.approx(1 / (np.sqrt(4 * np.pi) * 2 * WIDER), rel=0.05)
-
     @pytest.mark.parametrize(("shape", "near_px"), [((4, 400), 2.5), ((400, 4), 2.5), ((300, 301), 9.0)])
     def test_two_scales_are_gaussians_of_a_16th_of_the_root_of_the_area_at_most(
         self, shape: tuple[int, int], near_px: float
@@ -60,3 +50,27 @@ class TestSmoothing:
             rest = wide_px**2 - near_px**2 - (step**2 - 1) / 12
             cells = gaussian(cells.astype(np.float32), rest**0.5 / step) if rest > 0 else cells
             np.testing.assert_allclose(wide, cells, atol=1e-5)
+
+
+class TestSlopes:
+    @pytest.mark.parametrize("shape", [(7, 9, 1), (5, 4, 3), (1, 6, 3), (6, 1, 3), (1, 1, 1), (2, 2, 2)])
+    def test_slopes_are_central_differences_of_the_first_steepest_channel(self, shape: tuple[int, int, int]):
+        """Whole numbers, so that several channels are as steep; the border is repeated."""
+        picture = np.random.default_rng(1).integers(0, 3, shape).astype(np.float32)
+        framed = np.pad(picture, ((1, 1), (1, 1), (0, 0)), mode="edge")
+        across, down = (framed[1:-1, 2:] - framed[1:-1, :-2]) / 2, (framed[2:, 1:-1] - framed[:-2, 1:-1]) / 2
+        magnitude = np.hypot(across, down)
+        best = magnitude.argmax(axis=2)[..., None]
+        expected = [np.take_along_axis(each, best, axis=2)[..., 0] for each in (magnitude, across, down)]
+        for one, other in zip(slopes(picture)[:3], expected, strict=True):
+            np.testing.assert_allclose(one, other, rtol=1e-6)
+
+    @pytest.mark.parametrize("shape", [(7, 160, 2), (160, 7, 2), (90, 40, 3)])
+    def test_noise_of_one_tile_is_a_quantile_of_all_its_slopes(self, shape: tuple[int, int, int]):
+        """Of the noisiest channel, over the quantile of a Rayleigh distribution."""
+        picture = np.random.default_rng(2).normal(0, [1.0, 4.0, 2.0][: shape[2]], shape).astype(np.float32)
+        levels = []
+        for channel in range(shape[2]):
+            magnitude = np.sort(slopes(picture[..., channel : channel + 1])[0].ravel())
+            levels.append(magnitude[magnitude.size // 4] / np.sqrt(-2 * np.log(0.75)))
+        np.testing.assert_allclose(slopes(picture)[3], max(levels), rtol=1e-5)

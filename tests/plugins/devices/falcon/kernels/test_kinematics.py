@@ -1,4 +1,4 @@
-"""Arm angles and tip of a Falcon: the documented points, inverse and forward against each other, slopes, torques."""
+"""A Falcon's tip would be in the wrong place or its force point the wrong way: the documented points."""
 
 import math
 
@@ -35,19 +35,6 @@ def test_inverse_of_documented_tips_gives_angles(
     tip: tuple[float, float, float], angles_deg: tuple[float, float, float]
 ):
     assert np.degrees(kinematics.inverse(*tip)) == pytest.approx(angles_deg, abs=6e-3)
-
-
-@pytest.mark.parametrize(("z", "counts"), [(0.08, -1284), (0.11, -516), (0.125, -200), (0.17, 872)])
-def test_inverse_of_documented_tips_gives_counts(z: float, counts: int):
-    turned = kinematics.inverse(0.0, 0.0, z)[0] - math.radians(35)
-    assert round(turned / kinematics.RAD_PER_COUNT) == counts
-
-
-@given(tips())
-def test_forward_undoes_inverse(tip: tuple[float, float, float]):
-    *tip_again, ok = kinematics.forward(*kinematics.inverse(*tip), *START)
-    assert ok
-    assert np.linalg.norm(np.subtract(tip_again, tip)) <= 1e-9
 
 
 @given(tips(), tips())

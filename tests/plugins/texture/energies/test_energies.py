@@ -1,26 +1,29 @@
-"""Local energy against gratings of known energy, and against the same filters applied one by one in float64."""
+"""Gabor filters and their local energy against the formulas: else textures of some wavelengths are not told apart."""
 
-from math import ceil
+from math import ceil, log2, pi
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from scipy.signal import fftconvolve
 
-from tangible_core.compiled import threads
-from tangible_core.errors import PictureError
-from tangible_texture.energies.gabor_bank import bank, octaves, printed_wavelengths
+from tangible_core.plugins.notes import collected
+from tangible_texture.energies.filter_choice import are_strongest, filters_within_bandwidth, needed_filters
+from tangible_texture.energies.gabor_bank import (
+    bank,
+    kernel,
+    octaves,
+    printed_wavelengths,
+    sigma_of_bandwidth,
+)
 from tangible_texture.energies.local_energy import (
     REACH,
-    energy_planes,
     local_energy,
     mean_energies,
     padding,
     smoothing_px,
     spectrum_of,
-    standardise,
 )
+from tangible_texture.signal.smoothing import gaussian
 
 OCTAVES = octaves(24)
 
@@ -79,16 +82,6 @@ def test_energies_are_within_one_percent_of_the_full_bank(name):
     assert worst(local_energy(grey, OCTAVES), direct(grey, bank(OCTAVES), 4, 4.0)) < 0.01
 
 
-@pytest.mark.parametrize("name", ["gratings", "edge"])
-def test_energies_of_weak_filters_are_within_a_thousandth_of_the_strongest(name):
-    edge = np.repeat((np.arange(160) > 70).astype(np.float32)[None], 140, axis=0)
-    grey = edge if name == "edge" else np.hstack([grating((150, 80), 5.0, 0.4), grating((150, 90), 11.0, 2.0)])
-    expected = direct(grey, bank(OCTAVES), 4, 4.0)
-    means = expected.mean(axis=(1, 2))
-    away = np.abs(local_energy(grey, OCTAVES) - expected).max(axis=(1, 2))
-    assert (away < 0.01 * means + 0.001 * means.max()).all()
-
-
 @pytest.mark.parametrize(("step_px", "sigma_px"), [(1, 2.0), (3, 8.0), (8, 12.0), (5, 4.0)])
 def test_energies_with_other_steps_and_windows_are_as_exact(step_px, sigma_px):
     grey = natural((97, 131), seed=1)
@@ -115,75 +108,10 @@ def test_grating_peaks_in_its_own_filter_with_a_known_energy(wavelength_px):
         assert energy == pytest.approx(gain**2 * 9 / variance, abs=0.002 * 9 / variance)
 
 
-def test_wave_of_unit_deviation_has_the_energy_two():
-    found = local_energy(grating((256, 256), 2 * np.sqrt(2), 0.0), OCTAVES[:1])
-    assert found[0, 10:-10, 10:-10].mean() == pytest.approx(2, rel=2e-3)
-
-
-@pytest.mark.parametrize("scale", [1e-20, 1e-3, 255.0, 1e20])
-def test_energies_under_gain_and_offset_are_the_same(scale):
-    grey = natural((60, 70), seed=2)
-    found = local_energy(np.float32(scale) * (grey + np.float32(1.5)), OCTAVES[:3])
-    expected = local_energy(grey, OCTAVES[:3])
-    assert worst(found, expected) < 1e-4
-
-
 def test_flat_picture_has_no_energy():
     for value in (0.0, 0.3, -1e20, 1e-20, 255.0):
         assert not local_energy(np.full((33, 20), value, np.float32), OCTAVES).any()
     assert not local_energy(np.ones((1, 1), np.float32), OCTAVES).any()
-
-
-@given(st.integers(1, 20), st.integers(1, 20), st.integers(1, 9))
-def test_energies_of_every_size_are_finite(rows, columns, step_px):
-    grey = np.random.default_rng(rows).random((rows, columns)).astype(np.float32)
-    found = local_energy(grey, OCTAVES, 3, step_px)
-    assert found.shape == (12, ceil(rows / step_px), ceil(columns / step_px))
-    assert np.isfinite(found).all()
-    assert (found >= 0).all()
-
-
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
-def test_non_finite_value_is_named_with_its_place(bad):
-    grey = natural((20, 30))
-    grey[7, 11] = bad
-    with pytest.raises(PictureError, match="row 7, column 11"):
-        local_energy(grey, OCTAVES)
-
-
-@pytest.mark.usefixtures("unchecked_shapes")
-def test_array_of_another_shape_is_refused():
-    for shape in ((0, 4), (4, 4, 3)):
-        with pytest.raises(PictureError, match="grey is"):
-            local_energy(np.zeros(shape, np.float32), OCTAVES)
-
-
-def test_energies_of_a_flipped_or_turned_picture_move_along():
-    grey = natural((128, 128), seed=3)
-    found = local_energy(grey, OCTAVES).reshape(4, 6, 32, 32)
-    flipped = local_energy(grey[:, ::-1], OCTAVES).reshape(4, 6, 32, 32)
-    mirror = [0, 5, 4, 3, 2, 1]  # t becomes 180 degrees - t
-    assert worst(flipped[:, mirror, :, ::-1].reshape(24, 32, 32), found.reshape(24, 32, 32)) < 0.01
-    turned = local_energy(np.rot90(grey), OCTAVES).reshape(4, 6, 32, 32)
-    quarter = [3, 4, 5, 0, 1, 2]  # t becomes t + 90 degrees
-    back = np.rot90(turned[:, quarter], -1, axes=(2, 3))
-    assert worst(back.reshape(24, 32, 32), found.reshape(24, 32, 32)) < 0.01
-
-
-def test_energies_do_not_wrap_around_the_frame():
-    grey = np.zeros((200, 200), np.float32)
-    grey[:, :30] = grating((200, 30), 5.66, 0.0)
-    found = local_energy(grey, OCTAVES)
-    assert found[:, :, -3:].max() < 1e-3 * found.max()
-
-
-def test_energies_with_any_number_of_threads_are_the_same(monkeypatch):
-    grey = natural((90, 70), seed=4)
-    planes = []
-    for count in (1, 3):
-        monkeypatch.setattr(threads, "thread_count", lambda count=count: count)
-        planes.append(local_energy(grey, OCTAVES))
-    assert np.array_equal(*planes)
 
 
 def test_mean_energies_are_those_of_the_mirrored_picture():
@@ -196,16 +124,91 @@ def test_mean_energies_are_those_of_the_mirrored_picture():
     assert own == pytest.approx(2, rel=1e-4)
 
 
-def test_energies_of_some_filters_match_those_of_all():
-    grey = natural((64, 64), seed=6)
-    filters = bank(OCTAVES)
-    spectrum = spectrum_of(grey, padding(filters, 4.0))
-    some = energy_planes(spectrum, filters[5:8], grey.shape, 4, 4.0)
-    assert np.array_equal(some, local_energy(grey, OCTAVES)[5:8])
-    assert energy_planes(spectrum, [], grey.shape, 4, 4.0).shape == (0, 16, 16)
+@pytest.mark.parametrize("bandwidth", [0.5, 1.0, 2.0])
+def test_bandwidth_at_half_height_is_the_requested_one(bandwidth):
+    sigma = sigma_of_bandwidth(16.0, bandwidth)
+
+    def height(frequency):
+        return np.exp(-2 * (pi * sigma * (frequency - 1 / 16)) ** 2)
+
+    half = np.sqrt(np.log(2) / 2) / (pi * sigma)
+    assert height(1 / 16 + half) == pytest.approx(0.5)
+    assert log2((1 / 16 + half) / (1 / 16 - half)) == pytest.approx(bandwidth)
 
 
-def test_standardised_picture_has_mean_0_and_deviation_1():
-    values = standardise(np.random.default_rng(0).normal(7, 1e-3, (50, 60)).astype(np.float32))
-    assert values.mean(dtype=float) == pytest.approx(0, abs=1e-3)
-    assert values.std(dtype=float) == pytest.approx(1, rel=1e-5)
+def test_printed_frequencies_for_a_power_of_two_match_the_paper():
+    offsets = np.array([2**-0.5, 2**0.5, 2**1.5]) * 2 / 128  # i = 0.5, 1.5, 2.5 less 1, doubled
+    expected = np.concatenate([0.25 - offsets, [0.25 - 2**3.5 / 128], 0.25 + offsets, [0.25 + 2**3.5 / 128]])
+    assert np.sort(1 / np.array(printed_wavelengths(128))) == pytest.approx(np.sort(expected))
+    assert len(printed_wavelengths(512)) == 12
+    assert list(printed_wavelengths(512)) == sorted(printed_wavelengths(512))
+
+
+def test_printed_frequencies_for_other_widths_stay_in_range():
+    assert len(printed_wavelengths(511)) == len(printed_wavelengths(256)) == 10
+    assert max(1 / each for each in printed_wavelengths(300)) == pytest.approx(0.25 + 2**4.5 / 300)
+    for width in (1, 7, 15):
+        assert printed_wavelengths(width) == (4.0,)
+    for width in range(16, 2000, 37):
+        frequencies = 1 / np.array(printed_wavelengths(width))
+        assert 0.07 < frequencies.min() < 0.25 < frequencies.max() < 0.43
+
+
+def test_bank_has_every_wavelength_in_every_direction():
+    filters = bank((4.0, 8.0), 6)
+    assert [each.wavelength_px for each in filters] == [4.0] * 6 + [8.0] * 6
+    assert np.degrees([each.theta_rad for each in filters[:6]]) == pytest.approx([0, 30, 60, 90, 120, 150])
+    assert filters[3].frequency == pytest.approx((0.25, 0))
+    assert bank((4.0,), 1)[0].gamma == bank((4.0,), 2)[0].gamma == 1
+
+
+@pytest.mark.parametrize("gabor", bank((4.0, 11.0), 3))
+def test_kernel_of_every_filter_is_blind_to_grey_and_keeps_its_wave(gabor):
+    values = kernel(gabor)
+    assert abs(values.sum()) < 1e-12
+    assert np.real(values) == pytest.approx(np.real(values)[::-1, ::-1], abs=1e-15)
+    assert np.imag(values) == pytest.approx(-np.imag(values)[::-1, ::-1], abs=1e-15)
+    half = len(values) // 2
+    y, x = np.mgrid[-half : half + 1, -half : half + 1]
+    down, right = gabor.frequency
+    for phase in (0.0, 1.0):
+        wave = 7 * np.cos(2 * pi * (down * y + right * x) + phase)
+        assert abs((values * wave).sum()) == pytest.approx(7, rel=0.01)
+
+
+FILTERS = bank(octaves(24))
+
+
+def stripes(wavelength_px):
+    columns = np.arange(810) + 0.5  # so that its mirror image goes on with the wave
+    return np.cos(2 * np.pi / wavelength_px * columns).astype(np.float32)[None].repeat(60, axis=0)
+
+
+def test_strongest_filters_are_the_fewest_holding_the_share():
+    energies = np.array([1.0, 60.0, 4.0, 35.0])
+    assert are_strongest(energies, 0.95).tolist() == [False, True, False, True]
+    assert are_strongest(energies, 0.96).tolist() == [False, True, True, True]
+    assert are_strongest(energies, 0.5).tolist() == [False, True, False, False]
+    assert are_strongest(np.array([50.0, 25.0, 25.0]), 0.75).tolist() == [True, True, False]
+    assert are_strongest(energies, 1.0).all()
+    assert are_strongest(np.zeros(3)).all()
+
+
+def test_filters_up_to_root_two_of_a_wave_stay():
+    kept = filters_within_bandwidth(stripes(10), FILTERS)
+    assert kept == FILTERS[12:]
+    assert filters_within_bandwidth(stripes(7.5), FILTERS) == FILTERS[6:]
+    assert filters_within_bandwidth(stripes(90), FILTERS) == FILTERS  # no filter would be left
+
+
+def test_octaves_of_a_blurred_picture_lose_the_finest():
+    sharp = np.random.default_rng(0).random((200, 200)).astype(np.float32)
+    with collected() as notes:
+        assert needed_filters(sharp, FILTERS, skip_weak=False, skip_octaves=True) == FILTERS
+    assert notes == []
+    blurred = gaussian(sharp[..., None], 3.0)[..., 0]
+    with collected() as notes:
+        kept = needed_filters(blurred, FILTERS, skip_weak=False, skip_octaves=True)
+    assert kept == FILTERS[6:]
+    [message] = notes
+    assert message.startswith("6 of 24 filters left out")

@@ -24,6 +24,7 @@ from ui_server import UiServer
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
+    from sessions import SmallSession
     from tangible_ui.worker.state import WorkerState
 
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -37,6 +38,22 @@ FLAGS = [
     "--disable-gpu-rasterization",  # in software, a processor draws text and boxes sooner than it plays a graphics card
     "--autoplay-policy=no-user-gesture-required",
 ]
+DAILY = {
+    "test_depth_and_texture_are_run_separately",
+    "test_preflight_cure_corrects_the_document",
+    "test_stroke_is_recorded_played_and_replayed_with_another_law",
+    "test_two_laws_are_compared_openly_and_blindly",
+    "test_enlarged_region_is_saved_and_opens_the_same",
+    "test_tab_that_is_frozen_or_closed_gives_no_force",
+    "test_page_with_results_has_no_violations_by_axe_and_fits_every_size",
+    "test_parts_editor_has_no_violations_by_axe_in_any_size",
+    "test_address_of_an_earlier_start_is_reported",
+    "test_draft_of_a_killed_program_is_offered_once",
+    "test_mouse_gives_force_until_the_page_is_hidden_or_frozen",
+    "test_closed_tab_leaves_no_force",
+    "test_keyboard_gives_force_and_the_stop_key_works_in_a_field",
+}
+"""The fourteen browser cases of a daily change; axe looks at the page in two languages."""
 DIRS = ("CACHE", "RUNTIME", "CONFIG", "LOG", "DATA")
 
 Serve = Callable[..., UiServer]
@@ -44,15 +61,16 @@ Opened = Callable[..., str]
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark as slow what needs a browser or a server, and leave it time on a machine that stands still meanwhile."""
+def pytest_collection_modifyitems(items: list[pytest.Function]) -> None:
+    """Leave to `--whole` what needs a browser or a server, but `DAILY`; give it time on a machine that stands still."""
     for item in items:
-        if {"browser", "serve", "opened"} & set(getattr(item, "fixturenames", ())):
-            item.add_marker("slow")
+        if {"chromium", "serve", "lasting"} & set(getattr(item, "fixturenames", ())):
             item.add_marker(pytest.mark.timeout(1200))
+            if item.originalname not in DAILY:
+                item.add_marker(pytest.mark.whole)
 
 
-@pytest.fixture(scope="package")
+@pytest.fixture(scope="session")
 def chromium() -> Iterator[Chromium]:
     """Chromium without a window, named by TANGIBLE_UI_BROWSER or found where the system keeps it."""
     found = [path for name in BROWSERS if (path := shutil.which(name))]
@@ -91,7 +109,7 @@ def serve(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Serve]:
         yield serve
 
 
-@pytest.fixture(scope="package")
+@pytest.fixture(scope="session")
 def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LastingServer]:
     """The worker's server, which `opened` opens files in."""
     built_page()
@@ -133,6 +151,37 @@ def open_page(browser: "Browser", complaints: list[str], serve: Serve) -> Iterat
     """
     with tabs(browser, complaints) as opened:
         yield opened
+
+
+@pytest.fixture
+def anyio_backend() -> str:
+    """Tests that are coroutines run in asyncio's event loop."""
+    return "asyncio"
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    """The pipeline file that `small` opens."""
+    from sessions import small_scene
+
+    return small_scene(tmp_path)
+
+
+@pytest.fixture
+async def small(tmp_path: Path, scene: Path, monkeypatch: pytest.MonkeyPatch) -> "SmallSession":
+    """A session on which the scene is opened, and nothing is made."""
+    from sessions import SmallSession
+
+    monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path / "data"))
+    small = SmallSession(tmp_path, monkeypatch)
+    await small.ask("begin", files=[str(scene)], make_it=False)
+    return small
+
+
+@pytest.fixture
+def ask(small: "SmallSession") -> Callable[..., Any]:
+    """`await ask("undo")` sends a request of the session's tab."""
+    return small.ask
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""The page for everybody: without a mouse, without seeing, without hearing, in any size and colours, in German too."""
+"""The page for everybody: otherwise somebody without mouse, sight or hearing, or on a phone, cannot use it."""
 
 from collections.abc import Callable
 from itertools import count, pairwise
@@ -7,21 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from accessible_names import controls_of, faults_of
+from accessible_names import COLOURS, RULES, axe_finds, controls_of, faults_of
 from browser_tabs import SETTLED
-from needed import lacking
-from page_files import WEB
-from page_panels import bring, open_panel, show_everything, wait_for_force
+from page_panels import bring, show_everything, wait_for_force
 from waiting import until
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-AXE = WEB / "node_modules/axe-core/axe.min.js"
-RULES = {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]}
-"""Of axe, asked where other elements may be shown: in the first theme and on a phone."""
-COLOURS = {"type": "rule", "values": ["color-contrast", "link-in-text-block"]}
-"""All that a theme can break."""
 SIZES_OF_TARGETS = {"type": "rule", "values": ["target-size", "scrollable-region-focusable"]}
 """All that a zoomed phone can break."""
 SIZES = {"phone": (390, 844), "zoomed to 400 %": (320, 256), "zoomed to 200 %": (683, 384), "tablet": (820, 1180)}
@@ -38,36 +31,12 @@ Object.defineProperty(Node.prototype, "textContent", {
 });
 """
 """Lists announcements, each with the moment at which it was made."""
-VOICES = """
-window.spoken = [];
-const voice = (name, lang) => ({ name, lang, localService: true });
-window.voices = [voice("Anna", "de-DE"), voice("Ann", "en-GB")];
-const spy = {
-  getVoices: () => voices, addEventListener: (_, act) => (window.changed = act), cancel: () => spoken.push("cancel"),
-  speak: ({ text, lang, rate, voice }) => spoken.push({ text, lang, rate, voice: voice.name }),
-};
-Object.defineProperty(window, "speechSynthesis", { value: spy });
-window.SpeechSynthesisUtterance = function (text) { this.text = text; };
-"""
-CONTEXTS = """
-window.contexts = [];
-window.AudioContext = class extends AudioContext { constructor(...all) { super(...all); contexts.push(this); } };
-"""
 SMALL = """
 [...document.querySelectorAll("button, select, textarea, summary, label, input:not([type=checkbox], [type=radio])")]
   .filter((each) => each.checkVisibility() && !each.closest(".visually-hidden"))
   .map((each) => [each.outerHTML.slice(0, 90), each.getBoundingClientRect()])
   .filter(([, box]) => box.height < 24 || box.width < 24).map(([html]) => html)
 """
-LOOK = """(each) => {
-  const { backgroundColor, outlineStyle, outlineWidth } = getComputedStyle(each);
-  return [backgroundColor, outlineStyle, outlineWidth];
-}"""
-LOUDEST = """() => {
-  page.sound.let("height", true);
-  window.loudest = 0;
-  setInterval(() => (loudest = Math.max(loudest, page.sound.level)), 20);
-}"""
 
 Show = Callable[..., "Page"]
 
@@ -100,8 +69,6 @@ class TestSeen:
 
         In English in all themes; in German, where colours are the same and words longer, from a phone to a wall.
         """
-        if not AXE.is_file():
-            lacking("axe-core is not installed: npm ci in plugins/ui/web")
         page = show(locale=locale)
         assert page.evaluate("document.documentElement.lang") == locale[:2]
         wait_for_force(page)
@@ -117,26 +84,17 @@ class TestSeen:
         page.wait_for_selector("#legible .sentence")
         show_everything(page)
         assert page.locator("#legible .places button").count() > 0
+        page.keyboard.press("Control+k")
+        page.locator("#palette-input").wait_for()
+        assert axe_finds(page, within=("#palette",)) == []
+        page.keyboard.press("Control+k")
         page.evaluate("document.querySelector('#left').scrollTo(0, 0)")  # a heading that sticks covers what is below it
-        assert axe_finds(page, colours=locale == "en-GB") == []
-        for name, (width, height) in SIZES.items() if locale == "de-DE" else ():
-            page.set_viewport_size({"width": width, "height": height})
-            page.evaluate(SETTLED)
-            assert page.evaluate("document.documentElement.scrollWidth") <= width, name
-            for region in ("#left", "#right", "#bottom"):
-                sides = page.locator(region).evaluate("(each) => [each.scrollWidth, each.clientWidth]")
-                assert sides[0] <= sides[1], (name, region)
-            stop, surface = page.locator("#stop").bounding_box(), page.locator("#terrain").bounding_box()
-            assert stop and surface
-            assert stop["height"] >= 44 and stop["x"] >= 0 and stop["x"] + stop["width"] <= width, name
-            assert stop["y"] >= 0 and stop["y"] + stop["height"] <= height, name
-            assert surface["width"] >= 300 and surface["height"] >= 150, name
-            assert page.evaluate(SMALL) == [], name
+        assert violations(page, colours=locale == "en-GB") == []
+        if locale == "de-DE":
+            assert_fits_every_size(page, "#terrain", "#left", "#right", "#bottom")
 
     def test_parts_editor_has_no_violations_by_axe_in_any_size(self, show: Show):
         """The language is German, whose words are longer; a proposal, a complaint and all folded controls are open."""
-        if not AXE.is_file():
-            lacking("axe-core is not installed: npm ci in plugins/ui/web")
         page = show(locale="de-DE")
         bring(page, "parts").locator("#parts-edit").click()
         page.wait_for_selector("#parts-list [role=option]")
@@ -148,53 +106,32 @@ class TestSeen:
         assert "von 0 bis" in page.locator("#parts-height-mm-complaint").inner_text()
         page.evaluate("document.querySelectorAll('#parts-editor details').forEach((each) => (each.open = true))")
         assert_controls_have_names(page, 20)
-        assert axe_finds(page, "#parts-editor") == []
-        for name, (width, height) in SIZES.items():
-            page.set_viewport_size({"width": width, "height": height})
-            page.evaluate(SETTLED)
-            assert page.evaluate("document.documentElement.scrollWidth") <= width, name
-            side = page.locator("#parts-editor > .side").evaluate("(each) => [each.scrollWidth, each.clientWidth]")
-            assert side[0] <= side[1], name
-            picture, stop = page.locator("#parts-picture").bounding_box(), page.locator("#stop").bounding_box()
-            assert picture and stop
-            assert picture["width"] >= 300 and picture["height"] >= 150, name
-            assert stop["x"] >= 0 and stop["x"] + stop["width"] <= width, name
-            assert page.evaluate(SMALL) == [], name
-
-    def test_colours_follow_the_system_or_the_choice_and_forced_colours_work(self, show: Show):
-        page = show(color_scheme="dark")
-        ground = "getComputedStyle(document.querySelector('#left')).backgroundColor"
-        dark = page.evaluate(ground)
-        page.emulate_media(color_scheme="light")
-        page.wait_for_function("() => document.documentElement.dataset.scheme === 'light'")
-        light = page.evaluate(ground)
-        page.locator("#theme").select_option("contrast-dark")
-        contrast = page.evaluate(ground)
-        assert len({dark, light, contrast}) == 3
-        assert contrast == "rgb(0, 0, 0)"
-        page.reload()
-        assert page.evaluate("document.documentElement.dataset.contrast") == "more"
-        page.locator("#theme").select_option("system")
-        assert page.evaluate(ground) == light
-
-        page.emulate_media(forced_colors="active")
-        show_everything(page)
-        button = page.locator("#sound-on")
-        button.focus()
-        background, outline, width = button.evaluate(LOOK)
-        assert outline == "solid" and float(width.removesuffix("px")) >= 2
-        page.keyboard.press("Enter")
-        page.wait_for_function("() => document.querySelector('#sound-on').ariaPressed === 'true'")
-        assert button.evaluate(LOOK)[0] != background, "what is pressed looks so"
-        assert page.locator("#stop").evaluate("(each) => getComputedStyle(each).borderStyle") == "double"
+        assert violations(page, "#parts-editor") == []
+        assert_fits_every_size(page, "#parts-picture", "#parts-editor > .side")
 
 
 THEMES: dict[str, dict[str, Any]] = {
     "light": {"color_scheme": "light", "contrast": "no-preference"},
     "dark": {"color_scheme": "dark", "contrast": "no-preference"},
-    "dark more": {"color_scheme": "dark", "contrast": "more"},
     "light more": {"color_scheme": "light", "contrast": "more"},
 }
+
+
+def assert_fits_every_size(page: "Page", picture: str, *regions: str) -> None:
+    """Check that nothing is cut off, the picture is large enough, and the stop button is in sight."""
+    for name, (width, height) in SIZES.items():
+        page.set_viewport_size({"width": width, "height": height})
+        page.evaluate(SETTLED)
+        assert page.evaluate("document.documentElement.scrollWidth") <= width, name
+        for region in regions:
+            sides = page.locator(region).evaluate("(each) => [each.scrollWidth, each.clientWidth]")
+            assert sides[0] <= sides[1], (name, region)
+        stop, drawn = page.locator("#stop").bounding_box(), page.locator(picture).bounding_box()
+        assert stop and drawn
+        assert stop["height"] >= 44 and stop["x"] >= 0 and stop["x"] + stop["width"] <= width, name
+        assert stop["y"] >= 0 and stop["y"] + stop["height"] <= height, name
+        assert drawn["width"] >= 300 and drawn["height"] >= 150, name
+        assert page.evaluate(SMALL) == [], name
 
 
 def assert_controls_have_names(page: "Page", least: int) -> None:
@@ -204,42 +141,28 @@ def assert_controls_have_names(page: "Page", least: int) -> None:
     assert faults_of(controls) == []
 
 
-def axe_finds(page: "Page", *within: str, colours: bool = True) -> list[str]:
-    """Return axe's violations in the light theme and on a phone; with colours, in all themes and in forced colours.
-
-    within: Elements by selector; without, all of the page.
-    """
-    page.evaluate(AXE.read_text(encoding="utf-8"))
+def violations(page: "Page", *within: str, colours: bool = True) -> list[str]:
+    """Return axe's violations in the light theme and on a phone; with colours, in all themes and in forced colours."""
     found: list[str] = []
+
+    def look(where: str, rules: dict[str, Any]) -> None:
+        found.extend(f"{where}: {each}" for each in axe_finds(page, rules, within))
+
     for name, media in THEMES.items() if colours else [("light", THEMES["light"])]:
         page.emulate_media(**media)
         page.wait_for_function("(name) => name.startsWith(document.documentElement.dataset.scheme)", arg=name)
         more = name.endswith("more")
         page.wait_for_function("(more) => (document.documentElement.dataset.contrast === 'more') === more", arg=more)
-        found += violations(page, name, RULES if name == "light" else COLOURS, within)
+        look(name, RULES if name == "light" else COLOURS)
     if colours:
         page.emulate_media(contrast="no-preference", forced_colors="active")
-        found += violations(page, "forced colours", COLOURS, within)
+        look("forced colours", COLOURS)
         page.emulate_media(forced_colors="none")
     for size, rules in (("phone", RULES), ("zoomed to 400 %", SIZES_OF_TARGETS)):
         width, height = SIZES[size]
         page.set_viewport_size({"width": width, "height": height})
-        found += violations(page, size, rules, within)
+        look(size, rules)
     return found
-
-
-def violations(page: "Page", where: str, rules: dict[str, Any], within: tuple[str, ...]) -> list[str]:
-    page.evaluate(SETTLED)
-    found = page.evaluate(
-        """([within, runOnly]) => axe.run(within.length ? { include: within } : document,
-          { runOnly, resultTypes: ["violations"], elementRef: false })""",
-        [list(within), rules],
-    )
-    return [
-        f"{where}: {each['id']} {node['target']} {node['failureSummary']}"
-        for each in found["violations"]
-        for node in each["nodes"]
-    ]
 
 
 class TestKeys:
@@ -331,12 +254,6 @@ class TestKeys:
         page.keyboard.press("?")
         assert focus(page) == "help"
 
-    def test_page_works_without_local_storage(self, show: Show):
-        page = show("Object.defineProperty(window, 'localStorage', { get() { throw new Error('forbidden') } })")
-        page.locator("#theme").select_option("dark")
-        page.locator("#settings > summary").click()
-        assert page.evaluate("document.querySelector('main').checkVisibility()")
-
 
 class TestSaid:
     def test_announcements_come_once_a_second_and_answers_at_once(self, show: Show):
@@ -391,126 +308,6 @@ class TestSaid:
         assert page.locator("#status").get_attribute("data-state") == "stopped"
         page.locator("#again").click()
         wait_for_force(page)
-
-    def test_speech_in_german_needs_a_german_voice(self, show: Show):
-        page = show(SPY + VOICES, locale="de-DE")
-        show_everything(page)
-        page.wait_for_function("() => document.querySelector('#described').textContent.includes('Materialien: ')")
-        page.keyboard.press("d")
-        assert "Materialien: " in last(page)
-        assert page.evaluate("spoken") == []
-        page.keyboard.press("a")
-        assert page.locator("#speech-on").get_attribute("aria-pressed") == "true"
-        page.locator("#sound input[type=range]").nth(1).fill("1.5")
-        page.evaluate("spoken.length = 0")
-        page.keyboard.press("d")
-        [cancelled, spoken] = page.evaluate("spoken")
-        assert cancelled == "cancel", "what was being said is stale"
-        assert spoken["text"] == page.locator("#said").inner_text().strip()
-        assert (spoken["lang"], spoken["voice"], spoken["rate"]) == ("de-DE", "Anna", 1.5)
-        page.evaluate("voices.shift(); changed()")
-        assert page.locator("#speech-on").is_hidden()
-        assert "keine deutsche Stimme" in page.locator("#sound").inner_text()
-        page.evaluate("spoken.length = 0")
-        page.keyboard.press("d")
-        assert page.evaluate("spoken") == []
-        page.locator("#language").click()
-        page.wait_for_function("() => document.documentElement.lang === 'en'")
-        page.wait_for_selector("#open", state="attached")
-        assert page.locator("#language").inner_text() == "Deutsch"
-        assert page.locator("#open > summary").inner_text() == "Open"
-        assert page.locator("#speech-on").get_attribute("aria-pressed") == "true", (
-            "it is remembered, and there is a voice"
-        )
-
-
-OFFLINE = """async ([material, force, velocity]) => {
-  const context = new OfflineAudioContext(2, 48000, 48000);
-  new Instrument(context).stroke(stroke(material, force, velocity));
-  const made = await context.startRendering();
-  const data = made.getChannelData(0).subarray(9600);
-  let [sum, most] = [0, 0];
-  for (const each of data) { sum += each * each; most = Math.max(most, Math.abs(each)); }
-  return [Math.sqrt(sum / data.length), most];
-}"""
-CLOTH = {
-    **dict.fromkeys(["damping_n_s_per_m", "direction_deg", "anisotropy", "irregularity", "drag_n_s_per_m"], 0),
-    **{"name": "cloth", "stiffness_n_per_m": 300, "static_friction": 0.6, "dynamic_friction": 0.4, "roughness_m": 5e-5},
-    **{"grain_m": 4e-4, "texture": "stochastic"},
-}
-
-
-class TestHeard:
-    def test_sound_of_a_stroke_is_bounded_off_at_first_and_has_one_context(self, show: Show):
-        page = show(CONTEXTS, measure=True)
-
-        def play(force_n: float, speed: float, **changed: Any) -> tuple[float, float]:
-            return page.evaluate(OFFLINE, [{**CLOTH, **changed}, [0, 0, force_n], [speed, 0, 0]])
-
-        assert play(1, 0)[0] < 1e-5, "at rest"
-        assert play(0, 0.1)[0] < 1e-5, "in the air"
-        assert play(1, 0.1, texture="smooth", roughness_m=0)[0] < 1e-5, "on ice"
-        soft, loud, loudest = play(0.3, 0.05), play(1, 0.1), play(1e6, 1e6, roughness_m=1)
-        assert 0.01 < soft[0] < loud[0] < loudest[0] < 0.5
-        assert loudest[1] < 1, "it is never cut off"
-        for texture in ("periodic", "stick-slip"):
-            assert 0.01 < play(1, 0.1, texture=texture)[0] < 0.5, texture
-
-        wait_for_force(page)
-        drag(page, lambda: page.evaluate("(page.net.latest?.flags & 1) === 1"))
-        assert page.evaluate("contexts.length") == 0
-        for _ in range(3):
-            page.keyboard.press("s")  # on, off, on, before the first has begun
-        page.wait_for_function("() => window.contexts[0]?.state === 'running'")
-        assert page.evaluate("contexts.length") == 1
-        assert page.evaluate("page.sound.on")
-        page.evaluate(LOUDEST)
-        drag(page, lambda: page.evaluate("loudest") > 0.01)
-        page.mouse.move(2, 2)
-        page.wait_for_function("() => page.sound.level < 1e-4")
-        page.evaluate("loudest = 0")
-        page.keyboard.press("h")
-        page.wait_for_function("() => loudest > 0.03")
-        page.keyboard.press("s")
-        page.wait_for_function("() => !page.sound.on && page.sound.level < 1e-4")
-        assert page.evaluate("contexts.length") == 1
-
-
-class TestLog:
-    def test_log_lines_are_filtered_searched_counted_copied_and_saved(self, show: Show):
-        page = show(measure=True, permissions=["clipboard-read", "clipboard-write"])
-        tell = "(all) => { for (const each of all) page.hub.tell(...each) }"
-        lines: list[list[Any]] = [
-            ["log", {"at_s": 1, "level": "warning", "logger": "somebody", "text": "it is dark"}]
-        ] * 3
-        lines += [["error", {"at_s": 2, "text": "the disk is full"}]]
-        open_panel(page, "log-panel")
-        page.get_by_role("button", name="Clear").click()
-        page.evaluate(tell, lines)
-        log = page.locator("#log")
-        page.wait_for_function("() => document.querySelectorAll('#log li').length === 2")
-        assert "warning somebody: it is dark (3 times)" in log.inner_text()
-        assert log.get_attribute("role") == "log"
-        page.get_by_label("Warnings").uncheck()
-        assert "dark" not in log.inner_text() and "disk" in log.inner_text()
-        assert page.locator("#log-panel output").inner_text() == "1 of 2 lines"
-        page.get_by_label("Warnings").check()
-        page.get_by_label("Search the log").fill("DARK some")
-        assert "disk" not in log.inner_text() and "dark" in log.inner_text()
-        page.locator("#log-panel").get_by_role("button", name="Copy").click()
-        page.wait_for_function("() => document.querySelector('#said').textContent.startsWith('Lines copied: 1')")
-        assert (
-            page.evaluate("navigator.clipboard.readText()")
-            == "1970-01-01T00:00:01.000Z warning somebody: it is dark (x 3)\n"
-        )
-        with page.expect_download() as download:
-            page.locator("#log-panel").get_by_role("button", name="Save").click()
-        assert Path(download.value.path()).read_text(encoding="utf-8").endswith("it is dark (x 3)\n")
-        # a flood leaves the newest lines, and a page that answers
-        page.get_by_label("Search the log").fill("")
-        page.evaluate("for (let i = 0; i < 6000; i++) page.hub.tell('error', { at_s: i, text: `fault ${i}` })")
-        page.wait_for_function("() => document.querySelector('#log li:last-child')?.textContent.includes('fault 5999')")
-        assert page.evaluate("document.querySelectorAll('#log li').length") == 2000
 
 
 class TestTasks:

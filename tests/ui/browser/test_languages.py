@@ -1,4 +1,4 @@
-"""The page in other languages: in German nothing of it is English, what the program writes included."""
+"""The page in other languages: otherwise a pupil in a German or French class meets English."""
 
 from collections.abc import Callable
 from pathlib import Path

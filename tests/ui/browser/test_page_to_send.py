@@ -1,4 +1,4 @@
-"""A page that was sent, opened from its file: without a program, without a network, in Chromium and in Firefox."""
+"""A page that was sent, opened from its file: otherwise its receiver feels another picture, or none, in Firefox too."""
 
 import json
 from pathlib import Path
@@ -7,31 +7,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from browser_tabs import SETTLED, OpenPage
+from accessible_names import COLOURS, axe_finds
+from browser_tabs import OpenPage
 from firefox import firefox
-from page_files import WEB, built_page
+from page_files import built_page
 from sent_pages import HOSTILE, MATERIALS, picture_to_send, touches
 from tangible_legibility.words.languages import one_line
 from tangible_send.page import Page
 from tangible_send.surface import surface_to_send
+from waiting import until
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page as Tab
 
+pytestmark = pytest.mark.whole
 PLACES = 1000
-AXE = WEB / "node_modules/axe-core/axe.min.js"
-RULES = {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]}
-COLOURS = {"type": "rule", "values": ["color-contrast", "link-in-text-block"]}
-"""All that a theme can break."""
-MOVES = """(() => {
-  const { eye } = tangible.page.view;
-  eye.home();
-  const before = JSON.stringify(eye.pose);
-  eye.top();
-  const still = [...document.querySelectorAll("*")].every((each) => getComputedStyle(each).transitionDuration === "0s");
-  return [JSON.stringify(eye.pose) !== before, still];
-})()"""
-"""Whether the camera is at its goal at once, and whether nothing has a transition."""
 SHAKEN = """
 window.pulses = [];
 navigator.vibrate = (ms) => pulses.push(ms);
@@ -53,7 +43,6 @@ FEEL = """(text) => {
   }));
 }"""
 """Numbers travel as text: thousands of them, one by one, take Playwright minutes."""
-SLOPES = "(text) => JSON.stringify(JSON.parse(text).map(([x, y]) => tangible.law.spline.bend(x, y).slice(0, 3)))"
 COEFFICIENTS = "JSON.stringify([...tangible.law.spline.coefficients])"
 
 
@@ -74,7 +63,6 @@ def test_page_is_explored_by_keyboard_mouse_and_pad(sent: str, open_page: OpenPa
     assert_forces_are_those_of_proxy(tab)
     assert axe_finds(tab) == []
     assert_colours_of_all_themes(tab)
-    assert_camera_jumps_only_where_motion_is_unwanted(tab)
     tab.set_viewport_size({"width": 320, "height": 568})
     assert tab.evaluate("document.documentElement.scrollWidth") <= 320
     assert axe_finds(tab) == []
@@ -108,12 +96,10 @@ def test_page_is_explored_by_keyboard_mouse_and_pad(sent: str, open_page: OpenPa
 def test_page_in_firefox_is_explored(sent: str):
     with firefox() as tab:
         tab.open(sent)
-        tab.until("window.tangible !== undefined")
+        until(lambda: tab.evaluate("window.tangible !== undefined"))
         assert tab.evaluate("getComputedStyle(document.querySelector('h1')).direction") == "rtl"
         tab.evaluate("document.querySelector('#parts button').click()")
-        tab.until("document.querySelector('#said').textContent.includes(' of 3')")
-        tab.press_on("#terrain")
-        tab.until("document.querySelector('#said').textContent.startsWith('Touching')")
+        until(lambda: " of 3" in tab.evaluate("document.querySelector('#said').textContent"))
         assert tab.complaints == []
         assert {url.partition(":")[0] for url in tab.requests} <= {"file", "data"}
 
@@ -133,7 +119,6 @@ def assert_forces_are_those_of_proxy(tab: "Tab"):
     from tangible_core.compiled.touch import CompiledTouch
     from tangible_render.contact.approach import REMEMBERED
     from tangible_render.kernels.proxy import tick
-    from tangible_render.surface.spline import slope
     from tangible_render.surface.tiles import tile_bounds
 
     sent = next(surface_to_send(picture_to_send()))
@@ -161,14 +146,6 @@ def assert_forces_are_those_of_proxy(tab: "Tab"):
     wrong_n = np.linalg.norm(found_n - wanted_n, axis=1)
     assert (wrong_n <= 0.02 * size_n + 1e-3).all(), np.flatnonzero(wrong_n > 0.02 * size_n + 1e-3)
 
-    places = positions_m[ends, :2]
-    found = np.array(json.loads(tab.evaluate(SLOPES, json.dumps(places.tolist()))))
-    wanted = np.array([slope(coefficients, *shape[3:], *place) for place in places])
-    assert np.abs(found[:, 0] - wanted[:, 0]).max() < 1e-5
-    normals = [np.column_stack([-each[:, 1:], np.ones(PLACES)]) for each in (found, wanted)]
-    one, other = (each / np.linalg.norm(each, axis=1, keepdims=True) for each in normals)
-    assert np.degrees(np.arccos(np.clip((one * other).sum(axis=1), -1, 1))).max() < 1
-
 
 def assert_colours_of_all_themes(tab: "Tab"):
     """In the dark, in high contrast, and where the system forces its colours."""
@@ -177,29 +154,13 @@ def assert_colours_of_all_themes(tab: "Tab"):
         for contrast in ("no-preference", "more"):
             tab.emulate_media(color_scheme=scheme, contrast=contrast)
             tab.wait_for_function("(name) => document.documentElement.dataset.scheme === name", arg=scheme)
-            tab.evaluate(SETTLED)
             assert axe_finds(tab, COLOURS) == [], (scheme, contrast)
             grounds.add(tab.evaluate("getComputedStyle(document.documentElement).backgroundColor"))
     assert len(grounds) >= 3, "the themes differ"
     tab.emulate_media(contrast="no-preference", forced_colors="active")
     assert tab.evaluate("matchMedia('(forced-colors: active)').matches")
-    tab.evaluate(SETTLED)
     assert axe_finds(tab, COLOURS) == []
     tab.emulate_media(forced_colors="none")
-
-
-def assert_camera_jumps_only_where_motion_is_unwanted(tab: "Tab"):
-    assert tab.evaluate(MOVES) == [True, True]
-    tab.emulate_media(reduced_motion="no-preference")
-    assert tab.evaluate(MOVES)[0] is False, "the camera flies"
-    tab.emulate_media(reduced_motion="reduce")
-    tab.evaluate("tangible.page.view.eye.top()")
-
-
-def axe_finds(tab: "Tab", rules: dict[str, Any] = RULES) -> list[str]:
-    tab.evaluate(AXE.read_text(encoding="utf-8"))
-    found = tab.evaluate("(runOnly) => axe.run(document, { runOnly, resultTypes: ['violations'] })", rules)
-    return [f"{each['id']} {node['target']}" for each in found["violations"] for node in each["nodes"]]
 
 
 def stroke_over_a_border(tab: "Tab"):

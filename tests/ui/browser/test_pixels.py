@@ -1,12 +1,10 @@
-"""The drawing at the pixels where the numbers put it: surface, cursor and arrow, in a browser, on a known surface.
+"""The drawing at the pixels where the numbers put it: otherwise hand and force are seen elsewhere than they are.
 
 The surface is a step: level ground on the left and in front, level and 6 mm higher on the far right. The view gives the
 place of a point on the screen; that the view itself is the right way round is tested first.
 """
 
 import io
-import json
-import math
 from collections.abc import Iterator
 from contextlib import ExitStack
 from typing import Any, NamedTuple
@@ -18,7 +16,6 @@ from PIL import Image
 from browser_tabs import Chromium, tabs
 from lasting_server import LastingServer
 from page_panels import open_panel
-from waiting import until
 
 WIDTH_M, LENGTH_M, HIGH_M = 0.08, 0.06, 0.006
 ROWS, COLUMNS = 90, 120
@@ -36,6 +33,7 @@ LEFT, RIGHT = -0.02, 0.02
 """Far from the step, and from the rim."""
 
 Vec = tuple[float, float, float]
+pytestmark = pytest.mark.usefixtures("browser")
 
 
 class Shown(NamedTuple):
@@ -64,35 +62,6 @@ class Shown(NamedTuple):
             "overlay.layer.classList.toggle('visually-hidden', !names.includes('labels')); }",
             list(names),
         )
-
-    def click(self, *at: float) -> None:
-        """The mouse, on the surface there."""
-        self.wait_until_at_rest()
-        self.page.mouse.click(*self.on_page(*at))
-
-    def wait_until_at_rest(self) -> None:
-        """Wait until the view rests: it gives way to a box that grows over the canvas."""
-
-        def rests() -> bool:
-            before = self.on_page(RIGHT, 0.01, HIGH_M)
-            self.wait_until_drawn()
-            return before == self.on_page(RIGHT, 0.01, HIGH_M)
-
-        until(rests)
-
-    def on_page(self, *at: float) -> tuple[float, float]:
-        """Return the pixel of a place of the workspace on the page."""
-        box, (x, y) = self.page.locator("#terrain").bounding_box(), self.spot(*at)
-        return box["x"] + x, box["y"] + y
-
-    def handle(self, name: str) -> np.ndarray:
-        """The middle of a handle, on the canvas."""
-        box, around = self.page.get_by_label(name).bounding_box(), self.page.locator("#terrain").bounding_box()
-        return np.array([box["x"] + box["width"] / 2 - around["x"], box["y"] + box["height"] / 2 - around["y"]])
-
-    def mapping(self) -> dict[str, Any]:
-        """Return the mapping of the document."""
-        return self.page.evaluate("() => page.document.values.mapping ?? {}")
 
     def wait_until_drawn(self) -> None:
         """Wait until the newest state is drawn."""
@@ -126,12 +95,6 @@ def shown(chromium: Chromium, lasting: LastingServer, tmp_path_factory: pytest.T
         yield Shown(page)
         with chromium.used():
             pages.close()
-
-
-@pytest.fixture(autouse=True)
-def live_again(shown: Shown, browser: Any) -> Iterator[None]:
-    yield
-    shown.page.evaluate("() => { page.replayed = null; clearInterval(window.held); page.net.release(); }")
 
 
 def near(picture: np.ndarray, spot: np.ndarray) -> np.ndarray:
@@ -197,186 +160,3 @@ def test_arrow_is_drawn_as_long_as_the_force(shown: Shown, force: Vec, proxy: Ve
     assert along.min() == pytest.approx(0, abs=4)
     tip = np.array([columns[along.argmax()], rows[along.argmax()]]) + 0.5
     assert np.hypot(*(tip - end)) < 4
-
-
-def test_trace_is_drawn_where_the_contact_was(shown: Shown):
-    """The trace runs between the places of two states, and not over a place where the hand was released."""
-    shown.only()
-    before = shown.pixels()
-    shown.only("trace")
-    shown.page.evaluate("() => { page.overlay.settings.seconds = 30; }")
-    for hand in ((LEFT - 0.008, 0.0, -0.001), (LEFT, 0.0, -0.001), (LEFT, 0.0, 0.9), (LEFT, 0.012, -0.001)):
-        shown.state(hand, (0, 0, 4))
-        shown.wait_until_drawn()
-    changed = np.abs(shown.pixels() - before)
-    assert near(changed, shown.spot(LEFT - 0.004, 0, 0)).max() > 20
-    assert near(changed, shown.spot(LEFT, 0.006, 0)).max() < 5
-
-
-def test_pressed_mouse_gives_the_force_that_is_shown(shown: Shown):
-    """The force runs from the mouse to the loop and back: F = k d, drawn and in figures."""
-    shown.only("device", "labels", "arrow")
-    mouse = shown.page.mouse
-    until(lambda: shown.page.evaluate("() => page.net.latest !== null"))
-    until(lambda: "penalty" in shown.page.inner_text("#log"))
-    mouse.move(*shown.on_page(RIGHT - 0.001, 0.01, HIGH_M))
-    mouse.down()
-
-    def press() -> Any:
-        mouse.move(*shown.on_page(RIGHT, 0.01, HIGH_M))
-        state = shown.page.evaluate(
-            "alone => { const s = page.net.latest; if (!s || (s.flags & 255) !== alone) return null;"
-            "page.replayed = s; return { hand: s.hand, force: s.force }; }",
-            TOUCHING,
-        )
-        if state and math.dist(state["hand"][:2], (RIGHT, 0.01)) < 5e-4 and abs(state["force"][2]) > 0.2:
-            return state
-        shown.page.evaluate("() => { page.replayed = null; }")
-        return None
-
-    state = until(press)
-    mouse.up()
-    shown.wait_until_at_rest()
-    hand, force = np.array(state["hand"]), np.array(state["force"])
-    assert hand[:2] == pytest.approx([RIGHT, 0.01], abs=5e-4)
-    assert force[2] == pytest.approx(STIFFNESS_N_PER_M * (HIGH_M - hand[2]), rel=0.05)
-    assert np.abs(force[:2]).max() < 1e-6
-    found = centroid(colour_mask(shown.pixels(), DEVICE))
-    assert np.hypot(*(found - shown.spot(*hand))) < 2
-    until(lambda: f"{force[2]:.2f} N" in shown.page.inner_text(".live-label .force"))
-    shown.page.evaluate("() => { document.getElementById('data-cursor').open = true; }")
-    until(lambda: f"{force[2]:.3f} N" in shown.page.inner_text("#data-cursor"))
-    shown.page.evaluate("() => { document.getElementById('data-cursor').open = false; }")
-
-
-def test_view_rests_under_a_pressed_hand(shown: Shown):
-    """What covers the canvas meanwhile moves the surface when the hand is let go, not under it."""
-
-    def show_all_values(shows: bool) -> None:
-        """Values that cover less than half of the canvas: wider ones are not given way to."""
-        shown.page.evaluate(
-            "shows => { const box = document.getElementById('data-cursor'); box.open = shows;"
-            "box.querySelector('.all').style.maxInlineSize = shows ? '30%' : ''; }",
-            shows,
-        )
-
-    def place() -> list[float]:
-        shown.wait_until_drawn()
-        return shown.spot(RIGHT, 0.01, HIGH_M).tolist()
-
-    shown.wait_until_at_rest()
-    shown.page.mouse.move(*shown.on_page(RIGHT, 0.01, HIGH_M))
-    shown.page.mouse.down()
-    before = place()
-    show_all_values(True)
-    until(lambda: shown.page.locator("#data-cursor > .all").bounding_box())
-    assert [place() for _ in range(3)] == [before] * 3
-    shown.page.mouse.up()
-    until(lambda: place()[0] < before[0] - 10)
-    shown.wait_until_at_rest()
-    beside = place()
-    show_all_values(False)
-    until(lambda: place()[0] > beside[0] + 10)
-
-
-def test_values_are_copied_as_they_are(shown: Shown):
-    hand, force = (LEFT, 0.005, -0.0015), (0.25, 0.0, 0.75)
-    shown.state(hand, force)
-    shown.pixels()
-    shown.page.focus("#terrain")
-    shown.page.keyboard.press("Shift+C")
-    copied = until(lambda: shown.page.evaluate("() => navigator.clipboard.readText()"))
-    device = json.loads(copied)["device"]
-    assert device["position_m"] == pytest.approx(hand)
-    assert device["contact_m"] == pytest.approx([LEFT, 0.005, 0.0], abs=1e-6)
-    assert device["force_n"] == pytest.approx(force)
-    assert device["magnitude_n"] == pytest.approx(math.hypot(*force))
-    assert device["depth_m"] == pytest.approx(0.0015, abs=1e-6)
-
-
-def test_ruler_measures_the_step(shown: Shown):
-    """The ruler is set by the mouse, then by the keyboard; its figures are those of the drawn ends."""
-    shown.only("labels")
-    shown.page.get_by_role("button", name="Measure with the mouse").click()
-    shown.click(LEFT, 0.01, 0.0)
-    shown.click(RIGHT, 0.01, HIGH_M)
-    shown.page.get_by_role("button", name="Measure with the mouse").click()
-
-    def figures() -> list[float]:
-        says = shown.page.locator("#ruler-panel dd").all_inner_texts()
-        return [float(each.split()[0].rstrip("°").replace("\N{MINUS SIGN}", "-")) for each in says]
-
-    across, rise = 1e3 * (RIGHT - LEFT), 1e3 * HIGH_M
-    cell = 1e3 * WIDTH_M / COLUMNS  # over which the step rises
-    along = across - cell + np.hypot(cell, rise)
-    wanted = [np.hypot(across, rise), across, along, rise, np.degrees(np.arctan2(rise, across))]
-    assert figures() == pytest.approx(wanted, abs=0.15)
-    shown.wait_until_at_rest()
-    for name, at in (("Start of the ruler", (LEFT, 0.01, 0.0)), ("End of the ruler", (RIGHT, 0.01, HIGH_M))):
-        assert np.hypot(*(shown.handle(name) - shown.spot(*at))) < 2
-    before = figures()[1]
-    shown.page.get_by_label("End of the ruler").focus()
-    shown.page.keyboard.press("Shift+ArrowRight")
-    assert figures()[1] - before == pytest.approx(5, abs=0.02)
-    shown.page.focus("#terrain")
-    shown.page.keyboard.press("Shift+M")
-    assert not shown.page.locator("#ruler-panel dl").count()
-
-
-def test_frame_is_the_device_s_reach_and_can_be_dragged(shown: Shown):
-    """A Falcon reaches 80 mm: at twice the scale 40 mm of the picture. What is dragged is written to the document."""
-    side = 0.04
-    shown.only("labels")
-    shown.page.get_by_label("Show what the device reaches").check()
-    shown.page.evaluate("() => page.net.ask('set', { changes: { 'mapping.scale': 2 } })")
-    until(lambda: shown.mapping().get("scale") == 2)
-    until(lambda: "40.0 \N{MULTIPLICATION SIGN} 40.0" in shown.page.inner_text("#mapping-panel"))
-    shown.pixels()
-    assert np.hypot(*(shown.handle("Move the frame") - shown.spot(0, 0, HIGH_M / 2))) < 15  # on the step itself
-    corner = shown.page.locator(".handle.square").first.bounding_box()
-    around = shown.page.locator("#terrain").bounding_box()
-    at = np.array([corner["x"] + corner["width"] / 2 - around["x"], corner["y"] + corner["height"] / 2 - around["y"]])
-    assert np.hypot(*(at - shown.spot(-side / 2, -side / 2, 0))) < 2
-    mouse = shown.page.mouse
-    x, y = shown.handle("Move the frame")
-    mouse.move(x + around["x"], y + around["y"])
-    mouse.down()
-    mouse.move(*shown.on_page(-0.015, 0.005, 0.0), steps=3)
-    mouse.up()
-    offset = until(lambda: any(found := shown.mapping().get("offset_m", [])) and found)
-    assert offset == pytest.approx([0.03, -0.01, 0], abs=1e-3)
-    shown.page.get_by_label("Turn the frame").focus()
-    shown.page.keyboard.press("ArrowUp")
-    until(lambda: shown.mapping().get("rotation_deg") == -1)
-    shown.page.focus("#terrain")
-    shown.page.keyboard.press("z")
-    region = until(lambda: shown.mapping().get("region_m"))
-    assert region[2:] == pytest.approx([side / 2, side / 2], rel=1e-3)
-    shown.page.keyboard.press("Shift+Z")
-    until(lambda: "region_m" not in shown.mapping())
-    assert shown.page.evaluate("() => page.document.text") == PIPELINE + "mapping: {rotation_deg: -1}\n"
-
-
-def test_reach_of_the_newest_document_stays_when_an_older_answer_comes_last(shown: Shown):
-    shown.page.get_by_label("Show what the device reaches").check()
-    shown.page.evaluate(
-        """() => {
-          const { net } = page;
-          const ask = net.ask;
-          const late = new Promise((done) => (window.let_go = done));
-          net.ask = async function (name, args) {
-            if (name !== "reach") return ask.call(net, name, args);
-            net.ask = ask;
-            await late;
-            return { device: "older", workspace_m: [0.02, 0.02, 0.02] };
-          };
-        }"""
-    )
-    for scale in (2, 4):
-        shown.page.evaluate("(to) => page.net.ask('set', { changes: { 'mapping.scale': to } })", scale)
-        until(lambda scale=scale: shown.mapping().get("scale") == scale)
-    panel = shown.page.locator("#mapping-panel")
-    until(lambda: "20.0 \N{MULTIPLICATION SIGN} 20.0" in panel.inner_text())
-    shown.page.evaluate("let_go(), new Promise((done) => setTimeout(done))")
-    assert "20.0 \N{MULTIPLICATION SIGN} 20.0" in panel.inner_text()
-    shown.page.evaluate("() => page.net.ask('set', { changes: {}, removed: ['mapping.scale'] })")

@@ -1,10 +1,17 @@
-"""A page of an earlier start, and what was edited and not saved when the program was killed."""
+"""A page of an earlier start, and edits that were not saved: otherwise they are lost, or the page waits for ever."""
 
+import os
 import re
+import signal
 from pathlib import Path
+
+import numpy as np
 
 from lasting_server import LastingServer
 from page_files import built_page
+from page_panels import wait_for_force
+from tangible_core.data import TICK_COLUMNS
+from tangible_core.servo.ring import Ring, shared_folder
 from waiting import until
 
 TEXT = "scene: builtin/brick\nrender: {use: penalty, stiffness_n_per_m: 431}\n"
@@ -43,3 +50,49 @@ def test_draft_of_a_killed_program_is_offered_once(serve, open_page, tmp_path: P
     page.get_by_role("button", name="Open it again").click()
     page.wait_for_function("text => window.page.document?.text === text", arg=TEXT)
     page.get_by_role("button", name="Open it again").wait_for(state="hidden")
+
+
+FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
+
+
+def test_tab_that_is_frozen_or_closed_gives_no_force(opened, open_page, browser, tmp_path: Path) -> None:
+    np.save(tmp_path / "level.npy", np.zeros((24, 32), np.float32))
+    (tmp_path / "level.yaml").write_text(
+        "scene: {height: level.npy}\nrender: {use: penalty, stiffness_n_per_m: 500}\nsafety: {ramp_s: 0}\n"
+    )
+    page = open_page(f"{opened(tmp_path / 'level.yaml')}&measure")
+    page.wait_for_function("() => window.page?.scene")
+    assert "token" not in page.url
+    assert "measure" in page.url
+    page.reload()
+    page.wait_for_function("() => window.page?.scene")
+    wait_for_force(page)
+    ring = Ring.attach(max(shared_folder().glob("*.ring"), key=lambda path: path.stat().st_mtime))
+
+    def has_force() -> bool:
+        row = ring.latest()
+        return row is not None and bool(row[FORCE].any())
+
+    def press() -> None:
+        box = page.locator("#terrain").bounding_box()
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x + 3, y)
+        until(has_force, "the mouse is not felt")
+
+    press()
+    session = browser.new_browser_cdp_session()
+    found = session.send("SystemInfo.getProcessInfo")["processInfo"]
+    renderers = [each["id"] for each in found if each["type"] == "renderer"]
+    for each in renderers:
+        os.kill(each, signal.SIGSTOP)
+    try:
+        until(lambda: not has_force(), "a tab that stands still holds the hand")
+    finally:
+        for each in renderers:
+            os.kill(each, signal.SIGCONT)
+    page.mouse.up()
+    press()
+    page.close()
+    until(lambda: not has_force(), "a tab that was closed holds the hand")

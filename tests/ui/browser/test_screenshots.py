@@ -1,4 +1,4 @@
-"""The pictures of the page in the docs: made and looked at, one of them daily, the others in the nightly tests.
+"""The pictures of the page in the docs, in the nightly tests: otherwise the docs show another page.
 
 TANGIBLE_UI_PICTURES=1 pytest tests/ui/browser/test_screenshots.py --nightly   # writes them there
 """
@@ -23,6 +23,7 @@ from waiting import until
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
+pytestmark = pytest.mark.nightly
 DOCS = ROOT / "docs"
 MOST_BYTES = 150_000
 KEPT = bool(os.environ.get("TANGIBLE_UI_PICTURES"))
@@ -47,9 +48,7 @@ def url(opened: Callable[..., str]) -> str:
     return opened("builtin/motorcycle")
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(each, marks=() if each == "ui" else pytest.mark.nightly) for each in PICTURES]
-)
+@pytest.mark.parametrize("name", PICTURES)
 def test_screenshot_of_the_page(open_page: Callable[..., Any], url: str, tmp_path: Path, name: str):
     page = open_page(url, draws=True, **PICTURES[name])
     wait_for_force(page)
@@ -68,7 +67,6 @@ VARIANTS: dict[str, dict[str, Any]] = {
 TASKS = {"parts": "parts-task", "feel": "feel", "hand-on": "hand-on"}
 
 
-@pytest.mark.nightly
 def test_screenshots_of_start_and_tasks(
     opened: Callable[..., str], serve: Callable[..., Any], open_page: Callable[..., Any], tmp_path: Path
 ):
@@ -93,11 +91,10 @@ def test_screenshots_of_start_and_tasks(
         page.close()  # the next one gets the hand
 
 
-def shot(page: "Page") -> Image.Image:
-    return Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+def shot(page: Any, **options: Any) -> Image.Image:
+    return Image.open(io.BytesIO(page.screenshot(**options))).convert("RGB")
 
 
-@pytest.mark.nightly
 def test_screenshot_of_each_panel(open_page: Callable[..., Any], url: str, tmp_path: Path):
     """Each panel has its contents once a surface is felt; a long panel is cut."""
     size = {"width": 1440, "height": 1100}
@@ -113,15 +110,12 @@ def test_screenshot_of_each_panel(open_page: Callable[..., Any], url: str, tmp_p
         panel.evaluate("(each) => each.scrollIntoView({ block: 'start' })")
         box = panel.bounding_box()
         cut = {"x": box["x"], "y": box["y"], "width": box["width"], "height": min(box["height"], 640)}
-        picture = Image.open(io.BytesIO(page.screenshot(clip=cut))).convert("RGB")
-        keep(picture, tmp_path, f"ui/{name}")
+        keep(shot(page, clip=cut), tmp_path, f"ui/{name}")
         if name == "legible":
-            marked = io.BytesIO(page.locator("main").screenshot())
-            keep(Image.open(marked).convert("RGB"), tmp_path, "ui/legible-marks")
+            keep(shot(page.locator("main")), tmp_path, "ui/legible-marks")
         panel.evaluate("(each) => (each.open = false)")
 
 
-@pytest.mark.nightly
 def test_screenshots_of_the_parts_editor(opened: Callable[..., str], open_page: Callable[..., Any], tmp_path: Path):
     """A photograph with parts that were drawn by hand; and one that is proposed."""
     page = open_page(
@@ -131,7 +125,7 @@ def test_screenshots_of_the_parts_editor(opened: Callable[..., str], open_page: 
     bring(page, "parts").locator("#parts-edit").click()
     page.locator("#parts-list [role=option]", has_text="helmet").first.click()
     page.wait_for_timeout(500)
-    keep(Image.open(io.BytesIO(page.screenshot())).convert("RGB"), tmp_path, "ui/parts-editor")
+    keep(shot(page), tmp_path, "ui/parts-editor")
 
     page.keyboard.press("p")
     page.keyboard.press("t")
@@ -145,7 +139,7 @@ def test_screenshots_of_the_parts_editor(opened: Callable[..., str], open_page: 
     page.get_by_role("button", name="Accept").wait_for()
     page.wait_for_timeout(500)
     stage = page.locator("#parts-editor > .stage").bounding_box()
-    picture = Image.open(io.BytesIO(page.screenshot(clip=stage))).convert("RGB")
+    picture = shot(page, clip=stage)
     keep(picture.resize((picture.width * 3 // 4, picture.height * 3 // 4)), tmp_path, "ui/parts-proposal")
 
 
@@ -205,20 +199,10 @@ def touched(page: "Page") -> Image.Image:
     page.mouse.down()
     force, steps = page.locator("#strip .short td").first, itertools.count()
 
-    def is_felt() -> bool:
-        return any(each in "123456789" for each in force.inner_text())
-
     def felt() -> Image.Image | None:
         x, y = box["x"] + (0.45 + 0.001 * (next(steps) % 20)) * box["width"], box["y"] + 0.5 * box["height"]
         page.mouse.move(x, y)
         page.wait_for_timeout(50)
-        picture = shot(page) if is_felt() else None
-        return picture if picture and shows_hand(picture, x, y) else None  # a busy machine lets it go meanwhile
+        return shot(page) if any(each in "123456789" for each in force.inner_text()) else None
 
     return until(felt, "a force")
-
-
-def shows_hand(picture: Image.Image, x: float, y: float) -> bool:
-    """Whether the pink ball of the hand is drawn near a place."""
-    red, green, blue = np.asarray(picture.crop((int(x) - 40, int(y) - 40, int(x) + 40, int(y) + 40)), int).T
-    return bool(((red > 150) & (blue > 80) & (red - green > 90) & (blue - green > 20)).sum() > 20)

@@ -62,6 +62,7 @@ def test_preflight_cure_corrects_the_document(page: "Page") -> None:
 def test_stroke_is_recorded_played_and_replayed_with_another_law(page: "Page") -> None:
     press(page, "records", "Record touch")
     until(lambda: "Recording: " in page.locator("#records").inner_text())
+    wait_for_force(page)
     surface = page.locator("#terrain")
     surface.focus()
     surface.press("Home")

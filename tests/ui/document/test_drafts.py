@@ -1,13 +1,13 @@
-"""Drafts outlive the program; temporary files of a dead program do not."""
+"""Drafts outlive the program, its temporary files do not: otherwise an evening of edits is lost, or a disk fills."""
 
 import asyncio
 import errno
-import json
 import os
 import stat
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -17,8 +17,8 @@ from tangible_ui import stale_files as left_behind
 from tangible_ui.stale_files import channel_of_this_process, folder_of_this_process, left_in
 from tangible_ui.state import drafts
 from tangible_ui.state.drafts import MOST_LEFT, Drafts
-from tangible_ui.state.texts import Text
-from tangible_ui.worker import process
+from tangible_ui.state.texts import MOST_STEPS, Text, Texts
+from tangible_ui.worker import jobs, process
 from tangible_ui.worker.messages import JobFailure, JobRequest
 
 OPENED = "scene: builtin/brick\n"
@@ -46,15 +46,12 @@ def after_a_crash(folder: Path, gone: int) -> Drafts:
 
 
 class TestDrafts:
-    def test_draft_and_its_folder_are_the_users_alone(self, tmp_path: Path) -> None:
-        keep(Drafts(tmp_path / "unsaved"), "mine")
-        (file,) = (tmp_path / "unsaved").iterdir()
-        assert [stat.S_IMODE(each.stat().st_mode) for each in (file.parent, file)] == [0o700, 0o600]
-
     def test_draft_survives_a_crash(self, tmp_path: Path, gone: int) -> None:
         kept = Drafts(tmp_path)
         kept.remember_opened(OPENED)
         keep(kept, "first", "edited\n")
+        (file,) = tmp_path.glob("*.json")
+        assert stat.S_IMODE(file.stat().st_mode) == 0o600
         assert Drafts(tmp_path).look() is None  # of a program that lives
         found = after_a_crash(tmp_path, gone)
         draft = found.look()
@@ -64,12 +61,10 @@ class TestDrafts:
         assert found.left is None
         assert not list(tmp_path.iterdir())
 
-    @pytest.mark.parametrize(
-        "text", ["", "{", "[]", "3", '{"text": 1}', "[" * 3000 + "]" * 3000, '{"text": ' + "[" * 3000]
-    )
-    def test_damaged_draft_is_not_offered(self, tmp_path: Path, gone: int, text: str) -> None:
-        (tmp_path / f"{gone}.json").write_text(text)
-        assert Drafts(tmp_path).look() is None
+    def test_damaged_draft_is_not_offered(self, tmp_path: Path, gone: int) -> None:
+        for text in ("", "{", "[]", "3", '{"text": 1}', "[" * 3000 + "]" * 3000, '{"text": ' + "[" * 3000):
+            (tmp_path / f"{gone}.json").write_text(text)
+            assert Drafts(tmp_path).look() is None
 
     def test_draft_of_a_saved_text_is_not_written(self, tmp_path: Path) -> None:
         kept = Drafts(tmp_path)
@@ -113,14 +108,6 @@ class TestDrafts:
             keep(kept, "three")
             assert [record.message for record in caplog.records] == [warning] * count
 
-    def test_draft_of_many_edits_at_once_skips_those_that_a_newer_one_replaced(
-        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        written: list[str] = []
-        monkeypatch.setattr(drafts, "write_text", lambda file, text, private: written.append(json.loads(text)["text"]))
-        keep(Drafts(tmp_path), *(f"edit {number}" for number in range(20)))
-        assert written == ["edit 0", "edit 19"]
-
 
 class TestLeftBehind:
     def test_stale_files_are_those_of_dead_processes(self, tmp_path: Path, gone: int) -> None:
@@ -146,44 +133,66 @@ class TestLeftBehind:
             (tmp_path / f"{channel}0.device").touch()  # another one's
         assert [path.name for path in tmp_path.iterdir()] == [f"{channel}0.device"]
 
-    def test_temporary_folder_without_room_raises_output_error(
-        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "nothing"))
-        with pytest.raises(OutputError, match="name one in TMPDIR"), folder_of_this_process():
-            pass
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS])
+def test_full_disk_is_reported_in_one_sentence_and_a_folder_that_is_gone_is_made_again(
+    tmp_path: Path, number: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(worker_state: Any) -> None:
+        raise OSError(number, os.strerror(number), "/tmp/height.f32")
+
+    monkeypatch.setitem(jobs.JOBS, "fails", jobs.Job(fails))
+    state: Any = SimpleNamespace(folder=tmp_path / "gone" / "deep", shown="abc")
+    said = process.answer(state, JobRequest(7, "fails", {}))
+    assert isinstance(said, JobFailure) and isinstance(said.error, OutputError)
+    assert (said.number, str(said.error)) == (7, f"/tmp/height.f32: {os.strerror(number)}; free some space")
+    assert process.full(FileNotFoundError(errno.ENOENT, "no such file")) is None
+    assert state.folder.is_dir()
+    assert state.shown == "", "what pages fetch has to be written again"
 
 
-class WorkerState:
-    """Minimal state of a worker for a job."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder, self.shown = folder, "abc"
+AT = Path("/a/mine.yaml")
 
 
-class TestMaker:
-    def test_worker_folder_that_was_removed_is_made_again(self, tmp_path: Path) -> None:
-        worker_state = WorkerState(tmp_path)
-        process.keep_folder(worker_state)
-        assert worker_state.shown == "abc"
-        worker_state = WorkerState(tmp_path / "gone" / "deep")
-        process.keep_folder(worker_state)
-        assert worker_state.folder.is_dir()
-        assert worker_state.shown == ""  # what pages fetch has to be written again
+def text(number: int) -> Text:
+    return Text(f"text {number}\n", AT)
 
-    @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS])
-    def test_full_disk_is_reported_in_one_sentence(
-        self, tmp_path: Path, number: int, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        def fails(worker_state: Any) -> None:
-            raise OSError(number, os.strerror(number), "/tmp/height.f32")
 
-        from tangible_ui.worker import jobs
-        from tangible_ui.worker.jobs import Job
+def steps(texts: Texts, now: Text, *, back: bool) -> list[str]:
+    """The texts of all steps in one direction."""
+    found: list[str] = []
+    while (other := texts.before() if back else texts.after()) is not None:
+        texts.step(now, back=back)
+        now = other
+        found.append(now.text)
+    return found
 
-        monkeypatch.setitem(jobs.JOBS, "fails", Job(fails))
-        said = process.answer(WorkerState(tmp_path), JobRequest(7, "fails", {}))
-        assert isinstance(said, JobFailure)
-        assert isinstance(said.error, OutputError)
-        assert (said.number, str(said.error)) == (7, f"/tmp/height.f32: {os.strerror(number)}; free some space")
-        assert process.full(FileNotFoundError(errno.ENOENT, "no such file")) is None
+
+def edited(count: int) -> Texts:
+    """The history of so many edits; the last text is the current one."""
+    texts = Texts()
+    for number in range(count - 1):
+        texts.leave(text(number))
+    return texts
+
+
+def test_steps_are_undone_and_redone_in_their_order():
+    texts = edited(4)
+    assert steps(texts, text(3), back=True) == [text(number).text for number in (2, 1, 0)]
+    assert (texts.can_undo, texts.can_redo) == (False, True)
+    assert texts.all == [text(number).text for number in (3, 2, 1)]
+    assert steps(texts, text(0), back=False) == [text(number).text for number in (1, 2, 3)]
+    assert (texts.can_undo, texts.can_redo) == (True, False)
+    texts.step(text(3), back=True)
+    texts.leave(text(2))
+    assert (texts.after(), texts.before()) == (None, text(2))
+
+
+def test_texts_are_rewritten_on_both_sides_and_stay_bounded():
+    texts = edited(4)
+    texts.step(text(3), back=True)
+    texts.rewrite({text(number).text: f"moved {number}\n" for number in (0, 3)})
+    assert texts.all == ["moved 0\n", text(1).text, "moved 3\n"]
+    for number in range(MOST_STEPS + 5):
+        texts.leave(text(number))
+    assert len(texts.all) == MOST_STEPS

@@ -1,4 +1,4 @@
-"""An option by the keyboard alone: changed, complained of, corrected, made, and saved to the file."""
+"""An option by the keyboard alone: otherwise nobody changes one without a mouse, or the file says another value."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""A beacon on the page: requested by the number of a part, announced to all tabs, and released by a button."""
+"""A beacon on the page: otherwise a hand is pulled elsewhere, or is not let go by a button."""
 
 import asyncio
 from pathlib import Path
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sessions import TEXT, SmallSession, small_scene
+from sessions import TEXT, SmallSession
 from tangible_core import load_method
 from tangible_core.data import HapticSurface, Relief, TickFlag
 from tangible_core.errors import ConfigError, DeviceError
@@ -17,47 +17,38 @@ from tangible_core.servo import Beacon, Safety, beacon_to, pack_touch
 from tangible_core.servo.ring import shared_folder
 from tangible_ui.feeling.feeling import Feeling, LoopInput
 from tangible_ui.framing import STATE_FRAME
-from tangible_ui.requests import REQUESTS
 from tangible_ui.requests.document import take
-from tangible_ui.requests.making import make
 from tangible_ui.serving.serve import watch
 from tangible_ui.state.texts import Text
 from waiting import happened, until
 
+pytestmark = pytest.mark.anyio
 IN_PARTS = TEXT.replace("want: touch", "want: touch\nparts: {0: {name: wall}}")
 
 
-def test_beacon_requested_by_a_tab_is_announced_to_all_tabs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    file, before = small_scene(tmp_path), set(shared_folder().glob("*.parcel"))
-    pulled: list[Beacon | None] = []
-    runs = [False]
+async def test_beacon_requested_by_a_tab_is_announced_to_all_tabs(
+    small: SmallSession, ask: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before, pulled, runs = set(shared_folder().glob("*.parcel")), list[Beacon | None](), [False]
     monkeypatch.setattr(Feeling, "running", property(lambda _: runs[0]))
     monkeypatch.setattr(Feeling, "pull_to", lambda _, beacon: pulled.append(beacon))
-
-    async def ask_for_parts() -> None:
-        session = SmallSession(tmp_path, monkeypatch)
-        ask = REQUESTS["beacon"]
-        with pytest.raises(DeviceError, match="nothing is felt"):
-            await ask(session.session, session.tab, part=0)
-        runs[0] = True
-        await take(session.session, Text(IN_PARTS, file))
-        with pytest.raises(ConfigError, match="not made yet"):
-            await ask(session.session, session.tab, part=0)
-        await make(session.session, session.tab, "surface")
-        assert await ask(session.session, session.tab, part=0) == {"part": 0, "name": "wall"}
-        told = session.tab.last("beacon")
-        assert (told["part"], told["name"], told["why"]) == (0, "wall", "asked")
-        assert pulled[-1] is not None and pulled[-1].part == 0
-        with pytest.raises(ConfigError, match="there is no part 1000"):
-            await ask(session.session, session.tab, part=999)
-        assert await ask(session.session, session.tab, part=None) == {"part": None, "name": ""}
-        assert pulled[-1] is None and session.tab.last("beacon")["part"] is None
-        assert [each["event"] for each in session.session.history].count("beacon") == 1, (
-            "who comes later hears the last"
-        )
-        session.session.worker.close()
-
-    asyncio.run(ask_for_parts())
+    with pytest.raises(DeviceError, match="nothing is felt"):
+        await ask("beacon", part=0)
+    runs[0] = True
+    await take(small.session, Text(IN_PARTS, tmp_path / "mine.yaml"))
+    with pytest.raises(ConfigError, match="not made yet"):
+        await ask("beacon", part=0)
+    await ask("make", want="surface")
+    assert await ask("beacon", part=0) == {"part": 0, "name": "wall"}
+    told = small.tab.last("beacon")
+    assert (told["part"], told["name"], told["why"]) == (0, "wall", "asked")
+    assert pulled[-1] is not None and pulled[-1].part == 0
+    with pytest.raises(ConfigError, match="there is no part 1000"):
+        await ask("beacon", part=999)
+    assert await ask("beacon", part=None) == {"part": None, "name": ""}
+    assert pulled[-1] is None and small.tab.last("beacon")["part"] is None
+    assert [each["event"] for each in small.session.history].count("beacon") == 1, "who comes later hears the last"
+    small.worker.close()
     assert set(shared_folder().glob("*.parcel")) <= before, "nothing is left of what was handed on"
 
 
@@ -120,7 +111,7 @@ def test_beacon_ends_by_a_button_a_scene_and_a_stop() -> None:
         feeling.stop()
 
 
-def test_beacon_that_ends_is_announced_with_the_reason() -> None:
+async def test_beacon_that_ends_is_announced_with_the_reason() -> None:
     """The polling of the loop asks a hundred times a second, and reports each end once."""
     told: list[dict[str, Any]] = []
     ends = iter(["", "button", "", "ended"])
@@ -133,11 +124,8 @@ def test_beacon_that_ends_is_announced_with_the_reason() -> None:
         tell=lambda event, **said: told.append({"event": event, **said}),
     )
 
-    async def watch_for_ends() -> None:
-        task = asyncio.ensure_future(watch(session))
-        await happened(lambda: len(told) >= 2)
-        task.cancel()
-
-    asyncio.run(watch_for_ends())
+    task = asyncio.ensure_future(watch(session))
+    await happened(lambda: len(told) >= 2)
+    task.cancel()
     off = {"event": "beacon", "part": None, "name": ""}
     assert told == [{**off, "why": "button"}, {**off, "why": "ended"}]

@@ -1,17 +1,22 @@
-"""Figures of the loop for the page, what its own hand leaves of a document, and the hand of the law beside it."""
+"""Figures of the loop, and the page's hand: otherwise the page calls a late loop good."""
 
+import json
+from pathlib import Path
 from types import SimpleNamespace
 from unittest.mock import Mock
 
 import numpy as np
 import pytest
 
-from tangible_core.data import TICK_COLUMNS
+from tangible_core.data import TICK_COLUMNS, Vector
+from tangible_core.mapping import WorkspaceMapping
 from tangible_core.servo import Servo
 from tangible_ui.feeling.choice import Choice
 from tangible_ui.feeling.comparison import HIGHEST_M, ComparisonLoop
 from tangible_ui.feeling.doctor import LATE_US, figures
 from tangible_ui.framing import BUTTON_BITS
+from tangible_ui.worker.jobs import devices as mapping
+from tangible_ui.worker.state import WorkerState
 
 
 def test_figures_are_those_of_the_last_second_and_of_the_whole_loop() -> None:
@@ -64,3 +69,38 @@ def test_hand_of_the_law_beside_is_released_above_every_surface(z: float, sent: 
     beside._client = client  # pyright: ignore[reportPrivateUsage]
     beside.follow((0.01, 0.02, z))
     assert [name for name, _, _ in client.mock_calls] == ["send" if sent else "release"]
+
+
+CASES = Path(__file__).parents[3] / "plugins/ui/web/test/placement.json"
+PATH = Path("p.yaml")
+
+
+def test_mapping_reference_of_the_page_is_the_core_s():
+    """web/test/placement.test.ts computes the same cases in the page's language."""
+    cases = json.loads(CASES.read_text())["cases"]
+    assert len(cases) > 4
+    for case in cases:
+        to = WorkspaceMapping(**case["mapping"]).placement(vector(case["workspace_m"]))
+        x, y, z = case["hand_m"]
+        u, v = to.rotate_back(x - to.offset_x_m, y - to.offset_y_m)
+        under = to.centre_x_m + u / to.scale, to.centre_y_m + v / to.scale, (z - to.offset_z_m) / to.scale
+        assert case["scale"] == pytest.approx(to.scale, rel=1e-12)
+        assert case["picture_m"] == pytest.approx(under, abs=1e-12)
+
+
+def vector(numbers: list[float]) -> Vector:
+    x, y, z = numbers
+    return x, y, z
+
+
+@pytest.mark.parametrize(
+    ("device", "name", "workspace_m"),
+    [("", "", None), ("device: {use: falcon-simulated}\n", "falcon-simulated", [0.08, 0.08, 0.08])],
+    ids=["none", "one"],
+)
+def test_reach_is_that_of_the_document_s_device(
+    worker_state: WorkerState, device: str, name: str, workspace_m: list[float] | None
+):
+    text = f"scene: builtin/brick\nmapping: {{scale: 3}}\n{device}"
+    found = mapping.reach(worker_state, text, PATH, [])
+    assert found == {"device": name, "workspace_m": pytest.approx(workspace_m) if workspace_m else None}

@@ -1,7 +1,7 @@
-"""The page's hand and the device: who holds it, and that no motor starts unasked; the worker is a fake."""
+"""The page's hand and the device: otherwise a motor starts unasked, or two tabs move one hand."""
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import AsyncIterator, Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from loop_devices import Circling, Failing
+from loop_devices import Failing
+from sessions import Heard
 from tangible_core import HapticSurface, load_method
 from tangible_core.errors import ConfigError, DeviceError, TangibleError
 from tangible_core.mapping import Placement, WorkspaceMapping
@@ -22,22 +23,10 @@ from tangible_ui.requests import REQUESTS
 from tangible_ui.serving.serve import watch
 from tangible_ui.state import session as session_module
 from tangible_ui.state.session import Session
-from waiting import LONGEST_S, happened
+from waiting import happened
 
+pytestmark = pytest.mark.anyio
 LEVEL = HapticSurface.from_heights(np.full((32, 32), 0.002, np.float32))
-
-
-class Page:
-    """A tab that keeps the events that it got."""
-
-    def __init__(self) -> None:
-        self.told: list[dict[str, Any]] = []
-
-    def say(self, event: dict[str, Any]) -> None:
-        self.told.append(event)
-
-    def last(self, event: str) -> dict[str, Any]:
-        return next(each for each in reversed(self.told) if each["event"] == event)
 
 
 class FakeWorker:
@@ -75,148 +64,112 @@ class FakeWorker:
 
 
 @pytest.fixture
-def with_session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
-    """`with_session(work)` does it with a session that is watched over, and one page."""
+async def session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Session]:
+    """A session that is watched over."""
     monkeypatch.setattr(session_module, "Worker", FakeWorker)
+    session = Session(tmp_path, Feeling("ui-test"), [])
+    watching = asyncio.ensure_future(watch(session))
+    yield session
+    watching.cancel()
+    await session.close()
 
-    async def run(work: Callable[[Session, Page], Awaitable[None]]) -> None:
-        session, page = Session(tmp_path, Feeling("ui-test"), []), Page()
-        watching = asyncio.ensure_future(watch(session))
-        session.enter(page)
-        try:
-            await asyncio.wait_for(work(session, page), 3 * LONGEST_S)
-        finally:
-            watching.cancel()
-            await session.close()
 
-    return lambda work: asyncio.run(run(work))
+@pytest.fixture
+def page(session: Session) -> Heard:
+    """The session's tab."""
+    page = Heard()
+    session.enter(page)
+    return page
 
 
 class TestWhoHolds:
-    def test_hand_belongs_to_the_first_tab_until_another_takes_it(self, with_session) -> None:
-        async def work(session: Session, page: Page) -> None:
-            other = Page()
-            session.enter(other)
-            assert (page.last("holding")["holding"], other.last("holding")["holding"]) == (True, False)
-            await REQUESTS["hold"](session, other)
-            assert (page.last("holding")["holding"], other.last("holding")["holding"]) == (False, True)
+    async def test_hand_belongs_to_the_first_tab_until_another_takes_it(self, session: Session, page: Heard) -> None:
+        other = Heard()
+        session.enter(other)
+        assert (page.last("holding")["holding"], other.last("holding")["holding"]) == (True, False)
+        session.feeling.hand.point((0.0, 0.0, 0.0), 1, 1)
+        await REQUESTS["hold"](session, other)
+        assert not session.feeling.hand.holding
+        assert (page.last("holding")["holding"], other.last("holding")["holding"]) == (False, True)
 
-        with_session(work)
-
-    def test_hand_of_a_closed_tab_belongs_to_nobody(self, with_session) -> None:
-        async def work(session: Session, page: Page) -> None:
-            other = Page()
-            session.enter(other)
-            session.feeling.hand.point((0.0, 0.0, 0.0), 1, 1)
-            session.leave(page)
-            assert not session.feeling.hand.holding
-            assert session.holder is None
-            assert other.last("holding") == {"event": "holding", "holding": False, "free": True}
-            session.leave(other)
-            session.enter(page)
-            assert session.holder is page
-
-        with_session(work)
-
-    def test_hand_taken_by_another_tab_is_released(self, with_session) -> None:
-        async def work(session: Session, page: Page) -> None:
-            session.feeling.hand.point((0.0, 0.0, 0.0), 1, 1)
-            session.hold(Page())
-            assert not session.feeling.hand.holding
-
-        with_session(work)
+    async def test_hand_of_a_closed_tab_belongs_to_nobody(self, session: Session, page: Heard) -> None:
+        other = Heard()
+        session.enter(other)
+        session.feeling.hand.point((0.0, 0.0, 0.0), 1, 1)
+        session.leave(page)
+        assert not session.feeling.hand.holding
+        assert session.holder is None
+        assert other.last("holding") == {"event": "holding", "holding": False, "free": True}
+        session.leave(other)
+        session.enter(page)
+        assert session.holder is page
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 class TestDevices:
-    def test_motor_starts_only_after_consent(self, with_session) -> None:
-        async def work(session: Session, page: Page) -> None:
-            FakeWorker.device = Failing(fault="none", simulated=False)
-            with pytest.raises(ConfigError, match="has a motor"):
-                await REQUESTS["choose_device"](session, page, kind="document")
-            assert session.choice.kind == "hand"
-            about = await REQUESTS["about_device"](session, page, kind="document")
-            assert not about["simulated"]
-            await REQUESTS["choose_device"](session, page, kind="document", sure=True)
-            assert page.last("loop") | {"at_s": 0} == {
-                "event": "loop", "at_s": 0, "running": True, "why": "", "device": "the other", "own_hand": False,
-            }  # fmt: skip
-            FakeWorker.device = Motor()  # the document was edited
-            with pytest.raises(TangibleError, match="Motor has a motor"):
-                await REQUESTS["make"](session, page)
-            assert session.feeling.felt is not None
-            assert isinstance(session.feeling.felt.unmapped_device, Failing)
-            assert session.feeling.running
+    async def test_motor_starts_only_after_consent(self, session: Session, page: Heard) -> None:
+        FakeWorker.device = Failing(fault="none", simulated=False)
+        with pytest.raises(ConfigError, match="has a motor"):
+            await REQUESTS["choose_device"](session, page, kind="document")
+        assert session.choice.kind == "hand"
+        about = await REQUESTS["about_device"](session, page, kind="document")
+        assert not about["simulated"]
+        await REQUESTS["choose_device"](session, page, kind="document", sure=True)
+        assert page.last("loop") | {"at_s": 0} == {
+            "event": "loop", "at_s": 0, "running": True, "why": "", "device": "the other", "own_hand": False,
+        }  # fmt: skip
+        FakeWorker.device = Motor()  # the document was edited
+        with pytest.raises(TangibleError, match="Motor has a motor"):
+            await REQUESTS["make"](session, page)
+        assert session.feeling.felt is not None
+        assert isinstance(session.feeling.felt.unmapped_device, Failing)
+        assert session.feeling.running
 
-        with_session(work)
+    async def test_unplugged_device_is_reported_and_can_be_waited_for(
+        self, session: Session, page: Heard, tmp_path: Path
+    ) -> None:
+        FakeWorker.device = Failing(fault="unplugged", at=100)
+        with suppress(DeviceError):  # where it is gone before the law is felt on it
+            await REQUESTS["choose_device"](session, page, kind="document")
+        await happened(lambda: not page.last("loop")["running"])
+        assert page.last("loop")["why"] == "the failing device does not answer; plug it in"
+        assert page.last("loop")["lost"]
+        assert await REQUESTS["doctor"](session, page) is None
+        FakeWorker.device = Failing(fault="none", opens="second", record=str(tmp_path / "held"))
+        await REQUESTS["wait_for_device"](session, page)
+        await happened(lambda: page.last("loop").get("waiting"))
+        assert "in use by another program" in page.last("loop")["why"]
+        await happened(lambda: page.last("loop")["running"])
+        figures = await REQUESTS["doctor"](session, page)
+        assert figures is not None
+        assert figures["how"] == session.feeling.how
 
-    def test_touch_made_for_another_device_is_discarded(self, with_session) -> None:
-        async def work(session: Session, page: Page) -> None:
-            FakeWorker.device = Circling()
-            made = await session.worker.ask("make", sets=[])
-            await session.feel(made)
-            assert not session.feeling.running
-            assert not Path(made["parcel"]).exists()
-
-        with_session(work)
-
-    def test_unplugged_device_is_reported_and_can_be_waited_for(self, with_session, tmp_path: Path) -> None:
-        async def work(session: Session, page: Page) -> None:
-            FakeWorker.device = Failing(fault="unplugged", at=100)
-            with suppress(DeviceError):  # where it is gone before the law is felt on it
-                await REQUESTS["choose_device"](session, page, kind="document")
-            await happened(lambda: not page.last("loop")["running"])
-            assert page.last("loop")["why"] == "the failing device does not answer; plug it in"
-            assert page.last("loop")["lost"]
-            assert await REQUESTS["doctor"](session, page) is None
-            FakeWorker.device = Failing(fault="none", opens="second", record=str(tmp_path / "held"))
-            await REQUESTS["wait_for_device"](session, page)
-            await happened(lambda: page.last("loop").get("waiting"))
-            assert "in use by another program" in page.last("loop")["why"]
-            await happened(lambda: page.last("loop")["running"])
-            figures = await REQUESTS["doctor"](session, page)
-            assert figures is not None
-            assert figures["how"] == session.feeling.how
-
-        with_session(work)
-
-    @pytest.mark.parametrize("ended_by", ["stop", "another choice"])
-    def test_waiting_for_a_device_ends_by_stop_or_another_choice(self, with_session, ended_by: str) -> None:
-        async def work(session: Session, page: Page) -> None:
-            FakeWorker.device = Failing(opens="never")
+    async def test_waiting_for_a_device_ends_by_stop_or_another_choice(self, session: Session, page: Heard) -> None:
+        FakeWorker.device = Failing(opens="never")
+        for request, choice, runs in (("choose_device", {"kind": "hand"}, True), ("stop", {}, False)):
             with pytest.raises(DeviceError):
                 await REQUESTS["choose_device"](session, page, kind="document")
             await REQUESTS["wait_for_device"](session, page)
             await happened(lambda: page.last("loop").get("waiting"))
-            if ended_by == "stop":
-                await REQUESTS["stop"](session, page)
-            else:
-                await REQUESTS["choose_device"](session, page, kind="hand")
+            await REQUESTS[request](session, page, **choice)
             await happened(lambda: len(session._tasks) == 0)
-            assert session.feeling.running == (ended_by != "stop")
+            assert session.feeling.running == runs
 
-        with_session(work)
+    async def test_stop_lasts_until_the_request_feel(self, session: Session, page: Heard) -> None:
+        await REQUESTS["make"](session, page)
+        assert session.feeling.running
+        await REQUESTS["stop"](session, page)
+        assert page.last("loop")["stopped"]
+        await REQUESTS["make"](session, page)  # an option was changed
+        assert not session.feeling.running
+        await REQUESTS["feel"](session, page)
+        assert session.feeling.running
+        assert page.last("loop")["running"]
 
-    def test_stop_lasts_until_the_request_feel(self, with_session) -> None:
-        async def work(session: Session, page: Page) -> None:
-            await REQUESTS["make"](session, page)
-            assert session.feeling.running
-            await REQUESTS["stop"](session, page)
-            assert page.last("loop")["stopped"]
-            await REQUESTS["make"](session, page)  # an option was changed
-            assert not session.feeling.running
-            await REQUESTS["feel"](session, page)
-            assert session.feeling.running
-            assert page.last("loop")["running"]
-
-        with_session(work)
-
-    @pytest.mark.parametrize("told", [{"kind": "hand", "name": "falcon"}, {"kind": "other"}, {"kind": "any"}])
-    def test_invalid_choice_of_a_device_is_refused(self, with_session, told: dict[str, str]) -> None:
-        async def work(session: Session, page: Page) -> None:
+    async def test_invalid_choice_of_a_device_is_refused(self, session: Session, page: Heard) -> None:
+        for told in ({"kind": "hand", "name": "falcon"}, {"kind": "other"}, {"kind": "any"}):
             with pytest.raises(ConfigError, match="a device is chosen as one of"):
                 await REQUESTS["choose_device"](session, page, **told)
-
-        with_session(work)
 
 
 class Motor(HapticDevice):
@@ -229,20 +182,9 @@ class Motor(HapticDevice):
         raise DeviceError("it was opened")
 
 
-@pytest.mark.parametrize(
-    ("to", "high"),
-    [
-        (Placement(), True),
-        (Placement(scale=50.0), False),
-        (Placement(offset_z_m=0.9), False),
-        (Placement(scale=0.1), True),
-        (Placement(scale=2.0), True),
-        (Placement(scale=2.01), False),
-        (Placement(offset_z_m=0.5), True),
-        (Placement(offset_z_m=0.51), False),
-        (Placement(scale=0.5, offset_z_m=0.7), True),
-        (Placement(scale=0.5, offset_z_m=0.8), False),
-    ],
-)
-def test_released_pointer_is_above_the_surface_unless_mapped_into_it(to: Placement, high: bool) -> None:
-    assert high_without_client(to) == high
+def test_released_pointer_is_above_the_surface_unless_mapped_into_it() -> None:
+    for scale, offset_z_m, high in (
+        (1, 0, True), (0.1, 0, True), (2.0, 0, True), (2.01, 0, False), (50.0, 0, False),
+        (1, 0.5, True), (1, 0.51, False), (0.5, 0.7, True), (0.5, 0.8, False),
+    ):  # fmt: skip
+        assert high_without_client(Placement(scale=scale, offset_z_m=offset_z_m)) == high

@@ -1,7 +1,6 @@
-"""The hand in a browser: the mouse and the keyboard feel, and a page that nobody sees, or that is gone, does not."""
+"""The hand in a browser: otherwise mouse and keyboard do not feel, or a page that nobody sees pushes on."""
 
 import time
-from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -102,31 +101,6 @@ def test_mouse_gives_force_until_the_page_is_hidden_or_frozen(page: Any) -> None
     page.mouse.up()
 
 
-def test_resting_hand_is_drawn_again_when_it_moves(opened, open_page) -> None:
-    page = felt_page(opened, open_page, draws=True)
-    page.wait_for_function("() => window.figures?.firstMs > 0")
-    page.evaluate(
-        "() => { const { view, overlay } = window.page; overlay.settings.seconds = 0.2; window.drawn = 0;"
-        "const draw = view.draw.bind(view); view.draw = (wait) => { window.drawn++; draw(wait); }; }"
-    )
-    press(page, Felt())
-    page.wait_for_function("() => window.drawn > 0")
-    before = "() => { const { drawn } = window; return new Promise((done) => setTimeout(() => done(drawn), 300)); }"
-    until(lambda: page.evaluate(before) == page.evaluate("window.drawn"))  # none in 0.3 s
-    states = page.evaluate("window.page.net.latest.seq")
-    page.wait_for_function("seq => window.page.net.latest.seq > seq + 5", arg=states)  # the loop goes on
-    rests = page.evaluate("window.drawn")
-    box = page.locator("#terrain").bounding_box()
-    aside = cycle((30, 60))
-
-    def is_drawn_again() -> bool:  # a busy machine may draw a stroke in a frame or two
-        page.mouse.move(box["x"] + box["width"] / 2 + next(aside), box["y"] + box["height"] / 2)
-        return page.evaluate("rests => window.drawn > rests + 3", rests)
-
-    until(is_drawn_again)
-    page.mouse.up()
-
-
 def test_closed_tab_leaves_no_force(page: Any) -> None:
     felt = Felt()
     press(page, felt)
@@ -155,25 +129,3 @@ def test_keyboard_gives_force_and_the_stop_key_works_in_a_field(page: Any) -> No
     until(lambda: "Stopped" in page.locator("#status").text_content())
     page.locator("#again").click()
     until(lambda: Felt.rings() and Felt.rings()[0] != felt.path)
-
-
-def test_device_is_chosen_and_examined_and_a_motor_needs_consent(page: Any) -> None:
-    felt = page.locator("#device-felt")
-    open_panel(page, "devices")
-    page.get_by_role("button", name="Examine mock").click()
-    until(lambda: "needs nothing" in page.locator(".devices").text_content())
-    page.get_by_role("button", name="Use mock").click()
-    until(lambda: felt.text_content() == "In use: mock")
-    until(lambda: "Hz" in page.locator("#devices .figures").text_content())
-
-    page.get_by_role("button", name="Use falcon", exact=True).click()
-    dialog = page.get_by_role("dialog", name="falcon has a motor")
-    dialog.wait_for()
-    assert felt.text_content() == "In use: mock"
-    assert page.evaluate("document.activeElement.textContent") == "No"
-    page.keyboard.press("Escape")  # it closes what it closes, and stops all force
-    until(lambda: dialog.count() == 0)
-    until(lambda: "Stopped" in page.locator("#status").text_content())
-
-    page.locator("#use-hand").click()
-    until(lambda: felt.text_content() == "In use: this page's hand")

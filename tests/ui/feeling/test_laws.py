@@ -1,25 +1,29 @@
-"""Two laws compared: one acts, the page shows the other's force; a blind comparison hides which is which."""
+"""Two laws compared: otherwise the force of another law is felt or shown, or a blind comparison gives it away."""
 
 import asyncio
+import math
 import os
 from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 
 from faulty_touch import FaultyTouch
+from sessions import Heard, InlineWorker
 from tangible_core import load_method
 from tangible_core.errors import ConfigError
 from tangible_core.servo import Packed, Safety, pack_touch
 from tangible_ui.feeling.choice import Choice, NotConfirmed
-from tangible_ui.feeling.comparison import NOTHING
+from tangible_ui.feeling.comparison import NOTHING, ComparisonLoop
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.framing import STATE_FRAME
 from tangible_ui.requests import feeling as asks
 from tangible_ui.serving.serve import watch
+from tangible_ui.state.laws import Laws, Tally
 from tangible_ui.state.session import Session
 from waiting import happened
 
@@ -31,28 +35,32 @@ render: {use: penalty, stiffness_n_per_m: 400}
 device: {use: pointer}
 """
 DEPTH_M = 0.001
+pytestmark = pytest.mark.anyio
 
 
-@asynccontextmanager
-async def felt_session(folder: Path) -> AsyncIterator[tuple[Session, list[dict[str, Any]]]]:
-    """A session whose document is felt, and what it told."""
-    np.save(folder / "flat.npy", np.zeros((8, 8)))
-    (folder / "scene").mkdir()
-    session = Session(folder / "scene", Feeling(f"laws-{os.getpid()}"), [])
-    told: list[dict[str, Any]] = []
-
-    class Heard:
-        def say(self, event: dict[str, Any]) -> None:
-            told.append(event)
-
-    session.enter(Heard())
-    session.text, session.path = TEXT, folder / "p.yaml"
+@pytest.fixture
+async def session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, loop_in_thread: None) -> AsyncIterator[Session]:
+    """A session whose document is felt."""
+    monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path / "data"))
+    monkeypatch.setattr("tangible_ui.state.session.Worker", InlineWorker)
+    np.save(tmp_path / "flat.npy", np.zeros((8, 8)))
+    (tmp_path / "scene").mkdir()
+    session = Session(tmp_path / "scene", Feeling(f"laws-{os.getpid()}"), [])
+    session.text, session.path = TEXT, tmp_path / "p.yaml"
     try:
-        made = (await session.worker.ask("laws", text=TEXT, path=session.path, sets=session.felt_sets(), others=[]))[0]
+        [made] = await session.worker.ask("laws", **session.document(session.felt_sets()), others=[])
         await session.feel(made)
-        yield session, told
+        yield session
     finally:
         await session.close()
+
+
+@pytest.fixture
+def tab(session: Session) -> Heard:
+    """A tab of the session."""
+    tab = Heard()
+    session.enter(tab)
+    return tab
 
 
 def forces(session: Session) -> tuple[float, float]:
@@ -78,104 +86,122 @@ async def press_until(session: Session, until: Callable[[], bool]) -> None:
     await happened(press)
 
 
-@pytest.mark.usefixtures("loop_in_thread")
-def test_second_law_is_computed_on_the_same_hand(tmp_path: Path) -> None:
-    async def compare() -> None:
-        async with felt_session(tmp_path) as (session, told):
-            await asks.compare_laws(session, None, "penalty", "{stiffness_n_per_m: 800}")
-            await press_until(session, lambda: np.allclose(forces(session), (0.4, 0.8), atol=0.02))
-            await asks.switch_law(session, None, "b")
-            await press_until(session, lambda: np.allclose(forces(session), (0.8, 0.4), atol=0.02))
-            assert told[-1]["named"] == ["penalty (a)", "penalty (b)"]
-            assert told[-1]["felt"] == 1
-            session.feeling.hand.release()
+async def test_second_law_is_computed_on_the_same_hand(session: Session, tab: Heard) -> None:
+    await asks.compare_laws(session, None, "penalty", "{stiffness_n_per_m: 800}")
+    await press_until(session, lambda: np.allclose(forces(session), (0.4, 0.8), atol=0.02))
+    await asks.switch_law(session, None, "b")
+    await press_until(session, lambda: np.allclose(forces(session), (0.8, 0.4), atol=0.02))
+    assert tab.events[-1]["named"] == ["penalty (a)", "penalty (b)"]
+    assert tab.events[-1]["felt"] == 1
+    session.feeling.hand.release()
 
-            def release_and_look() -> bool:
-                session.laws.follow(session.feeling)
-                return forces(session) == (0, 0)
+    def release_and_look() -> bool:
+        session.laws.follow(session.feeling)
+        return forces(session) == (0, 0)
 
-            await happened(release_and_look)
-            await asks.end_laws(session, None)
-            assert session.laws.comparison.force_n == NOTHING
-            assert not session.laws.comparison.running
-            await press_until(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
-
-    asyncio.run(compare())
+    await happened(release_and_look)
+    await asks.end_laws(session, None)
+    assert session.laws.comparison.force_n == NOTHING
+    assert not session.laws.comparison.running
+    await press_until(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
 
 
-@pytest.mark.usefixtures("loop_in_thread")
-def test_second_law_that_raises_is_reported_once_and_can_be_replaced(
-    tmp_path: Path, caplog: pytest.LogCaptureFixture
+async def test_second_law_that_raises_is_reported_once_and_can_be_replaced(
+    session: Session, caplog: pytest.LogCaptureFixture
 ) -> None:
-    async def compare() -> None:
-        async with felt_session(tmp_path) as (session, _):
-            await asks.compare_laws(session, None, "penalty", "{stiffness_n_per_m: 800}")
-            session.laws.comparison.feel(raises_soon(), Safety())
-            polling = asyncio.ensure_future(watch(session))
-            await press_until(session, lambda: "penalty (b) is no longer computed" in caplog.text)
-            await press_until(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
-            await asks.switch_law(session, None, "b")
-            await press_until(session, lambda: np.allclose(forces(session), (0.8, 0.4), atol=0.02))
-            assert caplog.text.count("OddError") == 1
-            polling.cancel()
-            session.laws.comparison.feel(raises_soon(), Safety())
-            await press_until(session, lambda: not session.laws.comparison.running)  # and the session can be closed
-
-    asyncio.run(compare())
+    await asks.compare_laws(session, None, "penalty", "{stiffness_n_per_m: 800}")
+    session.laws.comparison.feel(raises_soon(), Safety())
+    polling = asyncio.ensure_future(watch(session))
+    await press_until(session, lambda: "penalty (b) is no longer computed" in caplog.text)
+    await press_until(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
+    await asks.switch_law(session, None, "b")
+    await press_until(session, lambda: np.allclose(forces(session), (0.8, 0.4), atol=0.02))
+    assert caplog.text.count("OddError") == 1
+    polling.cancel()
+    session.laws.comparison.feel(raises_soon(), Safety())
+    await press_until(session, lambda: not session.laws.comparison.running)  # and the session can be closed
 
 
-@pytest.mark.usefixtures("loop_in_thread")
-def test_blind_comparison_hides_which_law_acts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path / "data"))
-
-    async def compare() -> None:
-        async with felt_session(tmp_path) as (session, told):
-            await asks.compare_laws(session, None, "proxy", "")
-            told.clear()
-            await asks.begin_blind(session, None, "Which is harder?")
-            tally = session.laws.tally
-            assert tally is not None
-            for called in (2, 1):
-                await asks.feel_blind(session, None, called)
-                await press_until(session, lambda: forces(session)[0] > 0.1)
-                frame = STATE_FRAME.unpack(session.feeling.frame(1, 0, session.laws.other_law()) or b"")
-                assert all(np.isnan(frame[10:13]))
-                assert frame[19:22] == (0, 0, 0)
-            assert not [event for event in told if "penalty" in str(event) or "proxy" in str(event)]
-            chosen = tally.laws[tally.law(2)]
-            await asks.choose_blind(session, None, 2)
-            found = await asks.end_blind(session, None)
-            assert found["trials"][0][2] == chosen
-            assert Path(found["path"]).is_relative_to(tmp_path / "data")
-            assert chosen in Path(found["path"]).read_text()
-
-    asyncio.run(compare())
+async def test_blind_comparison_hides_which_law_acts(session: Session, tab: Heard, tmp_path: Path) -> None:
+    await asks.compare_laws(session, None, "proxy", "")
+    tab.events.clear()
+    await asks.begin_blind(session, None, "?" * 300)
+    assert session.laws.message()["question"] == "?" * 200
+    tally = session.laws.tally
+    assert tally is not None
+    for called in (2, 1):
+        await asks.feel_blind(session, None, called)
+        await press_until(session, lambda: forces(session)[0] > 0.1)
+        frame = STATE_FRAME.unpack(session.feeling.frame(1, 0, session.laws.other_law()) or b"")
+        assert all(np.isnan(frame[10:13]))
+        assert frame[19:22] == (0, 0, 0)
+    assert not [event for event in tab.events if "penalty" in str(event) or "proxy" in str(event)]
+    chosen = tally.laws[tally.law(2)]
+    await asks.choose_blind(session, None, 2)
+    await asks.choose_blind(session, None, 0)
+    found = await asks.end_blind(session, None)
+    assert session.laws.message() == {"state": "two", "named": ["penalty", "proxy"], "felt": 0}
+    assert found["trials"][1][2] == ""
+    assert found["trials"][0][2] == chosen
+    assert Path(found["path"]).is_relative_to(tmp_path / "data")
+    assert chosen in Path(found["path"]).read_text()
 
 
-@pytest.mark.usefixtures("loop_in_thread")
-def test_invalid_law_is_refused_and_the_law_before_stays(tmp_path: Path) -> None:
+async def test_invalid_law_is_refused_and_the_law_before_stays(session: Session) -> None:
     wrong = {("penalti", ""): "penalty", ("penalty", "{stifness: 3}"): "unknown option", ("penalty", "["): "not YAML"}
+    with pytest.raises(ConfigError, match="no other law"):
+        await asks.switch_law(session, None, "b")
 
-    async def compare() -> None:
-        async with felt_session(tmp_path) as (session, _):
-            for (use, options), says in wrong.items():
-                with pytest.raises(ConfigError, match=says):
-                    await asks.compare_laws(session, None, use, options)
-            assert session.laws.message() == {"state": "one"}
-            await press_until(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
-
-    asyncio.run(compare())
+    for (use, options), says in wrong.items():
+        with pytest.raises(ConfigError, match=says):
+            await asks.compare_laws(session, None, use, options)
+    assert session.laws.message() == {"state": "one"}
+    await press_until(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
 
 
-@pytest.mark.usefixtures("loop_in_thread")
-def test_comparison_opens_no_motor_without_consent(tmp_path: Path) -> None:
-    async def compare() -> None:
-        async with felt_session(tmp_path) as (session, _):
-            session.choice = Choice("document", sure=True, agreed=type(load_method("device", "mock")()))
-            session.text = TEXT.replace("{use: pointer}", "{use: falcon}")
-            with pytest.raises(NotConfirmed):
-                await asks.compare_laws(session, None, "penalty", "")
-            assert session.laws.message() == {"state": "one"}
-            await press_until(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
+async def test_comparison_opens_no_motor_without_consent(session: Session) -> None:
+    session.choice = Choice("document", sure=True, agreed=type(load_method("device", "mock")()))
+    session.text = TEXT.replace("{use: pointer}", "{use: falcon}")
+    with pytest.raises(NotConfirmed):
+        await asks.compare_laws(session, None, "penalty", "")
+    assert session.laws.message() == {"state": "one"}
+    await press_until(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
 
-    asyncio.run(compare())
+
+def test_choice_counts_for_the_law_of_that_name() -> None:
+    tally = Tally(("proxy", "penalty"), "Which is smoother?")
+    for first, choice, chosen in ((0, 1, "proxy"), (1, 1, "penalty"), (0, 2, "penalty"), (1, 2, "proxy"), (0, 0, "")):
+        tally.first = first
+        assert (tally.law(1), tally.law(2)) == (first, 1 - first)
+        tally.choose(choice)
+        assert tally.trials[-1][2] == chosen
+    assert tally.counts == (2, 2, 1)
+    assert tally.trials[1] == ("penalty", "proxy", "penalty")
+
+
+@pytest.mark.parametrize(
+    ("one", "two", "neither", "chance"),
+    [(0, 0, 0, 1.0), (0, 0, 9, 1.0), (1, 0, 0, 1.0), (5, 0, 0, 0.0625), (9, 1, 3, 0.021484375), (5, 5, 0, 1.0)],
+)
+def test_chance_is_the_sign_test(one: int, two: int, neither: int, chance: float) -> None:
+    """Against tables of the binomial distribution: 2 (1 + 10) / 2^10 for nine of ten."""
+    trials = [("a", "b", "a")] * one + [("a", "b", "b")] * two + [("a", "b", "")] * neither
+    assert Tally(("a", "b"), "", trials).chance == chance
+
+
+@pytest.mark.parametrize("running", [True, False])
+def test_second_law_follows_the_hand_and_leaves_with_it(running: bool) -> None:
+    ring = SimpleNamespace(latest=lambda: np.arange(17.0))
+    feeling: Any = Mock(Feeling, servo=SimpleNamespace(ring=ring), running=running)
+    comparison = Mock(ComparisonLoop, running=True)
+    Laws(comparison).follow(feeling)
+    comparison.follow.assert_called_once_with((2.0, 3.0, 4.0 if running else math.inf))
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_pages_know_nothing_of_the_laws_of_a_blind_comparison(first: int) -> None:
+    laws = Laws(Mock(ComparisonLoop, force_n=(0.0, 0.0, 1.0)), {"use": "proxy"}, ("penalty", "proxy"), felt=1, called=2)
+    assert laws.message() == {"state": "two", "named": ["penalty", "proxy"], "felt": 1}
+    laws.tally = Tally(laws.named, "Which is smoother?", [("penalty", "proxy", "proxy")], first)
+    assert laws.message() == {"state": "blind", "called": 2, "trials": 1, "question": "Which is smoother?"}
+    assert (laws.other_law().blind, laws.other_law().force_n) == (True, (0.0, 0.0, 0.0))

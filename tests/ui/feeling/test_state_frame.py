@@ -1,4 +1,4 @@
-"""The newest tick of a force loop as a page gets it: each number in its place, and the time by the Unix clock."""
+"""The newest tick as a page gets it: otherwise the page draws the hand or its force elsewhere."""
 
 import math
 from types import SimpleNamespace
@@ -59,10 +59,6 @@ def test_bits_of_a_beacon_are_not_sent_and_the_number_of_a_frame_begins_anew() -
     assert frame is not None
     _, _, flags, seq, *_ = framing.STATE_FRAME.unpack(frame)
     assert (flags, seq) == (5, 6)
-
-
-def test_tick_that_was_overwritten_gives_no_frame() -> None:
-    assert frame_of(servo(None), 1, 0) is None
 
 
 def test_frame_without_a_loop_has_the_time_and_no_force() -> None:

@@ -1,42 +1,37 @@
-"""The parts editor's side of the server: parts are read, kept as files, and felt while they are changed."""
+"""The parts editor's side of the server: otherwise parts that somebody drew are lost, or felt as others."""
 
 import asyncio
 import gzip
 import zlib
-from collections.abc import Callable, Coroutine
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 from full_disk import files_up_to
 from sessions import TEXT, SmallSession, small_scene
 from tangible_authoring.first_parts import first_parts
 from tangible_core import load_pipeline
 from tangible_core.data import SegmentMap
-from tangible_core.errors import ConfigError, OutputError, TangibleError
+from tangible_core.errors import ConfigError, TangibleError
 from tangible_core.parts import find_parts
-from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.plugins.registry import default_registry
+from tangible_core.pipeline.config.editing import read_values
 from tangible_core.scene.formats.pictures import read_labels
-from tangible_core.scene.scene import Scene
-from tangible_ui.requests import REQUESTS
 from tangible_ui.state.scheduling import LatestWins
 from tangible_ui.state.session import Session
 from tangible_ui.worker.jobs import JOBS, making
 from tangible_ui.worker.parts import opening
-from tangible_ui.worker.parts.heights import coarse
 from tangible_ui.worker.parts.label_files import as_png, is_ours, unpack
 from tangible_ui.worker.parts.opening import _places
 from tangible_ui.worker.parts.saving import document_with_parts, number_parts
 from tangible_ui.worker.state import WorkerState
 from waiting import happened
 
+pytestmark = pytest.mark.anyio
 SHAPE = (24, 32)
-Check = Callable[[SmallSession, Any], Coroutine[Any, Any, None]]
 
 
 def drawn() -> np.ndarray:
@@ -52,7 +47,7 @@ def packed(labels: np.ndarray) -> bytes:
 
 
 class TestLabels:
-    @pytest.mark.parametrize("count", [1, 2, 256, 257, 900])
+    @pytest.mark.parametrize("count", [1, 256, 257])
     def test_label_file_holds_the_labels(self, tmp_path: Path, count: int) -> None:
         labels = (np.arange(1200, dtype=np.int32) % count).reshape(30, 40)
         path = tmp_path / "parts.png"
@@ -69,14 +64,11 @@ class TestLabels:
         path.write_bytes(as_png(drawn().astype(np.int32), "mine.yaml"))
         with Image.open(path) as image:
             image.load()
-            said, painted = dict(getattr(image, "text")), image.copy()  # noqa: B009
+            painted, said = image.copy(), PngInfo()
+            for key, value in getattr(image, "text").items():  # noqa: B009
+                said.add_text(key, value)
         painted.putpixel((0, 0), 5)
-        from PIL.PngImagePlugin import PngInfo
-
-        info = PngInfo()
-        for key, value in said.items():
-            info.add_text(key, value)
-        painted.save(path, pnginfo=info)
+        painted.save(path, pnginfo=said)
         assert not is_ours(path, "mine.yaml")
         path.write_bytes(b"no picture")
         assert not is_ours(path, "mine.yaml")
@@ -87,18 +79,14 @@ class TestLabels:
 
     def test_upload_of_labels_is_unpacked(self, tmp_path: Path) -> None:
         path = tmp_path / "sent"
-        path.write_bytes(packed(drawn()))
-        np.testing.assert_array_equal(unpack(path, SHAPE), drawn())
+        noise = np.random.default_rng(0).integers(0, 2**16, (600, 800), np.uint16)
+        for labels, level in ((drawn(), 9), (noise, 0)):
+            path.write_bytes(gzip.compress(labels.tobytes(), level))
+            np.testing.assert_array_equal(unpack(path, labels.shape), labels)
 
-    def test_upload_of_incompressible_labels_is_unpacked(self, tmp_path: Path) -> None:
-        labels = np.random.default_rng(0).integers(0, 2**16, (600, 800), np.uint16)
+    def test_upload_of_anything_else_is_refused(self, tmp_path: Path) -> None:
         path = tmp_path / "sent"
-        path.write_bytes(gzip.compress(labels.astype("<u2").tobytes(), 0))
-        np.testing.assert_array_equal(unpack(path, (600, 800)), labels)
-
-    @pytest.mark.parametrize(
-        "sent",
-        [
+        for sent in (
             b"",
             b"no gzip",
             packed(drawn())[:-9],
@@ -106,49 +94,20 @@ class TestLabels:
             packed(np.zeros((25, 32))),
             zlib.compress(drawn().tobytes()),
             drawn().tobytes(),
-        ],
-        ids=["nothing", "noise", "cut short", "too small", "too large", "another kind", "not packed"],
-    )
-    def test_upload_of_anything_else_is_refused(self, tmp_path: Path, sent: bytes) -> None:
-        path = tmp_path / "sent"
-        path.write_bytes(sent)
-        with pytest.raises(ConfigError, match="not a gzip of 32 x 24"):
-            unpack(path, SHAPE)
-
-    def test_upload_that_unpacks_to_too_much_is_refused(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        most: list[int] = []
-        real = zlib.decompressobj
-
-        class Watched:
-            def __init__(self, bits: int) -> None:
-                self._real = real(bits)
-
-            def decompress(self, data: bytes, length: int) -> bytes:
-                found = self._real.decompress(data, length)
-                most.append(len(found))
-                return found
-
-            @property
-            def eof(self) -> bool:
-                return self._real.eof
-
-        monkeypatch.setattr("tangible_ui.worker.parts.label_files.zlib.decompressobj", Watched)
-        path = tmp_path / "sent"
-        path.write_bytes(gzip.compress(bytes(10_000_000)))
-        with pytest.raises(ConfigError, match="send them again"):
-            unpack(path, SHAPE)
-        assert max(most) <= 2 * SHAPE[0] * SHAPE[1] + 1
+            gzip.compress(bytes(10_000_000)),
+        ):
+            path.write_bytes(sent)
+            with pytest.raises(ConfigError, match="not a gzip of 32 x 24"):
+                unpack(path, SHAPE)
 
 
 class TestNumbers:
     def test_parts_are_numbered_by_their_first_pixels(self) -> None:
-        labels = np.array([[7, 7, 3], [7, 3, 3], [5, 5, 3]])
         numbers = np.array([[0, 0, 1], [0, 1, 1], [2, 2, 1]], np.int32)
         told = [{"label": 7, "name": "wall"}, {"label": 3, "height_m": 0.002, "name": ""}, {"label": 5, "name": None}]
         choices, found = number_parts(told, [7, 3, 5], numbers)
         assert choices == {0: {"name": "wall"}, 1: {"height_m": 0.002}, 2: {}}
         assert found == {"7": [0], "3": [1], "5": [2]}
-        assert labels.shape == numbers.shape
 
     def test_label_in_pieces_names_the_largest_piece(self) -> None:
         numbers = np.array([[0, 1, 2, 2, 1, 3]], np.int32)
@@ -159,18 +118,15 @@ class TestNumbers:
         assert choices[3] == {"name": "leaf 4", "material": "wood"}
         assert found == {"7": [0, 2, 3], "8": [1]}
 
-    @pytest.mark.parametrize(
-        ("told", "says"),
-        [
+    def test_part_entry_without_a_label_is_refused(self) -> None:
+        for told, says in (
             ([{"label": 9, "name": "gone"}], "no pixel"),
             ([{"label": 7}, {"label": 7}], "has two entries"),
             ([{"name": "wall"}], "number of its label"),
             ([{"label": "7"}], "number of its label"),
-        ],
-    )
-    def test_part_entry_without_a_label_is_refused(self, told: list[dict[str, Any]], says: str) -> None:
-        with pytest.raises(ConfigError, match=says):
-            number_parts(told, [7], np.zeros((1, 1), np.int32))
+        ):
+            with pytest.raises(ConfigError, match=says):
+                number_parts(told, [7], np.zeros((1, 1), np.int32))
 
 
 class TestText:
@@ -189,36 +145,13 @@ class TestText:
         found = self.said(text, tmp_path / "mine.yaml", {0: {"name": "wall"}, 1: {"name": "cap"}, 2: {"name": "bag"}})
         assert "  0: wall  # grey\n  1: cap\n  2: bag\n# the end\n" in found
 
-    def test_document_without_parts_has_no_block(self, tmp_path: Path) -> None:
-        text = "scene: {photo: a.png}\nparts:\n  0: wall\nwant: touch\n"
-        assert self.said(text, tmp_path / "mine.yaml", {0: {}}) == (
-            "scene: {photo: a.png, segments: parts.png}\nwant: touch\n"
-        )
-
-    def test_document_on_one_line_stays_on_one(self, tmp_path: Path) -> None:
-        found = self.said("{scene: {photo: a.png}}", tmp_path / "mine.yaml", {0: {"name": "wall"}})
-        assert found == "{scene: {photo: a.png, segments: parts.png}, parts: {0: wall}}"
-
-    @pytest.mark.parametrize(
-        "name", ["a: b", '"', "\\", "# no comment", "- x", "{}", "null", "007", "é ✂ 𝄞", "a\nb", "\x07", " a ", "&a *b"]
-    )
-    def test_part_names_survive_writing_and_reading(self, tmp_path: Path, name: str) -> None:
-        from tangible_core.pipeline.config.editing import read_values
-
+    def test_part_names_survive_writing_and_reading(self, tmp_path: Path) -> None:
         path = tmp_path / "mine.yaml"
-        found = self.said(TEXT, path, {0: {"name": name}, 1: {"name": name + "x", "height_m": 0.001}})
-        assert read_values(found, path)["parts"] == {"0": name, "1": {"name": name + "x", "height_m": 0.001}}
-
-    def test_document_with_many_parts_is_written_as_a_block(self, tmp_path: Path) -> None:
-        path, many = tmp_path / "mine.yaml", {number: {"name": f"part {number}"} for number in range(600)}
-        first = self.said(TEXT, path, many)
-        assert first.count("\n  ") == 600
-        renamed = {number: {"name": f"piece {number}"} for number in many}
-        assert "  599: piece 599\n" in self.said(first, path, renamed)
+        for name in ("a: b", '"', "\\", "# no comment", "- x", "{}", "null", "007", "é ✂ 𝄞", "a\nb", "\x07", " a "):
+            found = self.said(TEXT, path, {0: {"name": name}, 1: {"name": name + "x", "height_m": 0.001}})
+            assert read_values(found, path)["parts"] == {"0": name, "1": {"name": name + "x", "height_m": 0.001}}
 
     def test_document_of_a_built_in_scene_names_its_files(self, tmp_path: Path) -> None:
-        from tangible_core.pipeline.config.editing import read_values
-
         path = tmp_path / "mine.yaml"
         scene = read_values(self.said("scene: builtin/motorcycle\n", path, {}), path)["scene"]
         assert Path(scene["left"]).is_file()
@@ -233,27 +166,6 @@ SAVED = [
     {"label": 3, "name": "bag", "height_m": 0.0005},
 ]
 GIVEN = {"by": "given", "bulge_m": 0.0005}
-
-
-@pytest.fixture
-def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Check], None]:
-    """Runs a test with a session on which the small scene is opened."""
-    monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path / "data"))
-    scene = small_scene(tmp_path)
-
-    def run(check: Check) -> None:
-        async def all_of_it() -> None:
-            small = SmallSession(tmp_path, monkeypatch)
-
-            async def ask(name: str, **told: Any) -> Any:
-                return await REQUESTS[name](small.session, small.tab, **told)
-
-            await REQUESTS["begin"](small.session, small.tab, files=[str(scene)], make_it=False)
-            await check(small, ask)
-
-        asyncio.run(all_of_it())
-
-    return run
 
 
 async def sent(small: SmallSession, ask: Any, data: bytes | None = None) -> str:
@@ -272,59 +184,49 @@ async def saved(small: SmallSession, ask: Any, **told: Any) -> Any:
 
 
 class TestOpening:
-    def test_photo_without_segments_opens_as_one_part(self, small: Callable[[Check], None]) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            found = await ask("parts_open")
-            assert (found["rows"], found["columns"], found["widthM"]) == (24, 32, 0.06)
-            assert found["heights"]["by"] == "given"
-            assert found["top_m"] == pytest.approx(0.004 - 0.0018)
-            (part,) = found["parts"]
-            assert (part["number"], part["pixels"], part["height_m"], part["name"]) == (0, 24 * 32, None, "")
-            at = small.session.folder
-            assert not np.fromfile(at / found["labels"], "<u2").any()
-            with Image.open(at / found["picture"]) as picture:
-                assert picture.size == (32, 24)
+    async def test_photo_without_segments_opens_as_one_part(self, small: SmallSession, ask: Any) -> None:
+        found = await ask("parts_open")
+        assert (found["rows"], found["columns"], found["widthM"]) == (24, 32, 0.06)
+        assert found["heights"]["by"] == "given"
+        assert found["top_m"] == pytest.approx(0.004 - 0.0018)
+        (part,) = found["parts"]
+        assert (part["number"], part["pixels"], part["height_m"], part["name"]) == (0, 24 * 32, None, "")
+        at = small.session.folder
+        assert not np.fromfile(at / found["labels"], "<u2").any()
+        with Image.open(at / found["picture"]) as picture:
+            assert picture.size == (32, 24)
 
-        small(check)
-
-    def test_first_parts_are_those_of_the_terminal(self, small: Callable[[Check], None], tmp_path: Path) -> None:
+    async def test_first_parts_are_those_of_the_terminal(self, small: SmallSession, ask: Any, tmp_path: Path) -> None:
         """A photo that nobody has divided: the same parts, in the same order of heights, as in `tangible parts`."""
+        picture = np.full((90, 120, 3), 200, np.uint8)
+        picture[60:] = [60, 90, 40]
+        picture[20:50, 30:70] = [180, 30, 30]
+        Image.fromarray(picture).save(tmp_path / "scene.png")
+        await ask("begin", files=[str(tmp_path / "scene.png")], make_it=False)
+        assert not (await ask("parts_open"))["divided"]
+        found = await ask("parts_first")
+        labels = np.fromfile(small.session.folder / found["labels"], "<u2").reshape(90, 120)
+        wanted = first_parts([tmp_path / "scene.png"], tmp_path / "scene.yaml")
+        np.testing.assert_array_equal(labels, wanted.parts.labels)
+        assert wanted.parts.count >= 3
+        heights = [each.height_m or 0.0 for each in wanted.listed]
+        assert np.argsort(found["heights_m"]).tolist() == np.argsort(heights).tolist()
+        assert 0 < max(found["heights_m"]) <= (await ask("parts_open"))["top_m"] + 1e-9
+        assert not (await ask("parts_open"))["divided"], "nothing is saved by that"
 
-        async def check(small: SmallSession, ask: Any) -> None:
-            picture = np.full((90, 120, 3), 200, np.uint8)
-            picture[60:] = [60, 90, 40]
-            picture[20:50, 30:70] = [180, 30, 30]
-            Image.fromarray(picture).save(tmp_path / "scene.png")
-            await ask("begin", files=[str(tmp_path / "scene.png")], make_it=False)
-            assert not (await ask("parts_open"))["divided"]
-            found = await ask("parts_first")
-            labels = np.fromfile(small.session.folder / found["labels"], "<u2").reshape(90, 120)
-            wanted = first_parts([tmp_path / "scene.png"], tmp_path / "scene.yaml")
-            np.testing.assert_array_equal(labels, wanted.parts.labels)
-            assert wanted.parts.count >= 3
-            heights = [each.height_m or 0.0 for each in wanted.listed]
-            assert np.argsort(found["heights_m"]).tolist() == np.argsort(heights).tolist()
-            assert 0 < max(found["heights_m"]) <= (await ask("parts_open"))["top_m"] + 1e-9
-            assert not (await ask("parts_open"))["divided"], "nothing is saved by that"
-
-        small(check)
-
-    def test_saved_parts_are_opened_again(self, small: Callable[[Check], None]) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            kept = await saved(small, ask, title="A hat", language="de")
-            found = await ask("parts_open")
-            assert [each["name"] for each in found["parts"]] == ["wall", "hat", "bag"]
-            assert [each["height_m"] for each in found["parts"]] == [None, 0.001, 0.0005]
-            assert [each["material"] for each in found["parts"]] == [None, "glass", None]
-            assert (found["title"], found["language"], found["heights"]["bulge_m"]) == ("A hat", "de", 0.0005)
-            assert found["digest"] == kept["digest"]
-            labels = np.fromfile(small.session.folder / found["labels"], "<u2").reshape(SHAPE)
-            for number, part in enumerate(found["parts"]):
-                assert labels[part["at"][1], part["at"][0]] == number
-                assert part["pixels"] == (labels == number).sum()
-            np.testing.assert_array_equal(labels, find_parts(SegmentMap(drawn().astype(np.int32) % 5)).labels)
-
-        small(check)
+    async def test_saved_parts_are_opened_again(self, small: SmallSession, ask: Any) -> None:
+        kept = await saved(small, ask, title="A hat", language="de")
+        found = await ask("parts_open")
+        assert [each["name"] for each in found["parts"]] == ["wall", "hat", "bag"]
+        assert [each["height_m"] for each in found["parts"]] == [None, 0.001, 0.0005]
+        assert [each["material"] for each in found["parts"]] == [None, "glass", None]
+        assert (found["title"], found["language"], found["heights"]["bulge_m"]) == ("A hat", "de", 0.0005)
+        assert found["digest"] == kept["digest"]
+        labels = np.fromfile(small.session.folder / found["labels"], "<u2").reshape(SHAPE)
+        for number, part in enumerate(found["parts"]):
+            assert labels[part["at"][1], part["at"][0]] == number
+            assert part["pixels"] == (labels == number).sum()
+        np.testing.assert_array_equal(labels, find_parts(SegmentMap(drawn().astype(np.int32) % 5)).labels)
 
     @pytest.mark.parametrize("scene", ["{height: hill.npy}", "{height: hill.npy, segments: drawn.png}"])
     def test_height_map_opens_as_a_picture(self, tmp_path: Path, scene: str) -> None:
@@ -341,31 +243,6 @@ class TestOpening:
         assert grey[0, 1] < 30
         assert grey[0, 0] < 60  # unknown
 
-    def test_places_lie_in_their_parts(self) -> None:
-        labels = np.random.default_rng(0).integers(0, 30, (900, 1100)).astype(np.int32)
-        labels[100:800, 200:900] = 40
-        found = find_parts(SegmentMap(np.unique(labels, return_inverse=True)[1].reshape(labels.shape).astype(np.int32)))
-        x, y = _places(found)[found.labels[450, 550]]
-        assert (x, y) == (pytest.approx(549.5, abs=4), pytest.approx(449.5, abs=4))  # far from all borders
-        for number, (x, y) in enumerate(_places(found)):
-            assert found.labels[y, x] == number
-            if number > 200_000:
-                break
-
-    def test_heights_are_shown_as_grey_from_the_lowest_to_the_highest(self) -> None:
-        nan = np.nan
-        for heights, grey in (
-            ([[1.0, 2.0, 3.0], [5.0, nan, 5.0]], [[0, 64, 128], [255, 0, 255]]),
-            ([[7.0, nan]], [[0, 0]]),
-            ([[nan, nan]], [[0, 0]]),
-        ):
-            assert opening._picture(Scene.heights(np.array(heights))).tolist() == grey
-
-    def test_place_of_a_part_is_its_middle(self) -> None:
-        labels = np.zeros((11, 22), np.int32)
-        labels[:, 11:] = 1
-        assert _places(find_parts(SegmentMap(labels))) == [(5, 5), (16, 5)]
-
     def test_place_of_a_part_between_the_sampled_pixels_is_its_first_pixel(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
@@ -378,237 +255,140 @@ class TestOpening:
         places = dict(zip(found.segments, _places(found), strict=True))
         assert places == {0: (4, 4), 1: (14, 4), 2: (4, 14), 3: (14, 14), 4: (7, 3), 5: (3, 15)}
 
-    def test_files_of_the_newest_pictures_are_kept(self, tmp_path: Path) -> None:
-        worker_state, path = WorkerState(tmp_path, lambda event, **told: None), small_scene(tmp_path)
-        made = []
-        for grey in range(opening.KEPT + 2):
-            Image.fromarray(np.full((24, 32), 40 * grey, np.uint8)).save(tmp_path / f"{grey}.png")
-            text = TEXT.replace("mine.png", f"{grey}.png")
-            found = JOBS["parts_open"].do(worker_state, text=text, path=path, sets=[])
-            made.append(Path(found["labels"]).parent.name)
-        assert {each.name for each in tmp_path.glob("parts-*")} == set(made[-opening.KEPT :])
-
-    def test_opening_on_a_full_disk_leaves_nothing(self, tmp_path: Path) -> None:
-        Image.fromarray(np.random.default_rng(0).integers(0, 255, (90, 90, 3)).astype(np.uint8)).save(
-            tmp_path / "a.png"
-        )
-        worker_state, told = WorkerState(tmp_path / "at", lambda event, **told: None), tmp_path / "a.yaml"
-        (tmp_path / "at").mkdir()
-        with files_up_to(1000), pytest.raises(OutputError, match="free some space"):
-            JOBS["parts_open"].do(worker_state, text="scene: {photo: a.png}\n", path=told, sets=[])
-        assert not list((tmp_path / "at").iterdir())
-
 
 class TestSaving:
-    def test_labels_are_saved_next_to_the_document(self, small: Callable[[Check], None], tmp_path: Path) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            found = await saved(small, ask)
-            assert (found["path"], found["file"]) == (str(tmp_path / "parts.png"), str(tmp_path / "mine.yaml"))
-            assert found["numbers"] == {"0": [0], "7": [1], "3": [2]}
-            assert (tmp_path / "mine.yaml").read_text() == small.session.text
-            assert small.session.text.startswith(
-                "# a photograph of mine\nscene: {photo: mine.png, segments: parts.png}\n"
-            )
-            assert "# bright is near" in small.session.text
-            await small.tab.until("touch")
-            assert small.tab.last("scene")["parts"] == ["wall", "hat", "bag"]
-            surface = load_pipeline(tmp_path / "mine.yaml").surface
-            assert surface.names == ("wall", "hat", "bag")
-            assert not list((tmp_path / "drawn" / "incoming").iterdir())
-
-        small(check)
+    async def test_labels_are_saved_next_to_the_document(self, small: SmallSession, ask: Any, tmp_path: Path) -> None:
+        found = await saved(small, ask)
+        assert (found["path"], found["file"]) == (str(tmp_path / "parts.png"), str(tmp_path / "mine.yaml"))
+        assert found["numbers"] == {"0": [0], "7": [1], "3": [2]}
+        assert (tmp_path / "mine.yaml").read_text() == small.session.text
+        assert small.session.text.startswith("# a photograph of mine\nscene: {photo: mine.png, segments: parts.png}\n")
+        assert "# bright is near" in small.session.text
+        await small.tab.until("touch")
+        assert small.tab.last("scene")["parts"] == ["wall", "hat", "bag"]
+        surface = load_pipeline(tmp_path / "mine.yaml").surface
+        assert surface.names == ("wall", "hat", "bag")
+        assert not list((tmp_path / "drawn" / "incoming").iterdir())
 
     @pytest.mark.parametrize("beside", [True, False])
-    def test_document_without_a_file_gets_one_and_no_file_is_replaced(
-        self, small: Callable[[Check], None], tmp_path: Path, beside: bool
+    async def test_document_without_a_file_gets_one_and_no_file_is_replaced(
+        self, small: SmallSession, ask: Any, tmp_path: Path, beside: bool
     ) -> None:
         """Next to the photograph if that was chosen, else in the program's folder; what is saved again replaces it."""
+        for name in ("mine.yaml", "mine-2.yaml"):
+            (tmp_path / name).write_text("# of somebody else\n")
+        offered = await ask("parts_open")
+        assert (offered["file"], offered["beside"]) == ("", str(tmp_path))
+        place = tmp_path / "mine-3.yaml" if beside else tmp_path / "data/drawn/mine/mine.yaml"
+        for _ in range(2):
+            found = await saved(small, ask, beside=beside)
+            assert (Path(found["file"]), Path(found["path"])) == (place, place.with_name("parts.png"))
+        assert (tmp_path / "mine.yaml").read_text() == (tmp_path / "mine-2.yaml").read_text() == "# of somebody else\n"
+        assert small.session.path == place and (await ask("parts_open"))["file"] == str(place)
+        assert load_pipeline(place).surface.names == ("wall", "hat", "bag")
+        await ask("undo")
+        assert small.session.path.name == "mine.yaml", "undo leads back to the document that had no parts"
 
-        async def check(small: SmallSession, ask: Any) -> None:
-            for name in ("mine.yaml", "mine-2.yaml"):
-                (tmp_path / name).write_text("# of somebody else\n")
-            offered = await ask("parts_open")
-            assert (offered["file"], offered["beside"]) == ("", str(tmp_path))
-            place = tmp_path / "mine-3.yaml" if beside else tmp_path / "data/drawn/mine/mine.yaml"
-            for _ in range(2):
-                found = await saved(small, ask, beside=beside)
-                assert (Path(found["file"]), Path(found["path"])) == (place, place.with_name("parts.png"))
-            assert (
-                (tmp_path / "mine.yaml").read_text() == (tmp_path / "mine-2.yaml").read_text() == "# of somebody else\n"
-            )
-            assert small.session.path == place and (await ask("parts_open"))["file"] == str(place)
-            assert load_pipeline(place).surface.names == ("wall", "hat", "bag")
-            await ask("undo")
-            assert small.session.path.name == "mine.yaml", "undo leads back to the document that had no parts"
-
-        small(check)
-
-    def test_uploaded_and_built_in_pictures_have_no_place_beside_them(
-        self, small: Callable[[Check], None], tmp_path: Path
+    async def test_uploaded_and_built_in_pictures_have_no_place_beside_them(
+        self, small: SmallSession, ask: Any, tmp_path: Path
     ) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            uploaded = tmp_path / "data" / "opened" / "mine.png"
-            uploaded.parent.mkdir(parents=True)
-            (tmp_path / "mine.png").rename(uploaded)
-            for file in (str(uploaded), "builtin/motorcycle"):
-                await ask("begin", files=[file], make_it=False)
-                assert (await ask("parts_open"))["beside"] == ""
-            await ask("begin", files=[str(uploaded)], make_it=False)
-            found = await saved(small, ask, beside=True)
-            assert Path(found["file"]).parent.parent == tmp_path / "data" / "drawn"
-
-        small(check)
+        uploaded = tmp_path / "data" / "opened" / "mine.png"
+        uploaded.parent.mkdir(parents=True)
+        (tmp_path / "mine.png").rename(uploaded)
+        for file in (str(uploaded), "builtin/motorcycle"):
+            await ask("begin", files=[file], make_it=False)
+            assert (await ask("parts_open"))["beside"] == ""
+        await ask("begin", files=[str(uploaded)], make_it=False)
+        found = await saved(small, ask, beside=True)
+        assert Path(found["file"]).parent.parent == tmp_path / "data" / "drawn"
 
     @pytest.mark.parametrize(
         ("said", "kept"),
         [("", "rules"), ("materials: {by: roughness}\n", "rules"), ("materials: {by: {0: ice}}\n", {0: "ice"})],
     )
-    def test_saved_parts_get_no_material_by_the_rank_of_their_roughness(
-        self, small: Callable[[Check], None], tmp_path: Path, said: str, kept: Any
+    async def test_saved_parts_get_no_material_by_the_rank_of_their_roughness(
+        self, small: SmallSession, ask: Any, tmp_path: Path, said: str, kept: Any
     ) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            (tmp_path / "mine.yaml").write_text(TEXT + said)
-            await ask("begin", files=[str(tmp_path / "mine.yaml")], make_it=False)
-            await saved(small, ask)
-            pipeline = load_pipeline(tmp_path / "mine.yaml")
-            assert pipeline.config.materials.by == kept
-            if kept == "rules":
-                chosen = pipeline.materials
-                assert chosen is not None and [each.name for each in chosen.materials] == ["plain", "glass", "plain"]
+        (tmp_path / "mine.yaml").write_text(TEXT + said)
+        await ask("begin", files=[str(tmp_path / "mine.yaml")], make_it=False)
+        await saved(small, ask)
+        pipeline = load_pipeline(tmp_path / "mine.yaml")
+        assert pipeline.config.materials.by == kept
+        if kept == "rules":
+            chosen = pipeline.materials
+            assert chosen is not None and [each.name for each in chosen.materials] == ["plain", "glass", "plain"]
 
-        small(check)
-
-    @pytest.mark.parametrize(
-        ("materials", "says"),
-        [
-            ("{rules: [{segment: 1, material: ice}]}", "by the keys 1"),
-            ("{rules: [{part: 2, material: ice}, {part: hat, material: ice}]}", "by the keys 2"),
-            ("{by: {0: ice, 2: sand}}", "by the keys 2"),
-            ("{rules: [{part: hat, material: ice}]}", ""),
-        ],
-    )
-    def test_materials_by_a_number_that_moved_are_warned_of(
-        self, small: Callable[[Check], None], caplog: pytest.LogCaptureFixture, materials: str, says: str
+    @pytest.mark.parametrize(("key", "warned"), [("2", True), ("hat", False)])
+    async def test_materials_by_a_number_that_moved_are_warned_of(
+        self, small: SmallSession, ask: Any, caplog: pytest.LogCaptureFixture, key: str, warned: bool
     ) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            await saved(small, ask)
-            await ask("set", written={"materials": materials})
-            await saved(small, ask)
-            assert "by the keys" not in caplog.text  # as they were
-            moved = drawn()
-            moved[moved == 3] = 0
-            moved[0, 1] = 3  # the third part is the second now
-            await saved(small, ask, upload=await sent(small, ask, packed(moved)))
-            assert ("by the keys" in caplog.text) == bool(says)
-            assert says in caplog.text
+        await saved(small, ask)
+        await ask("set", written={"materials": f"{{rules: [{{part: {key}, material: ice}}]}}"})
+        await saved(small, ask)
+        assert "by the keys" not in caplog.text  # as they were
+        moved = drawn()
+        moved[moved == 3] = 0
+        moved[0, 1] = 3  # the third part is the second now
+        await saved(small, ask, upload=await sent(small, ask, packed(moved)))
+        assert ("by the keys 2" in caplog.text) == warned
 
-        small(check)
+    async def test_labels_overwrite_no_foreign_file(self, small: SmallSession, ask: Any, tmp_path: Path) -> None:
+        (tmp_path / "parts.png").write_bytes(b"of somebody else")
+        assert Path((await saved(small, ask))["path"]).name == "parts-2.png"
+        assert (tmp_path / "parts.png").read_bytes() == b"of somebody else"
+        assert "segments: parts-2.png" in small.session.text
+        other = drawn()
+        other[0, 0] = 7
+        found = await saved(small, ask, upload=await sent(small, ask, packed(other)))
+        assert Path(found["path"]).name == "parts-2.png"
+        assert read_labels(tmp_path / "parts-2.png")[0, 1] == 1
 
-    def test_labels_overwrite_no_foreign_file(self, small: Callable[[Check], None], tmp_path: Path) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            (tmp_path / "parts.png").write_bytes(b"of somebody else")
-            assert Path((await saved(small, ask))["path"]).name == "parts-2.png"
-            assert (tmp_path / "parts.png").read_bytes() == b"of somebody else"
-            assert "segments: parts-2.png" in small.session.text
-            other = drawn()
-            other[0, 0] = 7
-            found = await saved(small, ask, upload=await sent(small, ask, packed(other)))
-            assert Path(found["path"]).name == "parts-2.png"
-            assert read_labels(tmp_path / "parts-2.png")[0, 1] == 1
+    async def test_labels_before_are_found_by_undo(self, small: SmallSession, ask: Any) -> None:
+        await saved(small, ask)
+        fewer = drawn()
+        fewer[fewer == 3] = 0
+        await saved(small, ask, upload=await sent(small, ask, packed(fewer)), parts=SAVED[:2])
+        assert len((await ask("parts_open"))["parts"]) == 2
+        await ask("undo")
+        assert [each["name"] for each in (await ask("parts_open"))["parts"]] == ["wall", "hat", "bag"]
 
-        small(check)
-
-    def test_labels_that_changed_are_made_again(self, small: Callable[[Check], None]) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            await saved(small, ask)
-            await small.tab.until("touch")
-            bent = drawn()
-            bent[4:14, 4:14] = 7
-            text = small.session.text
-            await saved(small, ask, upload=await sent(small, ask, packed(bent)))
-            assert small.session.text == text
-            await small.tab.until("touch", 2)
-            found = await ask("parts_open")
-            assert found["parts"][1]["pixels"] == (bent == 7).sum()
-
-        small(check)
-
-    def test_labels_before_are_found_by_undo(self, small: Callable[[Check], None]) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            await saved(small, ask)
-            fewer = drawn()
-            fewer[fewer == 3] = 0
-            await saved(small, ask, upload=await sent(small, ask, packed(fewer)), parts=SAVED[:2])
-            assert len((await ask("parts_open"))["parts"]) == 2
-            await ask("undo")
-            assert [each["name"] for each in (await ask("parts_open"))["parts"]] == ["wall", "hat", "bag"]
-
-        small(check)
-
-    @pytest.mark.parametrize(
-        ("told", "says"),
-        [
-            ({"parts": [{"label": 9, "name": "gone"}]}, "no pixel"),
-            ({"parts": [{"label": 7, "name": "a"}, {"label": 3, "name": "A"}]}, "name of its own"),
-            ({"parts": [{"label": 7, "height_m": 0.5}]}, "the highest can be"),
-            ({"parts": [{"label": 7, "material": "unobtainium"}]}, "unobtainium"),
-            ({"parts": [{"label": 7, "height_m": "high"}]}, "height_m"),
-            ({"heights": {"by": "magic"}}, "by"),
-            ({"heights": None}, "heights: {by: given}"),
-            ({"language": "not a language"}, "tag of a language"),
-            ({"upload": "0" * 16}, "send them again"),
-            ({"of": "of another tab"}, "changed elsewhere meanwhile"),
-        ],
-    )
-    def test_invalid_entry_changes_nothing(
-        self, small: Callable[[Check], None], tmp_path: Path, told: dict[str, Any], says: str
-    ) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
+    async def test_invalid_entry_changes_nothing(self, small: SmallSession, ask: Any, tmp_path: Path) -> None:
+        wrong: dict[str, dict[str, Any]] = {
+            "no pixel": {"parts": [{"label": 9, "name": "gone"}]},
+            "name of its own": {"parts": [{"label": 7, "name": "a"}, {"label": 3, "name": "A"}]},
+            "the highest can be": {"parts": [{"label": 7, "height_m": 0.5}]},
+            "unobtainium": {"parts": [{"label": 7, "material": "unobtainium"}]},
+            "heights: {by: given}": {"heights": None},
+            "tag of a language": {"language": "not a language"},
+            "send them again": {"upload": "0" * 16},
+            "changed elsewhere meanwhile": {"of": "of another tab"},
+        }
+        for says, told in wrong.items():
             with pytest.raises(TangibleError, match=says):
                 await saved(small, ask, **told)
             assert small.session.text == (tmp_path / "mine.yaml").read_text() == TEXT
             assert not list(tmp_path.glob("parts*"))
 
-        small(check)
-
-    def test_disk_with_room_for_the_document_alone_changes_nothing(
-        self, small: Callable[[Check], None], tmp_path: Path
-    ) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            noise = np.random.default_rng(0).permutation(drawn().size).reshape(SHAPE)
-            upload = await sent(small, ask, packed(noise))
-            with files_up_to(1000), pytest.raises(TangibleError, match="free some space"):
-                await ask("parts_save", upload=upload, parts=[], heights=GIVEN)
-            assert small.session.text == (tmp_path / "mine.yaml").read_text() == TEXT
-            assert not list(tmp_path.glob("*parts*"))
-
-        small(check)
-
     @pytest.mark.parametrize("size", [100, 3000])
-    def test_full_disk_changes_nothing(self, small: Callable[[Check], None], tmp_path: Path, size: int) -> None:
+    async def test_full_disk_changes_nothing(self, small: SmallSession, ask: Any, tmp_path: Path, size: int) -> None:
         """100: there is no room for the labels; 3000: for the document behind them."""
+        (tmp_path / "mine.yaml").write_text(f"{TEXT}# {4000 * 'x'}\n")
+        await ask("begin", files=[str(tmp_path / "mine.yaml")], make_it=False)
+        await saved(small, ask)
+        await small.tab.until("touch")
+        text, labels = small.session.text, (tmp_path / "parts.png").read_bytes()
+        other = drawn()
+        other[0, 0] = 7
+        upload = await sent(small, ask, packed(other))
+        with files_up_to(size), pytest.raises(TangibleError, match="free some space"):
+            await ask("parts_save", upload=upload, parts=[], heights=GIVEN)
+        assert small.session.text == (tmp_path / "mine.yaml").read_text() == text
+        assert (tmp_path / "parts.png").read_bytes() == labels
+        assert not list(tmp_path.glob(".*"))
 
-        async def check(small: SmallSession, ask: Any) -> None:
-            (tmp_path / "mine.yaml").write_text(f"{TEXT}# {4000 * 'x'}\n")
-            await ask("begin", files=[str(tmp_path / "mine.yaml")], make_it=False)
-            await saved(small, ask)
-            await small.tab.until("touch")
-            text, labels = small.session.text, (tmp_path / "parts.png").read_bytes()
-            other = drawn()
-            other[0, 0] = 7
-            upload = await sent(small, ask, packed(other))
-            with files_up_to(size), pytest.raises(TangibleError, match="free some space"):
-                await ask("parts_save", upload=upload, parts=[], heights=GIVEN)
-            assert small.session.text == (tmp_path / "mine.yaml").read_text() == text
-            assert (tmp_path / "parts.png").read_bytes() == labels
-            assert not list(tmp_path.glob(".*"))
-
-        small(check)
-
-    @pytest.mark.parametrize("framing", ["crop: [3, 2, 20, 15]", "rotate: 90", "crop: [3, 2, 20, 15], rotate: 270"])
-    def test_labels_of_a_cropped_and_rotated_scene_are_saved_in_its_frame(self, tmp_path: Path, framing: str) -> None:
+    def test_labels_of_a_cropped_and_rotated_scene_are_saved_in_its_frame(self, tmp_path: Path) -> None:
         path = small_scene(tmp_path)
-        text = TEXT.replace("photo: mine.png", f"photo: mine.png, {framing}")
+        text = TEXT.replace("photo: mine.png", "photo: mine.png, crop: [3, 2, 20, 15], rotate: 270")
         path.write_text(text)
         worker_state = WorkerState(tmp_path, lambda event, **told: None)
         rows, columns = worker_state.pipeline_of(text, path, []).scene.shape
@@ -625,31 +405,23 @@ class TestSaving:
         np.testing.assert_array_equal(scene.segments.labels, labels)
 
 
-@pytest.mark.parametrize("want", ["materials", "relief", "surface"])
-def test_scene_event_has_the_names_of_parts(small: Callable[[Check], None], tmp_path: Path, want: str) -> None:
+async def test_scene_event_has_the_names_of_parts(small: SmallSession, ask: Any, tmp_path: Path) -> None:
     """Labels that are shown are those that materials are of, though two parts are of one segment."""
     labels = drawn() % 5
     labels[0:2, 0:2] = 2  # another piece of the hat's segment
     Image.fromarray(labels.astype(np.uint8)).save(tmp_path / "drawn.png")
     said = "parts: {0: corner, 1: wall, 2: {name: hat, material: ice}}\nheights: {by: given}\n"
     text = TEXT.replace("photo: mine.png", "photo: mine.png, segments: drawn.png") + said
-    (tmp_path / "mine.yaml").write_text(text)
-
-    async def check(small: SmallSession, ask: Any) -> None:
-        await ask("make", want="relief")
-        await ask("make", want="materials")
-        await ask("make", want=want)
-        shown = await small.tab.until("scene")
-        told = (await small.tab.until("materials"))["segments"]
-        assert shown["parts"] == ["corner", "wall", "hat", ""]
-        assert [each["name"] for each in told] == shown["parts"]
-        assert told[2]["material"] == "ice"
-        assert told[0]["share"] == pytest.approx(4 / labels.size)
-        if want == "surface":
-            told = await small.tab.until("described")
-            assert all("hat" in told["says"][language] for language in ("en", "de", "fr"))
-
-    small(check)
+    await ask("edit", text=text)
+    await ask("make", want="materials")
+    await ask("make", want="surface")
+    shown = await small.tab.until("scene")
+    told = (await small.tab.until("materials"))["segments"]
+    assert shown["parts"] == ["corner", "wall", "hat", ""] == [each["name"] for each in told]
+    assert told[2]["material"] == "ice"
+    assert told[0]["share"] == pytest.approx(4 / labels.size)
+    told = await small.tab.until("described")
+    assert all("hat" in told["says"][language] for language in ("en", "de", "fr"))
 
 
 def kept_parcels(monkeypatch: pytest.MonkeyPatch, *methods: str) -> list[bytes]:
@@ -666,222 +438,95 @@ def kept_parcels(monkeypatch: pytest.MonkeyPatch, *methods: str) -> list[bytes]:
 
 
 class TestHeights:
-    def test_changed_heights_feel_as_the_saved_document(
-        self, small: Callable[[Check], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    async def test_changed_heights_feel_as_the_saved_document(
+        self, small: SmallSession, ask: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         """Surfaces and the loop's whole input are the same to the bit."""
-
-        async def check(small: SmallSession, ask: Any) -> None:
-            sent_to_the_loop = kept_parcels(monkeypatch, "feel", "feel_on")
-            for render in ("{use: penalty}", "{use: proxy}"):
-                await ask("set", written={"render": render})
-                await saved(small, ask)
-                await ask("parts_heights", heights_m=[0.0002, 0.0008, 0.0011], materials=[None, "sand", "ice"],
-                          heights={"round_m": 0.004})  # fmt: skip
-                felt, surface = sent_to_the_loop[-1], small.worker.state.kept.seen
-                parts = [{**SAVED[0], "height_m": 0.0002}, {**SAVED[1], "height_m": 0.0008, "material": "sand"},
-                         {**SAVED[2], "height_m": 0.0011, "material": "ice"}]  # fmt: skip
-                await saved(small, ask, parts=parts, heights={**GIVEN, "round_m": 0.004})
-                del surface
-                pipeline = load_pipeline(tmp_path / "mine.yaml", small.session.felt_sets())
-                made = making.loop_input_of(pipeline)
-                assert Path(made["parcel"]).read_bytes() == felt
-                Path(made["parcel"]).unlink()
-
-        small(check)
+        sent_to_the_loop = kept_parcels(monkeypatch, "feel", "feel_on")
+        for render in ("{use: penalty}", "{use: proxy}"):
+            await ask("set", written={"render": render})
+            await saved(small, ask)
+            await ask("parts_heights", heights_m=[0.0002, 0.0008, 0.0011], materials=[None, "sand", "ice"],
+                      heights={"round_m": 0.004})  # fmt: skip
+            felt = sent_to_the_loop[-1]
+            parts = [{**SAVED[0], "height_m": 0.0002}, {**SAVED[1], "height_m": 0.0008, "material": "sand"},
+                     {**SAVED[2], "height_m": 0.0011, "material": "ice"}]  # fmt: skip
+            await saved(small, ask, parts=parts, heights={**GIVEN, "round_m": 0.004})
+            pipeline = load_pipeline(tmp_path / "mine.yaml", small.session.felt_sets())
+            made = making.loop_input_of(pipeline)
+            assert Path(made["parcel"]).read_bytes() == felt
+            Path(made["parcel"]).unlink()
 
     @pytest.mark.parametrize("by", ["guess", "depth", "given"])
-    def test_missing_heights_are_those_of_the_recipe(
-        self, small: Callable[[Check], None], tmp_path: Path, by: str
+    async def test_missing_heights_are_those_of_the_recipe(
+        self, small: SmallSession, ask: Any, tmp_path: Path, by: str
     ) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            if by == "depth":
-                await saved(small, ask, parts=SAVED[:1], heights={**GIVEN, "by": "depth"})
-                with pytest.raises(ConfigError, match="not made yet"):
-                    await ask("parts_heights", heights_m=[None, 0.0007, None])
-                await ask("make", want="disparity")
-            parts = [{"label": 7, "height_m": 0.0007}]
-            await saved(small, ask, parts=parts, heights={**GIVEN, "by": by})
-            await ask("parts_heights", heights_m=[None, 0.0007, None])
-            seen = await happened(lambda: small.worker.state.kept.seen)
-            wanted = load_pipeline(tmp_path / "mine.yaml").relief.height_m
-            np.testing.assert_array_equal(seen.relief.height_m, wanted)
+        if by == "depth":
+            await saved(small, ask, parts=SAVED[:1], heights={**GIVEN, "by": "depth"})
+            with pytest.raises(ConfigError, match="not made yet"):
+                await ask("parts_heights", heights_m=[None, 0.0007, None])
+            await ask("make", want="disparity")
+        parts = [{"label": 7, "height_m": 0.0007}]
+        await saved(small, ask, parts=parts, heights={**GIVEN, "by": by})
+        await ask("parts_heights", heights_m=[None, 0.0007, None])
+        seen = await happened(lambda: small.worker.state.kept.seen)
+        wanted = load_pipeline(tmp_path / "mine.yaml").relief.height_m
+        np.testing.assert_array_equal(seen.relief.height_m, wanted)
 
-        small(check)
-
-    def test_changed_heights_are_drawn_and_leave_the_document(self, small: Callable[[Check], None]) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            await saved(small, ask)
-            await small.tab.until("touch")
-            text, before = small.session.text, small.tab.last("scene")
-            assert await ask("parts_heights", heights_m=[0.0, 0.002, 0.001]) == {}
-            after = await small.tab.until("scene", small.tab.names().count("scene") + 1)
-            assert after["height_m"][1] > before["height_m"][1] + 0.0005
-            assert after["parts"] == ["wall", "hat", "bag"]
-            assert small.session.text == text
-
-        small(check)
-
-    def test_changed_heights_of_a_large_surface_use_a_coarse_grid(
-        self, small: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch
+    async def test_changed_heights_feel_by_the_law_of_the_document(
+        self, small: SmallSession, ask: Any, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            await saved(small, ask)
-            await small.tab.until("touch")
-            monkeypatch.setattr("tangible_ui.worker.parts.heights.MOST_CELLS", 200)
+        await saved(small, ask)
+        await small.tab.until("touch")
+        felt = kept_parcels(monkeypatch, "feel_on")
+        for law in ("penalty", "penalty-gradient", "penalty"):
+            await ask("set", written={"render": law})
             await ask("parts_heights", heights_m=[0.0, 0.002, 0.001])
-            kept = small.worker.state.kept
-            assert kept.grid.shape == (12, 16)
-            coarse = await small.tab.until("scene", small.tab.names().count("scene") + 1)
-            assert (coarse["rows"], coarse["columns"]) == (12, 16)
-            assert coarse["parts"] == ["wall", "hat", "bag"]
-            monkeypatch.undo()
-            assert load_pipeline(small.session.path).surface.height_m.shape == SHAPE
+        assert felt[0] == felt[2] != felt[1]
 
-        small(check)
-
-    def test_changed_heights_feel_by_the_law_of_the_document(
-        self, small: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            await saved(small, ask)
-            await small.tab.until("touch")
-            felt = kept_parcels(monkeypatch, "feel_on")
-            for law in ("penalty", "penalty-gradient", "penalty"):
-                await ask("set", written={"render": law})
-                await ask("parts_heights", heights_m=[0.0, 0.002, 0.001])
-            assert felt[0] == felt[2] != felt[1]
-
-        small(check)
-
-    @pytest.mark.parametrize(("cells", "factor"), [(768, 1), (767, 1.5), (342, 1.5), (341, 2), (100, 3)])
-    def test_coarse_grid_has_steps_of_half_a_pixel(
-        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cells: int, factor: float
-    ) -> None:
-        monkeypatch.setattr("tangible_ui.worker.parts.heights.MOST_CELLS", cells)
-        config = parse_config(TEXT, small_scene(tmp_path), default_registry())
-        found = coarse(config, SHAPE)
-        finest_m = (factor + 0.01) * 0.06 / 32
-        assert found.size.finest_m == (config.size.finest_m if factor == 1 else pytest.approx(finest_m))
-
-    def test_changed_height_recomputes_only_what_depends_on_it(
-        self, small: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            await saved(small, ask)
-            await ask("parts_heights", heights_m=[0.0, 0.002, 0.001])
-
-            def never(*_: Any, **__: Any) -> None:
-                raise AssertionError
-
-            monkeypatch.setattr("tangible_ui.worker.parts.heights.Layering", never)
-            with pytest.MonkeyPatch.context() as within:
-                within.setattr("tangible_core.materials.assignment.assign", never)
-                within.setattr("tangible_core.parts.find.find_parts", never)
-                await ask("parts_heights", heights_m=[0.0, 0.001, 0.001])
-                await ask("parts_heights", heights_m=[0.0, 0.001, 0.001], materials=["ice", "ice", None])
-                await ask("set", changes={"title": "another"})
-                await ask("parts_heights", heights_m=[0.0, 0.001, 0.002])
-            await ask("set", changes={"materials.default": "ice"})
-            await ask("parts_heights", heights_m=[0.0, 0.001, 0.002])
-
-        small(check)
-
-    @pytest.mark.parametrize(
-        ("told", "says"),
-        [
-            ({"heights_m": [0.0, 0.001]}, "3 parts and 2 heights"),
-            ({"heights_m": [0.0, 0.001, 0.5]}, "the highest can be"),
-            ({"heights_m": [0.0, 0.001, -1.0]}, "height_m"),
-            ({"heights_m": [0.0, 0.0, 0.0], "materials": ["unobtainium"]}, "unobtainium"),
-            ({"heights_m": [0.0, 0.0, 0.0], "heights": {"round_m": -1.0}}, "round_m"),
-        ],
-    )
-    def test_invalid_heights_are_refused(self, small: Callable[[Check], None], told: dict[str, Any], says: str) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            await saved(small, ask)
+    async def test_invalid_heights_are_refused(self, small: SmallSession, ask: Any) -> None:
+        with pytest.raises(ConfigError, match="save what was drawn"):
+            await ask("parts_heights", heights_m=[0.001])
+        await saved(small, ask)
+        wrong: dict[str, dict[str, Any]] = {
+            "3 parts and 2 heights": {"heights_m": [0.0, 0.001]},
+            "the highest can be": {"heights_m": [0.0, 0.001, 0.5]},
+            "height_m": {"heights_m": [0.0, 0.001, -1.0]},
+            "unobtainium": {"heights_m": [0.0, 0.0, 0.0], "materials": ["unobtainium"]},
+            "round_m": {"heights_m": [0.0, 0.0, 0.0], "heights": {"round_m": -1.0}},
+        }
+        for says, told in wrong.items():
             with pytest.raises(TangibleError, match=says):
                 await ask("parts_heights", **told)
 
-        small(check)
-
-    def test_heights_that_come_too_fast_are_skipped_but_the_newest(self, small: Callable[[Check], None]) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            await saved(small, ask)
-            await small.tab.until("touch")
-            small.worker.asked.clear()
-            found = await asyncio.gather(*(ask("parts_heights", heights_m=[0.0, k / 1e4, 0.0]) for k in range(20)))
-            assert found == [{}, *[None] * 18, {}]
-            assert small.worker.asked.count("parts_heights") == 2
-            await happened(lambda: small.tab.last("scene")["height_m"][1] >= 19 / 1e4)
-            assert small.worker.state.kept.seen.relief.height_m.max() > 19 / 1e4
-
-        small(check)
-
-    @pytest.mark.parametrize(
-        ("compared", "running", "says"), [(None, True, "put"), (None, False, "feel"), ({}, True, "feel")]
-    )
-    def test_dragged_heights_fill_no_history(
-        self, monkeypatch: pytest.MonkeyPatch, compared: Any, running: bool, says: str
+    async def test_heights_that_come_too_fast_are_skipped_and_those_of_a_large_surface_are_coarse(
+        self, small: SmallSession, ask: Any, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        done: list[str] = []
-
-        async def put(_: Any) -> None:
-            done.append("put")
-
-        async def feel(_: Any) -> None:
-            done.append("feel")
-
-        session: Any = SimpleNamespace(
-            laws=SimpleNamespace(other=compared),
-            feeling=SimpleNamespace(running=running, channel=""),
-            put=put,
-            feel=feel,
-        )
-        monkeypatch.setattr("tangible_ui.state.session.LoopInput.of", lambda made, channel: made)
-        asyncio.run(Session.feel_on(session, {}))
-        assert done == [says]
-
-    def test_heights_of_unsaved_parts_are_refused(self, small: Callable[[Check], None]) -> None:
-        async def check(small: SmallSession, ask: Any) -> None:
-            with pytest.raises(ConfigError, match="save what was drawn"):
-                await ask("parts_heights", heights_m=[0.001])
-
-        small(check)
+        await saved(small, ask)
+        await small.tab.until("touch")
+        small.worker.asked.clear()
+        text = small.session.text
+        found = await asyncio.gather(*(ask("parts_heights", heights_m=[0.0, k / 1e4, 0.0]) for k in range(20)))
+        assert found == [{}, *[None] * 18, {}]
+        assert small.worker.asked.count("parts_heights") == 2
+        await happened(lambda: small.tab.last("scene")["height_m"][1] >= 19 / 1e4)
+        assert small.worker.state.kept.seen.relief.height_m.max() > 19 / 1e4
+        assert small.session.text == text, "nothing is written before it is saved"
+        monkeypatch.setattr("tangible_ui.worker.parts.heights.MOST_CELLS", 200)
+        await ask("parts_heights", heights_m=[0.0, 0.002, 0.001])
+        assert small.worker.state.kept.grid.shape == (12, 16)
+        await happened(lambda: small.tab.last("scene")["rows"] == 12)
 
 
-def test_latest_wins_queue_runs_the_newest_of_those_that_wait() -> None:
-    async def check() -> None:
-        newest, go, done = LatestWins(), asyncio.Event(), list[int]()
+async def test_latest_wins_queue_runs_the_newest_that_waits_and_pauses_between_calls():
+    drawn, done = LatestWins(0.2), []
 
-        async def work(number: int) -> int:
-            await go.wait()
-            done.append(number)
-            return number
+    async def draw(number: int) -> int:
+        done.append((number, asyncio.get_running_loop().time()))
+        return number
 
-        asked = [asyncio.create_task(newest.run(lambda number=number: work(number))) for number in range(5)]
-        await asyncio.sleep(0)
-        go.set()
-        assert await asyncio.gather(*asked) == [0, None, None, None, 4]
-        assert done == [0, 4]
-
-    asyncio.run(check())
-
-
-def test_latest_wins_queue_pauses_between_calls():
-    async def check() -> None:
-        drawn, done = LatestWins(0.2), []
-
-        async def draw(number: int) -> int:
-            done.append((number, asyncio.get_running_loop().time()))
-            return number
-
-        found = await asyncio.gather(*(drawn.run(lambda k=k: draw(k)) for k in range(5)))
-        assert found == [0, None, None, None, 4]
-        first = await drawn.run(lambda: draw(5)), await drawn.run(lambda: draw(6))
-        assert first == (5, 6)
-        times = [at for _, at in done]
-        assert [number for number, _ in done] == [0, 4, 5, 6]
-        assert min(np.diff(times)) > 0.19
-
-    asyncio.run(check())
+    found = await asyncio.gather(*(drawn.run(lambda k=k: draw(k)) for k in range(5)))
+    assert found == [0, None, None, None, 4]
+    assert (await drawn.run(lambda: draw(5)), await drawn.run(lambda: draw(6))) == (5, 6)
+    assert [number for number, _ in done] == [0, 4, 5, 6]
+    assert min(np.diff([at for _, at in done])) > 0.19

@@ -1,4 +1,4 @@
-"""Broken frames and requests: each is refused as its standard says, quietly, and the server goes on."""
+"""Broken frames and requests: otherwise one of them ends the server under a hand, or fills its log."""
 
 import socket
 import time
@@ -8,7 +8,7 @@ from random import Random
 
 import pytest
 
-from broken_messages import BINARY, CLOSE, PING, TEXT, broken_frames, broken_request, frame, send_broken
+from broken_messages import BINARY, CLOSE, TEXT, broken_frames, broken_request, frame, send_broken
 from page_server import KEY, PageServer
 from tangible_ui.address import HOST
 from tangible_ui.serving import routes
@@ -33,22 +33,14 @@ FRAMES = {
     "text that is cut within a letter": (frame(TEXT, "é".encode()[:1]), 1007),
     "parts that are not UTF-8 together": (frame(TEXT, b"\xc3", last=False) + frame(0, b"("), 1007),
     "text that is not UTF-8, and a close": (frame(TEXT, b"\xff") + frame(CLOSE, b"\x03\xe8"), 1000),
-    "surrogate": (frame(TEXT, b"\xed\xa0\x80"), 1007),
-    "close with a reason that is not UTF-8": (frame(CLOSE, b"\x03\xe8\xff"), 1007),
-    "close of one byte": (frame(CLOSE, b"\x03"), 1002),
     "close with a code that nobody may send": (frame(CLOSE, b"\x03\xed"), 1002),
     "text of one byte too many": (frame(TEXT, size=MOST_MESSAGE_BYTES + 1), 1009),
     "parts of one byte too many": (
         frame(BINARY, bytes(MOST_MESSAGE_BYTES), last=False) + frame(0, b"\0"),
         1009,
     ),
-    "ping of 126 bytes": (frame(PING, bytes(126)), 1002),
-    "ping in parts": (frame(PING, last=False), 1002),
     "compressed text, which was not agreed": (frame(TEXT, b"x", rsv=4), 1002),
     "frame without a mask": (frame(TEXT, b"x", mask=False), 1002),
-    "frame of an unknown kind": (frame(3), 1002),
-    "part of nothing": (frame(0, b"x"), 1002),
-    "text within a text": (frame(TEXT, b"a", last=False) + frame(TEXT, b"b"), 1002),
 }
 """Frames, and the code that RFC 6455 gives to their fault."""
 
@@ -61,16 +53,7 @@ def test_frame_that_breaks_the_standard_closes_the_connection(page: PageServer) 
             assert tab.closed() == code, name
 
 
-def test_text_in_parts_is_one_request(page: PageServer) -> None:
-    """A letter of two bytes may be cut between two of them, and a ping may come in between."""
-    said = '{"number": 5, "ask": "é"}'.encode()
-    middle = said.index(b"\xc3") + 1
-    with page.tab() as tab:
-        tab.socket.socket.sendall(frame(TEXT, said[:middle], last=False) + frame(PING) + frame(0, said[middle:]))
-        assert "é" in tab.until(event="refused", number=5)["text"]
-
-
-@pytest.mark.parametrize("path", ["/", f"/stop?token={KEY}", "/stop", f"/upload/{'0' * 16}/a.png?token={KEY}"])
+@pytest.mark.parametrize("path", [f"/stop?token={KEY}", f"/upload/{'0' * 16}/a.png?token={KEY}"])
 @pytest.mark.parametrize("after_answer", [False, True], ids=["at once", "after an answer"])
 def test_body_that_breaks_off_is_refused(page: PageServer, path: str, after_answer: bool) -> None:
     """Together with its head: while the answer is made; or later, when an answer is sent already."""
@@ -88,7 +71,7 @@ def test_body_that_breaks_off_is_refused(page: PageServer, path: str, after_answ
     until(lambda: page.done(lambda: not page.server.server_state.tasks), "the end of the request")
 
 
-@pytest.mark.parametrize("count", [80, pytest.param(2000, marks=pytest.mark.nightly)])
+@pytest.mark.parametrize("count", [40, pytest.param(2000, marks=pytest.mark.nightly)])
 def test_server_survives_broken_messages(page: PageServer, count: int) -> None:
     """One tab is there from the beginning to the end, and is answered."""
     random = Random(53)

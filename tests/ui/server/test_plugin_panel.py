@@ -1,6 +1,5 @@
-"""A plugin brings a panel to the page: the example of docs/write-a-plugin.md, installed in a folder of its own."""
+"""A plugin brings a panel to the page: otherwise it is not there, or opens other files of its folder to the page."""
 
-import asyncio
 import os
 import re
 from importlib.metadata import EntryPoint
@@ -12,12 +11,13 @@ import pytest
 from page_files import ROOT, built_page
 from page_panels import bring, wait_for_force
 from page_server import KEY, PageServer
-from sessions import SmallSession, small_scene
+from sessions import small_scene
 from tangible_core.errors import ConfigError
 from tangible_ui import page_panel
 from tangible_ui.page_panel import PagePanel
-from tangible_ui.requests import REQUESTS
 from waiting import until
+
+pytestmark = pytest.mark.anyio
 
 
 @pytest.fixture
@@ -76,41 +76,19 @@ def module(folder: Path) -> Path:
     return folder / "glove.js"
 
 
-def test_panel_that_is_not_one_is_left_out_with_a_warning(
-    panels: dict[str, Any], tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
-    panels |= {"glove": PagePanel(module(tmp_path / "glove"), {"en": "Glove"}), "text": "no panel"}
-    panels["gone"] = PagePanel(tmp_path / "gone.js", {"en": "Gone"})
-    assert list(page_panel.installed_panels()) == ["glove"]
-    assert [each.getMessage().partition(" (")[0] for each in caplog.records] == [
-        "the page's panel text",
-        "the page's panel gone",
-    ]
-
-
-def test_request_of_a_panel_gets_the_pipeline_and_an_unknown_one_is_refused(
-    panels: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+async def test_request_of_a_panel_gets_the_pipeline_and_an_unknown_one_is_refused(
+    panels: dict[str, Any], ask: Any, tmp_path: Path
 ) -> None:
     requests = {"width": lambda pipeline, by: by * pipeline.config.size.width_m}
     panels["glove"] = PagePanel(module(tmp_path / "glove"), {"en": "Glove"}, requests)
-
-    async def check() -> None:
-        small = SmallSession(tmp_path, monkeypatch)
-
-        async def ask(name: str, **arguments: Any) -> Any:
-            return await REQUESTS[name](small.session, small.tab, **arguments)
-
-        await ask("begin", files=[str(small_scene(tmp_path))], make_it=False)
-        assert await ask("panels") == [
-            {"name": "glove", "title": {"en": "Glove"}, "module": "/panels/glove/glove.js", "task": "advanced"}
-        ]
-        assert await ask("ask_panel", panel="glove", request="width", arguments={"by": 2}) == pytest.approx(0.12)
-        with pytest.raises(ConfigError, match=r"'glvoe' is not a panel of a plugin .did you mean 'glove'"):
-            await ask("ask_panel", panel="glvoe", request="width")
-        with pytest.raises(ConfigError, match=r"the panel glove answers no request 'witdh' .did you mean 'width'"):
-            await ask("ask_panel", panel="glove", request="witdh")
-
-    asyncio.run(check())
+    assert await ask("panels") == [
+        {"name": "glove", "title": {"en": "Glove"}, "module": "/panels/glove/glove.js", "task": "advanced"}
+    ]
+    assert await ask("ask_panel", panel="glove", request="width", arguments={"by": 2}) == pytest.approx(0.12)
+    with pytest.raises(ConfigError, match=r"'glvoe' is not a panel of a plugin .did you mean 'glove'"):
+        await ask("ask_panel", panel="glvoe", request="width")
+    with pytest.raises(ConfigError, match=r"the panel glove answers no request 'witdh' .did you mean 'width'"):
+        await ask("ask_panel", panel="glove", request="witdh")
 
 
 def test_files_of_a_panel_are_served_and_no_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

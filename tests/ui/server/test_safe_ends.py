@@ -1,13 +1,11 @@
-"""The end of a tab, a loop, the worker or the server: no force, one sentence, and no file or process left."""
+"""The end of a tab, a loop, the worker or the server: otherwise a hand is pushed by a program that is gone."""
 
 import os
 import signal
 import socket
 import subprocess
-import sys
 import threading
 import time
-import urllib.request
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -18,6 +16,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
+from command_line import tangible
 from page_server import TestTab
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.servo.ring import STOP, Ring
@@ -38,28 +37,22 @@ HEARING = (
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
 AT_ONCE_S = 20.0
 """Bound on the last force, s, for a machine that may stand still; docs/safety.md has what was measured."""
-DIRS = ("RUNTIME", "CONFIG", "LOG", "DATA", "SHARED")
+DIRS = ("RUNTIME", "CONFIG", "LOG", "DATA", "SHARED", "CACHE")
 FORBIDDEN = ("numba", "cv2", "torch", "scipy")
 
 
 class Home:
     """Folders of a user's own, and servers that have them."""
 
-    def __init__(self, folder: Path, compiled: Path) -> None:
-        """compiled: the folder of compiled laws, which may be others' too."""
-        self.folder = folder
-        self.temporary = folder / "tmp"
-        self._compiled = compiled
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.temporary = folder, folder / "tmp"
         self._open = ExitStack()
         for each in (*(folder / name.lower() for name in DIRS), self.temporary):
             each.mkdir()
+        own = {f"TANGIBLE_{name}_DIR": str(folder / name.lower()) for name in DIRS}
+        self.env = {**own, "TMPDIR": str(self.temporary)}
         np.save(folder / "level.npy", np.zeros((24, 32), np.float32))
         (folder / "level.yaml").write_text(LEVEL)
-
-    @property
-    def env(self) -> dict[str, str]:
-        own = {f"TANGIBLE_{name}_DIR": str(self.folder / name.lower()) for name in DIRS}
-        return {**own, "TANGIBLE_CACHE_DIR": str(self._compiled), "TMPDIR": str(self.temporary)}
 
     def server(self, *words: object, start: str = HEARING + START) -> UiServer:
         return self._open.enter_context(UiServer(*words, cwd=self.folder, env=self.env, start=start))
@@ -75,14 +68,9 @@ class Home:
         self._open.close()
 
 
-@pytest.fixture(scope="module")
-def compiled(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("compiled")
-
-
 @pytest.fixture
-def home(tmp_path: Path, compiled: Path) -> Iterator[Home]:
-    home = Home(tmp_path, compiled)
+def home(tmp_path: Path) -> Iterator[Home]:
+    home = Home(tmp_path)
     yield home
     home.close()
 
@@ -178,13 +166,6 @@ def children(server: UiServer, name: str) -> list[int]:
     return [int(word) for word in found.stdout.split()]
 
 
-def post_stop(url: str) -> None:
-    origin, _, query = url.partition("/?")
-    request = urllib.request.Request(f"{origin}/stop?{query}", b"", {"Origin": origin}, method="POST")
-    with urllib.request.urlopen(request, timeout=LONGEST_S) as answer:
-        assert answer.status == 204
-
-
 def test_force_ends_with_the_tab_the_loop_and_a_frozen_server(home: Home) -> None:
     """The page and its parts, one after the other on one server, which goes on."""
     server = home.server("level.yaml")
@@ -216,14 +197,14 @@ def test_force_ends_with_the_tab_the_loop_and_a_frozen_server(home: Home) -> Non
     for each in unfinished:
         each.sendall(b"GET / HT")
     found["stop beside unfinished connections"] = press.let_go_s(lambda: press.tab.ask("stop"))
-    press.feel()
-    found["stop by a request beside them"] = press.let_go_s(lambda: post_stop(server.url))
     for each in unfinished:
         each.close()
     press.feel()
     [loop] = children(server, "servo.child")
     found["loop killed"] = press.let_go_s(lambda: os.kill(loop, signal.SIGKILL))
     assert press.tab.until(event="loop", running=False)["why"]
+    press.feel()
+    found["server ended"] = press.let_go_s(server.process.terminate)
     press.close()
     assert max(found.values()) < AT_ONCE_S, found
     assert server.stop() == 128 + signal.SIGTERM
@@ -231,7 +212,8 @@ def test_force_ends_with_the_tab_the_loop_and_a_frozen_server(home: Home) -> Non
     assert not home.left()
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT"])
+@pytest.mark.whole
+@pytest.mark.parametrize("name", ["SIGINT", "SIGHUP", "SIGQUIT"])
 def test_server_ended_by_a_signal_leaves_no_force_and_no_file(home: Home, name: str) -> None:
     server, number = home.server("level.yaml"), getattr(signal, name)
     press = Press(home, server)
@@ -278,95 +260,42 @@ def test_server_that_is_killed_leaves_no_force_and_its_draft_is_offered(home: Ho
     assert not home.left()
 
 
-def test_two_servers_run_at_the_same_time(home: Home) -> None:
-    first, second = home.server("level.yaml"), home.server("level.yaml")
-    presses = [Press(home, first), Press(home, second)]
+@pytest.mark.whole
+def test_servers_next_to_each_other_import_nothing_that_computes_and_print_their_keys_once(home: Home) -> None:
+    """A failed request leaves no warning, and no key is printed."""
+    looks = f"import atexit, sys; atexit.register(lambda: print('has', [n for n in {FORBIDDEN} if n in sys.modules])); "
+    servers = [home.server("level.yaml", "--log-level", "debug", start=HEARING + looks + START) for _ in range(2)]
+    presses = [Press(home, each) for each in servers]
     for each in presses:
+        each.tab.until(event="answer", number=each.tab.ask("devices"))
         each.close()
-    assert first.stop() == second.stop() == 128 + signal.SIGTERM
+    for server in servers:
+        assert server.stop() == 128 + signal.SIGTERM
+        assert "has []" in server.lines
+        assert [line for line in server.lines if server.url.rpartition("=")[2] in line] == [server.url]
+        assert not [line for line in server.lines if "never retrieved" in line or "Traceback" in line]
     assert not home.left()
 
 
-def test_server_imports_nothing_that_computes_and_prints_its_key_once(home: Home) -> None:
-    """A failed request leaves no warning, and no key is printed."""
-    looks = f"import atexit, sys; atexit.register(lambda: print('has', [n for n in {FORBIDDEN} if n in sys.modules])); "
-    server = home.server("level.yaml", "--log-level", "debug", start=HEARING + looks + START)
-    press = Press(home, server)
-    press.tab.until(event="answer", number=press.tab.ask("devices"))
-    press.close()
+@pytest.mark.whole
+@pytest.mark.parametrize("env", [{"TMPDIR": "/nonexistent"}, {"HOME": "/nonexistent"}, {"TANGIBLE_DATA_DIR": "{file}"}])
+def test_server_starts_without_folders_of_its_user(home: Home, env: dict[str, str]) -> None:
+    told = {name: value.format(file=home.folder / "level.yaml") for name, value in env.items()}
+    server = UiServer("level.yaml", cwd=home.folder, env={**home.env, **told}, start=HEARING + START)
     assert server.stop() == 128 + signal.SIGTERM
-    assert "has []" in server.lines
-    key = server.url.rpartition("=")[2]
-    assert [line for line in server.lines if key in line] == [server.url]
-    assert not [line for line in server.lines if "never retrieved" in line or "Traceback" in line]
+    assert not [line for line in server.lines if "Traceback" in line]
 
 
-@pytest.mark.parametrize(
-    ("env", "words", "says"),
-    [
-        ({"TMPDIR": "/nonexistent"}, [], ""),
-        ({}, ["--port", "{port}"], "--port {port}: Address already in use; 0 takes a free one"),
-        ({"HOME": "/nonexistent"}, [], ""),
-        ({"TANGIBLE_DATA_DIR": "{file}"}, [], ""),
-        ({"TANGIBLE_RUNTIME_DIR": "{file}"}, [], "{file}"),
-    ],
-)
-def test_server_starts_with_missing_folders_or_reports_one_sentence(
-    home: Home, env: dict[str, str], words: list[str], says: str
-) -> None:
-    """The server starts all the same, or prints one sentence."""
+def test_server_without_a_port_or_a_channel_ends_with_one_sentence(home: Home, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, value in home.env.items():
+        monkeypatch.setenv(name, value)
     with socket.create_server(("127.0.0.1", 0)) as taken:
-        told = {"port": str(taken.getsockname()[1]), "file": str(home.folder / "level.yaml")}
-        env = {**home.env, **{name: value.format(**told) for name, value in env.items()}}
-        command = [
-            sys.executable,
-            "-c",
-            START,
-            "ui",
-            "level.yaml",
-            "--no-browser",
-            *(each.format(**told) for each in words),
-        ]
-        with subprocess.Popen(
-            command,
-            cwd=home.folder,
-            env={**os.environ, **env},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        ) as process:
-            assert process.stdout and process.stderr
-            first = process.stdout.readline()
-            if not says:
-                assert first.startswith("http://127.0.0.1:")
-                process.terminate()
-            out, err = process.communicate(timeout=LONGEST_S)
-    if says:
-        assert process.returncode == 2
-        assert not out and len(err.splitlines()) == 1
-        assert says.format(**told) in err
-    else:
-        assert process.returncode == 128 + signal.SIGTERM
-        assert "Traceback" not in err
-
-
-def test_worker_ends_with_its_pipe_during_a_job(home: Home) -> None:
-    """The worker ends with its pipe, whatever it computes."""
-    from tangible_core.runtime.child_process import command
-    from tangible_core.servo.framing import send
-    from tangible_ui.worker.messages import JobRequest
-
-    folder = home.folder / "drawn"
-    folder.mkdir()
-    env = {**os.environ, **home.env}
-    with subprocess.Popen(
-        command("tangible_ui.worker.process"), stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=env, cwd=home.folder
-    ) as worker:
-        assert worker.stdin and worker.stdout
-        send(worker.stdin, folder)
-        told = {"text": "scene: builtin/motorcycle\n", "path": home.folder / "m.yaml", "sets": [], "want": "surface"}
-        send(worker.stdin, JobRequest(1, "make", {"number": 1, **told}))
-        assert worker.stdout.read(8)  # it has begun
-        assert worker.poll() is None
-        worker.stdin.close()
-        assert worker.wait(LONGEST_S) == 0
+        port = taken.getsockname()[1]
+        done = tangible("ui", "level.yaml", "--no-browser", "--port", port, cwd=home.folder)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert f"--port {port}: Address already in use; 0 takes a free one" in done.stderr
+    file = home.folder / "level.yaml"
+    monkeypatch.setenv("TANGIBLE_RUNTIME_DIR", str(file))
+    done = tangible("ui", "level.yaml", "--no-browser", "--port", 0, cwd=home.folder)
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1 and str(file) in done.stderr

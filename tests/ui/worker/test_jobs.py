@@ -1,7 +1,6 @@
-"""The worker's state and its quick jobs: what is read again, what devices can do, and who waits for a worker."""
+"""The worker's state and jobs: otherwise an old picture is shown, or the page waits for ever."""
 
 import asyncio
-import re
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -10,25 +9,18 @@ import numpy as np
 import pytest
 from PIL import Image
 
-import tangible_ui
-from sessions import TEXT, small_scene
+from sessions import TEXT, Heard, small_scene
 from tangible_core.errors import ConfigError
-from tangible_legibility.words.languages import LANGUAGES
+from tangible_ui.feeling.feeling import Feeling
+from tangible_ui.prestart import _prestarted, prestart_worker, take_worker_process
+from tangible_ui.requests import REQUESTS
+from tangible_ui.state.session import Session
 from tangible_ui.worker import handle
 from tangible_ui.worker.handle import MOST_DEATHS, Worker, WorkerAbsent, WorkerKilled
 from tangible_ui.worker.jobs import JOBS
 from tangible_ui.worker.messages import Event
 from tangible_ui.worker.state import WorkerState
-
-LONG = {"export", "fix", "laws", "legible", "make", "preflight", "try_law"}
-"""Jobs that compute for seconds, one after the other; any other job goes on next to them."""
-
-
-def test_jobs_that_a_request_waits_for_are_not_behind_a_long_one() -> None:
-    assert {name for name, each in JOBS.items() if not each.quick} == LONG
-    sources = "".join(each.read_text() for each in Path(str(tangible_ui.__file__)).parent.rglob("*.py"))
-    repeated = re.findall(r"\.quick\(\s*\"(\w+)\"", sources)
-    assert len(repeated) >= 30 and all(JOBS[each].quick for each in repeated)
+from waiting import happened
 
 
 def test_pipeline_file_counts_alone_and_two_are_refused(worker_state: WorkerState, tmp_path: Path) -> None:
@@ -74,15 +66,7 @@ def test_device_presses_with_no_more_than_document_and_motor_allow(
     assert found["most_force_n"] == most_n
 
 
-def test_surface_is_described_in_each_language(worker_state: WorkerState, tmp_path: Path) -> None:
-    told = {"number": 1, "text": TEXT, "path": small_scene(tmp_path), "sets": [], "want": "surface"}
-    JOBS["make"].do(worker_state, **told)
-    heard: list[tuple[str, dict[str, Any]]] = worker_state.heard  # pyright: ignore[reportAttributeAccessIssue]
-    (described,) = [said for event, said in heard if event == "described"]
-    assert set(described["says"]) == set(LANGUAGES)
-    assert len(set(described["says"].values())) == len(LANGUAGES)
-
-
+@pytest.mark.anyio
 class TestHandle:
     @pytest.fixture
     def started(self, monkeypatch: pytest.MonkeyPatch) -> list[Worker]:
@@ -106,49 +90,101 @@ class TestHandle:
         worker._handle_exit()  # pyright: ignore[reportPrivateUsage]
 
     @pytest.mark.parametrize("last", [{"ready": True}, {"killed": True}])
-    def test_worker_is_given_up_after_failed_starts_in_a_row_alone(
+    async def test_worker_is_given_up_after_failed_starts_in_a_row_alone(
         self, started: list[Worker], tmp_path: Path, last: dict[str, bool]
     ) -> None:
-        async def check() -> None:
-            heard: list[Event] = []
-            worker = Worker(tmp_path, heard.append)
-            for _ in range(MOST_DEATHS - 1):
-                self.die(worker)
-            self.die(worker, **last)
-            assert len(started) == MOST_DEATHS + 1
-            for _ in range(MOST_DEATHS - 1 if "ready" in last else 0):
-                self.die(worker)
-            assert "maker_gone" not in [each.event for each in heard]
+        heard: list[Event] = []
+        worker = Worker(tmp_path, heard.append)
+        for _ in range(MOST_DEATHS - 1):
             self.die(worker)
-            assert heard[-1] == Event(
-                "maker_gone", {"why": "the process that computes does not start: it printed nothing"}
-            )
-            with pytest.raises(WorkerAbsent, match="does not start"):
-                await worker.ask("schema")
-            count = len(started)
-            worker.try_again()
-            assert len(started) == count + 1
-            for _ in range(MOST_DEATHS - 1):
-                self.die(worker)
-            assert len(started) == count + MOST_DEATHS
+        self.die(worker, **last)
+        assert len(started) == MOST_DEATHS + 1
+        for _ in range(MOST_DEATHS - 1 if "ready" in last else 0):
+            self.die(worker)
+        assert "maker_gone" not in [each.event for each in heard]
+        self.die(worker)
+        assert heard[-1] == Event("maker_gone", {"why": "the process that computes does not start: it printed nothing"})
+        with pytest.raises(WorkerAbsent, match="does not start"):
+            await worker.ask("schema")
+        count = len(started)
+        worker.try_again()
+        assert len(started) == count + 1
+        for _ in range(MOST_DEATHS - 1):
+            self.die(worker)
+        assert len(started) == count + MOST_DEATHS
 
-        asyncio.run(check())
-
-    def test_requests_of_a_killed_worker_are_told_and_quick_ones_repeated(
+    async def test_requests_of_a_killed_worker_are_told_and_quick_ones_repeated(
         self, started: list[Worker], tmp_path: Path
     ) -> None:
-        async def check() -> None:
-            worker = Worker(tmp_path, lambda event: None)
-            asked = [asyncio.ensure_future(worker.ask("make")), asyncio.ensure_future(worker.quick("plan"))]
-            while len(worker._waiting) < 2:  # pyright: ignore[reportPrivateUsage]
-                await asyncio.sleep(0.01)
-            self.die(worker, ready=True, killed=True)
-            with pytest.raises(WorkerKilled):
-                await asked[0]
-            while not asked[1].done():  # the request that died may wait still, which an answer does not change
-                for number in worker._waiting:  # pyright: ignore[reportPrivateUsage]
-                    worker._take(handle.JobResult(number, "the plan"))  # pyright: ignore[reportPrivateUsage]
-                await asyncio.sleep(0.01)
-            assert await asked[1] == "the plan"
+        worker = Worker(tmp_path, lambda event: None)
+        asked = [asyncio.ensure_future(worker.ask("make")), asyncio.ensure_future(worker.quick("plan"))]
+        while len(worker._waiting) < 2:  # pyright: ignore[reportPrivateUsage]
+            await asyncio.sleep(0.01)
+        self.die(worker, ready=True, killed=True)
+        with pytest.raises(WorkerKilled):
+            await asked[0]
+        while not asked[1].done():  # the request that died may wait still, which an answer does not change
+            for number in worker._waiting:  # pyright: ignore[reportPrivateUsage]
+                worker._take(handle.JobResult(number, "the plan"))  # pyright: ignore[reportPrivateUsage]
+            await asyncio.sleep(0.01)
+        assert await asked[1] == "the plan"
 
-        asyncio.run(asyncio.wait_for(check(), 60))
+
+SLOW = """\
+scene: builtin/motorcycle
+depth: {use: luminance}
+render: {use: penalty}
+"""
+
+
+@pytest.mark.whole
+@pytest.mark.anyio
+async def test_stopped_job_ends_at_once_and_the_loop_goes_on(tmp_path: Path):
+    session, tab = Session(tmp_path, Feeling("worker-process"), []), Heard()
+    session.enter(tab)
+
+    async def ask(name: str, **told: Any) -> Any:
+        return await REQUESTS[name](session, tab, **told)
+
+    try:
+        await asyncio.to_thread(session.feeling.start)
+        await ask("edit", text=SLOW)
+        await ask("make")
+        felt, servo = session.feeling.felt, session.feeling.servo
+        assert felt is not None
+        assert servo is not None
+        await ask("set", changes={"depth.use": "ssd", "depth.window_px": 19})
+        making = asyncio.ensure_future(ask("make"))
+        await happened(lambda: any(each["event"] == "stage" and each["method"] == "ssd" for each in tab.events))
+        assert not making.done()
+        ticks, swapped = servo.ring.count, tab.names().count("touch")
+        await ask("stop_making")
+        await making
+        assert tab.last("made")["outcome"] == "stopped"
+        said = await ask("set", changes={"render.stiffness_n_per_m": 300})  # quick work waits for the new one
+        assert said["complaints"] == []
+        assert session.feeling.felt is felt
+        assert session.feeling.running
+        await happened(lambda: servo.ring.count - ticks > 100)
+        assert tab.names().count("touch") == swapped
+        await ask("undo")
+        await ask("undo")
+        await ask("make")
+        assert tab.last("made")["outcome"] == "made"
+        assert session.feeling.felt is not felt
+    finally:
+        await session.close()
+
+
+def test_prestarted_worker_is_taken_once_or_killed():
+    with prestart_worker():
+        first = take_worker_process()
+        second = take_worker_process()
+        assert first.pid != second.pid
+    assert first.poll() is None  # whoever took it ends it
+    with prestart_worker():
+        unused = _prestarted[0]
+    assert unused.poll() is not None
+    for each in (first, second):
+        with each:
+            each.kill()

@@ -1,56 +1,43 @@
-"""Making what the document says: stages, plans, what gives way to what, and what a killed worker leaves."""
+"""Making what the document says: otherwise an old surface is felt, or everything is computed again."""
 
 import asyncio
 import threading
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-import numpy as np
 import pytest
 
-from sessions import TEXT, SmallSession, small_scene
+from sessions import TEXT, SmallSession
+from tangible_authoring.fixing import AT_ONCE
 from tangible_core.data.part_words import name_part
 from tangible_core.errors import ConfigError, Stopped, TangibleError
-from tangible_ui.requests import REQUESTS
+from tangible_core.preflight import Loop
+from tangible_depth.luminance import Luminance
 from tangible_ui.requests import making as asks_making
 from tangible_ui.worker.jobs import JOBS
-from tangible_ui.worker.messages import Late
 from tangible_ui.worker.state import WorkerState
 from waiting import LONGEST_S, happened
 
-Ask = Callable[..., Coroutine[Any, Any, Any]]
+pytestmark = pytest.mark.anyio
 DEVICE = ["device={use: mock}"]
 
 
 @pytest.fixture
-def scene(tmp_path: Path) -> Path:
-    return small_scene(tmp_path)
-
-
-@pytest.fixture
-def small(tmp_path: Path, scene: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Runs a test with a session on which the small scene is opened and felt."""
-
-    def run(check: Callable[[SmallSession, Ask], Coroutine[Any, Any, None]]) -> None:
-        async def all_of_it() -> None:
-            small = SmallSession(tmp_path, monkeypatch)
-
-            async def ask(name: str, **told: Any) -> Any:
-                return await REQUESTS[name](small.session, small.tab, **told)
-
-            await ask("begin", files=[str(scene)])
-            await small.tab.until("touch")
-            await check(small, ask)
-
-        asyncio.run(all_of_it())
-
-    return run
+async def small(small: SmallSession) -> SmallSession:
+    """The scene is felt."""
+    await small.ask("make")
+    await small.tab.until("touch")
+    return small
 
 
 def events(worker_state: Any, name: str) -> list[dict[str, Any]]:
     return [told for event, told in worker_state.heard if event == name]
+
+
+def forget(worker_state: Any) -> None:
+    worker_state.heard.clear()
 
 
 def make(worker_state: WorkerState, text: str, path: Path, want: str = "touch", number: int = 1) -> Any:
@@ -83,13 +70,10 @@ def test_make_sends_plan_stages_and_outcome(worker_state: WorkerState, scene: Pa
 
 def test_make_with_another_law_makes_the_touch_alone(worker_state: WorkerState, scene: Path):
     make(worker_state, TEXT, scene)
-    worker_state.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
+    forget(worker_state)
     other = TEXT.replace("400", "500")
     plan = JOBS["plan"].do(worker_state, text=other, path=scene, sets=DEVICE, want="touch")
     assert (plan["slow"], plan["refusal"]) == ([], "")
-    lower = JOBS["plan"].do(worker_state, text=TEXT.replace("0.004", "0.003"), path=scene, sets=DEVICE, want="touch")
-    found = {each["product"]: each["outcome"] for each in lower["steps"]}
-    assert (found["disparity"], found["relief"], lower["slow"]) == ("cached", "ran", [])
     products = {each["product"]: each["outcome"] for each in plan["steps"]}
     assert list(products) == ["views", "disparity", "relief", "segments", "materials", "surface", "touch"]
     assert (products["views"], products["disparity"], products["touch"]) == ("given", "cached", "ran")
@@ -126,7 +110,7 @@ def test_make_that_fails_leaves_the_last_good_pipeline(worker_state: WorkerState
         worker_state, text=TEXT.replace("mine.png", "gone.png"), path=scene, sets=DEVICE, want="touch"
     )
     assert "gone.png" in refused["refusal"]
-    worker_state.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
+    forget(worker_state)
     make(worker_state, TEXT, scene)
     assert {told["product"] for told in events(worker_state, "stage")} == {"touch"}
 
@@ -135,9 +119,23 @@ def test_make_without_a_law_shows_and_keeps_the_surface(worker_state: WorkerStat
     with pytest.raises(ConfigError, match="`render:` is missing"):
         make(worker_state, TEXT.replace("render:", "# render:"), scene)
     assert events(worker_state, "scene")
-    worker_state.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
+    forget(worker_state)
     make(worker_state, TEXT.replace("render: {use: penalty, stiffness_n_per_m: 400}", "render: proxy"), scene)
     assert {told["product"] for told in events(worker_state, "stage")} == {"touch"}
+
+
+@pytest.fixture
+def depth(monkeypatch: pytest.MonkeyPatch) -> tuple[threading.Event, threading.Event]:
+    """Events of a depth that is estimated: it has begun, and it may go on."""
+    begun, go, estimate = threading.Event(), threading.Event(), Luminance.estimate
+
+    def waits(self: Any, views: Any) -> Any:
+        begun.set()
+        assert go.wait(LONGEST_S)
+        return estimate(self, views)
+
+    monkeypatch.setattr(Luminance, "estimate", waits)
+    return begun, go
 
 
 @pytest.mark.parametrize(
@@ -145,10 +143,9 @@ def test_make_without_a_law_shows_and_keeps_the_surface(worker_state: WorkerStat
     [("segments: 3", "segments: 4", False), ("luminance}", "luminance, smoothing_px: 4}", True)],
 )
 def test_newer_job_waits_only_for_a_stage_that_it_needs_too(
-    worker_state: WorkerState, scene: Path, monkeypatch: pytest.MonkeyPatch, said: str, instead: str, at_once: bool
+    worker_state: WorkerState, scene: Path, depth: Any, said: str, instead: str, at_once: bool
 ):
-    begun, go = threading.Event(), threading.Event()
-    monkeypatch.setattr("tangible_depth.luminance.Luminance.estimate", _waits(begun, go))
+    begun, go = depth
     ended: list[BaseException | None] = []
     old = threading.Thread(target=_keep_error, args=(ended, lambda: make(worker_state, TEXT, scene, number=1)))
     old.start()
@@ -161,23 +158,10 @@ def test_newer_job_waits_only_for_a_stage_that_it_needs_too(
     assert [each["product"] for each in events(worker_state, "stage") if each["done"]] == ["disparity"]
     with pytest.raises(Stopped):  # nor does one begin that waited in the queue
         make(worker_state, TEXT, scene, number=1)
-    worker_state.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
+    forget(worker_state)
     assert make(worker_state, number=2, **{name: newer[name] for name in ("text", "path")})
     again = {each["product"]: each["done"]["outcome"] for each in events(worker_state, "stage") if each["done"]}
     assert again["disparity"] == ("ran" if at_once else "cached")
-
-
-def _waits(begun: threading.Event, go: threading.Event) -> Any:
-    from tangible_depth.luminance import Luminance
-
-    estimate = Luminance.estimate
-
-    def waits(self: Any, views: Any) -> Any:
-        begun.set()
-        assert go.wait(LONGEST_S)
-        return estimate(self, views)
-
-    return waits
 
 
 def _keep_error(ended: list[BaseException | None], do: Callable[[], Any]) -> None:
@@ -189,129 +173,75 @@ def _keep_error(ended: list[BaseException | None], do: Callable[[], Any]) -> Non
         ended.append(None)
 
 
-def test_edit_is_applied_at_once_if_nothing_slow_has_to_run(small: Any):
-    async def check(small: SmallSession, ask: Ask) -> None:
-        first = len(small.felt)
-        await ask("set", changes={"render.use": "proxy"}, apply=True)
-        await small.tab.until("touch", 2)
-        assert [each["law"] for each in small.felt[first:]] == ["proxy"]
-        await ask("set", changes={"depth.smoothing_px": 3}, apply=True)
-        plan = await small.tab.until("plan", small.tab.names().count("plan") + 1)
-        assert plan["slow"] == ["disparity"]
-        await ask("set", changes={"render.stiffness_n_per_m": 900})
-        await asyncio.sleep(0.1)
-        assert len(small.felt) == first + 1
-        assert small.tab.last("made")["digest"] != small.session.digest
-
-    small(check)
+async def test_edit_during_a_job_is_applied_after_it(small: SmallSession, ask: Any, request: Any):
+    begun, go = request.getfixturevalue("depth")  # not before the scene is felt
+    await ask("set", changes={"depth.smoothing_px": 3})
+    making = asyncio.ensure_future(ask("make"))
+    assert await asyncio.to_thread(begun.wait, LONGEST_S)
+    plans = small.tab.names().count("plan")
+    await ask("set", changes={"render.stiffness_n_per_m": 900}, apply=True)
+    plan = await small.tab.until("plan", plans + 1)
+    assert plan["slow"] == ["disparity"]  # as it is not made yet
+    go.set()
+    await making
+    await small.tab.until("touch", 3)
+    assert small.tab.last("made")["digest"] == small.session.digest
 
 
-def test_edit_during_a_job_is_applied_after_it(small: Any, monkeypatch: pytest.MonkeyPatch):
-    async def check(small: SmallSession, ask: Ask) -> None:
-        begun, go = threading.Event(), threading.Event()
-        monkeypatch.setattr("tangible_depth.luminance.Luminance.estimate", _waits(begun, go))
-        await ask("set", changes={"depth.smoothing_px": 3})
-        making = asyncio.ensure_future(ask("make"))
-        assert await asyncio.to_thread(begun.wait, LONGEST_S)
-        plans = small.tab.names().count("plan")
-        await ask("set", changes={"render.stiffness_n_per_m": 900}, apply=True)
-        plan = await small.tab.until("plan", plans + 1)
-        assert plan["slow"] == ["disparity"]  # as it is not made yet
-        go.set()
-        await making
-        await small.tab.until("touch", 3)
-        assert small.tab.last("made")["digest"] == small.session.digest
-
-    small(check)
+async def test_stop_making_kills_the_worker_only_during_a_job(small: SmallSession, ask: Any, request: Any):
+    await ask("stop_making")
+    assert small.worker.kills == 0
+    begun, go = request.getfixturevalue("depth")  # not before the scene is felt
+    await ask("set", changes={"depth.smoothing_px": 3})
+    making = asyncio.ensure_future(ask("make"))
+    assert await asyncio.to_thread(begun.wait, LONGEST_S)
+    await ask("stop_making")
+    go.set()
+    assert await making is None  # who stops is not told of an error
+    assert small.worker.kills == 1
+    assert small.tab.last("made")["outcome"] == "stopped"
+    assert "error" not in small.tab.names()
+    await ask("make")
+    assert small.tab.last("made")["outcome"] == "made"
 
 
-def test_stop_making_kills_the_worker_only_during_a_job(small: Any, monkeypatch: pytest.MonkeyPatch):
-    async def check(small: SmallSession, ask: Ask) -> None:
-        await ask("stop_making")
-        assert small.worker.kills == 0
-        begun, go = threading.Event(), threading.Event()
-        monkeypatch.setattr("tangible_depth.luminance.Luminance.estimate", _waits(begun, go))
-        await ask("set", changes={"depth.smoothing_px": 3})
-        making = asyncio.ensure_future(ask("make"))
-        assert await asyncio.to_thread(begun.wait, LONGEST_S)
-        await ask("stop_making")
-        go.set()
-        assert await making is None  # who stops is not told of an error
-        assert small.worker.kills == 1
-        assert small.tab.last("made")["outcome"] == "stopped"
-        assert "error" not in small.tab.names()
-        await ask("make")
-        assert small.tab.last("made")["outcome"] == "made"
-
-    small(check)
+async def test_job_that_does_not_give_way_is_killed_and_the_newest_repeated(
+    small: SmallSession, ask: Any, request: Any, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(asks_making, "PATIENCE_S", 0.2)
+    begun, go = request.getfixturevalue("depth")  # not before the scene is felt
+    await ask("set", changes={"depth.smoothing_px": 3})
+    old = asyncio.ensure_future(ask("make"))
+    assert await asyncio.to_thread(begun.wait, LONGEST_S)
+    await ask("set", changes={"depth.smoothing_px": 4})
+    new = asyncio.ensure_future(ask("make"))
+    await happened(lambda: small.worker.kills)
+    go.set()
+    assert await old is None
+    await new
+    assert small.tab.last("made")["digest"] == small.session.digest
+    assert small.worker.kills == 1
+    assert small.worker.asked.count("make") == 4  # the first, the old, the new twice
 
 
-def test_job_that_does_not_give_way_is_killed_and_the_newest_repeated(small: Any, monkeypatch: pytest.MonkeyPatch):
-    async def check(small: SmallSession, ask: Ask) -> None:
-        monkeypatch.setattr(asks_making, "PATIENCE_S", 0.2)
-        begun, go = threading.Event(), threading.Event()
-        monkeypatch.setattr("tangible_depth.luminance.Luminance.estimate", _waits(begun, go))
-        await ask("set", changes={"depth.smoothing_px": 3})
-        old = asyncio.ensure_future(ask("make"))
-        assert await asyncio.to_thread(begun.wait, LONGEST_S)
-        await ask("set", changes={"depth.smoothing_px": 4})
-        new = asyncio.ensure_future(ask("make"))
-        await happened(lambda: small.worker.kills)
-        go.set()
-        assert await old is None
-        await new
-        assert small.tab.last("made")["digest"] == small.session.digest
-        assert small.worker.kills == 1
-        assert small.worker.asked.count("make") == 4  # the first, the old, the new twice
-
-    small(check)
-
-
-def test_failure_is_reported_to_the_requester_and_to_all_tabs(small: Any):
-    async def check(small: SmallSession, ask: Ask) -> None:
-        await ask("set", changes={"materials.by": {"7": "ice"}, "render.use": "proxy"})
-        with pytest.raises(TangibleError, match="no segment"):
-            await ask("make")
-        told = small.tab.last("made")
-        assert told["outcome"] == "failed"
-        assert "no segment" in told["why"]
-
-    small(check)
-
-
-def test_preflight_cures_change_the_document(small: Any):
-    async def check(small: SmallSession, ask: Ask) -> None:
-        assert (await ask("preflight"))["device"] == ""  # the page's own hand
-        steep = {"render.use": "penalty-gradient", "workspace.relief_m": 0.02, "workspace.smooth_m": 0}
-        hard = {"materials.by": "rules", "materials.default": "brick", "materials.fit": "never"}
-        await ask("set", changes={**steep, **hard, "device.use": "mock"})
-        assert small.tab.last("preflight")["digest"] != small.session.digest
-        found = await ask("preflight")
-        assert (found["grade"], found["device"], found["of_loop"]) == ("unsafe", "mock", False)
-        assert found["sentence"].startswith("Unsafe, because")
-        assert found["digest"] == small.session.digest
-        cures = [each["changes"][0] for each in found["verdicts"] if each["changes"]]
-        assert {"key": "materials.fit", "value": "device", "towards": "is"} in cures
-        assert all(each["stands"] for each in found["verdicts"])
-        fixed = await ask("fix")
-        assert fixed["safe"]
-        assert small.session.text.startswith("# a photograph of mine\n")
-        assert "# bright is near" in small.session.text
-        assert "fit: device" in small.session.text
-        now = small.tab.last("preflight")
-        assert (now["grade"] != "unsafe", now["digest"]) == (True, small.session.digest)
-
-    small(check)
-
-
-def test_preflight_judges_the_lateness_of_the_running_loop(worker_state: WorkerState, scene: Path):
-    late = Late(np.full(2000, 0.004), 0.001, True)
-    told = {"text": TEXT, "path": scene, "sets": [], "own": DEVICE[0]}
-    begun_s = perf_counter()
-    found = JOBS["preflight"].do(worker_state, number=1, late=late, **told)
-    (made,) = events(worker_state, "made")
-    assert 0 <= made["seconds"] <= perf_counter() - begun_s
-    assert found["of_loop"]
-    late = next(each for each in found["verdicts"] if each["check"] == "jitter")
-    assert late["verdict"] != "ok"
-    assert late["stands"] == "4 ms > 1 ms"
+async def test_preflight_cures_change_the_document(small: SmallSession, ask: Any, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("tangible_ui.worker.jobs.preflight.Loop", lambda seconds=AT_ONCE: Loop(seconds=AT_ONCE))
+    assert (await ask("preflight"))["device"] == ""  # the page's own hand
+    steep = {"render.use": "penalty-gradient", "workspace.relief_m": 0.02, "workspace.smooth_m": 0}
+    hard = {"materials.by": "rules", "materials.default": "brick", "materials.fit": "never"}
+    await ask("set", changes={**steep, **hard, "device.use": "mock"})
+    assert small.tab.last("preflight")["digest"] != small.session.digest
+    found = await ask("preflight")
+    assert (found["grade"], found["device"], found["of_loop"]) == ("unsafe", "mock", False)
+    assert found["sentence"].startswith("Unsafe, because")
+    assert found["digest"] == small.session.digest
+    cures = [each["changes"][0] for each in found["verdicts"] if each["changes"]]
+    assert {"key": "materials.fit", "value": "device", "towards": "is"} in cures
+    assert all(each["stands"] for each in found["verdicts"])
+    fixed = await ask("fix")
+    assert fixed["safe"]
+    assert small.session.text.startswith("# a photograph of mine\n")
+    assert "# bright is near" in small.session.text
+    assert "fit: device" in small.session.text
+    now = small.tab.last("preflight")
+    assert (now["grade"] != "unsafe", now["digest"]) == (True, small.session.digest)

@@ -1,8 +1,7 @@
-"""Frames on the websocket byte by byte, names of events and of requests."""
+"""What page and server must call and pack alike: otherwise one takes a word or a frame of the other for another."""
 
 import json
 import re
-import struct
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -11,9 +10,18 @@ import pytest
 
 from page_files import WEB, node
 from tangible_core.data import TICK_COLUMNS, TickFlag
+from tangible_core.pipeline.config.schema import json_schema
+from tangible_legibility.words.languages import LANGUAGES, TABLES
 from tangible_ui import framing as wire
+from tangible_ui import requests
+from tangible_ui.feeling.recorder import BY_HAND
 from tangible_ui.requests import REQUESTS
+from tangible_ui.requests.table import request
 from tangible_ui.serving.routes import WRONG_KEY
+from tangible_ui.serving.translating import in_language, language_of
+from tangible_ui.worker import jobs
+from tangible_ui.worker.jobs import JOBS
+from tangible_ui.worker.jobs.table import job
 
 SOURCES = Path(wire.__file__).parent
 SAID = (1, 5, 513, 4_000_000_000, 4_000_000, 77, 1.7e12 + 0.25)
@@ -75,11 +83,6 @@ class TestFrames:
         assert wire.ACK_FRAME.unpack(bytes.fromhex(page()["ack"])) == (wire.ACK, 4_000_000_000)
         assert bytes.fromhex(page()["release"]) == wire.RELEASE_FRAME.pack(wire.RELEASE)
 
-    @pytest.mark.parametrize("name", ["STATE", "POINTER", "ACK", "RELEASE"])
-    def test_frames_are_little_endian(self, name: str) -> None:
-        frame: struct.Struct = getattr(wire, f"{name}_FRAME")
-        assert frame.format.startswith("<")
-
 
 def test_recording_columns_are_those_of_the_page() -> None:
     said = (WEB / "src/panels/recordings/ticks.ts").read_text(encoding="utf-8")
@@ -120,3 +123,85 @@ class TestNames:
 OF_THE_PAGE = {"gone", "refused"}
 """Events that the page sends to itself when the program is gone, or is another one."""
 NOT_ASKED: set[str] = set()
+
+
+def topics(package: str) -> set[str]:
+    return {path.stem for path in Path(package).parent.glob("*.py")} - {"__init__", "table"}
+
+
+def test_topic_module_is_loaded_without_a_list() -> None:
+    modules = {each.__module__.rpartition(".")[2] for each in REQUESTS.values()}
+    assert modules - {"table"} == topics(requests.__file__) - {"surface"} and "texture_patch" in REQUESTS
+    assert {each.do.__module__.rpartition(".")[2] for each in JOBS.values()} == topics(jobs.__file__)
+
+
+def test_request_or_job_of_a_taken_name_is_refused() -> None:
+    async def make() -> None: ...
+
+    with pytest.raises(ValueError, match="two requests named make"):
+        request()(make)
+    with pytest.raises(ValueError, match="two requests named set"):
+        request("set")(make)
+    with pytest.raises(ValueError, match="two jobs named make"):
+        job()(make)
+
+
+GONE, GONE_DE = "this file is gone", "diese Datei gibt es nicht mehr"
+BROKE, BROKE_DE = "the upload broke off", "das Hochladen brach ab"
+
+
+def test_english_message_is_sent_as_it_is():
+    message = {"event": "error", "text": GONE, "checks": [{"sentence": BROKE}]}
+    assert in_language(message, "en") is message
+
+
+@pytest.mark.parametrize(("tag", "language"), [("de", "de"), ("en", "en"), ("xx", "en"), ("", "en"), ("DE", "en")])
+def test_language_that_is_not_spoken_is_english(tag: str, language: str):
+    assert language_of(tag) == language
+
+
+@pytest.mark.parametrize("event", ["refused", "error", "log"])
+def test_text_of_what_is_said_is_translated(event: str):
+    message = {"event": event, "text": GONE, "number": 3}
+    assert in_language(message, "de") == {"event": event, "text": GONE_DE, "number": 3}
+
+
+@pytest.mark.parametrize(
+    ("message", "german"),
+    [
+        ({"event": "document", "text": GONE}, None),  # the text of a file
+        ({"name": GONE, "label": BROKE}, None),
+        ({"values": {"title": GONE}, "names": [GONE], "said": {"why": BROKE}, "says": {"en": BROKE}}, None),
+        *[({"why": why}, None) for why in ("asked", "button", "scene", "ended", BY_HAND)],
+        ({"slow": [0.5, 1], "empty": [], "nothing": None, "wide": True}, None),
+        ({"why": GONE}, {"why": GONE_DE}),
+        ({"steps": [{"why": BROKE, "product": BROKE}]}, {"steps": [{"why": BROKE_DE, "product": BROKE}]}),
+        ({"complaint": {"text": GONE, "location": ["a"]}}, {"complaint": {"text": GONE_DE, "location": ["a"]}}),
+        ({"why": f"{GONE}; {BROKE}", "notes": [{"text": BROKE, "kind": "doubt"}]},
+         {"why": f"{GONE_DE}; {BROKE_DE}", "notes": [{"text": BROKE_DE, "kind": "doubt"}]}),
+        ({"why": GONE, "notes": [{"text": BROKE, "kind": "doubt"}]},
+         {"why": GONE_DE, "notes": [{"text": BROKE_DE, "kind": "doubt"}]}),
+        ({"why": GONE, "notes": []}, {"why": GONE_DE, "notes": []}),
+    ],
+)  # fmt: skip
+def test_german_message_has_german_texts_alone(message: dict[str, Any], german: dict[str, Any] | None):
+    assert in_language(message, "de") == (german or message)
+
+
+ROW = re.compile(r"^  (\w+): (\[.*\]),$", re.MULTILINE)
+
+
+def test_page_names_materials_as_descriptions_do():
+    rows = ROW.findall((WEB / "src/words/material_words.ts").read_text(encoding="utf-8"))
+    found = {name: json.loads(words) for name, words in rows}
+    assert found == {name: [TABLES[each].materials[name] for each in LANGUAGES] for name in TABLES["en"].materials}
+
+
+@pytest.mark.whole
+def test_form_has_a_control_with_default_and_bounds_for_every_option(tmp_path: Path, monkeypatch):
+    schema = tmp_path / "schema.json"
+    schema.write_text(json.dumps(json_schema(None, None)))
+    monkeypatch.setenv("TANGIBLE_SCHEMA", str(schema))
+    done = node("test/run.mjs", "--test-name-pattern", "every option", cwd=WEB)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "# pass 0" not in done.stdout

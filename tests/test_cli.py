@@ -1,4 +1,4 @@
-"""The command line as a user meets it: what it prints and its exit codes; whole processes where one is interrupted."""
+"""The command line. Otherwise a command would fail, lose what was felt, or hide why it refused."""
 
 import json
 import os
@@ -16,8 +16,11 @@ import pytest
 from command_line import tangible
 from ctrl_c import HEARING
 from distributions import distribution
-from tangible_core.cli import show
-from tangible_core.data import Outcome, ServoReport
+from pictures import write_png
+from tangible_core.data import ServoReport
+from tangible_core.pipeline.output import runs
+from tangible_core.session import INTERRUPTED, Recording, run_simulated
+from tangible_render import Penalty
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 
@@ -42,8 +45,6 @@ def mistake(*words: object, cwd: Path) -> str:
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """A small pair: a textured wall, its right half 8 px nearer than its left one."""
-    from pictures import write_png
-
     rng = np.random.default_rng(1)
     wall = rng.integers(0, 255, (64, 120), dtype=np.uint8)
     left = wall[:, 16:112]
@@ -57,44 +58,32 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_run_of_a_pair_makes_every_product_and_reports_it(folder: Path):
-    words = [TANGIBLE, "run", "p.yaml", "--seconds", "1", "--verbose"]
-    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=240)
+    done = tangible("run", "p.yaml", "--seconds", 1, "--verbose", cwd=folder)
     assert done.returncode == 0, done.stderr
-    for word in ("disparity", "opencv-sgbm", "ran", "bad2", "out/p/sheet.png"):
-        assert word in done.stdout
+    assert not [word for word in ("disparity", "opencv-sgbm", "bad2", "out/p/sheet.png") if word not in done.stdout]
     written = {path.name for path in (folder / "out" / "p").iterdir()}
     products = {"disparity.npz", "segments.npz", "materials.npz", "surface.npz"}
     assert written == products | {"config.yaml", "manifest.json", "outcomes.json", "recording.npz", "sheet.png"}
     again = tangible("run", "out/p/config.yaml", "--seconds", 1, "--sheet", "svg", "--json", cwd=folder)
-    (sheet,) = (folder / each for each in json.loads(again.stdout)["files"] if each.endswith(".svg"))
+    document = json.loads(again.stdout)
+    (sheet,) = (folder / each for each in document["files"] if each.endswith(".svg"))
     assert "<title>left.png</title>" in sheet.read_text(encoding="utf-8")  # and no path of this machine
-    outcomes = {each["product"]: each["outcome"] for each in json.loads(again.stdout)["outcomes"]}
+    outcomes = {each["product"]: each["outcome"] for each in document["outcomes"]}
     assert outcomes["surface"] == outcomes["disparity"] == "cached"
-
-
-def test_run_with_json_prints_json_alone(folder: Path):
-    done = tangible("run", "p.yaml", "--seconds", 1, "--json", "--no-cache", cwd=folder)
-    document = json.loads(done.stdout)
     assert document["figures"]["disparity"]["bad2"] < 40
     assert document["figures"]["force"]["peak_force_n"] > 0
     assert all(Path(folder, file).exists() for file in document["files"])
 
 
-def test_plan_runs_nothing(folder: Path):
+def test_plan_runs_nothing_and_reports_a_refusal(folder: Path):
     steps = json.loads(tangible("plan", "p.yaml", "--json", cwd=folder).stdout)
     assert [(each["product"], each["outcome"]) for each in steps][:2] == [("views", "given"), ("disparity", "ran")]
-    assert not (folder / "out").exists()
-
-
-def test_plan_of_a_scene_that_cannot_run_reports_the_refusal(folder: Path):
     one = ("p.yaml", "--set", "scene={photo: left.png}", "--set", "depth={use: semi-global}")
     said = mistake("plan", *one, cwd=folder)
-    assert said.startswith("this cannot be run: depth method semi-global needs two views, and the scene ")
     assert "left.png has one: give both" in said
     assert said.removeprefix("this cannot be run: ") == mistake("run", *one, cwd=folder)
     assert not (folder / "out").exists()
-    table = tangible("plan", *one, "--json", cwd=folder)
-    assert json.loads(table.stdout)[-1]["outcome"] == "refused"
+    assert json.loads(tangible("plan", *one, "--json", cwd=folder).stdout)[-1]["outcome"] == "refused"
 
 
 @pytest.mark.usefixtures("loop_in_thread")
@@ -108,13 +97,10 @@ def test_feel_records_every_tick(folder: Path):
 
 @pytest.mark.usefixtures("loop_in_thread")
 def test_feel_with_hardly_any_matches_asks_first(folder: Path, monkeypatch: pytest.MonkeyPatch):
-    from pictures import write_png
-
     write_png(folder / "right.png", np.random.default_rng(9).integers(0, 255, (64, 96), dtype=np.uint8))
     words = ("feel", "p.yaml", "--seconds", 0.2)
     said = mistake(*words, cwd=folder)
-    assert "hardly anything matches in the two pictures: a depth was found for " in said
-    assert said.endswith("in the two pictures; correct it as the warning says, or feel it anyway with --yes")
+    assert "hardly anything matches in the two pictures" in said and said.endswith("--yes")
     answers, asked = [False, True], []
 
     def confirm(text: str, err: bool) -> bool:
@@ -125,33 +111,16 @@ def test_feel_with_hardly_any_matches_asks_first(folder: Path, monkeypatch: pyte
     monkeypatch.setattr(sys, "stdin", SimpleNamespace(isatty=lambda: True))
     codes = [tangible(*words, *more, cwd=folder).returncode for more in ((), ("--yes",), ())]
     assert codes == [1, 0, 0]
-    assert len(asked) == 2 and asked[0].startswith("Hardly anything matches in the two pictures. Feel")
+    assert len(asked) == 2
 
 
-def test_set_overrides_one_value(folder: Path):
-    done = tangible("run", "p.yaml", "--set", "want=relief", "--json", cwd=folder)
-    made = {each["product"]: each["outcome"] for each in json.loads(done.stdout)["outcomes"]}
-    assert made["relief"] == "ran"
-    assert made["segments"] == made["touch"] == "skipped"
-
-
-def test_plugins_lists_each_method_with_one_line():
-    done = tangible("plugins", "--json", cwd=Path())
-    rows = {(each["kind"], each["name"]): each for each in json.loads(done.stdout)}
-    assert {("depth", "opencv-sgbm"), ("device", "mock")} <= set(rows)
-    assert all(each["summary"] and "cannot be read" not in each["summary"] for each in rows.values())
-
-
-def test_materials_shows_values_and_sources():
-    done = tangible("materials", "--json", cwd=Path())
-    ice = json.loads(done.stdout)["ice"]
-    assert ice["dynamic_friction"] <= 0.1
-    assert ice["source"]
-
-
-def test_materials_show_prints_units_and_sources():
+def test_lists_have_units_and_sources():
+    methods = json.loads(tangible("plugins", "--json", cwd=Path()).stdout)
+    assert {("depth", "opencv-sgbm"), ("device", "mock")} <= {(each["kind"], each["name"]) for each in methods}
+    assert all(each["summary"] and "cannot be read" not in each["summary"] for each in methods)
+    ice = json.loads(tangible("materials", "--json", cwd=Path()).stdout)["ice"]
+    assert ice["dynamic_friction"] <= 0.1 and ice["source"]
     done = tangible("materials", "show", "sand", cwd=Path())
-    assert done.returncode == 0, done.stderr
     for word in ("stiffness_n_per_m", "N/m", "HaTT, sandpaper, 140 Hz", "guess", "stochastic: noise", "140 Hz"):
         assert word in done.stdout
     found = json.loads(tangible("materials", "show", "sand", "--json", cwd=Path()).stdout)
@@ -171,15 +140,12 @@ def test_materials_draw_writes_a_picture_for_each(tmp_path: Path):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("show", "icee"), "no material is named 'icee' (did you mean 'ice'?)"),
-        (("draw", "ice", "sandd"), "no material is named 'sandd' (did you mean 'sand'?)"),
-        (("shw",), "Did you mean 'show'?"),
+        (("show", "icee"), "'ice'?"),
+        (("draw", "ice", "sandd"), "'sand'?"),
+        (("shw",), "'show'?"),
         (("show",), "Missing argument"),
         (("--library", "nope.yaml"), "nope.yaml: there is no such file"),
-        (
-            ("show", "ice", "--library", "bad.yaml"),
-            "bad.yaml:1:7: ice.grain_mm: unknown option (did you mean 'grain_m'?)",
-        ),
+        (("show", "ice", "--library", "bad.yaml"), "bad.yaml:1:7: ice.grain_mm: "),
         (("--json", "show", "ice"), "write the options after 'show'"),
         (("draw", "ice", "--out", "bad.yaml/x"), "cannot be written"),
     ],
@@ -198,76 +164,38 @@ def test_schema_prints_json_and_a_page():
     assert "`stiffness_n_per_m`" in page
 
 
-def test_log_level_of_one_logger_is_set_by_name(folder: Path):
-    word = "tangible_core.plugins.observers.log"
-    quiet = tangible("plan", "p.yaml", cwd=folder).stderr
-    told = tangible("plan", "p.yaml", "--log-level", f"{word}=info", cwd=folder).stderr
-    assert word not in quiet
-    assert f"INFO {word}: plan for touch" in told
-    assert "no level is named 'loud'" in mistake("plan", "p.yaml", "--log-level", "loud", cwd=folder)
-
-
 def test_check_of_a_declared_failure_reports_it_and_succeeds(monkeypatch: pytest.MonkeyPatch):
-    from tangible_render import Penalty
-
     done = tangible("check", "render", "penalty", cwd=Path())
     assert done.returncode == 0, done.stdout
     assert "0 failed, 1 failed as the method declares" in done.stdout
-    assert "its spring acts along z alone" in " ".join(done.stdout.split())
     monkeypatch.setattr(Penalty, "expected_failures", {"pickle_is_small": "a mistake"})
     done = tangible("check", "render", "penalty", "--json", cwd=Path())
     assert done.returncode == 1
     odd = [each for each in json.loads(done.stdout) if each["passed"] == bool(each["expected_failure"])]
     assert {each["name"]: each["passed"] for each in odd} == {"springs_are_exact": False, "pickle_is_small": True}
-
-
-def test_check_that_fails_exits_with_1(folder: Path):
-    assert tangible("check", "device", "mock", cwd=folder).returncode == 0
-    assert "unknown" in mistake("check", "depht", "x", cwd=folder) or "did you mean" in mistake(
-        "check", "depht", "x", cwd=folder
-    )
+    assert "did you mean 'depth'" in mistake("check", "depht", "x", cwd=Path())
 
 
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ("depth.use=opencv-sgmb", "did you mean 'opencv-sgbm'?"),
-        ("depth.max_disparty_px=3", "did you mean 'max_disparity_px'?"),
-        ("render.stiffness_n_per_m=-1", "greater than"),
+        ("depth.use=opencv-sgmb", "'opencv-sgbm'?"),
         ("scene.left=nope.png", "nope.png: there is no such file"),
         ("scene.left=p.yaml", "p.yaml"),
         ("scene.left=cut.png", "cut.png"),
         ("scene.left=wide.png", "one size"),
-        ("scene={height: nan.npy}", "holds only NaN or infinity"),
-        ("scene=builtin/motorcycles", "did you mean 'builtin/motorcycle'?"),
-        ("device.path=spirals", "device.path"),
-        ("workspace.width_m=0", "workspace.width_m"),
+        ("scene={height: nan.npy}", "only NaN"),
         ("materials={7: ice}", "7"),
-        ("materials={0: icee}", "did you mean 'ice'?"),
-        (
-            "materials.rules=[{at: [500, 1], material: ice}]",
-            "rule 1: [500, 1] lies outside the picture of 96 x 64 pixels",
-        ),
+        ("materials.rules=[{at: [500, 1], material: ice}]", "outside the picture of 96 x 64 pixels"),
     ],
 )
 def test_pipeline_file_with_a_mistake_gives_one_clear_line(folder: Path, change: str, said: str):
-    from pictures import write_png
-
     (folder / "cut.png").write_bytes((folder / "left.png").read_bytes()[:2000])
     write_png(folder / "wide.png", np.zeros((64, 97), np.uint8))
     np.save(folder / "nan.npy", np.full((8, 8), np.nan))
     message = mistake("run", "p.yaml", "--set", change, "--seconds", 0.1, cwd=folder)
     assert said in message
     assert len(message.splitlines()) == 1, message
-
-
-def test_picture_of_one_pixel_is_felt(folder: Path):
-    from pictures import write_png
-
-    write_png(folder / "dot.png", np.zeros((1, 1), np.uint8))
-    sets = [word for each in ("scene={photo: dot.png}", "depth={use: luminance}") for word in ("--set", each)]
-    done = tangible("run", "p.yaml", *sets, "--seconds", 0.1, cwd=folder)
-    assert done.returncode == 0, done.stderr
 
 
 def test_output_folder_that_cannot_be_written_stops_the_run_at_once(folder: Path):
@@ -279,15 +207,16 @@ def test_output_folder_that_cannot_be_written_stops_the_run_at_once(folder: Path
 
 
 @pytest.mark.parametrize(
-    "words", [("feel",), ("feel", "x.yaml", "--secondss", "3"), ("nope",), ("feel", "x.yaml", "--seconds", "x")]
+    "words",
+    [
+        "feel",
+        "feel x.yaml --secondss 3",
+        "nope",
+        *(f"feel p.yaml --seconds {each}" for each in ("0", "-1", "nan", "x")),
+    ],
 )
-def test_command_line_with_a_mistake_exits_with_2(folder: Path, words: tuple[str, ...]):
-    mistake(*words, cwd=folder)
-
-
-@pytest.mark.parametrize("seconds", ["0", "-1", "nan", "-inf"])
-def test_seconds_without_a_meaning_exit_with_2(folder: Path, seconds: str):
-    assert "seconds" in mistake("feel", "p.yaml", "--seconds", seconds, cwd=folder)
+def test_command_line_with_a_mistake_exits_with_2(folder: Path, words: str):
+    mistake(*words.split(), cwd=folder)
 
 
 @pytest.mark.usefixtures("loop_in_thread")
@@ -298,12 +227,10 @@ def test_recording_is_replayed_through_any_force_law(folder: Path):
     assert same.returncode == 0, same.stderr
     assert "noticed_percent" in same.stdout
     other = ("p.yaml", "--set", "render={use: proxy}")
-    begun_s = time.perf_counter()
     document = json.loads(tangible("replay", "hand.nc", *other, "--record", "b.nc", "--json", cwd=folder).stdout)
-    passed_s = time.perf_counter() - begun_s
     assert (document["recorded"]["device"], document["recorded"]["renderer"]) == ("mock", "penalty-gradient")
     figures = document["figures"]
-    assert 0 < 1e-9 * figures["ns_per_tick"] * figures["ticks"] < passed_s
+    assert 0 < figures["ns_per_tick"] < 1e8
     assert figures["ticks"] == 1000 >= figures["compared"] > 500  # others are over what the device can give
     assert figures["error_n"] > 1e-3
     again = json.loads(tangible("replay", "b.nc", *other, "--json", cwd=folder).stdout)
@@ -314,8 +241,6 @@ def test_recording_is_replayed_through_any_force_law(folder: Path):
 
 
 def test_recording_missing_or_cut_off_is_reported(folder: Path):
-    from tangible_core.session import Recording
-
     assert "cannot be read" in mistake("replay", "none.nc", "p.yaml", cwd=folder)
     assert "end of the name" in mistake("replay", "p.yaml", "p.yaml", "--record", "b.txt", cwd=folder)
     Recording(np.zeros((3, 17)), "the cable is out").save(folder / "cut.nc")
@@ -324,9 +249,8 @@ def test_recording_missing_or_cut_off_is_reported(folder: Path):
     assert "the recording ended early: the cable is out" in done.stderr
 
 
+@pytest.mark.whole
 def test_recording_of_a_killed_session_is_readable(folder: Path):
-    from tangible_core.session import Recording
-
     words = [TANGIBLE, "feel", "p.yaml", "--seconds", "6000", "--record", "hand.nc", "--json"]
     process = subprocess.Popen(words, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
@@ -367,9 +291,6 @@ def test_ctrl_c_exits_with_130_and_leaves_no_half_written_file(folder: Path):
 def test_ctrl_c_while_a_run_feels_exits_with_130_and_reports_what_is_kept(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    from tangible_core.pipeline.output import runs
-    from tangible_core.session import INTERRUPTED, Recording, run_simulated
-
     def pressed(report: ServoReport) -> None:
         if not report.stopped:
             raise KeyboardInterrupt
@@ -380,34 +301,17 @@ def test_ctrl_c_while_a_run_feels_exits_with_130_and_reports_what_is_kept(
     monkeypatch.setattr(runs, "run_simulated", felt)
     done = tangible("run", "p.yaml", "--seconds", 600, cwd=folder)
     assert done.returncode == 130, done.stderr
-    assert f"stopped after 0.1 s ({INTERRUPTED})" in done.stderr
     assert "recording.npz has those 0.1 s" in done.stderr
     assert done.stderr.splitlines()[-1] == "interrupted; what was finished is kept"
     assert Recording.load(folder / "out/p/recording.npz").stopped == INTERRUPTED
     assert (folder / "out/p/sheet.png").exists()
 
 
-def test_output_to_a_closed_pipe_is_not_an_error(folder: Path):
-    done = subprocess.run(
-        f"{TANGIBLE} schema --markdown | head -1", shell=True, cwd=folder, capture_output=True, text=True
-    )
-    assert done.stdout == "# The pipeline file\n"
+@pytest.mark.parametrize("words", ["schema --markdown | head -1", "plugins | head -c 0"])
+def test_output_to_a_closed_pipe_is_not_an_error(folder: Path, words: str):
+    done = subprocess.run(f"{TANGIBLE} {words}", shell=True, cwd=folder, capture_output=True, text=True)
+    assert done.stdout in ("# The pipeline file\n", "")
     assert done.stderr == ""
-
-
-@pytest.mark.parametrize("words", ["--help", "run --help", "plugins"])
-def test_output_without_a_reader_is_not_an_error(folder: Path, words: str):
-    done = subprocess.run(f"{TANGIBLE} {words} | head -c 0", shell=True, cwd=folder, capture_output=True, text=True)
-    assert done.stderr == ""
-
-
-def test_text_in_brackets_is_printed_as_it_is(capsys: pytest.CaptureFixture[str]):
-    """Rich takes [word] for a mark: an outcome's reason may be a list of options, or a path."""
-    show.outcomes([Outcome("surface", "ran", "made from [seen/2]", "core")])
-    show.plain("out[1]/sheet.png")
-    said = capsys.readouterr().out
-    assert "[seen/2]" in said
-    assert "out[1]/sheet.png" in said
 
 
 ACME = """\
@@ -447,19 +351,18 @@ class Faulty(ForceRenderer):
 @pytest.mark.parametrize(
     ("command", "change", "said"),
     [
-        ("run", "depth={use: quits}", "acme called sys.exit(0)"),
-        ("run", "render={use: faulty}", "acme called sys.exit(0)"),
+        pytest.param("run", "depth={use: quits}", "acme called sys.exit(0)", marks=pytest.mark.whole),
+        pytest.param("run", "render={use: faulty}", "acme called sys.exit(0)", marks=pytest.mark.whole),
         ("feel", "render={use: faulty}", "acme called sys.exit(0)"),
-        ("feel", "render={use: faulty, fault: odd}", "Odd: a fault in the law"),
+        pytest.param("feel", "render={use: faulty, fault: odd}", "a fault in the law", marks=pytest.mark.whole),
     ],
 )
 def test_plugin_that_exits_or_hangs_does_not_end_the_program(folder: Path, command: str, change: str, said: str):
     points = {"tangible.depth": {"quits": "acme:Quits"}, "tangible.render": {"faulty": "acme:Faulty"}}
     site = distribution(folder / "site", "acme", points, acme=ACME)
     words = [TANGIBLE, command, "p.yaml", "--set", change, "--seconds", "600", "--no-cache"]
-    done = subprocess.run(
-        words, cwd=folder, env={**os.environ, "PYTHONPATH": str(site)}, capture_output=True, text=True, timeout=240
-    )
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(site), os.environ.get("PYTHONPATH", "")])}
+    done = subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True, timeout=240)
     assert done.returncode == 2, done.stdout + done.stderr
     assert said in done.stderr
     assert "Traceback" not in done.stderr

@@ -1,4 +1,4 @@
-"""Every check of the conformance kit, over every method that is shipped."""
+"""A method that breaks a rule of its kind would end a run or give a wrong force: the kit checks every shipped one."""
 
 import os
 from collections.abc import Iterator
@@ -14,18 +14,19 @@ from tangible_core.testing import conforms, every_method
 
 PEERS = {("depth", "report"), ("depth", "kornia-report"), ("texture", "report"), ("texture", "kornia-gabor")}
 """Methods that others replace, and that take a second for a picture."""
-AT_NIGHT = {"every_picture_type_is_taken", "every_picture_type_is_segmented"}
-"""Checks of a dozen pictures each; what replaces these methods has them daily."""
+DRAWN = {("export", "swell"), ("export", "sheet")}
+"""Exporters that draw pages, which takes a second each."""
+LONG = {"every_picture_type_is_taken", "every_picture_type_is_segmented", "every_work_is_answered"}
+"""Checks of a dozen pictures each; methods beside these have them daily."""
 
 for each in default_registry().listings:
     if each.distribution == "tangible-images":
         test = conforms(each.kind, each.name)
-        if (each.kind, each.name) in PEERS:
+        if (each.kind, each.name) in PEERS | DRAWN:
+            ring = pytest.mark.whole if (each.kind, each.name) in DRAWN else pytest.mark.nightly
             name, cases = test.pytestmark.pop().args
-            marks = {case.id: pytest.mark.nightly if case.id in AT_NIGHT else () for case in cases}
-            test = pytest.mark.parametrize(
-                name, [pytest.param(*case.values, id=case.id, marks=marks[case.id]) for case in cases]
-            )(test)
+            cases = [pytest.param(*case.values, id=case.id, marks=ring if case.id in LONG else ()) for case in cases]
+            test = pytest.mark.parametrize(name, cases)(test)
         globals()[f"test_{each.kind}_{each.name}".replace("-", "_")] = test
 del test  # pytest would collect it once more
 

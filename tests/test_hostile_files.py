@@ -1,4 +1,4 @@
-"""Hostile files by the command line, as a user meets them: one line, exit code 2, and neither time nor memory.
+"""If one of these fails, a hostile file costs a user of the command line time, memory or a traceback.
 
 What each is limited by is tested in its room; here, that every command stands on these rooms.
 """
@@ -63,28 +63,6 @@ pytestmark = pytest.mark.timeout(120)
 def test_hostile_yaml_is_refused_by_every_command(refused, folder: Path, name: str, words: tuple[str, ...]):
     (folder / "bomb.yaml").write_text(YAML_BOMBS[name])
     assert refused(*words, "bomb.yaml").startswith("bomb.yaml")
-
-
-@pytest.mark.parametrize("name", ["a number of 5000 digits", "a date that is none", "a text without end"])
-def test_hostile_yaml_is_refused_in_one_line(refused, folder: Path, name: str):
-    (folder / "bomb.yaml").write_text(YAML_BOMBS[name])
-    assert refused("plan", "bomb.yaml").startswith("bomb.yaml:")
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("scene=" + "[" * 3000, "blocks are nested"),
-        ("scene=" + "9" * 5000, "digits"),
-        ("materials." + "9" * 5000 + "=ice", "unknown option"),
-        ("materials.²=ice", "unknown option"),
-        (".".join("a" * 500) + "=1", "write key.key=value"),
-        ("scene=" + "x" * 50_000, "no scene is named"),
-        ("sce\x1b[31mne=1\n2", "unknown key"),
-    ],
-)
-def test_hostile_override_is_refused(refused, folder: Path, text: str, said: str):
-    assert said in refused("plan", "p.yaml", "--set", text)
 
 
 def test_hostile_maps_and_pictures_are_refused(refused, folder: Path):

@@ -1,10 +1,18 @@
-"""The names of all controls of a page, as the browser computes them for screen readers."""
+"""What axe and the browser's accessibility tree find wrong in a page: violations, and names of controls."""
 
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+from browser_tabs import SETTLED
+from needed import lacking
+from page_files import WEB
 
 if TYPE_CHECKING:
     from playwright.sync_api import CDPSession, Page
 
+AXE = WEB / "node_modules/axe-core/axe.min.js"
+RULES = {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]}
+COLOURS = {"type": "rule", "values": ["color-contrast", "link-in-text-block"]}
+"""All that a theme can break."""
 CONTROLS = {
     "button", "checkbox", "combobox", "DisclosureTriangle", "link", "listbox", "menuitem", "radio", "searchbox",
     "slider", "spinbutton", "switch", "tab", "textbox", "textfield",
@@ -24,6 +32,24 @@ SEEN = """function () {
   return { label, tag: this.outerHTML.slice(0, 120), inside: inside ? inside.outerHTML.slice(0, 200) : "" };
 }"""
 """Returns the text that people see as the label of a control, and the box in which its name is to be the only one."""
+
+
+def axe_finds(page: "Page", rules: dict[str, Any] = RULES, within: tuple[str, ...] = ()) -> list[str]:
+    """Return axe's violations in a page at rest. within: elements by selector; without, all of the page."""
+    if not AXE.is_file():
+        lacking("axe-core is not installed: npm ci in plugins/ui/web")
+    page.evaluate(f"{AXE.read_text(encoding='utf-8')}; 0")
+    page.evaluate(SETTLED)
+    found = page.evaluate(
+        """([within, runOnly]) => axe.run(within.length ? { include: within } : document,
+          { runOnly, resultTypes: ["violations"], elementRef: false })""",
+        [list(within), rules],
+    )
+    return [
+        f"{each['id']} {node['target']} {node['failureSummary']}"
+        for each in found["violations"]
+        for node in each["nodes"]
+    ]
 
 
 class Control(NamedTuple):

@@ -44,41 +44,28 @@ FRAMES: tuple[Callable[[Random], bytes], ...] = (
     lambda r: frame(TEXT, b"a", last=False) + frame(TEXT, b"b"),
     lambda r: mutated(frame(TEXT, REQUEST) + frame(BINARY, r.randbytes(37)), r),
 )
-BAD_BODIES = (
-    b"zz\r\nabc\r\n",
-    b"-5\r\n",
-    b"f" * 18 + b"\r\nx",
-    b"5\r\nabc",
-    b"5;x=\xff\r\nabcde\r\n0\r\n\r\n",
-    b"1" * 9000,
+BODIES = (b"zz\r\nabc\r\n", b"-5\r\n", b"f" * 18 + b"\r\nx", b"5;x=\xff\r\nabcde\r\n0\r\n\r\n", b"1" * 9000)
+SIZES = ("9" * 5000, "-1", "0x5", "", "\xb2", "5\r\nContent-Length: 6")
+HEADERS = (
+    "X: \0\xff",
+    "\r\n".join(f"X{k}: 1" for k in range(5000)),
+    "X: " + "x" * 300_000,
+    "X: 1\r\n  folded\r\n : x",
+    "Host: evil",
+    "Transfer-Encoding: xchunked",
+    "Connection: Upgrade\r\nUpgrade: h2c",
+    "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 99\r\nSec-WebSocket-Key: x",
+    *(f"Content-Length: {size}" for size in SIZES),
 )
-SIZES = ("9" * 5000, "9" * 19, "-1", "+5", "0x5", "5_0", "", "\xb2", "1e3", "5,5", "5\r\nContent-Length: 6")
-CODINGS = ("chunked, chunked", "gzip", "xchunked", "\x0bchunked", "identity", "CHUNKED", "chunked\r\nContent-Length: 5")
-HEADERS: tuple[Callable[[Random], str], ...] = (
-    lambda r: f"X: {chr(r.randrange(256))}{chr(r.randrange(256))}",
-    lambda r: f"X{chr(r.randrange(256))}: 1",
-    lambda r: "\r\n".join(f"X{k}: 1" for k in range(r.choice([99, 101, 5000]))),
-    lambda r: "X: " + "x" * r.choice([8000, 70_000, 300_000]),
-    lambda r: "X: 1\r\n  folded\r\n : x",
-    lambda r: "Content-Length : 5",
-    lambda r: "Host: evil",
-    lambda r: "Expect: 100-continue\r\nContent-Length: 5",
-    lambda r: f"Content-Length: {r.choice(SIZES)}",
-    lambda r: f"Connection: Upgrade\r\nUpgrade: {r.choice(['websocket', 'h2c', 'websocket, h2c'])}",
-    lambda r: "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 99\r\nSec-WebSocket-Key: x",
-)
-TARGETS = ("*", "http://[", "//[", "/%", "/%zz", "/\xff", "/a b", "/?" + "&" * 3000, "/%c3%28", "?", "#", "", "/\0")
-VERSIONS = ("HTTP/1.0", "HTTP/2.0", "HTTP/9.9", "HTTP/1", "HTTP/", "HTTP/-1.1", "HTTP/\xb2", "HTTP/1." + "9" * 5000, "")
-VERBS = ("HEAD", "OPTIONS", "TRACE", "CONNECT", "PRI", "get", "X" * 9000, "\0", "GET/", "")
+TARGETS = ("*", "http://[", "/%zz", "/\xff", "/a b", "/?" + "&" * 3000, "", "/\0")
+VERBS = ("HEAD", "TRACE", "CONNECT", "PRI", "get", "X" * 9000, "\0", "")
 REQUESTS: tuple[Callable[[Random, str, str], bytes], ...] = (
-    lambda r, path, own: _request("GET", path, own, r.choice(HEADERS)(r)),
-    lambda r, path, own: _request("POST", path, own, "Transfer-Encoding: chunked", r.choice(BAD_BODIES)),
-    lambda r, path, own: _request("POST", path, own, f"Transfer-Encoding: {r.choice(CODINGS)}", b"0\r\n\r\nGET /\r\n"),
+    lambda r, path, own: _request("GET", path, own, r.choice(HEADERS)),
+    lambda r, path, own: _request("POST", path, own, "Transfer-Encoding: chunked", r.choice(BODIES)),
     lambda r, path, own: _request("POST", path, own, f"Content-Length: {r.choice(SIZES)}", b"abcde"),
     lambda r, path, own: _request("GET", r.choice(TARGETS), own),
     lambda r, path, own: _request(r.choice(VERBS), path, own),
-    lambda r, path, own: _request("GET", path, own, version=r.choice(VERSIONS)),
-    lambda r, path, own: _request("GET", path, own).replace(b"\r\n", b"\n"),
+    lambda r, path, own: _request("GET", path, own).replace(b"HTTP/1.1", r.choice([b"HTTP/9.9", b"HTTP/\xb2", b""])),
     lambda r, path, own: mutated(_request("GET", path, own), r),
 )
 
@@ -114,6 +101,6 @@ def mutated(whole: bytes, random: Random) -> bytes:
     return bytes(said)
 
 
-def _request(method: str, path: str, own: str, more: str = "", body: bytes = b"", version: str = "HTTP/1.1") -> bytes:
-    lines = [f"{method} {path} {version}", own, *([more] if more else []), "", ""]
+def _request(method: str, path: str, own: str, more: str = "", body: bytes = b"") -> bytes:
+    lines = [f"{method} {path} HTTP/1.1", own, *([more] if more else []), "", ""]
     return "\r\n".join(lines).encode("latin-1") + body

@@ -7,6 +7,7 @@ import json
 import re
 from collections.abc import Iterator
 from functools import cache
+from pathlib import Path
 
 from shown_texts import ROOT, described, is_prose, literals, python_files
 from tangible_core.translation.catalogue import ENTRY, unquoted
@@ -60,7 +61,7 @@ def shown() -> dict[str, str]:
     """Return the texts that people may see, with the file that each is from."""
     texts: dict[str, str] = {}
     for path in python_files():
-        for _, text in literals(path):
+        for text in texts_of(path):
             if is_prose(text):
                 texts.setdefault(normal(text), "")
                 named.setdefault(normal(text), text)
@@ -81,7 +82,13 @@ named: dict[str, str] = {}
 @cache
 def words() -> frozenset[str]:
     """Return all literals of the program: a catalogue may have more than `shown` finds, such as single words."""
-    return frozenset(normal(text) for path in (*python_files(), *OTHERS) for _, text in literals(path)) | OWN
+    return frozenset(normal(text) for path in (*python_files(), *OTHERS) for text in texts_of(path)) | OWN
+
+
+@cache
+def texts_of(path: Path) -> tuple[str, ...]:
+    """Return the templates of a module."""
+    return tuple(text for _, text in literals(path))
 
 
 def normal(text: str) -> str:

@@ -18,15 +18,12 @@ import numpy as np
 from shapely import get_coordinates
 
 from compiled_once import compile_once
-from tangible_bench.metrics.segments import segment_errors
-from tangible_bench.metrics.strokes import force_steps, loop_works, proxy_lag
 from tangible_core import load_method
 from tangible_core.compiled import threads
 from tangible_core.data import DisparityMap, HapticSurface, Relief, SegmentMap, Views, digest_of
 from tangible_core.data.pictures import to_grey, to_rgb8
 from tangible_core.materials.assignment import library, relative_roughness
 from tangible_core.materials.colours import segment_colours
-from tangible_core.metrics import disparity_errors, force_errors
 from tangible_core.parts import (
     HeightChoice,
     Layering,
@@ -47,8 +44,6 @@ from tangible_depth.rectify.rectified_pair import warp_pair
 from tangible_depth.sparse.harris import harris_response
 from tangible_depth.sparse.matches import flow_matches, inverse_lengths, sift_matches
 from tangible_export.paper.borders import shared_borders
-from tangible_legibility.border_steps import border_steps
-from tangible_legibility.simplifying.large import large_parts
 from tangible_render.haptic_textures import compile_textures, radial_spectrum, sample_tile, stroke
 
 Found = Iterator[tuple[str, Any]]
@@ -67,15 +62,12 @@ def scene(name: str) -> Scene:
 @cache
 def pair() -> Views:
     views = scene("motorcycle").views
-    assert views is not None
-    assert views.right is not None
     return Views(views.left[SIZE], views.right[SIZE], views.calibration)
 
 
 @cache
 def noisy_pair() -> Views:
     """The same with noise, the right view darker and two rows lower: for all that pairs are put right by."""
-    assert pair().right is not None
     noise = np.random.default_rng(0).integers(-12, 13, (2, *pair().left.shape))
     views = pair().left, np.roll(pair().right, 2, axis=0).astype(int) * 7 // 8
     return Views(*(np.clip(each + more, 0, 255).astype(np.uint8) for each, more in zip(views, noise, strict=True)))
@@ -156,11 +148,9 @@ def depth() -> Found:
             found = cls(**options).estimate(views)
             yield f"{name}: disparity of the {of}", found.disparity_px
             yield f"{name}: confidence of the {of}", found.confidence
-
     for of, views in (("pair", pair()), ("noisy pair", noisy_pair())):
         found = load_method("depth", "semi-global")(effort="best").estimate(views)
-        yield f"semi-global, the best effort: disparity of the {of}", found.disparity_px
-        yield f"semi-global, the best effort: confidence of the {of}", found.confidence
+        yield f"semi-global, the best effort: {of}", found
 
 
 def texture() -> Found:
@@ -193,21 +183,15 @@ def reliefs() -> Found:
 
 def layers() -> Found:
     left, truth = pair().left, scene("motorcycle").truth
-    assert truth is not None
     segments = SegmentMap((to_grey(left) * 6).astype(np.int32))
     parts = find_parts(segments)
-    few = large_parts(segments, left, 12, 10)
     yield "parts", parts
-    yield "parts, few and large", few
     yield "parts, reduced", reduced_parts(parts, (100, 131))
-    yield "parts, borders", tuple(get_coordinates(each) for each in shared_borders(few, 0.08, 0.0005))
-    for name, each in (("all", parts), ("few", few)):
-        guess = guess_heights(each, 0.004)
-        yield f"parts, {name}: heights guessed", guess
-        yield f"parts, {name}: heights by depth", depth_heights(each, DisparityMap(truth[SIZE]), 0.004)
-        relief = Layering(each, 0.08, HeightChoice(by="guess"), left).relief(guess.heights_m)
-        yield f"parts, {name}: relief", relief
-        yield f"parts, {name}: steps at borders", tuple(border_steps(relief, each.labels).items())
+    yield "parts, borders", tuple(get_coordinates(each) for each in shared_borders(parts, 0.08, 0.0005))
+    guess = guess_heights(parts, 0.004)
+    yield "parts, heights guessed", guess
+    yield "parts, heights by depth", depth_heights(parts, DisparityMap(truth[SIZE]), 0.004)
+    yield "parts, relief", Layering(parts, 0.08, HeightChoice(by="guess"), left).relief(guess.heights_m)
 
 
 def render() -> Found:
@@ -229,19 +213,8 @@ def haptic_textures() -> Found:
         yield f"{name}: stroke", tuple(stroke(material, direction_deg=30.0))
 
 
-def metrics() -> Found:
-    truth = scene("motorcycle").truth
-    assert truth is not None
-    yield "metrics of disparity", tuple(disparity_errors(truth[SIZE] + np.float32(0.3), truth[SIZE]).items())
-    yield "metrics of segments", tuple(segment_errors(np.roll(labels(), 5, axis=1), labels()).items())
-    force, other = (load_method("render", law)().touch(surface()).path(path()) for law in ("proxy", "penalty-gradient"))
-    yield "metrics of forces", tuple({**force_errors(force, other), **force_steps(force)}.items())
-    yield "work of loops", loop_works(force, path(), ~force.any(axis=1))
-    yield "lag of a proxy", proxy_lag(path(), path() - force / 800, path())
-
-
 PARTS: dict[str, Callable[[], Found]] = {
-    each.__name__: each for each in (pictures, depth, texture, reliefs, layers, render, haptic_textures, metrics)
+    each.__name__: each for each in (pictures, depth, texture, reliefs, layers, render, haptic_textures)
 }
 
 

@@ -11,7 +11,7 @@ from tangible_devices.falcon.link import FalconLink
 from tangible_devices.falcon.opening import open_falcon
 from tangible_devices.falcon.simulator.body import Body
 from tangible_devices.falcon.simulator.bus import Bus, Unit
-from tangible_devices.falcon.simulator.chip import PAYLOAD_BYTES, Chip
+from tangible_devices.falcon.simulator.chip import Chip
 from tangible_devices.falcon.simulator.clock import SimulatedClock
 from tangible_devices.falcon.simulator.falcons import simulated_falcon, synthetic_image
 from tangible_devices.falcon.simulator.faults import Fault
@@ -40,11 +40,9 @@ class Line:
         again: bool = False,
         late_reply: int = -1,
         swallowed: int = 0,
-        leading_zero: bool = False,
-        payload_bytes: int = PAYLOAD_BYTES,
     ) -> None:
         self.damage, self.at, self.again, self.late_reply = damage, at, again, late_reply
-        self.swallowed, self.leading_zero, self.payload_bytes = swallowed, leading_zero, payload_bytes
+        self.swallowed = swallowed
         self.resets = 0
         self._sent_bytes = 0
 
@@ -66,8 +64,8 @@ class Line:
 
 def bus_of(line: Line) -> Bus:
     """Return a bus with one Falcon on this line, held still."""
-    processor = Processor(Body(StillHand(), np.array([0.3, 1.0, 0.4, 300.0, 6.0])), line.swallowed, line.leading_zero)
-    return Bus([Unit(Chip(processor, SimulatedClock(), line.spoil, line.delay, line.payload_bytes))])
+    processor = Processor(Body(StillHand(), np.array([0.3, 1.0, 0.4, 300.0, 6.0])), line.swallowed)
+    return Bus([Unit(Chip(processor, SimulatedClock(), line.spoil, line.delay))])
 
 
 def opener_of(bus: Bus) -> Callable[[], Port]:

@@ -16,8 +16,7 @@ from typing import Any
 from websockets.sync.client import ClientConnection, connect
 
 from needed import lacking
-
-LONGEST_S = 120
+from waiting import LONGEST_S
 
 
 class Tab:
@@ -52,27 +51,6 @@ class Tab:
         done = self.ask("script.evaluate", expression=expression, target=target, awaitPromise=True)
         assert done["type"] == "success", done
         return done["result"].get("value")
-
-    def until(self, condition: str) -> None:
-        """Wait for a condition, which is asked until it is true."""
-        wait = (
-            f"const look = () => (({condition}) || performance.now() > end ? done({condition}) : setTimeout(look, 20))"
-        )
-        found = self.evaluate(
-            f"new Promise((done) => {{ const end = performance.now() + {500 * LONGEST_S}; {wait}; look(); }})"
-        )
-        assert found, condition
-
-    def press_on(self, selector: str) -> None:
-        """Hold the mouse button in the middle of an element."""
-        found = f"const {{x, y, width, height}} = document.querySelector('{selector}').getBoundingClientRect();"
-        x, y = self.evaluate(f"(() => {{ {found} return `${{x + width / 2}} ${{y + height / 2}}`; }})()").split()
-        moves = [
-            {"type": "pointerMove", "x": round(float(x)), "y": round(float(y))},
-            {"type": "pointerDown", "button": 0},
-        ]
-        mouse = {"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": moves}
-        self.ask("input.performActions", context=self.context, actions=[mouse])
 
     def _hear(self, told: dict[str, Any]) -> None:
         params = told.get("params", {})

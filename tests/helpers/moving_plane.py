@@ -14,7 +14,8 @@ from tangible_core.plugins.touch import Film, Touch
 AT_M, GOAL_M, STEP_M, SHOWN, GOING = range(5)
 """Height, where it goes, by how much a tick, the frame that was shown last, and the one that it goes to."""
 ARRAY = types.Array(float64, 1, "C")
-SPEED_M_PER_S = 0.1
+FRAME_TICKS, MOST_M = 33, 1e-4
+"""Ticks of 1 ms over which a frame moves the plane, and the most that it moves in one."""
 
 
 @njit(types.UniTuple(float64, 3)(ARRAY, ARRAY, ARRAY, *[float64] * 7), **KERNEL)
@@ -36,27 +37,12 @@ def tick(plane, memory, moving, stiffness, x, y, z, vx, vy, vz):
 class MovingPlane(Film):
     """At `height_m` until it is shown another height: that of a relief's first cell, at most at 0.1 m/s."""
 
-    def __init__(
-        self,
-        height_m: float = 0.01,
-        stiffness_n_per_m: float = 800.0,
-        frame_s: float = 1 / 30,
-        period_s: float = 0.001,
-        plane: np.ndarray | None = None,
-        touch: CompiledTouch | None = None,
-    ) -> None:
-        self.plane = np.array([height_m, height_m, 0.0, 0.0, 0.0]) if plane is None else plane
-        self.ticks, self.most_m = max(1, round(frame_s / period_s)), SPEED_M_PER_S * period_s
-        if touch is None:
-            memory, moving = np.full(3, np.nan), np.zeros(2)
-            touch = CompiledTouch(
-                tick, (self.plane, memory, moving, stiffness_n_per_m), memory, stiffness_n_per_m, moving
-            )
-        self._touch = touch
+    def __init__(self, height_m: float = 0.01, stiffness_n_per_m: float = 800.0) -> None:
+        self.plane = np.array([height_m, height_m, 0.0, 0.0, 0.0])
+        memory, moving = np.full(3, np.nan), np.zeros(2)
+        fixed = self.plane, memory, moving, stiffness_n_per_m
+        self._touch = CompiledTouch(tick, fixed, memory, stiffness_n_per_m, moving)
         self._dropped = 0
-
-    def __reduce__(self):
-        return _revived, (self.ticks, self.most_m, self.plane, self._touch)
 
     @property
     def touch(self) -> Touch:
@@ -65,7 +51,7 @@ class MovingPlane(Film):
     def show(self, relief: Relief, frame: int) -> None:
         self._dropped += self.plane[SHOWN] != self.plane[GOING]
         goal = float(relief.height_m[0, 0])
-        self.plane[STEP_M] = min(abs(goal - self.plane[AT_M]) / self.ticks, self.most_m)
+        self.plane[STEP_M] = min(abs(goal - self.plane[AT_M]) / FRAME_TICKS, MOST_M)
         self.plane[GOAL_M], self.plane[SHOWN] = goal, frame
 
     @property
@@ -75,12 +61,6 @@ class MovingPlane(Film):
     @property
     def dropped(self) -> int:
         return int(self._dropped)
-
-
-def _revived(ticks: int, most_m: float, plane: np.ndarray, touch: CompiledTouch) -> MovingPlane:
-    made = MovingPlane(plane=plane, touch=touch)
-    made.ticks, made.most_m = ticks, most_m
-    return made
 
 
 def level(height_m: float) -> Relief:

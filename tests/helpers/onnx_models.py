@@ -1,6 +1,5 @@
 """Networks of a few kilobytes, made here: nothing is trained, and what each gives is known."""
 
-import warnings
 from pathlib import Path
 
 import numpy as np
@@ -81,84 +80,6 @@ def endless(path: Path) -> Path:
     ]
     given = {"grey": GREY, "one": np.array([1]), "most": np.array(2**62), "yes": np.array(True)}
     return _save(path, nodes, {"image": [1, 3, "h", "w"]}, {"inverse_depth": [1, "h", "w"]}, given)
-
-
-def vit_like(path: Path) -> Path:
-    """Patches of 14 pixels, attention, GELU, cubic positions, a transposed convolution: what a transformer has."""
-    import torch
-    from torch import nn
-    from torch.nn import functional as F
-
-    class Block(nn.Module):
-        def __init__(self):
-            super().__init__()
-            self.before, self.qkv, self.after = nn.LayerNorm(16), nn.Linear(16, 48), nn.Linear(16, 16)
-            self.mix = nn.Sequential(nn.Linear(16, 32), nn.GELU(), nn.Linear(32, 16))
-
-        def forward(self, x):
-            q, k, v = self.qkv(self.before(x)).reshape(1, -1, 3, 2, 8).permute(2, 0, 3, 1, 4)
-            x = x + self.after(F.scaled_dot_product_attention(q, k, v).transpose(1, 2).reshape(1, -1, 16))
-            return x + self.mix(x)
-
-    class Net(nn.Module):
-        def __init__(self):
-            super().__init__()
-            self.embed, self.blocks = nn.Conv2d(3, 16, 14, 14), nn.Sequential(Block(), Block())
-            self.up, self.head = nn.ConvTranspose2d(16, 4, 2, 2), nn.Conv2d(4, 1, 3, padding=1)
-            self.places = nn.Parameter(torch.randn(1, 16, 4, 4))
-
-        def forward(self, x):
-            f = self.embed(x)
-            f = f + F.interpolate(self.places, size=f.shape[2:], mode="bicubic", align_corners=False)
-            n, c, h, w = f.shape
-            t = self.blocks(f.flatten(2).transpose(1, 2)).transpose(1, 2).reshape(n, c, h, w)
-            whole = F.interpolate(self.up(t), size=x.shape[2:], mode="bilinear", align_corners=True)
-            return self.head(whole)[:, 0].relu() + 1
-
-    return _export(path, Net(), [torch.rand(1, 3, 56, 70)], ["image"])
-
-
-def raft_like(path: Path) -> Path:
-    """Correlation of all pairs in a row, look-ups by grid_sample, updates that go round: what a RAFT has."""
-    import torch
-    from torch import nn
-    from torch.nn import functional as F
-
-    class Net(nn.Module):
-        def __init__(self):
-            super().__init__()
-            self.see = nn.Sequential(nn.Conv2d(3, 8, 7, 4, 3), nn.InstanceNorm2d(8), nn.ReLU())
-            self.update = nn.Conv2d(8 + 5, 9, 3, padding=1)
-
-        def forward(self, left, right):
-            a, b = self.see(left), self.see(right)
-            n, _, h, w = a.shape
-            alike, hidden, d = torch.einsum("nchw,nchv->nhwv", a, b), torch.tanh(a), torch.zeros_like(a[:, :1])
-            columns = torch.arange(w).float().view(1, 1, 1, w)
-            for _ in range(2):
-                at = (columns - d).permute(0, 2, 3, 1) + torch.arange(-2, 3).float()
-                grid = torch.stack([2 * at / (w - 1) - 1, torch.zeros_like(at)], -1).reshape(n * h * w, 1, 5, 2)
-                seen = F.grid_sample(alike.reshape(n * h * w, 1, 1, w), grid, align_corners=True)
-                out = self.update(torch.cat([hidden, seen.reshape(n, h, w, 5).permute(0, 3, 1, 2)], 1))
-                hidden, d = torch.sigmoid(out[:, 1:]) * hidden, d + out[:, :1]
-            return 4 * F.interpolate(d, scale_factor=4.0, mode="bilinear", align_corners=False)
-
-    return _export(path, Net(), [torch.rand(1, 3, 48, 64)] * 2, ["left", "right"])
-
-
-def _export(path: Path, net, inputs, names: list[str]) -> Path:
-    import torch
-
-    torch.manual_seed(0)
-    for parameter in net.parameters():
-        torch.nn.init.normal_(parameter, std=0.2)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        torch.onnx.export(
-            net.eval(), tuple(inputs), str(path), input_names=names, output_names=["out"], opset_version=18,
-            dynamo=False,
-        )  # fmt: skip
-    return path
 
 
 def _node(kind: str, takes: list[str], gives: str, **options) -> onnx.NodeProto:

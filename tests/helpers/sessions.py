@@ -2,7 +2,6 @@
 
 import asyncio
 import threading
-from collections.abc import Callable, Coroutine, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ from PIL import Image
 
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_ui.feeling.feeling import Feeling
+from tangible_ui.requests import REQUESTS
 from tangible_ui.state.session import Session
 from tangible_ui.worker.handle import WorkerKilled
 from tangible_ui.worker.jobs import JOBS
@@ -136,19 +136,6 @@ class Heard:
         return self.last(name)
 
 
-def run_in_session(
-    folder: Path, check: Callable[[Session, Heard], Coroutine[Any, Any, None]], sets: Sequence[str] = ()
-) -> None:
-    """Run a check with a session and a tab; what still runs afterwards is cancelled."""
-
-    async def run() -> None:
-        session, tab = Session(folder, Feeling("none"), [*sets]), Heard()
-        session.enter(tab)
-        await check(session, tab)
-
-    asyncio.run(run())
-
-
 class SmallSession:
     """A session with a tab, whose touches are kept in `felt`."""
 
@@ -167,3 +154,7 @@ class SmallSession:
         Path(made["parcel"]).unlink()
         self.felt.append(made)
         self.session.tell("touch", law=made["law"], seconds=0.0, how="")
+
+    async def ask(self, name: str, **told: Any) -> Any:
+        """Send a request of the tab."""
+        return await REQUESTS[name](self.session, self.tab, **told)

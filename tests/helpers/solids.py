@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import lib3mf
 import numpy as np
-from PIL import Image
 
 from tangible_core.data import Relief, Work
 from tangible_core.plugins.interfaces import Exporter
@@ -16,7 +15,6 @@ from tangible_export import Glb, Stl, ThreeMF
 if TYPE_CHECKING:
     import trimesh
 
-SEEN_STEP_MM = 0.3
 FORMATS: dict[str, type[Exporter]] = {"stl": Stl, "3mf": ThreeMF, "glb": Glb}
 
 
@@ -154,17 +152,3 @@ def rough(rows: int = 40, columns: int = 56) -> np.ndarray:
     heights[rows // 3 : rows // 2, columns // 2 :] += 0.002
     heights[:, : columns // 8] = 0
     return heights + np.random.default_rng(0).uniform(0, 1e-4, heights.shape) * (heights > 0)
-
-
-LETTER_F = np.array([[1, 1, 1, 1], [1, 0, 0, 0], [1, 1, 1, 0], [1, 0, 0, 0], [1, 0, 0, 0], [1, 0, 0, 0]])
-
-
-def seen_from_above(mesh) -> Image.Image:
-    """Return a picture of a solid from above, lit from the upper left."""
-    width, length, _ = mesh.vertices.max(axis=0)
-    heights = from_above(
-        mesh, np.arange(SEEN_STEP_MM / 2, width, SEEN_STEP_MM), np.arange(SEEN_STEP_MM / 2, length, SEEN_STEP_MM)
-    )[::-1]
-    down, right = np.gradient(heights, SEEN_STEP_MM)
-    light = (right + down + 1.2) / np.sqrt(3.44 * (1 + right**2 + down**2))
-    return Image.fromarray(np.rint(255 * np.clip(light, 0, 1)).astype(np.uint8))

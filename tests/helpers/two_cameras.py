@@ -5,8 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from tangible_depth.rectify.epipolar import homogeneous, lines_in_left
-from tangible_depth.rectify.homographies import camera_matrix, rotation, transform
+from tangible_depth.rectify.projective import camera_matrix, homogeneous, rotation, transform
 
 WIDTH, HEIGHT = 1000, 750
 
@@ -129,6 +128,7 @@ def symmetric_epipolar_distance(fundamental: np.ndarray, left_px: np.ndarray, ri
 
     Source: the root of Hartley & Zisserman, Multiple View Geometry, 2nd ed., eq. 11.10.
     """
-    to_left = np.einsum("ni,ni->n", lines_in_left(fundamental, right_px), homogeneous(left_px))
-    to_right = np.einsum("ni,ni->n", lines_in_left(fundamental.T, left_px), homogeneous(right_px))
-    return np.hypot(to_left, to_right)
+    left, right = homogeneous(left_px), homogeneous(right_px)
+    to_left, to_right = right @ fundamental.T, left @ fundamental
+    value = np.einsum("ni,ni->n", left, to_left)
+    return np.hypot(value / np.hypot(*to_left[:, :2].T), value / np.hypot(*to_right[:, :2].T))

@@ -10,7 +10,6 @@ from itertools import chain
 from . import (
     depth_accuracy,
     depth_confidence,
-    depth_eight_point,
     depth_growth,
     depth_pairs,
     depth_pandora,
@@ -18,8 +17,6 @@ from . import (
     depth_raw,
     depth_robustness,
     depth_skips,
-    depth_start,
-    depth_unrectified,
 )
 from .figures import judged, part
 
@@ -43,10 +40,7 @@ def section() -> str:
         depth_confidence,
         depth_pandora,
         depth_range,
-        depth_unrectified,
         depth_raw,
-        depth_eight_point,
-        depth_start,
     )
     others = [part(each.__name__.removeprefix("benchmarks."), each.figures) for each in single]
     figures = [*accuracy, *robustness, *chain.from_iterable(others), *growth]

@@ -9,8 +9,7 @@ import numpy as np
 from tangible_core.data import Views
 from tangible_core.plugins.notes import collected
 from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
-from tangible_depth.rectify.homographies import camera_matrix, inverse, rotation, transform
-from tangible_depth.rectify.lenses import distort, undistort
+from tangible_depth.rectify.projective import camera_matrix, distort, inverse, rotation, transform, undistort
 from tangible_depth.rectify.rectification import rectify, whole_picture_matches
 from tangible_depth.semi_global import SemiGlobal
 

@@ -17,7 +17,7 @@ from tangible_export import Pins, Swell
 from .figures import Figure, MissedError, judged, part, table
 from .tests_path import exported_pictures
 
-RUNS, MOST_S = 5, 1.0
+RUNS, MOST_S = 5, 2.2
 GAP_MM, PER_MM = 3.2, 10
 LEAST_KEPT = 0.99
 DISPLAYS = {"monarch": 1, "graphiti": 4, "dotpad": 1}

@@ -12,7 +12,7 @@ from time import perf_counter
 
 from tangible_bench.comparing import Step, compare
 from tangible_bench.config.reading import parse_comparison
-from tangible_bench.measuring.machine import machine
+from tangible_bench.measuring.plan import machine
 from tangible_bench.results.summary import Line
 from tangible_bench.tasks.task import load_task
 from tangible_core.metrics import measured

@@ -17,7 +17,7 @@ from tangible_render.kernels import tangible_mask as tangible_mask_kernels
 from tangible_render.lateral_shape import LateralShape
 from tangible_render.penalty import Penalty
 from tangible_render.proxy import Proxy
-from tangible_render.surface.grey_levels import grey_levels
+from tangible_render.surface.dequantise import grey_levels
 from tangible_render.tangible_mask import TangibleMask, summed_tables
 from tangible_render.with_materials import WithMaterials
 

@@ -15,7 +15,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from tangible_bench.measuring.machine import machine
+from tangible_bench.measuring.plan import machine
 from tangible_core.files.writing import write_text
 
 from .figures import table

@@ -3,7 +3,7 @@
 TANGIBLE_MINUTES: how long the recorder is tried, 10 unless it is set.
 """
 
-from . import servo_loops, servo_record, servo_start, servo_ticks
+from . import servo_loops, servo_record, servo_ticks
 from .figures import judged, part
 
 
@@ -13,7 +13,6 @@ def section() -> str:
         *part("ticks", lambda: list(servo_ticks.figures())),
         *part("beside C", lambda: list(servo_loops.beside_c())),
         *part("beside a web server", lambda: list(servo_loops.beside_a_server())),
-        *part("start", lambda: list(servo_start.figures())),
         *part("recorder", lambda: list(servo_record.figures())),
     ]
     head = "A millisecond a tick; lateness is from when a tick was due to when it began, in slices in turn."

@@ -1,4 +1,4 @@
-"""The daily loop: how long the tests take, all of them and those of a minute, and each room's share."""
+"""The daily loop: how long the tests take, README's command and what `--whole` adds, and each room's share."""
 
 import json
 import os
@@ -15,27 +15,10 @@ from pathlib import Path
 from .figures import Figure, judged, table
 
 ROOT = Path(__file__).parents[1]
-BOUNDS_S = {"": 300, "-m fast": 60}
-"""Of README's command and of the smoke, on two quiet cores, all kernels compiled before."""
-BUDGET_S = {
-    "tests/ui": 150,
-    "tests/plugins/depth": 65,
-    "tests/plugins/batch": 50,
-    "tests/plugins/bench": 45,
-    "tests/core/pipeline": 40,
-    "tests/plugins/render": 40,
-    "tests/core/servo": 35,
-    "tests/core/cli": 25,
-    "tests/plugins/devices": 25,
-    "tests/plugins/export": 25,
-    "tests/plugins/texture": 20,
-    "tests": 50,
-}
-"""Processor seconds of a room's tests, of 600 in all; "tests" holds the modules that lie in no room."""
-OTHERS_S = 8
-"""Of every other room."""
-SLOW_S = 0.05
-"""Tests of more processor seconds are none of the fast ones: ROOT/tests/slow.txt has their names."""
+COMMANDS = {"": 300, "--whole -m whole": 300}
+"""Seconds of README's command, and of what `--whole` adds, on two quiet cores, all kernels compiled before."""
+BUDGET_S: dict[str, float] = json.loads((ROOT / "tests" / "budget.json").read_text("utf-8"))
+"""Processor seconds of the rooms' tests in README's command; "tests" holds the modules that lie in no room."""
 
 
 def section() -> str:
@@ -51,7 +34,7 @@ def section() -> str:
 
 def figures(whole: dict[str, float]) -> Iterator[Figure]:
     """Each command once. whole: is given the processor seconds of each test of the whole run."""
-    for words, bound_s in BOUNDS_S.items():
+    for words, bound_s in COMMANDS.items():
         with tempfile.TemporaryDirectory() as folder:
             begun, before_s, clock_s = time.monotonic(), _processor_s(), time.time()
             command = [sys.executable, "-m", "pytest", "-q", "-p", "processor_time", *words.split()]
@@ -59,7 +42,6 @@ def figures(whole: dict[str, float]) -> Iterator[Figure]:
             seconds, processor_s = time.monotonic() - begun, _processor_s() - before_s
             if not words:
                 whole |= seconds_of_tests(Path(folder))
-                (ROOT / "tests" / "slow.txt").write_text("\n".join([*slow_tests(whole), ""]))
         sys.stderr.write("".join(line for line in done.stdout.splitlines(True) if line.startswith(("FAILED", "ERROR"))))
         summary = re.sub(r" in [\d.]+s.*", "", done.stdout.strip().splitlines()[-1].strip("= "))
         kernels = compiled_since(clock_s, ROOT)
@@ -78,11 +60,6 @@ def seconds_of_tests(folder: Path) -> dict[str, float]:
     return dict(map(json.loads, lines))
 
 
-def slow_tests(seconds: Mapping[str, float]) -> list[str]:
-    """Return the names of tests of which a case takes more than `SLOW_S`."""
-    return sorted({test.partition("[")[0] for test, each_s in seconds.items() if each_s > SLOW_S})
-
-
 def rows(seconds: Mapping[str, float]) -> Iterable[tuple[str, ...]]:
     """Yield a line a room, the dearest first, and one with what missed its bound marked so."""
     spent, count = Counter[str](), Counter[str]()
@@ -90,9 +67,11 @@ def rows(seconds: Mapping[str, float]) -> Iterable[tuple[str, ...]]:
         spent[room(test)] += each_s
         count[room(test)] += 1
     for name, room_s in spent.most_common():
-        bound_s = BUDGET_S.get(name, OTHERS_S)
+        bound_s = BUDGET_S.get(name, 0)
         yield f"`{name}`", str(count[name]), f"{room_s:.1f}", str(bound_s), "" if room_s <= bound_s else "missed"
-    yield "all", str(count.total()), f"{spent.total():.1f}", "600", "" if spent.total() <= 600 else "missed"
+    whole_s = sum(BUDGET_S.values())
+    missed = "" if spent.total() <= whole_s else "missed"
+    yield "all", str(count.total()), f"{spent.total():.1f}", f"{whole_s:.0f}", missed
 
 
 def room(test: str) -> str:

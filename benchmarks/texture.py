@@ -6,13 +6,9 @@ on. Without it, mosaics of the builtin textures stand in for them. The extra `to
 
 from . import (
     texture_accuracy,
-    texture_colour,
-    texture_features,
     texture_gradient,
     texture_growth,
-    texture_invariance,
     texture_kornia,
-    texture_materials,
     texture_opencv,
     texture_scenes,
     texture_skips,
@@ -32,11 +28,7 @@ def section() -> str:
     """Return the section as Markdown."""
     figures = part("mosaics", texture_accuracy.figures)
     figures += part("mosaics of two halves", texture_unseen.figures)
-    figures += part("colour", texture_colour.figures)
-    figures += part("features", texture_features.figures)
     figures += part("smooth scenes", texture_gradient.figures)
-    figures += part("invariance", texture_invariance.figures)
-    haptic, materials = part("materials", texture_materials.measured)
     skipped = part("what is left out", texture_skips.rows)
     exact = part("what is known beforehand", texture_skips.exact)
     growth, sizes = part("growth", texture_growth.measured)
@@ -45,7 +37,7 @@ def section() -> str:
         [
             *_conditions(),
             "",
-            *judged([*figures, *torch, *haptic, *growth]),
+            *judged([*figures, *torch, *growth]),
             "",
             "By mosaic: the number of segments, and the seed of textures and regions.",
             "",
@@ -54,10 +46,6 @@ def section() -> str:
             "By kind of region, mosaics of two halves of the textures, of 2 to 16 segments.",
             "",
             *texture_unseen.kind_rows(),
-            "",
-            "By material: one point of a stroke, and where the spectrum of its heights (or of the force) peaks.",
-            "",
-            *materials,
             "",
             "`gabor` on one mosaic, cut or mirrored over and over.",
             "",

@@ -36,7 +36,7 @@ MINUTES, SLICES = (
     float(os.environ.get(name, kept)) for name, kept in (("TANGIBLE_MINUTES", 10), ("TANGIBLE_SLICES", 3))
 )
 SLICE_S = 10.0
-BOUNDS = {(320, 240): (100.0, 8.0, 120.0), (640, 480): (30.0, 25.0, 60.0)}
+BOUNDS = {(320, 240): (80.0, 9.0, 120.0), (640, 480): (30.0, 27.0, 60.0)}
 """Frames a second at least, milliseconds of a processor for one at most, and frames a second of the file, by size."""
 STEP_N, STIFFNESSES = 0.08, (200.0, 800.0, 2000.0)
 MOST_GROWN_MB, MOST_DAMPED = 10.0, 0.01

@@ -1,15 +1,16 @@
 """The readers of files that people bring, with small valid files for each."""
 
 import json
+import os
 import shutil
 import struct
 import zipfile
 import zlib
 from collections.abc import Callable
 from dataclasses import asdict
+from functools import cache
 from itertools import islice
 from pathlib import Path
-from pkgutil import resolve_name
 from typing import Any
 from unittest.mock import patch
 
@@ -37,11 +38,6 @@ MAP = CHANCE.random((12, 16)).astype(np.float32)
 LABELS = np.arange(192, dtype=np.uint8).reshape(12, 16) // 48
 
 
-def _call(name: str, *others: Any, **options: Any) -> Callable[[Path], object]:
-    """Return a reader by its name, which is imported where it reads."""
-    return lambda path: resolve_name(name)(path, *others, **options)
-
-
 def _image(name: str, picture: np.ndarray, **options: Any) -> Callable[[Path], object]:
     return lambda folder: Image.fromarray(picture).save(folder / name, **options)
 
@@ -67,24 +63,65 @@ def _by_opencv(name: str, picture: np.ndarray) -> Callable[[Path], object]:
     return lambda folder: (folder / name).write_bytes(cv2.imencode(Path(name).suffix, picture)[1].tobytes())
 
 
+def _geotiff(folder: Path) -> None:
+    tags = TiffImagePlugin.ImageFileDirectory_v2()
+    tags[42113] = "-9999"
+    Image.fromarray(MAP).save(folder / "dem.tif", tiffinfo=tags)
+
+
 def _tiff(name: str, values: np.ndarray, **options: Any) -> Callable[[Path], object]:
     return lambda folder: tifffile.imwrite(folder / name, values, **options)
 
 
-FORMATS = "tangible_core.scene.formats"
-_picture = _call(f"{FORMATS}.pictures:read_picture", reduce=True)
-_map = _call(f"{FORMATS}.pictures:read_map")
+def _npz(folder: Path) -> None:
+    np.savez(folder / "stored.npz", MAP)
+    np.savez_compressed(folder / "packed.npz", depth=MAP)
 
 
-def _save(name: str, values: np.ndarray) -> Callable[[Path], object]:
-    write = {".npy": np.save, ".npz": np.savez_compressed, ".pfm": standard_sets.put_pfm}[Path(name).suffix]
-    return lambda folder: write(folder / name, values)
+def _npy(folder: Path) -> None:
+    np.save(folder / "map.npy", MAP)
+    np.save(folder / "columns.npy", np.asfortranarray(COLOURS))
+
+
+def _pfm(folder: Path) -> None:
+    standard_sets.put_pfm(folder / "little.pfm", MAP)
+    standard_sets.put_pfm(folder / "big.pfm", MAP, ">")
+
+
+def _picture(path: Path) -> object:
+    from tangible_core.scene.formats.pictures import read_picture
+
+    return read_picture(path, reduce=True)
+
+
+def _map(path: Path) -> object:
+    from tangible_core.scene.formats.pictures import read_map
+
+    return read_map(path)
+
+
+def _labels(path: Path) -> object:
+    from tangible_core.scene.formats.pictures import read_labels
+
+    return read_labels(path)
 
 
 def _truth(path: Path) -> object:
     from tangible_core.scene.formats.pictures import read_truth
 
     return read_truth(path, "sintel" if "sintel" in path.name else 256.0)
+
+
+def _pair(path: Path) -> object:
+    from tangible_core.scene.formats.pairs import read_pair
+
+    return read_pair(path)
+
+
+def _photo(path: Path) -> object:
+    from tangible_core import Scene
+
+    return Scene.photo(path)
 
 
 def _large(path: Path) -> object:
@@ -126,6 +163,27 @@ def _make_rigs(folder: Path) -> None:
         storage.release()
 
 
+KALIBR = """\
+cam0:
+  camera_model: pinhole
+  intrinsics: [110.0, 113.0, 60.0, 44.0]
+  distortion_model: radtan
+  distortion_coeffs: [0.1, 0.01, 0.0, 0.0]
+  resolution: [16, 12]
+cam1:
+  T_cn_cnm1:
+  - [1.0, 0.0, 0.0, -0.1]
+  - [0.0, 1.0, 0.0, 0.01]
+  - [0.0, 0.0, 1.0, 0.005]
+  - [0.0, 0.0, 0.0, 1.0]
+  camera_model: pinhole
+  intrinsics: [115.0, 118.0, 60.0, 44.0]
+  distortion_model: equidistant
+  distortion_coeffs: [0.01, 0.0, 0.0, 0.0]
+  resolution: [16, 12]
+"""
+
+
 def _rig(path: Path) -> object:
     from tangible_core.data import Views
     from tangible_core.scene.formats.rigs import read_rig
@@ -164,6 +222,12 @@ def _make_ground(folder: Path) -> None:
     (folder / "d.asc").write_text("ncols 3\nnrows 2\nxllcorner 10\nyllcorner 60\ncellsize 0.001\n1 2 3\n4 5 6\n")
 
 
+def _ground(path: Path) -> object:
+    from tangible_core.scene.formats.ground import read_ground
+
+    return read_ground(path)
+
+
 def _heights(path: Path) -> object:
     from tangible_core import Scene
 
@@ -173,19 +237,31 @@ def _heights(path: Path) -> object:
 
 def _make_pipelines(folder: Path) -> None:
     write_png(folder / "photo.png", COLOURS)
+    np.save(folder / "map.npy", MAP)
     Image.fromarray(LABELS).save(folder / "labels.png")
+    (folder / "full.yaml").write_text(PIPELINE)
     (folder / "parts.yaml").write_text(PARTS)
     for path in (ROOT / "configs/feel.yaml", ROOT / "configs/relief.yaml"):
         shutil.copy(path, folder)
 
 
+PIPELINE = """\
+scene: {photo: photo.png, disparity: map.npy, segments: labels.png}
+want: touch
+workspace: {width_m: 0.1, relief_m: 0.01}
+relief: {by: disparity, slope: 1.5, accent_m: 0.0005}
+depth: {use: luminance, smoothing_px: 1}
+texture: {use: histogram, segments: 3}
+materials: {0: ice, 1: rubber, 2: wood}
+render: {use: proxy, stiffness_n_per_m: 500}
+device: {use: mock, path: circle}
+safety: {max_force_n: 2.5}
+export: [{use: heights}, {use: stl, base_m: 0.002}]
+"""
 PARTS = """\
 scene: {photo: photo.png, segments: labels.png}
 want: surface
 heights: {by: given, round_m: 6 mm, bulge_m: 1.5 mm}
-render: {use: proxy, stiffness_n_per_m: 500}
-safety: {max_force_n: 2.5}
-export: [{use: heights}, {use: stl, base_m: 0.002}]
 parts:
   0: wall             # behind
   1: {name: helmet, height_m: 0.004}
@@ -224,6 +300,12 @@ felt:
 """
 
 
+def _materials(path: Path) -> object:
+    from tangible_core.materials.assignment import load_library
+
+    return load_library(path)
+
+
 def _make_recordings(folder: Path) -> None:
     from tangible_core.data import TICK_COLUMNS
     from tangible_core.session.recording.recording import Recording
@@ -246,6 +328,38 @@ def _recording(path: Path) -> object:
 
 
 STROKE = "time_s,x_m,y_m,z_m\n0,0,0,0.01\n0.1,0.01,0,0.01\n0.2,0.01,0.02,0\n"
+
+
+def _stroke(path: Path) -> object:
+    from tangible_devices.paths import read_csv
+
+    return read_csv(path, 0.001).at(5)
+
+
+def _make_run(folder: Path) -> None:
+    from tangible_core.pipeline.output.run_folder import Manifest
+
+    Manifest("../p.yaml", {"config.yaml": "0" * 32, "outcomes.json": "1" * 32}).write(folder)
+    (folder / "outcomes.json").write_text(json.dumps({"outcomes": [{"product": "relief", "outcome": "ran"}]}))
+
+
+def _run(path: Path) -> object:
+    from tangible_core.pipeline.output import run_folder
+
+    return run_folder.read_manifest(path.parent), run_folder._own(path.parent), run_folder.default_folder(path)
+
+
+def _make_exports(folder: Path) -> None:
+    from tangible_core.pipeline.output import export_folder
+
+    listed = {"a.stl": export_folder.Listed("p.yaml", "stl", "0" * 32)}
+    export_folder._write_list(folder / export_folder.LISTED, listed)
+
+
+def _exports(path: Path) -> object:
+    from tangible_core.pipeline.output.export_folder import read_list
+
+    return [each == listed for each in read_list(path.parent).values() for listed in [each]]
 
 
 def _make_results(folder: Path) -> None:
@@ -271,6 +385,20 @@ def _results(path: Path) -> object:
 def _make_comparisons(folder: Path) -> None:
     for path in (ROOT / "configs").glob("compare-*.yaml"):
         shutil.copy(path, folder)
+
+
+def _comparison(path: Path) -> object:
+    from tangible_bench.config.reading import load_comparison
+    from tangible_core.plugins.registry import default_registry
+
+    return load_comparison(path, default_registry())
+
+
+def _study(path: Path) -> object:
+    from tangible_study.study_file import load_study, read_design
+
+    read_design(path)
+    return load_study(path)
 
 
 def _make_answers(folder: Path) -> None:
@@ -307,6 +435,25 @@ def _batch(path: Path) -> object:
     return list(rows_of(str(path)))
 
 
+def _batch_rows(path: Path) -> object:
+    from tangible_batch.results import last_rows, rows_of_scenes, write_gallery, write_index
+
+    names = list(last_rows(path.parent))
+    list(rows_of_scenes(path.parent, names))
+    return write_index(path.parent, names), write_gallery(path.parent, names)
+
+
+BATCH_ROWS = "".join(
+    json.dumps(
+        {
+            "id": name, "key": "k", "outcome": outcome, "error": error, "seconds": 0.5, "folder": f"scenes/{name}",
+            "scene": "p.png", "figures": {"surface": {"width_mm": 40.0, "length_mm": 30.0, "height_mm": 2.0}},
+            "stages": {"relief": 0.1}, "notes": ["dark"], "files": ["relief.npz", "card.jpg"], "card": "card.jpg",
+        }
+    ) + "\n" for name, outcome, error in (("a", "ok", None), ("b", "failed", "is not a picture"))
+)  # fmt: skip
+
+
 def _cameras(path: Path) -> object:
     from tangible_bench.datasets.cameras import kitti_cameras, middlebury_cameras, old_middlebury_cameras
 
@@ -315,17 +462,24 @@ def _cameras(path: Path) -> object:
     return old_middlebury_cameras(path, 3.0) if path.stem == "dmin" else kitti_cameras(path, "P2", "P3")
 
 
-KALIBR = """\
-cam0: {camera_model: pinhole, intrinsics: [110.0, 113.0, 60.0, 44.0], distortion_model: radtan,
-  distortion_coeffs: [0.1, 0.01, 0.0, 0.0], resolution: [16, 12]}
-cam1:
-  T_cn_cnm1: [[1.0, 0.0, 0.0, -0.1], [0.0, 1.0, 0.0, 0.01], [0.0, 0.0, 1.0, 0.005], [0.0, 0.0, 0.0, 1.0]]
-  camera_model: pinhole
-  intrinsics: [115.0, 118.0, 60.0, 44.0]
-  distortion_model: equidistant
-  distortion_coeffs: [0.01, 0.0, 0.0, 0.0]
-"""
 KITTI = "P2: 700 0 600 31.5 0 700 180 0.2 0 0 1 0.002\nP3: 700 0 600 -350 0 700 180 2.2 0 0 1 0.003\n"
+
+
+def _make_kits(folder: Path) -> None:
+    known = standard_sets.known()
+    standard_sets.middlebury_eval3(folder / "a", known)
+    standard_sets.kitti_2012(folder / "b", known)
+
+
+def _kits(path: Path) -> object:
+    from tangible_bench.datasets.kits.kitti import kitti_2012
+    from tangible_bench.datasets.kits.middlebury import since_2014
+
+    top = next(each for each in path.parents if each.name in ("a", "b"))
+    pairs = since_2014(top) if top.name == "a" else kitti_2012(top)
+    return [
+        pair.open() for pair in pairs if pair.left.parent in path.parents or pair.left.parent.parent in path.parents
+    ]
 
 
 def _make_videos(folder: Path) -> None:
@@ -361,6 +515,12 @@ def _network(path: Path) -> object:
         return Onnx(model=path.with_suffix(".onnx")).estimate(Views(COLOURS, COLOURS[:, ::-1]))
 
 
+def _network_inputs(path: Path) -> object:
+    from tangible_depth.network.onnx_file import read_inputs
+
+    return read_inputs(path)
+
+
 CARD = """\
 title: My network
 file: mine.onnx
@@ -371,7 +531,59 @@ output: {name: disparity, means: disparity-px, confidence: sure}
 """
 
 
+def _card(path: Path) -> object:
+    from tangible_depth.network.card import read_card
+
+    return read_card(path)
+
+
+def _make_cache(folder: Path) -> None:
+    from tangible_core.data import Calibration, DisparityMap, HapticSurface, Note, Relief, SegmentMap, Views
+    from tangible_core.pipeline.engine.cache import Cache
+
+    cache, relief = Cache(folder), Relief(MAP, (0.16, 0.12))
+    notes = {"disparity": (Note("dark", "warning"),)}
+    cache.put("0" * 32, Views(COLOURS, COLOURS, Calibration(100.0, 0.1)), notes)
+    cache.put("1" * 32, DisparityMap(MAP, MAP, "px"), notes)
+    cache.put("2" * 32, SegmentMap(LABELS.astype(np.int32)), notes)
+    cache.put("3" * 32, HapticSurface(relief), notes)
+
+
+def _cache(path: Path) -> object:
+    from tangible_core.pipeline.engine.cache import Cache
+
+    cache = Cache(path.parent)
+    return cache.notes(path.stem), cache.entry(path.stem), cache.size()
+
+
+def _make_device(folder: Path) -> None:
+    from tangible_devices.falcon.calibration import Calibration
+
+    (folder / "devices").mkdir()
+    (folder / "devices/falcon-any.json").write_text(Calibration().model_dump_json(indent=2))
+
+
+def _device(path: Path) -> object:
+    from tangible_devices.device_calibrations import load_calibration
+    from tangible_devices.falcon.calibration import Calibration
+
+    with patch.dict(os.environ, TANGIBLE_CONFIG_DIR=str(path.parent.parent)):
+        return load_calibration("falcon", "", Calibration)
+
+
+def _firmware(path: Path) -> object:
+    from tangible_devices.falcon.usb.image import read_image
+
+    return read_image(path)
+
+
 FIRMWARE = np.array([0x08AA, *[0] * 8, 0, 0, 2, 0, 64, 1, 2, 3, 0, 80, 1, 2, 3, 0], "<u2").tobytes()
+
+
+def _draft(path: Path) -> object:
+    from tangible_ui.state import drafts
+
+    return drafts._read(path)
 
 
 def _request(path: Path) -> object:
@@ -439,10 +651,33 @@ def _check_sums(data: bytes) -> bytes:
     return bytes(whole)
 
 
-def _comparison(path: Path) -> object:
-    from tangible_core.plugins.registry import default_registry
+def _make_study_folder(folder: Path) -> None:
+    from tangible_study.session.folder import Place, enrol, prepare, write_sidecar
+    from tangible_study.study_file import load_study
 
-    return resolve_name("tangible_bench.config.reading:load_comparison")(path, default_registry())
+    file = load_study(studies.write_study(folder))
+    root = folder / "out"
+    root.mkdir()
+    prepare(root, file)
+    enrol(root, "P1", file.study, False)
+    enrol(root, "P2", file.study, False)
+    place = Place(root, "P1", "small")
+    write_sidecar(place, file, {"Faults": ["late"], "Device": "mock"})
+
+
+@cache
+def _study_once(path: Path) -> Any:
+    from tangible_study.study_file import load_study
+
+    return load_study(path)
+
+
+def _study_folder(path: Path) -> object:
+    from tangible_study.session.folder import Place, check_name, faults_before, participants, prepare
+
+    root = next(each for each in path.parents if each.name == "out")
+    prepare(root, _study_once(root.parent / "study.yaml"))
+    return participants(root), faults_before(Place(root, "P1", "small")), check_name(root, "P1", resume=True)
 
 
 READERS = {
@@ -480,13 +715,12 @@ READERS = {
         ),
         _picture,
     ),
-    "npy": Reader(_all(_save("a.npy", MAP), _save("b.npy", np.asfortranarray(COLOURS))), _picture),
-    "npz": Reader(_all(_save("a.npz", MAP), _save("b.npz", LABELS)), _map),
-    "pfm": Reader(_save("a.pfm", MAP), _map),
+    "npy": Reader(_npy, _picture),
+    "npz": Reader(_npz, _map),
+    "pfm": Reader(_pfm, _map),
     "map-tiff": Reader(
         _all(
-            _tiff("a.tif", MAP, extratags=[(42113, "s", 0, "-9999", True)]), _image("b.tif", DEEP),
-            _by_opencv("c.tif", MAP.astype(np.float64)),
+            _geotiff, _image("b.tif", DEEP), _by_opencv("c.tif", MAP.astype(np.float64)),
             _tiff("d.tif", MAP, byteorder=">", compression="deflate", predictor=3),
             _tiff("e.tif", DEEP, bigtiff=True, compression="lzw", predictor=2, rowsperstrip=5),
             _tiff("f.tif", MAP, compression="zstd", tile=(16, 16)),
@@ -516,12 +750,9 @@ READERS = {
         _picture,
     ),
     "avif": Reader(_all(_image("a.avif", COLOURS), _image("b.avif", GREY)), _picture),
-    "ground": Reader(_make_ground, _call(f"{FORMATS}.ground:read_ground")),
-    "labels": Reader(
-        _all(_image("a.png", LABELS), _palette("b.png"), _save("c.npy", LABELS)),
-        _call(f"{FORMATS}.pictures:read_labels"),
-    ),
-    "truth": Reader(_all(_image("kitti.png", DEEP), _image("sintel.png", COLOURS), _save("a.pfm", MAP)), _truth),
+    "ground": Reader(_make_ground, _ground),
+    "labels": Reader(_all(_image("a.png", LABELS), _palette("b.png"), lambda f: np.save(f / "c.npy", LABELS)), _labels),
+    "truth": Reader(_all(_image("kitti.png", DEEP), _image("sintel.png", COLOURS), _pfm), _truth),
     "large-picture": Reader(
         _all(
             _image("a.png", COLOURS), _image("b.tif", COLOURS), _image("c.jpg", COLOURS), _image("d.png", DEEP),
@@ -536,38 +767,45 @@ READERS = {
             lambda folder: phone_photos.write_mpo(folder / "pair.mpo", [COLOURS, COLOURS // 2], 0x020002),
             _image("both.png", np.hstack([COLOURS, COLOURS])),
         ),
-        _call(f"{FORMATS}.pairs:read_pair"),
+        _pair,
     ),
-    "phone-photo": Reader(_make_phone, _call("tangible_core:Scene.photo")),
+    "phone-photo": Reader(_make_phone, _photo),
     "cameras-of-a-rig": Reader(_make_rigs, _rig, "[!r]*.*", text=True),
     "cameras-of-opencv": Reader(_make_rigs, _rig, "rig.*", text=True),
     "heights-in-mm": Reader(_make_heights, _heights),
     "heights-metadata": Reader(_make_heights, _heights, "*.json", text=True),
     "pipeline": Reader(_make_pipelines, _pipeline, "*.yaml", text=True),
     "pipeline-edited": Reader(_make_pipelines, _edits, "*.yaml", text=True),
-    "materials": Reader(
-        _bytes("library.yaml", MATERIALS), _call("tangible_core.materials.assignment:load_library"), text=True
-    ),
+    "materials": Reader(_bytes("library.yaml", MATERIALS), _materials, text=True),
     "recording": Reader(_make_recordings, _recording),
     "recording-csv": Reader(_make_recordings, _recording, "*.csv", text=True),
-    "stroke": Reader(_bytes("s.csv", STROKE), _call("tangible_devices.paths:read_csv", 0.001), text=True),
+    "stroke": Reader(_bytes("s.csv", STROKE), _stroke, text=True),
+    "run-folder": Reader(_make_run, _run, "*.json", text=True),
+    "export-list": Reader(_make_exports, _exports, text=True),
     "results": Reader(_make_results, _results, text=True),
     "comparison": Reader(_make_comparisons, _comparison, text=True),
-    "study": Reader(studies.write_study, _call("tangible_study.study_file:load_study"), "study.yaml", text=True),
+    "study": Reader(studies.write_study, _study, "study.yaml", text=True),
     "answers": Reader(_make_answers, _answers, "*.tsv", text=True),
     "batch-csv": Reader(_make_batch, _batch, "*.csv", text=True),
     "batch-parquet": Reader(_make_batch, _batch, "*.parquet"),
+    "batch-rows": Reader(_bytes("rows.jsonl", BATCH_ROWS), _batch_rows, text=True),
     "kit-cameras": Reader(
         _all(_bytes("calib.txt", standard_sets.CALIB), _bytes("dmin.txt", "270\n"), _bytes("000000.txt", KITTI)),
         _cameras,
         text=True,
     ),
+    "kit": Reader(_make_kits, _kits, "*.p*"),
     "video": Reader(_make_videos, _video),
     "network": Reader(_make_networks, _network, "*.onnx"),
-    "network-inputs": Reader(_make_networks, _call("tangible_depth.network.onnx_file:read_inputs"), "*.onnx"),
-    "network-card": Reader(_bytes("card.yaml", CARD), _call("tangible_depth.network.card:read_card"), text=True),
+    "network-inputs": Reader(_make_networks, _network_inputs, "*.onnx"),
+    "network-card": Reader(_bytes("card.yaml", CARD), _card, text=True),
+    "cache": Reader(_make_cache, _cache, "*.npz"),
+    "cache-members": Reader(_members(_make_cache, f"{'1' * 32}.npz"), _packed(_cache, f"{'1' * 32}.npz"), text=True),
     "recording-members": Reader(_members(_make_recordings, "*.npz"), _packed(_recording, "stroke.npz")),
-    "firmware": Reader(_bytes("firmware.bin", FIRMWARE), _call("tangible_devices.falcon.usb.image:read_image")),
+    "study-folder": Reader(_make_study_folder, _study_folder, "out/**/*.*s*", text=True),
+    "device-calibration": Reader(_make_device, _device, "*.json", text=True),
+    "firmware": Reader(_bytes("firmware.bin", FIRMWARE), _firmware),
+    "draft": Reader(_bytes("draft.json", json.dumps({"text": "scene: x\n", "path": "/tmp/p.yaml"})), _draft, text=True),
     "request": Reader(
         _all(*(_bytes(name, json.dumps(request)) for name, request in REQUESTS.items())), _request, text=True
     ),
@@ -584,5 +822,15 @@ def report(name: str, folder: str, count: int) -> None:
     assert damage.valid
     for path in damage.valid:
         damage.reader.read(path)
-    for number, what in islice(damage.findings(range(count)), 10):
-        print(f"{name} {number}: {what}")
+    for each in islice(damage.findings(range(count)), 10):
+        print(f"{name} {each.number}: {each.what} {each.data}")
+
+
+if __name__ == "__main__":
+    import sys
+
+    from mutated import main
+
+    cv2.setNumThreads(1)
+    first, last, *names = sys.argv[1:]
+    main(READERS, names or list(READERS), int(first), int(last))

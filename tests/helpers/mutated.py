@@ -1,5 +1,6 @@
 """Files damaged by chance, the same ones again by their number, and processes that read them and may die of it."""
 
+import base64
 import json
 import mmap
 import os
@@ -10,7 +11,8 @@ import struct
 import sys
 import traceback
 import warnings
-from collections.abc import Callable, Iterator
+import zlib
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -50,6 +52,16 @@ class Reader(NamedTuple):
     """Puts check sums right, for half of the files: else a reader looks no further."""
 
 
+class Finding(NamedTuple):
+    """A file that is neither read nor refused as a mistake of the user."""
+
+    number: int
+    name: str
+    what: str
+    data: str
+    """The file, packed, if it is short."""
+
+
 def mutate(data: bytes, chance: random.Random, text: bool) -> bytes:
     """Damage a file, mostly at one place."""
     for _ in range(min(8, 1 + int(chance.expovariate(1)))):
@@ -63,12 +75,14 @@ def _span(data: bytes, chance: random.Random) -> tuple[int, int]:
     return start, min(len(data), start + int(2 ** chance.uniform(0, 9)))
 
 
-def _byte(data: bytes, chance: random.Random) -> bytes:
-    """Turn a bit of a byte, or replace the byte."""
+def _flip(data: bytes, chance: random.Random) -> bytes:
     at = chance.randrange(len(data) or 1)
-    new = chance.choice((0, 1, 127, 128, 255, chance.randrange(256)))
-    turned = [byte ^ 1 << chance.randrange(8) if chance.random() < 0.5 else new for byte in data[at : at + 1]]
-    return data[:at] + bytes(turned) + data[at + 1 :]
+    return data[:at] + bytes(byte ^ 1 << chance.randrange(8) for byte in data[at : at + 1]) + data[at + 1 :]
+
+
+def _set(data: bytes, chance: random.Random) -> bytes:
+    at = chance.randrange(len(data) or 1)
+    return data[:at] + bytes([chance.choice((0, 1, 127, 128, 255, chance.randrange(256)))]) + data[at + 1 :]
 
 
 def _number(data: bytes, chance: random.Random) -> bytes:
@@ -83,14 +97,30 @@ def _cut(data: bytes, chance: random.Random) -> bytes:
     return data[: chance.randrange(len(data) + 1)]
 
 
-def _block(data: bytes, chance: random.Random) -> bytes:
-    """Remove, repeat, overwrite or blank a block, or copy it over another place."""
+def _remove(data: bytes, chance: random.Random) -> bytes:
+    start, end = _span(data, chance)
+    return data[:start] + data[end:]
+
+
+def _repeat(data: bytes, chance: random.Random) -> bytes:
+    start, end = _span(data, chance)
+    return data[:end] + data[start:end] * chance.choice((1, 1, 2, 50)) + data[end:]
+
+
+def _insert(data: bytes, chance: random.Random) -> bytes:
+    start, end = _span(data, chance)
+    return data[:start] + chance.randbytes(end - start) + data[start:]
+
+
+def _copy(data: bytes, chance: random.Random) -> bytes:
+    """Write a block over another place."""
     (start, end), at = _span(data, chance), chance.randrange(len(data) + 1)
-    block = data[start:end]
-    if chance.random() < 0.2:
-        return data[:at] + block + data[at + len(block) :]
-    noise, blank = chance.randbytes(len(block)), bytes([chance.choice((0, 255))]) * len(block)
-    return data[:start] + chance.choice((b"", 2 * block, 51 * block, noise + block, noise, blank)) + data[end:]
+    return data[:at] + data[start:end] + data[at + end - start :]
+
+
+def _zero(data: bytes, chance: random.Random) -> bytes:
+    start, end = _span(data, chance)
+    return data[:start] + bytes([chance.choice((0, 255))]) * (end - start) + data[end:]
 
 
 def _word(data: bytes, chance: random.Random) -> bytes:
@@ -143,8 +173,23 @@ def _no_utf_8(data: bytes, chance: random.Random) -> bytes:
     return data[:at] + chance.choice((b"\xff", b"\xc3", b"\xed\xa0\x80", b"\xff\xfe", b"\xef\xbb\xbf")) + data[at:]
 
 
-BYTE_CHANGES = (*[_byte] * 4, *[_number] * 3, _cut, *[_block] * 5, _word)
-TEXT_CHANGES = (*[_word] * 3, _put_word, *[_value] * 2, *[_lines] * 2, _no_utf_8, _nest)
+BYTE_CHANGES = (
+    _flip,
+    _flip,
+    _set,
+    _set,
+    _number,
+    _number,
+    _number,
+    _cut,
+    _remove,
+    _repeat,
+    _insert,
+    _copy,
+    _zero,
+    _word,
+)
+TEXT_CHANGES = (_word, _word, _word, _put_word, _value, _value, _lines, _lines, _no_utf_8, _nest)
 
 
 class Damage:
@@ -163,8 +208,8 @@ class Damage:
         data = mutate(self.valid[path], chance, self.reader.text)
         return path, self.reader.repair(data) if self.reader.repair and chance.random() < 0.5 else data
 
-    def findings(self, numbers: range) -> Iterator[tuple[int, str]]:
-        """Read these files in forks of this process, and yield the number and the fault of those that should not be.
+    def findings(self, numbers: range) -> Iterator[Finding]:
+        """Read these files in forks of this process, and yield what should not be.
 
         The process has no threads: a fork has none of them, and waits for ever for a lock or a pool of theirs.
         """
@@ -177,14 +222,14 @@ class Damage:
                     self._read_all(numbers, at, report.fileno())
                 ended = os.waitstatus_to_exitcode(os.waitpid(fork, 0)[1])
                 report.seek(0)
-                yield from (tuple(json.loads(line)) for line in report)
+                yield from (self._finding(*json.loads(line)) for line in report)
             number = int.from_bytes(at[:8], "little")
             if ended:
                 path, _ = self.file(number)
                 path.write_bytes(self.valid[path])
                 died = {-signal.SIGPROF: f"more than {CPU_S} s", -signal.SIGALRM: f"stands still for {STILL_S} s"}
                 how = died.get(ended) or (signal.Signals(-ended).name if ended < 0 else f"exit code {ended}")
-                yield number, f"ends the process: {how}"
+                yield self._finding(number, f"ends the process: {how}")
             numbers = range(number + 1, numbers.stop) if ended else range(0)
 
     def read(self, number: int) -> object:
@@ -220,6 +265,11 @@ class Damage:
             os._exit(99)
         os._exit(0)
 
+    def _finding(self, number: int, what: str) -> Finding:
+        path, data = self.file(number)
+        packed = base64.b85encode(zlib.compress(data, 9)).decode()
+        return Finding(number, path.name, what, packed if len(packed) < 3000 else "")
+
 
 def _bound() -> None:
     """Leave this process as a user's is, with bounded memory and silent."""
@@ -248,3 +298,27 @@ def _in_a_line(error: BaseException) -> str:
     ours = [frame for frame in traceback.extract_tb(error.__traceback__) if "tangible_" in frame.filename]
     where = " < ".join(f"{Path(frame.filename).name}:{frame.lineno}" for frame in [last, *ours[:-4:-1]])
     return f"{type(error).__name__}: {str(error)[:200]!r} at {where}"
+
+
+def main(readers: Mapping[str, Reader], names: list[str], first: int, last: int) -> None:
+    """Print what readers make of these files, a line for each kind of finding: for a person who mends them."""
+    import tempfile
+    import time
+
+    for name in names:
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "seeds").mkdir()
+            since_s = time.process_time() + sum(os.times()[2:4])
+            damage = Damage(name, readers[name], Path(folder) / "seeds")
+            kinds: dict[str, list[Finding]] = {}
+            for finding in damage.findings(range(first, last)):
+                kinds.setdefault(re.sub(r"'.*'", "...", finding.what), []).append(finding)
+            took_s = time.process_time() + sum(os.times()[2:4]) - since_s
+            count = sum(map(len, kinds.values()))
+            died = sum(len(found) for what, found in kinds.items() if what.startswith("ends"))
+            print(
+                f"{name} | {last - first} | {died} | {count - died} | {1000 * took_s / (last - first):.1f} ms",
+                flush=True,
+            )
+            for found in kinds.values():
+                print("   ", len(found), found[0].number, found[0].name, found[0].what, file=sys.stderr, flush=True)

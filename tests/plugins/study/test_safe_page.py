@@ -66,6 +66,7 @@ class Browser:
         return self.status()
 
 
+@pytest.mark.whole
 def test_half_open_connections_keep_nobody_from_the_stop(page: Page, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(connection, "HEAD_S", LONGEST_S)  # on a busy machine all of this takes longer
     monkeypatch.setattr("tangible_study.desks.page._Handler.timeout", LONGEST_S)

@@ -95,7 +95,7 @@ def conforms(
 def _would_push(name: str, options: dict[str, Any]) -> bool:
     """Test whether a device is real and connected, and MOTORS does not let it push. Raises: DeviceAbsent."""
     device = cast(HapticDevice, default_registry().load("device", name)(**options))
-    if bool(os.environ.get(MOTORS)) or device.spec().simulated:
+    if os.environ.get(MOTORS) or device.spec().simulated:
         return False
     device.open().close()
     return True

@@ -98,7 +98,8 @@ class _Walk:
 
     def _origin(self, module: Place, name: str) -> Iterator[Place]:
         """Yield the modules from which a package re-exports a name; the module itself if it does more than that."""
-        sources = [each for each in _text(module).imports if each.bound == name]
+        imported = [each for each in _text(module).imports if each.bound == name]
+        sources = [each for each in imported if _absolute(each, module) != module.name]  # an example in its docstring
         if name in ("", "*") or not sources or not _only_reexports(module) or name in _definitions(module):
             yield module
             return

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from tangible_core.provenance.closure import closure
 from tangible_core.provenance.imports import imports
+from tangible_core.provenance.places import place
 
 ROOT = Path(__file__).parents[2]
 EVERYWHERE = ("pyproject.toml", "constraints.txt", "tests/conftest.py")
@@ -34,18 +35,21 @@ def affected(tests: Iterable[Path], changed: set[str]) -> set[Path]:
 
 @cache
 def depends_on(path: Path) -> frozenset[str]:
-    """Return a test file, the conftest.py files above it, and all of ours that they import; paths from the root."""
-    files = [path, *(folder / "conftest.py" for folder in path.parents if folder.is_relative_to(ROOT / "tests"))]
+    """Return a test file, the conftest.py of its folders, and all of ours that they import; paths from the root."""
+    files = [path, *(folder / "conftest.py" for folder in path.parents if ROOT / "tests" in folder.parents)]
     here = [file for file in files if file.is_file()]
-    names = {each.module for file in here for each in imports(file.read_bytes()) if each.module and not each.level}
-    below = {f"{each.module}.{each.name}" for file in here for each in imports(file.read_bytes()) if each.name != "*"}
-    return frozenset(str(file.relative_to(ROOT)) for file in here) | files_of(frozenset(names | below))
+    found = [each for file in here for each in imports(file.read_bytes()) if each.module and not each.level]
+    names = {
+        name for each in found for name in (each.module, f"{each.module}.{each.name}".strip(".")) if "*" not in name
+    }
+    return frozenset(str(file.relative_to(ROOT)) for file in here) | files_of(frozenset(names))
 
 
 @cache
 def files_of(names: frozenset[str]) -> frozenset[str]:
-    """Return the files of the modules that these import."""
-    return frozenset(file for module in closure(*sorted(names)).modules for file in _files(module))
+    """Return the files of ours among these names, and of all that they import."""
+    ours = [name for name in sorted(names) if (at := place(name)) and Path(at.file).is_relative_to(ROOT)]
+    return frozenset(file for module in closure(*ours).modules for file in _files(module))
 
 
 def _files(module: str) -> Iterable[str]:

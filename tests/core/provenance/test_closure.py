@@ -216,3 +216,9 @@ def test_closure_of_a_function_without_a_file_is_none():
     closure = closure_of_function(test_closure_of_a_name_that_is_not_a_module_is_empty)
     assert closure is not None
     assert {"tangible_core.provenance.closure"} <= set(closure.modules)
+
+
+def test_example_that_imports_from_its_own_package_ends(write: Write):
+    own = '"""Use:\n\n    from own import thing\n"""\n\nfrom .part import thing as thing\n\n__getattr__ = None\n'
+    write("src", **{"own/__init__.py": own, "own/part.py": "thing = 1\n", "asks.py": "from own import thing\n"})
+    assert "own.part" in closure("asks").modules

@@ -44,7 +44,7 @@ def main(names: list[str]) -> None:
     if names[:1] == ["diff"]:
         sys.exit(differences(*names[1:]))
     if names[:1] == ["mutants"] and names[1:]:
-        sys.exit(subprocess.call([sys.executable, "-m", "benchmarks.mutants", *names[1:]]))
+        sys.exit(import_module("benchmarks.mutants").main(names[1:]))
     if unknown := set(names) - set(SECTIONS):
         sys.exit(f"no section {', '.join(sorted(unknown))}; there are {', '.join(SECTIONS)}")
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # what is installed has its bytecode, and need not be compiled anew

@@ -44,9 +44,9 @@ def draw_depth(axes: Any, result: dict[str, Any]) -> None:
 
 def draw_texture(axes: Any, result: dict[str, Any]) -> None:
     """Draw how well segments fit over time, on textures that nothing was tuned on."""
-    made = promises(result)
-    _, gabor, _ = made["`gabor`, 80 mosaics of the reported half"]
-    _, fast, _ = made["`gabor`, fast option, 80 mosaics of the reported half"]
+    figures = promises(result)
+    _, gabor, _ = figures["`gabor`, 80 mosaics of the reported half"]
+    _, fast, _ = figures["`gabor`, fast option, 80 mosaics of the reported half"]
     points = {
         "OpenCV's filters and k-means": (1.0, number(r"recipe: ([\d.]+)", gabor)),
         "gabor": (1 / number(r"1/([\d.]+)", gabor), number(r"ARI ([\d.]+)", gabor)),
@@ -75,9 +75,9 @@ def draw_lateness(axes: Any, result: dict[str, Any]) -> None:
 
 def draw_borders(axes: Any, result: dict[str, Any]) -> None:
     """Draw borders of depth that are felt, before the relief knew of borders and now, with standard errors."""
-    made = promises(result)
+    figures = promises(result)
     for place, what in enumerate(("found", "true")):
-        _, measured, _ = made[f"{what}, mean of 4 pairs of photographs"]
+        _, measured, _ = figures[f"{what}, mean of 4 pairs of photographs"]
         now, now_error, before, before_error = map(float, re.findall(r"[\d.]+", measured))
         axes.bar(place - 0.2, before, 0.36, yerr=before_error, color=OTHERS, label="before" if not place else None)
         axes.bar(place + 0.2, now, 0.36, yerr=now_error, color=OURS, label="now" if not place else None)
@@ -94,9 +94,9 @@ def mark(axes: Any, times: tuple[float, ...]) -> None:
 
 def number(pattern: str, text: str) -> float:
     """Return the number that a pattern finds in a text. Raises: LookupError if it finds none."""
-    if (found := re.search(pattern, text)) is None:
+    if (match := re.search(pattern, text)) is None:
         raise LookupError(f"{pattern} is not in {text!r}")
-    return float(found[1])
+    return float(match[1])
 
 
 def main(path: Path = CHARTS) -> None:

@@ -243,14 +243,14 @@ def _jobs() -> int:
     return max(1, (os.cpu_count() or 1) // 2)
 
 
-def main() -> None:
-    """Run the command line; exit 1 if a mutant was not noticed."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.mutants", description="Do the tests notice faults?")
+def main(words: Sequence[str] | None = None) -> None:
+    """Run the command line, or these words of one; exit 1 if a mutant was not noticed."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks mutants", description="Do the tests notice faults?")
     parser.add_argument("words", nargs="*", help="names of lists, or parts of names of mutants; all")
     parser.add_argument("--jobs", type=int, default=_jobs(), help="so many at a time (%(default)s)")
     parser.add_argument("--sample", type=int, metavar="N", help="draw so many faults at random; the words are rooms")
     parser.add_argument("--seed", type=int, default=1, help="seed of the sample (%(default)s)")
-    asked = parser.parse_args()
+    asked = parser.parse_args(words)
     for each in (signal.SIGINT, signal.SIGTERM):
         signal.signal(each, signal.default_int_handler)
     try:

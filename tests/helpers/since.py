@@ -38,9 +38,9 @@ def depends_on(path: Path) -> frozenset[str]:
     """Return a test file, the conftest.py of its folders, and all of ours that they import; paths from the root."""
     files = [path, *(folder / "conftest.py" for folder in path.parents if ROOT / "tests" in folder.parents)]
     here = [file for file in files if file.is_file()]
-    found = [each for file in here for each in imports(file.read_bytes()) if each.module and not each.level]
+    imported = [each for file in here for each in imports(file.read_bytes()) if each.module and not each.level]
     names = {
-        name for each in found for name in (each.module, f"{each.module}.{each.name}".strip(".")) if "*" not in name
+        name for each in imported for name in (each.module, f"{each.module}.{each.name}".strip(".")) if "*" not in name
     }
     return frozenset(str(file.relative_to(ROOT)) for file in here) | files_of(frozenset(names))
 

@@ -34,13 +34,15 @@ def forward(job: str, *, document: bool = False, **types: Any) -> None:
     document: the job takes the document too. types: of the tab's arguments; those with a default are a tuple of both.
     """
 
-    async def ask(session: Any, tab: Any, **told: Any) -> Any:
-        return await session.worker.quick(job, **(session.document() if document else {}), **told)
+    async def ask(session: Any, tab: Any, **arguments: Any) -> Any:
+        return await session.worker.quick(job, **(session.document() if document else {}), **arguments)
 
     ask.__name__ = job
-    ask.__annotations__ = {name: told[0] if isinstance(told, tuple) else told for name, told in types.items()}
-    defaults = {name: told[1] for name, told in types.items() if isinstance(told, tuple)}
-    taken = [Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in ("session", "tab")]
-    taken += [Parameter(name, Parameter.KEYWORD_ONLY, default=defaults.get(name, Parameter.empty)) for name in types]
-    ask.__dict__["__signature__"] = Signature(taken)
+    ask.__annotations__ = {name: kind[0] if isinstance(kind, tuple) else kind for name, kind in types.items()}
+    defaults = {name: kind[1] for name, kind in types.items() if isinstance(kind, tuple)}
+    parameters = [Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in ("session", "tab")]
+    parameters += [
+        Parameter(name, Parameter.KEYWORD_ONLY, default=defaults.get(name, Parameter.empty)) for name in types
+    ]
+    ask.__dict__["__signature__"] = Signature(parameters)
     request()(ask)

@@ -1,7 +1,8 @@
 """The engine: it makes a requested product and only what that needs, and reports the outcome of each product."""
 
 import logging
-from collections.abc import Container, Generator, Mapping
+from collections import defaultdict
+from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from copy import copy
 from functools import cached_property, partial
@@ -25,9 +26,10 @@ from ...scene.scene import Scene
 from ...scene.workspace import flat_warning
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
-from .cache import Cache, Notes
+from .cache import Cache
 from .keys import product_key
-from .planning import REQUESTED, SAME, Outlook, foresee, needed_for, not_needed, notes_ahead, with_notes
+from .made import NOT_MADE, Made
+from .planning import REQUESTED, SAME, Outlook, depends_on, foresee, needed_for, not_needed, notes_ahead, with_notes
 from .stage import Context, Progress, Stage, StageEvent, ignore_event, stage_class
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -50,13 +52,9 @@ class Engine:
         """A process that compiles in the background; a stage waits for what is compiled for it."""
         self.begun: set[str] = set()
         """The products whose making has begun."""
-        self._made: dict[str, Any] = {}
-        self._finished: dict[str, Any] = {}
-        self._full_size: dict[str, Any] = {}
-        self._keys: dict[str, str] = {}
+        self._made: defaultdict[str, Made] = defaultdict(Made)
         self._outcomes: dict[str, Outcome] = {}
-        self._notes: dict[str, tuple[Note, ...]] = {}
-        """The notes on each product from when it was made, in this process or before."""
+        """The outcome of each product, in the order in which they ended; products of the scene have one as well."""
         self.on_heights: list[Note] = []
         """Remarks on the scale of the heights that the scene provides."""
         self._substituted: frozenset[str] = frozenset()
@@ -77,7 +75,7 @@ class Engine:
     def outcomes(self) -> Outcomes:
         """The outcome of each product, in the order of making; last the products that nothing needed."""
         left = (stage for product, stage in self.stages.items() if product not in self._outcomes and stage.in_outcomes)
-        idle = (not_needed(stage, self._notes.get(stage.product, ())) for stage in left)
+        idle = (not_needed(stage, self._made[stage.product].notes or ()) for stage in left)
         return Outcomes([*self._outcomes.values(), *idle])
 
     @cached_property
@@ -109,7 +107,6 @@ class Engine:
             why, notes = self.source_of(product)
             self._note(Outcome(product, "given", why, "", perf_counter() - start, notes))
             start = perf_counter()
-        self._made |= products
         return products
 
     def plan(self, want: str | None = None) -> Plan:
@@ -133,12 +130,12 @@ class Engine:
         Raises: TangibleError for what a user can correct; whatever a plugin raises.
         """
         product = self._product(want)
-        value, stage = self._pull(product, REQUESTED), self.stages.get(product)
+        value, stage, made = self._pull(product, REQUESTED), self.stages.get(product), self._made[product]
         if value is None or stage is None:
             return value
-        if product not in self._full_size:
-            self._full_size[product] = stage.full_size(value)
-        return self._full_size[product]
+        if made.full_size is NOT_MADE:
+            made.full_size = stage.full_size(value)
+        return made.full_size
 
     def make_on_grid(self, product: str) -> Any:
         """Make a product on the working grid; a product of the scene keeps its size. Raises: as `make`."""
@@ -153,7 +150,7 @@ class Engine:
         other = copy(self)
         other.scene_products = {**self.scene_products, **products}
         context = Context(self.config, self.scene, other.scene_products, self.registry)
-        dependent = {name for name in self.stages if self._depends_on(name, products)}
+        dependent = {name for name in self.stages if depends_on(self.stages, name, products)}
         other.stages = {
             name: stage_class(name)(context) if name in dependent else stage
             for name, stage in self.stages.items()
@@ -161,27 +158,16 @@ class Engine:
         }
         other._substituted = self._substituted | dependent | products.keys()
         other.begun, other.compiler, other._progress = set(), None, ignore_event
-        for each in ("_made", "_finished", "_full_size", "_keys", "_outcomes", "_notes"):
-            kept = {name: value for name, value in getattr(self, each).items() if name not in other._substituted}
-            setattr(other, each, kept)
-        other._made |= products
+        shared = {name: copy(made) for name, made in self._made.items() if name not in other._substituted}
+        other._made = defaultdict(Made, shared)
+        other._outcomes = {name: self._outcomes[name] for name in self._outcomes if name not in other._substituted}
         return other
-
-    def _depends_on(self, name: str, products: Container[str]) -> bool:
-        """Return True for these products and for all that is made of them."""
-        stage = self.stages.get(name)
-        return name in products or (stage is not None and any(self._depends_on(each, products) for each in stage.needs))
 
     def touch_on(self, device: HapticDevice) -> Any:
         """Make a touch for a device other than the configured one; all other products are shared. Raises: as `make`."""
-        other = copy(self)
-        other.config = self.config.with_values(device=NamedMethod("", "", device))
-        other.__dict__.pop("stages", None)
-        for each in ("_made", "_finished", "_full_size"):
-            setattr(other, each, {product: made for product, made in getattr(self, each).items() if product != "touch"})
-        touch = other.make("touch")
-        self._made |= {product: made for product, made in other._made.items() if product != "touch"}
-        return touch
+        config = self.config.with_values(device=NamedMethod("", "", device))
+        stage = stage_class("touch")(Context(config, self.scene, self.scene_products, self.registry))
+        return self._finish(stage, self._make(stage, REQUESTED))
 
     def with_config(self, config: PipelineConfig) -> "Engine":
         """Return an engine for another configuration, with the products that are the same for both."""
@@ -193,10 +179,12 @@ class Engine:
 
     def adopt(self, other: "Engine") -> None:
         """Take over the products of another configuration of the same scene that have the same keys."""
-        if other.config.scene == self.config.scene and "stages" in other.__dict__:
-            cached = [name for name in other._made if name in other.stages and other.stages[name].cached]
-            new = (name for name in cached if name not in self._made)
-            self._made |= {name: other._made[name] for name in new if self.key(name) == other.key(name)}
+        if other.config.scene != self.config.scene:
+            return
+        for name, made in [*other._made.items()]:  # a key may add the records of inputs
+            new = made.value is not NOT_MADE and self._made[name].value is NOT_MADE
+            if new and other.stages[name].cached and self.key(name) == other.key(name):
+                self._made[name].value = made.value
 
     def inputs_of(self, want: str) -> set[str]:
         """Return the product and all products that it is made from, directly or indirectly."""
@@ -205,31 +193,35 @@ class Engine:
 
     def key(self, product: str) -> str:
         """Return a text that identifies the product's content before it is made."""
-        if product not in self._keys:
+        made = self._made[product]
+        if made.key is None:
             stage, value = self.stages.get(product), self.scene_products.get(product)
             if stage is None:
-                key = "nothing" if value is None else value.digest()
+                made.key = "nothing" if value is None else value.digest()
+            elif stage.skip:
+                made.key = "skipped"
             else:
-                inputs = {name: self.key(name) for name in stage.needs} if not stage.skip else {}
-                key = "skipped" if stage.skip else product_key(product, stage.key, inputs)
-            self._keys[product] = key
-        return self._keys[product]
+                made.key = product_key(product, stage.key, {name: self.key(name) for name in stage.needs})
+        return made.key
 
     def _pull(self, product: str, why: str) -> Any:
         """Return a product, made if it is not there yet, and finished by its stage."""
-        stage = self.stages.get(product)
-        if stage is not None and product not in self._made:
-            self._made[product] = self._make(stage, why)
-        value = self._made.get(product)
-        if value is None or stage is None:
-            return value
-        if product not in self._finished:
-            try:
-                self._finished[product] = stage.finish(value)
-            except TangibleError as error:
-                self._note(Outcome(product, "failed", str(error), stage.method))
-                raise
-        return self._finished[product]
+        stage, made = self.stages.get(product), self._made[product]
+        if stage is None:
+            return self.scene_products.get(product)
+        if made.value is NOT_MADE:
+            made.value = self._make(stage, why)
+        if made.finished is NOT_MADE:
+            made.finished = self._finish(stage, made.value)
+        return made.finished
+
+    def _finish(self, stage: Stage, value: Any) -> Any:
+        """Return what a stage made, checked by it, and with names; None for a skipped product."""
+        try:
+            return None if value is None else stage.finish(value)
+        except TangibleError as error:
+            self._note(Outcome(stage.product, "failed", str(error), stage.method))
+            raise
 
     def _make(self, stage: Stage, why: str) -> Any:
         if stage.skip:
@@ -253,39 +245,35 @@ class Engine:
             with collect_notes() as notes, limited_threads(self.threads), naming_plugins():
                 value = stage.make(inputs)
         except BaseException as error:
-            why, seconds = f"{type(error).__name__}: {error}", perf_counter() - start
-            self._note(Outcome(stage.product, "failed", why, stage.method, seconds))
+            why = f"{type(error).__name__}: {error}"
+            self._note(Outcome(stage.product, "failed", why, stage.method, perf_counter() - start))
             raise
         seconds = perf_counter() - start
-        self._notes[stage.product] = all_notes = (*notes_ahead(stage), *notes)
+        self._made[stage.product].notes = all_notes = (*notes_ahead(stage), *notes)
         self._note(Outcome(stage.product, "ran", with_notes(all_notes, why), stage.method, seconds, all_notes))
         if cache := self.cache_for(stage):
             names = sorted(self.inputs_of(stage.product))
-            within = {name: self._notes[name] for name in names if self._notes.get(name)}
+            within = {name: notes for name in names if (notes := self._made[name].notes)}
             cache.put(self.key(stage.product), value, within)
         return value
 
     def _from_cache(self, stage: Stage) -> Record | None:
+        """Return a cached product with the notes on it and on what it was made from; warnings are logged again."""
         start, cache = perf_counter(), self.cache_for(stage)
-        entry = cache and cache.entry(self.key(stage.product))
-        if entry is None:
+        if not (cache and (entry := cache.entry(self.key(stage.product)))):
             return None
-        self._repeat_notes(entry.notes)
-        notes, seconds = self._notes.get(stage.product, ()), perf_counter() - start
+        for product, noted in entry.notes.items():
+            if self._made[product].notes is None:
+                self._made[product].notes = noted
+                for text in (remark.text for remark in noted if remark.kind != "decision"):
+                    log.warning("%s", text)
+        notes, seconds = self._made[stage.product].notes or (), perf_counter() - start
         self._note(Outcome(stage.product, "cached", with_notes(notes, SAME), stage.method, seconds, notes))
         return entry.record
 
     def cache_for(self, stage: Stage) -> Cache | None:
         """Return the cache for the product of a stage; None where it is not cached."""
         return self.cache if stage.cached and stage.product not in self._substituted else None
-
-    def _repeat_notes(self, kept: Notes) -> None:
-        """Take over the notes on a cached product and on the products that it was made from; log warnings again."""
-        for product in kept.keys() - self._notes.keys():
-            self._notes[product] = kept[product]
-            for each in kept[product]:
-                if each.kind != "decision":
-                    log.warning("%s", each.text)
 
     def source_of(self, product: str) -> tuple[str, tuple[Note, ...]]:
         """Return why a product is given, and for the pictures or the heights the notes on their files."""

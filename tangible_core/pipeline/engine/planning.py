@@ -1,6 +1,6 @@
 """Plans: the outcome of each product, foreseen before anything is made."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from ...data import Note, Outcome, Record
@@ -27,6 +27,12 @@ class Outlook(NamedTuple):
 def needed_for(product: str) -> str:
     """Return why a product is made that was not requested itself."""
     return f"needed for the {product}"
+
+
+def depends_on(stages: Mapping[str, Stage], name: str, products: Container[str]) -> bool:
+    """Return True for these products and for all that is made of them."""
+    needs = stages[name].needs if name in stages else ()
+    return name in products or any(depends_on(stages, need, products) for need in needs)
 
 
 def foresee(engine: Outlook, product: str, why: str, steps: dict[str, Outcome]) -> dict[str, Outcome]:

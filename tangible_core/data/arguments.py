@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from inspect import Parameter, Signature, signature
 from os import PathLike
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar, Unpack, cast, get_args, get_origin
 
 import numpy as np
 
@@ -23,9 +23,13 @@ READERS = "; Scene and numpy.load read files"
 
 
 def named_options(function: F) -> F:
-    """Wrap a function so that an unknown option is an ArgumentError with the name that was probably meant."""
-    parameters = signature(function).parameters
-    known = [name for name, each in parameters.items() if each.kind in _BY_NAME and name not in ("self", "cls")]
+    """Wrap a function so that an unknown option is an ArgumentError with the name that was probably meant.
+
+    The options of `**options: Unpack[...]` are in the function's signature by name, for `help` and completion.
+    """
+    plain = signature(function)
+    parameters = [option for parameter in plain.parameters.values() for option in _unpack(parameter)]
+    known = [each.name for each in parameters if each.kind in _BY_NAME and each.name not in ("self", "cls")]
 
     @wraps(function)
     def call(*arguments: Any, **options: Any) -> Any:
@@ -35,7 +39,16 @@ def named_options(function: F) -> F:
                 raise ArgumentError(f"{function.__qualname__}: {name}: unknown option{near}; known: {', '.join(known)}")
         return function(*arguments, **options)
 
+    cast(Any, call).__signature__ = plain.replace(parameters=parameters)
     return cast(F, call)
+
+
+def _unpack(parameter: Parameter) -> Sequence[Parameter]:
+    """Return the options that `**options: Unpack[...]` stands for, each by its name and type; others as they are."""
+    if get_origin(parameter.annotation) is not Unpack:
+        return [parameter]
+    types = get_args(parameter.annotation)[0].__annotations__
+    return [Parameter(name, Parameter.KEYWORD_ONLY, default=..., annotation=types[name]) for name in types]
 
 
 def named_fields(cls: C) -> C:

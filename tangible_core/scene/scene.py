@@ -1,32 +1,25 @@
 """Scenes: a pair of views, a photo, a height map or a video, from files, from arrays or builtin."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from os import PathLike
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Self, Unpack
 
 import numpy as np
 from jaxtyping import Bool, Float32
-from numpy.typing import ArrayLike
 
-from ..data import Calibration, DisparityMap, Record, Relief, SegmentMap, Views
+from ..data import DisparityMap, Record, Relief, SegmentMap, Views
 from ..data.arguments import named_options
 from ..data.records import short_repr
 from ..errors import ConfigError, GeometryError, PictureError
 from .formats.height_maps import MeasuredSize
 from .formats.multi_picture import Notify, ignore
-from .formats.pairs import Layout
-from .formats.pictures import NonFinite, TruthScale
 from .geometry import MAX_RELIEF_M, Holes, Rise, ValueRange, fill_rows, scale_heights
-from .rig import StereoRig
 from .scaling import felt_factor, reduced_map, reduced_shape
-from .scene_files import BUILTINS, SceneFiles, VideoLayout, scikit_image_data, unknown_scene
+from .scene_files import BUILTINS, SceneFiles, scikit_image_data, unknown_scene
+from .scene_options import File, HeightOptions, PairOptions, PhotoOptions, Picture, VideoOptions
 from .scene_source import SceneSource, scene_name, source_of_arguments
 from .video.files import Video
-
-File = str | PathLike[str]
-Picture = File | ArrayLike
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,28 +66,7 @@ class Scene:
 
     @classmethod
     @named_options
-    def pair(
-        cls,
-        left: Picture,
-        right: Picture | None = None,
-        *,
-        layout: Layout | None = None,
-        calibration: Calibration | None = None,
-        rig: StereoRig | File | None = None,
-        disparity: Picture | None = None,
-        disparity_scale: TruthScale | None = None,
-        depth: Picture | None = None,
-        depth_unit_m: float | None = None,
-        near_m: float | None = None,
-        far_m: float | None = None,
-        nodata: float | Sequence[float] | None = None,
-        segments: Picture | None = None,
-        truth: Picture | None = None,
-        truth_scale: TruthScale | None = None,
-        crop: Sequence[int] | None = None,
-        non_finite: NonFinite = "error",
-        name: str = "",
-    ) -> Self:
+    def pair(cls, left: Picture, right: Picture | None = None, **options: Unpack[PairOptions]) -> Self:
         """Make a scene of a rectified pair, or of a raw one with its `rig`; without `right`, both views are in `left`.
 
         The options are those of `SceneFiles`.
@@ -102,93 +74,39 @@ class Scene:
         Raises: ConfigError for parts that do not make a scene, PictureError for a part that cannot be read or is not a
         picture, ArgumentError for an argument of a wrong type.
         """
-        given = dict(locals())
-        if right is None:
-            given["stereo"] = given.pop("left")
-        return cls._load(given)
+        views = {"stereo": left} if right is None else {"left": left, "right": right}
+        return cls._load(views, options)
 
     @classmethod
     @named_options
-    def photo(
-        cls,
-        photo: Picture,
-        *,
-        disparity: Picture | None = None,
-        disparity_scale: TruthScale | None = None,
-        depth: Picture | None = None,
-        depth_unit_m: float | None = None,
-        near_m: float | None = None,
-        far_m: float | None = None,
-        nodata: float | Sequence[float] | None = None,
-        segments: Picture | None = None,
-        truth: Picture | None = None,
-        truth_scale: TruthScale | None = None,
-        calibration: Calibration | None = None,
-        photo_depth: bool = True,
-        crop: Sequence[int] | None = None,
-        rotate: int = 0,
-        invert: bool = False,
-        clip: Sequence[float] | None = None,
-        non_finite: NonFinite = "error",
-        name: str = "",
-    ) -> Self:
+    def photo(cls, photo: Picture, **options: Unpack[PhotoOptions]) -> Self:
         """Make a scene of one picture. Transparent pixels of a fourth channel do not belong to it.
 
         The options are those of `SceneFiles`; pictures and errors are those of `pair`.
         """
-        return cls._load(locals())
+        return cls._load({"photo": photo}, options)
 
     @classmethod
     @named_options
-    def heights(
-        cls,
-        heights: Picture,
-        *,
-        relief_m: float | None = None,
-        nodata: float | Sequence[float] | None = None,
-        cell_m: float | Sequence[float] | None = None,
-        segments: Picture | None = None,
-        crop: Sequence[int] | None = None,
-        rotate: int = 0,
-        invert: bool = False,
-        clip: Sequence[float] | None = None,
-        name: str = "",
-    ) -> Self:
+    def heights(cls, heights: Picture, **options: Unpack[HeightOptions]) -> Self:
         """Make a scene of a height map (h, w) in any unit, NaN where unknown: a file or an array.
 
         The options are those of `SceneFiles`, the errors those of `pair`.
         """
-        given = dict(locals())
-        given["height"] = given.pop("heights")
-        return cls._load(given)
+        return cls._load({"height": heights}, options)
 
     @classmethod
     @named_options
-    def video(
-        cls,
-        video: File | int,
-        *,
-        layout: VideoLayout | None = None,
-        fps: float | None = None,
-        repeat: bool = True,
-        calibration: Calibration | None = None,
-        rig: StereoRig | File | None = None,
-        segments: Picture | None = None,
-        crop: Sequence[int] | None = None,
-        rotate: int = 0,
-        invert: bool = False,
-        name: str = "",
-    ) -> Self:
+    def video(cls, video: File | int, **options: Unpack[VideoOptions]) -> Self:
         """Make a scene of a video: a file, a folder of pictures, or the number of a camera.
 
         The options are those of `SceneFiles`, the errors those of `pair`.
         """
-        return cls._load(locals())
+        return cls._load({"video": video}, options)
 
     @classmethod
-    def _load(cls, given: Mapping[str, Any]) -> Self:
-        """Return the scene of the arguments of a constructor: all of its local names."""
-        return cls(**source_of_arguments({name: value for name, value in given.items() if name != "cls"}).load())
+    def _load(cls, parts: Mapping[str, Any], options: Mapping[str, Any]) -> Self:
+        return cls(**source_of_arguments({**parts, **options}).load())
 
     @classmethod
     def builtin(cls, name: str) -> Self:

@@ -12,12 +12,12 @@ from ..data import Calibration
 from ..data.quantities import Quantities
 from ..errors import PictureError, did_you_mean, quoted
 from .formats.pictures import NonFinite, TruthScale
+from .scene_options import VideoLayout
 
 Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Start = Annotated[int, Field(ge=0)]
 Count = Annotated[int, Field(ge=1)]
 Percent = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
-VideoLayout = Literal["mono", "side-by-side", "cross-eyed", "top-bottom", "bottom-top"]
 Fps = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)]
 Number = Annotated[float, Field(allow_inf_nan=False)]
 

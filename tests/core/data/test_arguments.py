@@ -1,8 +1,9 @@
 """If one of these fails, a wrong argument gives a traceback of the inside instead of a sentence that names it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from inspect import signature
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 import pytest
@@ -61,6 +62,11 @@ def test_wrong_argument_gives_one_sentence_with_its_name(make: Callable[[], Any]
     assert "\n" not in str(raised.value)
 
 
+class Ink(TypedDict, total=False):
+    colour: str
+    wet: bool
+
+
 class Pen:
     @named_options
     def draw(self, at: int, /, wide: int = 1, *points: int, tall: int = 1, **more: int) -> int:
@@ -74,6 +80,17 @@ def test_unknown_option_lists_only_the_names_that_may_be_written():
             Pen().draw(1, **{name: 2})
         meant = " (did you mean 'tall'?)" if name == "tal" else ""
         assert str(raised.value) == f"Pen.draw: {name}: unknown option{meant}; known: wide, tall"
+
+
+def test_options_of_a_typed_dict_are_in_the_signature_by_name():
+    @named_options
+    def write(text: str, **ink: Unpack[Ink]) -> Mapping[str, object]:
+        return ink
+
+    assert str(signature(write)).startswith("(text: str, *, colour: str = Ellipsis, wet: bool = Ellipsis)")
+    assert write("a", wet=True) == {"wet": True}
+    with pytest.raises(ArgumentError, match=r"color: unknown option .*; known: text, colour, wet"):
+        write("a", color="red")
 
 
 def test_convertible_arguments_are_converted():

@@ -38,9 +38,9 @@ from tangible_core.preflight.bumps import feature_m
 from tangible_core.scene.geometry import make_relief, normals, resample, slopes, smooth
 from tangible_core.scene.scaling import enlarged_segments, in_pixels_of, on_grid, reduce_views
 from tangible_core.scene.scene import Scene
-from tangible_depth.rectify.alignment import aligning_lenses
 from tangible_depth.rectify.rectification import rectify
 from tangible_depth.rectify.rectified_pair import warp_pair
+from tangible_depth.rectify.rectifying_rotation import aligning_lenses
 from tangible_depth.sparse.harris import harris_response
 from tangible_depth.sparse.matches import flow_matches, inverse_lengths, sift_matches
 from tangible_export.paper.borders import shared_borders

@@ -12,8 +12,7 @@ from jaxtyping import Bool, Float64
 
 from tangible_core.errors import GeometryError
 
-from .parallax import Plane, best_plane, fundamental_from_plane
-from .projective import homogeneous, product, sampson_distance
+from .projective import Plane, best_plane, homogeneous, product, transform
 
 Degeneracy = Literal["not finite", "too few", "duplicate", "collinear", "homography", "outliers"]
 Fit = Callable[[np.ndarray, np.ndarray, np.ndarray | None], Float64[np.ndarray, "3 3"]]
@@ -22,6 +21,8 @@ CHANCE_SCENES = 1000
 """Scenes of which chance may produce a parallax in one."""
 CELL_PX = 6
 """Side of the cells, in pixels, in which matches off a plane count once."""
+MOST_SAMPLED = 100
+"""Largest number of matches off a plane whose pairs are tried for an epipole."""
 FEWEST = 8
 """Fewest matches of the eight-point method."""
 
@@ -150,6 +151,19 @@ def _magsac(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> F
     return _with_inliers(matrix, left_px, right_px, threshold_px)
 
 
+def sampson_distance(fundamental: np.ndarray, left_px: np.ndarray, right_px: np.ndarray) -> Float64[np.ndarray, "n"]:
+    """Return the first-order distance in pixels of each match (n, 2), (n, 2) from the nearest pair that obeys F.
+
+    |l^T F r| / sqrt((F r)_1^2 + (F r)_2^2 + (F^T l)_1^2 + (F^T l)_2^2).
+    Source: the root of Hartley & Zisserman, 2nd ed., eq. 11.9.
+    """
+    left, right = homogeneous(left_px), homogeneous(right_px)
+    in_left, in_right = product(right, fundamental.T), product(left, fundamental)
+    value = np.einsum("ni,ni->n", left, in_left)
+    normals = [np.einsum("ni,ni->n", each[:, :2], each[:, :2]) for each in (in_left, in_right)]
+    return np.abs(value) / np.sqrt(np.maximum(normals[0] + normals[1], np.finfo(np.float64).tiny))
+
+
 def _with_inliers(matrix: np.ndarray, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Fundamental:
     matrix = matrix / np.linalg.norm(matrix)
     return Fundamental(matrix, sampson_distance(matrix, left_px, right_px) <= threshold_px)
@@ -168,6 +182,30 @@ def _better_off_plane(
     other = None if matrix is None else _with_inliers(matrix, left_px, right_px, threshold_px)
     estimates = [each for each in (first, other) if each is not None]
     return max(estimates, key=lambda each: np.count_nonzero(each.inliers & ~plane.near), default=None)
+
+
+def fundamental_from_plane(
+    plane: Plane, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float
+) -> Float64[np.ndarray, "3 3"] | None:
+    """Return F = [e]x H with the epipole e of most matches off the plane; None with fewer than two of them.
+
+    Two matches off the plane determine an epipole; a sample of seven would seldom contain two of a small object.
+    Source: Chum, Werner & Matas, Two-View Geometry Estimation Unaffected by a Dominant Plane, CVPR 2005.
+    """
+    off = np.flatnonzero(~plane.near)
+    left, moved = homogeneous(left_px[off]), homogeneous(transform(plane.matrix, right_px[off]))
+    lines = np.cross(moved, left)
+    some = np.arange(len(off))[:: 1 + len(off) // MOST_SAMPLED]
+    one, other = (some[each] for each in np.triu_indices(len(some), 1))
+    epipoles = np.cross(lines[one], lines[other])
+    length = np.linalg.norm(epipoles, axis=1)
+    epipoles = epipoles[length > 0] / length[length > 0, None]
+    if not len(epipoles):
+        return None
+    across = [epipoles[:, i, None] * moved[:, 2] - epipoles[:, 2, None] * moved[:, i] for i in (0, 1)]
+    agreeing = np.abs(product(epipoles, lines.T)) <= threshold_px * np.hypot(*across)
+    x, y, w = epipoles[np.count_nonzero(agreeing, axis=1).argmax()]
+    return product(np.array([[0, -w, y], [w, 0, -x], [-y, x, 0]]), plane.matrix)
 
 
 def _false_alarms(left_px: np.ndarray, right_px: np.ndarray, inliers: np.ndarray, threshold_px: float) -> float:

@@ -1,8 +1,8 @@
-"""Projective geometry of two pictures: matches and lines, homographies of rotating cameras, and lens distortion.
+"""Projective geometry of two pictures: homographies of planes and of rotating cameras, and lens distortion.
 
 Convention: left^T F right = 0, points homogeneous (column, row, 1) in pixels. A right point's line in the left
 picture is F right, a left point's line in the right picture is F^T left. A camera that rotates about its centre moves
-points by H = K R K^-1.
+points by H = K R K^-1. The homography of a plane leads from the right picture to the left one.
 
 A point at radius r from the picture's middle, in half its longer side, is at r (1 + k / 2) / (1 + k r^2) in the picture
 of a lens without distortion: k < 0 where straight lines bulge outwards. The factor keeps the size of the picture as a
@@ -11,8 +11,19 @@ Sources: Hartley & Zisserman, Multiple View Geometry, 2nd ed., sec. 8.4.2 and ch
 estimation of multiple view geometry and lens distortion, CVPR 2001.
 """
 
+from math import exp, log
+from typing import NamedTuple
+
 import numpy as np
-from jaxtyping import Float64
+from jaxtyping import Bool, Float64
+
+from .least_squares import least_squares, robust_pull
+
+FOCAL_SPREAD, ZOOM_SPREAD, TURN_SPREAD = 0.35, 0.2, 0.5
+"""Standard deviations of the parameters of an unknown camera: logarithm of its focal length in longer sides of the
+picture, logarithm of the zoom between the pictures, and each angle in radians."""
+FREE_NUMBERS = 3
+"""Degrees of freedom of a homography beyond those of a rotating, zooming camera of unknown focal length: 8 - 5."""
 
 
 def homogeneous(points_px: np.ndarray) -> Float64[np.ndarray, "n 3"]:
@@ -23,29 +34,6 @@ def homogeneous(points_px: np.ndarray) -> Float64[np.ndarray, "n 3"]:
 def product(one: np.ndarray, other: np.ndarray) -> Float64[np.ndarray, "n m"]:
     """Multiply one (n, k) by other (k, m), summing in the same order on every processor, unlike BLAS."""
     return np.einsum("nk,km->nm", one, other)
-
-
-def epipoles(fundamental: np.ndarray) -> tuple[Float64[np.ndarray, "3"], Float64[np.ndarray, "3"]]:
-    """Return the epipoles (left, right), each camera's centre in the other view: homogeneous, of unit length.
-
-    F^T left_epipole = 0 and F right_epipole = 0. A third coordinate of zero means infinitely far, as in a rectified
-    pair, where both are (1, 0, 0).
-    """
-    left, _, right = np.linalg.svd(fundamental)
-    return left[:, 2], right[2]
-
-
-def sampson_distance(fundamental: np.ndarray, left_px: np.ndarray, right_px: np.ndarray) -> Float64[np.ndarray, "n"]:
-    """Return the first-order distance in pixels of each match (n, 2), (n, 2) from the nearest pair that obeys F.
-
-    |l^T F r| / sqrt((F r)_1^2 + (F r)_2^2 + (F^T l)_1^2 + (F^T l)_2^2).
-    Source: the root of Hartley & Zisserman, 2nd ed., eq. 11.9.
-    """
-    left, right = homogeneous(left_px), homogeneous(right_px)
-    in_left, in_right = product(right, fundamental.T), product(left, fundamental)
-    value = np.einsum("ni,ni->n", left, in_left)
-    normals = [np.einsum("ni,ni->n", each[:, :2], each[:, :2]) for each in (in_left, in_right)]
-    return np.abs(value) / np.sqrt(np.maximum(normals[0] + normals[1], np.finfo(np.float64).tiny))
 
 
 def transform(homography: np.ndarray, points_px: np.ndarray) -> Float64[np.ndarray, "n 2"]:
@@ -100,3 +88,49 @@ def _frame(shape: tuple[int, int]) -> tuple[np.ndarray, float]:
 
 def _square(away: np.ndarray) -> np.ndarray:
     return away[:, :1] ** 2 + away[:, 1:] ** 2
+
+
+class Plane(NamedTuple):
+    """The best homography (3, 3), and the mask of matches within three thresholds of it."""
+
+    matrix: Float64[np.ndarray, "3 3"]
+    near: Bool[np.ndarray, "n"]
+
+
+def best_plane(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Plane | None:
+    """Find the homography that explains most matches (n, 2), (n, 2); None without one."""
+    import cv2
+
+    matrix, _ = cv2.findHomography(right_px, left_px, cv2.USAC_MAGSAC, 2 * threshold_px)
+    if matrix is None:
+        return None
+    with np.errstate(divide="ignore", invalid="ignore"):
+        away = np.linalg.norm(transform(matrix, right_px) - left_px, axis=1)
+    return Plane(matrix, away <= 3 * threshold_px)
+
+
+def is_pure_rotation(plane: Plane, left_px: np.ndarray, right_px: np.ndarray, shape: tuple[int, int]) -> bool:
+    """Test whether a camera that rotated about its centre, and perhaps zoomed, explains the matches as well as a plane.
+
+    H = K R K'^-1 with a plausible focal length. A wall seen from two places does not fit: it is shifted, stretched
+    along the baseline or sheared, which no rotation does.
+    Source: Hartley & Zisserman, Multiple View Geometry, 2nd ed., sec. 8.4.2; Schwarz, Estimating the Dimension of a
+    Model, Annals of Statistics 1978, for how much three more parameters must explain.
+    """
+    left, right = left_px[plane.near], right_px[plane.near]
+    spread = np.array([FOCAL_SPREAD, ZOOM_SPREAD, TURN_SPREAD, TURN_SPREAD, TURN_SPREAD])
+
+    def cost(values: np.ndarray) -> np.ndarray:
+        away = transform(_rotation_homography(values, shape), right) - left
+        return np.concatenate([robust_pull(away.ravel()), values / spread])
+
+    turned = np.square(cost(least_squares(cost, np.zeros(5), spread))).sum()
+    flat = np.square(robust_pull((transform(plane.matrix, right) - left).ravel())).sum()
+    return bool(turned <= flat + FREE_NUMBERS * log(len(left)))
+
+
+def _rotation_homography(values: np.ndarray, shape: tuple[int, int]) -> Float64[np.ndarray, "3 3"]:
+    """Return the homography from right to left for log focal length, log zoom, pitch, yaw and roll."""
+    focal_px = max(shape) * exp(values[0])
+    right = camera_matrix(focal_px * exp(values[1]), shape)
+    return product(product(camera_matrix(focal_px, shape), rotation(*values[2:])), inverse(right))

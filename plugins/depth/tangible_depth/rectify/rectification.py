@@ -7,71 +7,23 @@ import logging
 from collections.abc import Callable
 
 import numpy as np
-from jaxtyping import Bool, Float32, Float64
+from jaxtyping import Float64
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.data.pictures import to_grey
 from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import note
-from tangible_core.runtime.opencv import plain_opencv
 
-from ..sparse.harris import corners, harris_response, least_response
-from ..sparse.matches import Matches, corner_matches, flow_matches, inverse_lengths, sift_matches
+from ..sparse.matches import Matches, flow_matches, match_off_plane, sift_matches
 from .fundamental import Fit, eight_point
-from .parallax import Plane, best_plane, is_pure_rotation
-from .projective import homogeneous, inverse, product, transform
+from .projective import Plane, best_plane, homogeneous, inverse, is_pure_rotation, product, transform
 from .rectified_pair import RectifiedPair, unchanged_pair, warp_pair
 from .rectifying_rotation import (
     LEAST_TRUSTED,
     RectificationError,
     find_rotation,
     threshold_px,
-    unique_matches,
-    verified_range,
 )
-
-WINDOW_PX = 7
-"""Side of the matched windows, in pixels, small enough for small objects."""
-MOST_CORNERS = 1000
-"""Largest number of corners of each picture that are matched all against all."""
-LEAST_ALIKE = 0.7
-"""Lowest correlation of windows at the same place that lie on the plane."""
-LEAST_SCORE = 0.85
-"""Lowest correlation of a match."""
-
-
-def match_off_plane(
-    left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h w"], homography: np.ndarray
-) -> Matches:
-    """Match corners that a homography (3, 3), from right to left, does not explain, as `corner_matches` does.
-
-    Right points are returned in the left picture's frame, mapped by the homography.
-    """
-    import cv2
-
-    size = left.shape[::-1]
-    with plain_opencv():
-        moved = cv2.warpPerspective(right, homography, size)
-        shown = cv2.warpPerspective(np.ones_like(right), homography, size, flags=cv2.INTER_NEAREST) > 0
-    off = shown & ~_correlating(left, moved)
-    seen = [
-        corners(np.where(off, harris_response(grey), 0), least_response(0.005), MOST_CORNERS) for grey in (left, moved)
-    ]
-    return corner_matches(left, moved, seen[0], seen[1], WINDOW_PX, LEAST_SCORE)
-
-
-def _correlating(one: Float32[np.ndarray, "h w"], other: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
-    """Find the pixels at which windows of two pictures at the same place correlate."""
-    import cv2
-
-    side, half = (WINDOW_PX, WINDOW_PX), WINDOW_PX // 2
-    with plain_opencv():
-        mean, its, both = (
-            cv2.boxFilter(each, cv2.CV_64F, side, borderType=cv2.BORDER_REPLICATE) for each in (one, other, one * other)
-        )
-    spread = (both - mean * its) * WINDOW_PX**2
-    return spread * inverse_lengths(one, half) * inverse_lengths(other, half) >= LEAST_ALIKE
-
 
 logger: logging.Logger = logging.getLogger(__name__)
 
@@ -81,6 +33,12 @@ LEAST_GAIN_PX = 0.2
 """Smallest gain in median row offset, in pixels, above the noise of the matches; for less, warping would only blur."""
 MOSTLY = 0.8
 """Share of the matches on one plane from which more matches off the plane are searched."""
+NEIGHBOURS, LEAST_LIKE = 8, 4
+"""Nearest matches of a match, and how many must have a similar disparity for it to widen the range."""
+STRAY = 0.5
+"""Percentage of similar matches at either end that is dropped as stray."""
+LIKE_PX, LIKE_SLOPE = 8.0, 0.1
+"""Largest difference of similar disparities, in pixels, and its growth per pixel between the matches."""
 EXCHANGED_PX = -2.0
 """Disparity, in pixels, below which 95 % of the matches of exchanged views lie: parallel cameras give none below 0."""
 _VERGED_OR_EXCHANGED = (
@@ -214,6 +172,21 @@ def _search_start(disparity_px: Float64[np.ndarray, "n"]) -> int:
     return min(0, int(np.floor(low - max(4.0, 0.1 * (high - low)))))
 
 
+def verified_range(points_px: np.ndarray, disparity_px: np.ndarray) -> tuple[int, int]:
+    """Return the lowest and highest disparity, except STRAY, of matches with similar neighbours; of all without any.
+
+    points_px: (n, 2); disparity_px: (n,). A match on its row may still have a wrong column.
+    """
+    from scipy.spatial import KDTree
+
+    away, nearest = KDTree(points_px).query(points_px, min(NEIGHBOURS + 1, len(points_px)))
+    differing = np.abs(disparity_px[nearest] - disparity_px[:, None])
+    like = np.count_nonzero(differing <= LIKE_PX + LIKE_SLOPE * away, axis=1) > LEAST_LIKE
+    kept = disparity_px[like] if like.any() else disparity_px
+    low, high = np.percentile(kept, [STRAY, 100 - STRAY])
+    return int(np.floor(low)), int(np.ceil(high))
+
+
 def check_homographies(
     pair: tuple[np.ndarray, np.ndarray], shape: tuple[int, int], offsets_px: np.ndarray, most_offset_px: float = 3.0
 ) -> None:
@@ -243,3 +216,10 @@ def check_homographies(
 
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+
+
+def unique_matches(matches: Matches) -> Matches:
+    """Remove duplicate matches, which could validate themselves."""
+    _, first = np.unique(np.hstack(matches), axis=0, return_index=True)
+    first = np.sort(first)
+    return Matches(matches.left_px[first], matches.right_px[first])

@@ -6,9 +6,11 @@ Points are (column, row) in pixels, centres at whole numbers.
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float32, Float64, Int64, UInt8
+from jaxtyping import Bool, Float32, Float64, Int64, UInt8
 
 from tangible_core.runtime.opencv import plain_opencv
+
+from .harris import corners, harris_response, least_response
 
 MOST_PIXELS = 2_000_000
 """Largest picture for SIFT, in pixels; larger ones are reduced, as it needs about 300 bytes a pixel."""
@@ -18,6 +20,14 @@ FLAT = 1e-4
 """Smallest norm of a window minus its mean, white being 1: a smaller one is rounding error."""
 STEPS = 2.0**24
 """Steps per unit to which normalised windows are rounded before they are correlated all against all."""
+WINDOW_PX = 7
+"""Side of the matched windows, in pixels, small enough for small objects."""
+MOST_CORNERS = 1000
+"""Largest number of corners of each picture that are matched all against all."""
+LEAST_ALIKE = 0.7
+"""Lowest correlation of windows at the same place that lie on the plane."""
+LEAST_SCORE = 0.85
+"""Lowest correlation of a match."""
 SMALLEST_SIDE = 16
 """Smallest side of a picture, in pixels, in which features are matched."""
 
@@ -221,3 +231,36 @@ def _track_at_full_size(matches: Matches, pictures: tuple[np.ndarray, np.ndarray
 def _to_full_size(points_px: np.ndarray, scale: float) -> Float64[np.ndarray, "n 2"]:
     """Convert points of a reduced picture to the full one; centres are whole numbers, so (0, 0) moves too."""
     return (points_px.astype(np.float64) + 0.5) / scale - 0.5
+
+
+def match_off_plane(
+    left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h w"], homography: np.ndarray
+) -> Matches:
+    """Match corners that a homography (3, 3), from right to left, does not explain, as `corner_matches` does.
+
+    Right points are returned in the left picture's frame, mapped by the homography.
+    """
+    import cv2
+
+    size = left.shape[::-1]
+    with plain_opencv():
+        moved = cv2.warpPerspective(right, homography, size)
+        shown = cv2.warpPerspective(np.ones_like(right), homography, size, flags=cv2.INTER_NEAREST) > 0
+    off = shown & ~_correlating(left, moved)
+    seen = [
+        corners(np.where(off, harris_response(grey), 0), least_response(0.005), MOST_CORNERS) for grey in (left, moved)
+    ]
+    return corner_matches(left, moved, seen[0], seen[1], WINDOW_PX, LEAST_SCORE)
+
+
+def _correlating(one: Float32[np.ndarray, "h w"], other: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+    """Find the pixels at which windows of two pictures at the same place correlate."""
+    import cv2
+
+    side, half = (WINDOW_PX, WINDOW_PX), WINDOW_PX // 2
+    with plain_opencv():
+        mean, its, both = (
+            cv2.boxFilter(each, cv2.CV_64F, side, borderType=cv2.BORDER_REPLICATE) for each in (one, other, one * other)
+        )
+    spread = (both - mean * its) * WINDOW_PX**2
+    return spread * inverse_lengths(one, half) * inverse_lengths(other, half) >= LEAST_ALIKE

@@ -11,12 +11,13 @@ from tangible_depth.rectify.fundamental import (
     DegenerateMatches,
     check_matches,
     eight_point,
+    fundamental_from_plane,
     normalise,
     pixel_weights,
     robust_fundamental,
+    sampson_distance,
 )
-from tangible_depth.rectify.parallax import best_plane, fundamental_from_plane
-from tangible_depth.rectify.projective import sampson_distance
+from tangible_depth.rectify.projective import best_plane
 from two_cameras import seen_points, some_wrong
 
 

@@ -3,14 +3,9 @@
 import numpy as np
 import pytest
 
-from tangible_depth.rectify.parallax import best_plane, is_pure_rotation
-from tangible_depth.rectify.projective import (
-    camera_matrix,
-    epipoles,
-    inverse,
-    rotation,
-    sampson_distance,
-)
+from tangible_depth.rectify.fundamental import sampson_distance
+from tangible_depth.rectify.projective import best_plane, camera_matrix, inverse, is_pure_rotation, rotation
+from tangible_depth.rectify.rectifying_rotation import epipoles
 
 
 def test_inverse_of_any_matrix_is_numpys():

@@ -8,13 +8,18 @@ import pytest
 
 from tangible_core.data import Calibration, DisparityMap, Views
 from tangible_core.plugins.notes import collected
-from tangible_depth.rectify import alignment, rectification, rectifying_rotation
+from tangible_depth.rectify import rectification, rectifying_rotation
 from tangible_depth.rectify import rectifying_rotation as module
-from tangible_depth.rectify.alignment import aligning_homographies
 from tangible_depth.rectify.projective import distort, transform, undistort
-from tangible_depth.rectify.rectification import RectificationError, check_homographies, rectify
+from tangible_depth.rectify.rectification import (
+    RectificationError,
+    check_homographies,
+    rectify,
+    unique_matches,
+    verified_range,
+)
 from tangible_depth.rectify.rectified_pair import unchanged_pair, warp_pair
-from tangible_depth.rectify.rectifying_rotation import threshold_px, unique_matches, verified_range
+from tangible_depth.rectify.rectifying_rotation import aligning_homographies, threshold_px
 from tangible_depth.sparse.matches import Matches
 from two_cameras import HEIGHT, WIDTH, Scene, roll_and_tilt, seen_points, some_wrong
 
@@ -68,8 +73,8 @@ def test_least_squares_fit_is_as_good_as_scipys(monkeypatch):
         costs.append((np.square(cost(found)).sum(), np.square(theirs.fun).sum()))
         return found
 
-    fit = alignment.least_squares
-    monkeypatch.setattr(alignment, "least_squares", both)
+    fit = rectifying_rotation.least_squares
+    monkeypatch.setattr(rectifying_rotation, "least_squares", both)
     for turn in ((0.02, -0.05, 0.01), (0, 0.175, 0), (0, 0, 0.35)):
         matches = Matches(*some_wrong(*seen_points(noise_px=0.3, turn=turn, move_m=(-0.3, 0.02, 0.05)), 0.1))
         aligning_homographies(matches, (HEIGHT, WIDTH))

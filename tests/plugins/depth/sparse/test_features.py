@@ -4,13 +4,13 @@ import cv2
 import numpy as np
 import pytest
 
-from tangible_depth.rectify.rectification import match_off_plane
 from tangible_depth.sparse.corner_range import clip_range, range_of_shifts
 from tangible_depth.sparse.harris import corners, gaussian_window, harris_response, row_edges
 from tangible_depth.sparse.matches import (
     corner_matches,
     flow_matches,
     inverse_lengths,
+    match_off_plane,
     normalised_windows,
     parabola,
     sift_matches,

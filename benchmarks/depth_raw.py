@@ -10,7 +10,7 @@ from tangible_core.data import Views
 from tangible_core.plugins.notes import collected
 from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 from tangible_depth.rectify.projective import camera_matrix, distort, inverse, rotation, transform, undistort
-from tangible_depth.rectify.rectification import rectify, whole_picture_matches
+from tangible_depth.rectify.rectification import rectify
 from tangible_depth.semi_global import SemiGlobal
 
 from .figures import Figure
@@ -91,7 +91,7 @@ def pairs() -> Iterator[tuple[str, Views, np.ndarray]]:
 
 def found_share(views: Views, truth_px: np.ndarray) -> float:
     """Percent of the true matches within 2 px of the place that the map leads to."""
-    rectified = rectify(views, matches=whole_picture_matches(views))
+    rectified = rectify(views, quick=False)
     found = rectified.to_original(SemiGlobal(rectify="never").estimate(rectified.views))
     away = np.linalg.norm(rectified.right_px(found.disparity_px) - truth_px, axis=2)
     return 100 * float(np.mean(away[np.isfinite(truth_px[..., 0])] <= 2))

@@ -7,6 +7,7 @@ from jaxtyping import Bool, Float, Float32, Int16, UInt8
 from numba import int32
 
 from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.data import DisparityMap
 
 from .span import UNKNOWN
 
@@ -85,6 +86,13 @@ def flat_pixels(grey: UInt8[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
     row = np.ones((1, 2 * FLAT_REACH + 1), np.uint8)
     level = (cv2.erode(grey, row) == cv2.dilate(grey, row)).view(np.uint8)
     return cv2.erode(level, row.T).view(np.bool_)
+
+
+def zero_disparity(grey: UInt8[np.ndarray, "h w"], fill: bool) -> DisparityMap:
+    """Return the map of two identical views: 0 everywhere, with confidence 0 for flat pixels, or NaN unless `fill`."""
+    flat = flat_pixels(grey)
+    unknown = flat & (not fill or bool(flat.all()))
+    return DisparityMap(np.where(unknown, np.float32(np.nan), np.float32(0)), (~flat).astype(np.float32))
 
 
 @njit(**KERNEL)

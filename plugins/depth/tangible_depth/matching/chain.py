@@ -9,10 +9,10 @@ import numpy as np
 from tangible_core.data import DisparityMap, Views
 from tangible_core.plugins.notes import note
 
-from ..dense.confidence import flat_pixels
+from ..dense.confidence import zero_disparity
 from ..dense.refinement import DenseMatches, to_disparity_map
 from ..dense.span import Span
-from ..rectify.rectification import rectify, whole_picture_matches
+from ..rectify.rectification import rectify
 from ..rectify.rectifying_rotation import RectificationError
 from ..row_alignment.common_rows import align_rows, rows_correspond
 from ..search.bands import match_bands
@@ -54,7 +54,7 @@ def disparity_map(views: Views, name: str, search: Search, match: Matcher) -> Di
     pair = grey_pair(views, name)
     if search.skip_identical and np.array_equal(*pair):
         note(log, "skipped: matching, as both views are identical")
-        return zero_disparity(pair, search.fill)
+        return zero_disparity(pair.left, search.fill)
     estimate = find_disparity_range(pair, search.least, search.most)
     if search.rectify == "never" or views.calibration is not None:
         estimate.log_notes()
@@ -71,7 +71,7 @@ def _match_rectified(
     views: Views, name: str, search: Search, match: Matcher, instead: DisparityMap | None
 ) -> DisparityMap:
     """Rectify a pair by features of the whole picture and match it; return `instead` if it needs no rectification."""
-    rectified = rectify(views, matches=whole_picture_matches(views))
+    rectified = rectify(views, quick=False)
     if rectified.skipped and instead is not None:
         return instead
     pair = grey_pair(rectified.views, name)
@@ -112,15 +112,10 @@ def match_in_order(pair: Pair, span: Span, fill: bool, match: Matcher) -> Dispar
     If the span has no positive disparity, the views are exchanged: mirrored, they are a pair in the right order, whose
     occlusions lie on the side where the matchers expect them.
     """
-    if span.high > 0 or pair.width == 1:
-        return to_disparity_map(match(pair, span), pair.left, fill)
-    flipped = pair.mirror()
-    disparity = to_disparity_map(match(flipped, Span(-span.high, -span.low)), flipped.left, fill)
+    exchanged = span.high <= 0 and pair.width > 1
+    if exchanged:
+        pair, span = pair.mirror(), Span(-span.high, -span.low)
+    disparity = to_disparity_map(match(pair, span), pair.left, fill)
+    if not exchanged:
+        return disparity
     return DisparityMap(-disparity.disparity_px[:, ::-1], disparity.confidence[:, ::-1])
-
-
-def zero_disparity(pair: Pair, fill: bool) -> DisparityMap:
-    """Return the map of two identical views: 0 everywhere, with confidence 0 for flat pixels, or NaN unless `fill`."""
-    flat = flat_pixels(pair.left)
-    unknown = flat & (not fill or bool(flat.all()))
-    return DisparityMap(np.where(unknown, np.float32(np.nan), np.float32(0)), (~flat).astype(np.float32))

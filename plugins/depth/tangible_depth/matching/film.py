@@ -7,8 +7,9 @@ import numpy as np
 
 from tangible_core.data import DisparityMap, Views
 
+from ..dense.confidence import zero_disparity
 from ..dense.span import Span
-from ..rectify.rectification import rectify, whole_picture_matches
+from ..rectify.rectification import rectify
 from ..rectify.rectified_pair import RectifiedPair
 from ..rectify.rectifying_rotation import RectificationError
 from ..row_alignment.common_rows import align_rows, common_row_offset
@@ -16,7 +17,7 @@ from ..row_alignment.row_offset import shift_rows
 from ..search.bands import match_bands
 from ..search.disparity_range import find_disparity_range
 from ..search.pairs import Pair, grey_pair
-from .chain import MOST_LOW_CONFIDENCE, Matcher, Search, low_confidence_share, match_in_order, zero_disparity
+from .chain import MOST_LOW_CONFIDENCE, Matcher, Search, low_confidence_share, match_in_order
 
 SEARCH_EVERY = 30
 """Frames after which the search range is estimated again, so that it follows objects that come nearer."""
@@ -61,7 +62,7 @@ class FilmMatcher:
         rectified = None if self._rectified is None else self._rectified.warp(views)
         pair = grey_pair(views if rectified is None else rectified.views, self._name)
         if self._search.skip_identical and np.array_equal(*pair):
-            return zero_disparity(pair, self._search.fill)
+            return zero_disparity(pair.left, self._search.fill)
         if self._row_offset_px:
             pair = shift_rows(pair, self._row_offset_px)
         if self._frames % SEARCH_EVERY == SEARCH_EVERY - 1:
@@ -84,7 +85,7 @@ class FilmMatcher:
             self._spans.append(estimate.span)
 
     def _rectify(self, views: Views) -> None:
-        rectified = rectify(views, matches=whole_picture_matches(views))
+        rectified = rectify(views, quick=False)
         if not rectified.skipped:
             self._rectified, self._row_offset_px = rectified, 0.0
             pair = grey_pair(rectified.views, self._name)

@@ -14,9 +14,9 @@ from tangible_core.data.pictures import to_grey
 from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import note
 
-from ..sparse.matches import Matches, flow_matches, match_off_plane, sift_matches
+from ..sparse.matches import NO_MATCHES, Matches, flow_matches, match_off_plane, sift_matches
 from .fundamental import Fit, eight_point
-from .projective import Plane, best_plane, homogeneous, inverse, is_pure_rotation, product, transform
+from .projective import best_plane, homogeneous, inverse, is_pure_rotation, product, transform
 from .rectified_pair import RectifiedPair, unchanged_pair, warp_pair
 from .rectifying_rotation import (
     LEAST_TRUSTED,
@@ -62,14 +62,19 @@ def estimate_rectified(views: Views, estimate: Callable[[Views], DisparityMap]) 
 
 
 def rectify(
-    views: Views, tolerance_px: float = 0.35, matches: Matches | None = None, fit: Fit = eight_point
+    views: Views,
+    tolerance_px: float = 0.35,
+    matches: Matches | None = None,
+    fit: Fit = eight_point,
+    quick: bool = True,
 ) -> RectifiedPair:
     """Rectify a pair of unknown cameras, so that its rows correspond.
 
     Skipped, with the reason in `why`, if the views have a calibration, if the median vertical offset of their
     matches is within tolerance_px (in large pictures: within 1/8000 of the longer side) already, if rectifying would
     not reduce it by LEAST_GAIN_PX, or if there are too few matches to decide.
-    matches: those to use; by optical flow and SIFT if None. fit: estimates F from trusted matches.
+    matches: those to use; by optical flow and SIFT if None. fit: estimates F from trusted matches. quick: False leaves
+    out optical flow, as repetitive texture misleads it, unlike SIFT.
     A flat scene is aligned as well, with a warning: the cameras' poses stay ambiguous, so the left picture stays
     unchanged. If most matches lie on a plane, matches off it are searched and resolve the ambiguity.
     Exchanged views are not swapped, but a warning says so: their disparities are negative.
@@ -83,36 +88,23 @@ def rectify(
     left, right = to_grey(views.left), to_grey(views.right)
     tolerance_px = max(tolerance_px, max(views.shape) / 8000)
     if matches is None:
-        quick = flow_matches(left, right)
-        if len(quick.left_px) >= FEWEST_TO_TELL and (offset := _median_offset(quick)) <= tolerance_px:
-            _warn_if_exchanged(quick.left_px[:, 0] - quick.right_px[:, 0])
-            return _keep_pair(views, f"already rectified: median vertical offset {offset:.2f} px")
-        matches = sift_matches(left, right)
+        matches = flow_matches(left, right) if quick else NO_MATCHES
+        if len(matches.left_px) < FEWEST_TO_TELL or _median_offset(matches) > tolerance_px:
+            matches = sift_matches(left, right)
     if len(matches.left_px) < FEWEST_TO_TELL:
         return _keep_pair(views, f"only {len(matches.left_px)} matches, too few to decide; taken as rectified")
-    if (before := _median_offset(matches)) <= tolerance_px:
-        _warn_if_exchanged(matches.left_px[:, 0] - matches.right_px[:, 0])
-        return _keep_pair(views, f"already rectified: median vertical offset {before:.2f} px")
-    return _rotate(views, matches, before, fit)
+    if (before := _median_offset(matches)) > tolerance_px:
+        return _rotate(views, left, right, matches, before, fit)
+    if _all_negative(matches.left_px[:, 0] - matches.right_px[:, 0]):
+        from ..search.disparity_range import ALL_NEGATIVE
 
-
-def whole_picture_matches(views: Views) -> Matches:
-    """Match a pair by SIFT, which leaves out repetitive texture, unlike tracking."""
-    if views.right is None:
-        raise PictureError("rectification needs two views; give a right one")
-    return sift_matches(to_grey(views.left), to_grey(views.right))
+        note(logger, ALL_NEGATIVE, logging.WARNING)
+    return _keep_pair(views, f"already rectified: median vertical offset {before:.2f} px")
 
 
 def _keep_pair(views: Views, why: str, level: int = logging.INFO) -> RectifiedPair:
     note(logger, f"not rectified: {why}", level)
     return unchanged_pair(views, why)
-
-
-def _warn_if_exchanged(disparity_px: Float64[np.ndarray, "n"]) -> None:
-    from ..search.disparity_range import ALL_NEGATIVE
-
-    if _all_negative(disparity_px):
-        note(logger, ALL_NEGATIVE, logging.WARNING)
 
 
 def _all_negative(disparity_px: Float64[np.ndarray, "n"]) -> bool:
@@ -123,11 +115,16 @@ def _median_offset(matches: Matches) -> float:
     return float(np.median(np.abs(matches.right_px[:, 1] - matches.left_px[:, 1])))
 
 
-def _rotate(views: Views, matches: Matches, before: float, fit: Fit) -> RectifiedPair:
+def _rotate(
+    views: Views, left: np.ndarray, right: np.ndarray, matches: Matches, before: float, fit: Fit
+) -> RectifiedPair:
     matches = unique_matches(matches)
     plane = best_plane(*matches, threshold_px(views.shape))
     if plane is not None and np.mean(plane.near) >= MOSTLY:
-        matches = unique_matches(_add_off_plane_matches(plane, matches, views))
+        off = match_off_plane(left, right, plane.matrix)
+        right_px = transform(inverse(plane.matrix), off.right_px)
+        both = np.vstack([matches.left_px, off.left_px]), np.vstack([matches.right_px, right_px])
+        matches = unique_matches(Matches(*both))
     rotation, doubt = find_rotation(matches, views.shape, fit)
     disparity, offsets = rotation.shifts(matches, views.shape)[rotation.trusted].T
     offsets = np.abs(offsets)
@@ -153,14 +150,6 @@ def _rotate(views: Views, matches: Matches, before: float, fit: Fit) -> Rectifie
     note(logger, f"rectified: {why}{lenses}")
     seen = verified_range(matches.left_px[rotation.trusted], disparity)
     return warp_pair(views, rotation.homographies, why + lenses, _search_start(disparity), rotation.radials, seen)
-
-
-def _add_off_plane_matches(plane: Plane, matches: Matches, views: Views) -> Matches:
-    """Return the matches, and more of objects before or behind the plane."""
-    assert views.right is not None
-    off = match_off_plane(to_grey(views.left), to_grey(views.right), plane.matrix)
-    right_px = transform(inverse(plane.matrix), off.right_px)
-    return Matches(np.vstack([matches.left_px, off.left_px]), np.vstack([matches.right_px, right_px]))
 
 
 def _search_start(disparity_px: Float64[np.ndarray, "n"]) -> int:

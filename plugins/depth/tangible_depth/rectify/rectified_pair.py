@@ -111,7 +111,8 @@ def warp_pair(
     """
     if views.right is None:
         raise PictureError("rectification needs two views; give a right one")
-    quad = transform(pair[0], undistort(_border(views.shape, radials[0] != 0), radials[0], views.shape))
+    border = _border(views.shape, radials[0] != 0)
+    quad = transform(pair[0], undistort(border, radials[0], views.shape))
     origin, end = np.floor(quad.min(axis=0)), np.ceil(quad.max(axis=0))
     width, height = (int(size) + 1 for size in end - origin)
     left, right = _translate(pair[0], origin), _translate(pair[1], origin - [start_px, 0])

@@ -19,7 +19,7 @@ from jaxtyping import Bool, Float64
 from tangible_core.errors import GeometryError
 
 from ..sparse.matches import Matches
-from .fundamental import DegenerateMatches, Fit, robust_fundamental
+from .fundamental import DegenerateMatches, Fit, Fundamental, robust_fundamental
 from .least_squares import least_squares, robust_pull
 from .projective import Plane, best_plane, product, transform, undistort
 
@@ -148,11 +148,7 @@ def _fit_lenses(rotation: Rotation, matches: Matches, shape: tuple[int, int], fi
     """Return the rotation with lens distortion; unchanged if no distortion explains more of the matches."""
     few = Matches(*(points[:: 1 + len(points) // MOST_FITTED] for points in matches))
     radial = _best_radial(few, shape, fit)
-    straight = Matches(*(undistort(points, radial, shape) for points in matches))
-    try:
-        found = robust_fundamental(*straight, threshold_px(shape), fit) if radial else None
-    except DegenerateMatches:
-        found = None
+    found = _fit_straight(matches, radial, shape, threshold_px(shape), fit) if radial else None
     if found is None:
         return rotation
     roll, trusted = epipole_roll(found.matrix, shape), found.inliers
@@ -178,11 +174,18 @@ def _best_radial(matches: Matches, shape: tuple[int, int], fit: Fit) -> float:
 
 def _count_explained(matches: Matches, radial: float, shape: tuple[int, int], fit: Fit) -> int:
     """Count the inliers within FINE of the threshold if both lenses distort by `radial`."""
-    straight = Matches(*(undistort(points, radial, shape) for points in matches))
+    found = _fit_straight(matches, radial, shape, FINE * threshold_px(shape), fit)
+    return 0 if found is None else int(np.count_nonzero(found.inliers))
+
+
+def _fit_straight(
+    matches: Matches, radial: float, shape: tuple[int, int], threshold: float, fit: Fit
+) -> Fundamental | None:
+    """Return F of the matches without the distortion of both lenses; None if they determine none."""
     try:
-        return int(np.count_nonzero(robust_fundamental(*straight, FINE * threshold_px(shape), fit).inliers))
+        return robust_fundamental(*(undistort(points, radial, shape) for points in matches), threshold, fit)
     except DegenerateMatches:
-        return 0
+        return None
 
 
 def _share_on_rows(rotation: Rotation, matches: Matches, shape: tuple[int, int], share: float = 1.0) -> float:

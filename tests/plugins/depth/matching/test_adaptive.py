@@ -5,13 +5,14 @@ import pytest
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.plugins.notes import collected
+from tangible_depth.dense.confidence import zero_disparity
 from tangible_depth.dense.refinement import DenseMatches
 from tangible_depth.dense.span import UNKNOWN, Span
 from tangible_depth.dense.speckles import ISLAND_PX, remove_speckles
 from tangible_depth.matching import adaptive as module
 from tangible_depth.matching import chain, feature_chain, scaling
 from tangible_depth.matching.adaptive import Fixed, Matched, MatchedView
-from tangible_depth.matching.chain import Search, low_confidence_share, match_in_order, zero_disparity
+from tangible_depth.matching.chain import Search, low_confidence_share, match_in_order
 from tangible_depth.matching.scaling import Scaling
 from tangible_depth.matching.window_matching import match_by_correlation, match_by_difference
 from tangible_depth.rectify.rectified_pair import warp_pair
@@ -192,10 +193,10 @@ def test_identical_views_are_unknown_where_they_are_flat_unless_filled():
     left = np.full((9, 14), 80, np.uint8)
     left[:, 9:] = np.arange(5) * 30
     for fill in (True, False):
-        found = zero_disparity(Pair.of(left, left), fill)
+        found = zero_disparity(left, fill)
         assert np.array_equal(np.isnan(found.disparity_px), (np.arange(14) < 7) & (not fill) & (left > -1))
         assert np.array_equal(found.confidence, (np.arange(14) >= 7) * np.ones((9, 1)))
-        assert np.isnan(zero_disparity(Pair.of(left[:, :5], left[:, :5]), fill).disparity_px).all()
+        assert np.isnan(zero_disparity(left[:, :5], fill).disparity_px).all()
 
 
 def test_pixel_of_just_the_least_confidence_is_not_low():

@@ -6,6 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from tangible_depth.rectify.projective import camera_matrix, homogeneous, rotation, transform
+from tangible_depth.sparse.matches import Matches
 
 WIDTH, HEIGHT = 1000, 750
 
@@ -22,7 +23,7 @@ def seen_points(
     points = rays * depth[:, None]
     left, right = points @ camera.T, (points @ rotation(*turn).T + move_m) @ camera.T
     pixels = [seen[:, :2] / seen[:, 2:] for seen in (left, right)]
-    return tuple(pixel + random.normal(0, noise_px, pixel.shape) for pixel in pixels)
+    return Matches(*(pixel + random.normal(0, noise_px, pixel.shape) for pixel in pixels))
 
 
 def some_wrong(left, right, share, seed=1):
@@ -31,7 +32,7 @@ def some_wrong(left, right, share, seed=1):
     right = right.copy()
     wrong = round(share * len(right))
     right[:wrong] = random.uniform(0, right.max(axis=0), (wrong, 2))
-    return left, right
+    return Matches(left, right)
 
 
 @dataclass(frozen=True)

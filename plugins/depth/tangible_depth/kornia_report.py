@@ -12,6 +12,7 @@ from tangible_core.runtime.torch_extra import TorchDevice, need, pick_device
 
 from .matching.feature_chain import Grey, Parts, Row, disparity_by_features
 from .rectify.fundamental import check_matches
+from .sparse.matches import Matches
 
 
 class KorniaReport(DepthEstimator):
@@ -74,9 +75,7 @@ def kornia_response(grey: Grey, torch_device: TorchDevice = "auto") -> Grey:
     return response[_BORDER:-_BORDER, _BORDER:-_BORDER]
 
 
-def kornia_eight_point(
-    left_px: np.ndarray, right_px: np.ndarray, weights: np.ndarray | None = None
-) -> Float64[np.ndarray, "3 3"]:
+def kornia_eight_point(matches: Matches, weights: np.ndarray | None = None) -> Float64[np.ndarray, "3 3"]:
     """Compute `fundamental.eight_point` by kornia, which also weights its normalisation.
 
     Raises: DegenerateMatches as `check_matches`.
@@ -84,8 +83,8 @@ def kornia_eight_point(
     import torch
     from kornia.geometry.epipolar import find_fundamental
 
-    check_matches(left_px, right_px)
-    left, right = (torch.from_numpy(np.asarray(points, np.float64))[None] for points in (left_px, right_px))
+    check_matches(matches)
+    left, right = (torch.from_numpy(np.asarray(points, np.float64))[None] for points in matches)
     # kornia weights squares, and its points2^T F points1 = 0 has the left picture second.
     squared = None if weights is None else torch.from_numpy(np.asarray(weights, np.float64) ** 2)[None]
     matrix = find_fundamental(right, left, squared)[0].numpy()

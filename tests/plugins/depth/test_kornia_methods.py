@@ -45,10 +45,10 @@ def test_harris_responses_agree_within_the_border():
 
 def test_fundamental_matrices_agree():
     matches = seen_points(noise_px=0.3)
-    ours, theirs = eight_point(*matches), kornia_eight_point(*matches)
+    ours, theirs = eight_point(matches), kornia_eight_point(matches)
     assert theirs * np.sign((ours * theirs).sum()) == pytest.approx(ours, abs=1e-6)
     weights = np.random.default_rng(0).uniform(0.1, 1, len(matches[0]))
-    ours, theirs = eight_point(*matches, weights), kornia_eight_point(*matches, weights)
+    ours, theirs = eight_point(matches, weights), kornia_eight_point(matches, weights)
     cosine = abs((ours * theirs).sum())
     assert cosine == pytest.approx(1, abs=1e-6)
 

@@ -12,11 +12,12 @@ from jaxtyping import Bool, Float64
 
 from tangible_core.errors import GeometryError
 
+from ..sparse.matches import Matches
 from .projective import Plane, best_plane, homogeneous, product, transform
 
 Degeneracy = Literal["not finite", "too few", "duplicate", "collinear", "homography", "outliers"]
-Fit = Callable[[np.ndarray, np.ndarray, np.ndarray | None], Float64[np.ndarray, "3 3"]]
-"""An estimator of F: left points, right points, a weight for each match's equation -> F, as `eight_point`."""
+Fit = Callable[[Matches, np.ndarray | None], Float64[np.ndarray, "3 3"]]
+"""An estimator of F: matches, a weight for each match's equation -> F, as `eight_point`."""
 CHANCE_SCENES = 1000
 """Scenes of which chance may produce a parallax in one."""
 CELL_PX = 6
@@ -42,13 +43,14 @@ class Fundamental(NamedTuple):
     inliers: Bool[np.ndarray, "n"]
 
 
-def check_matches(left_px: np.ndarray, right_px: np.ndarray) -> None:
+def check_matches(matches: Matches) -> None:
     """Check that matches can determine F. Raises: DegenerateMatches: not finite, too few, duplicate or collinear."""
+    left_px, right_px = matches
     if left_px.shape != right_px.shape or left_px.ndim != 2 or left_px.shape[1] != 2:
         raise GeometryError(
             f"matches must be two arrays (n, 2) of equal length, not {left_px.shape} and {right_px.shape}"
         )
-    pairs = np.hstack([left_px, right_px])
+    pairs = np.hstack(matches)
     if not np.isfinite(pairs).all():
         count = np.count_nonzero(~np.isfinite(pairs).all(axis=1))
         raise DegenerateMatches("not finite", f"{count} of {len(pairs)} matches are NaN or infinite; leave them out")
@@ -56,11 +58,11 @@ def check_matches(left_px: np.ndarray, right_px: np.ndarray) -> None:
         raise DegenerateMatches(
             "too few", f"{len(pairs)} matches, but {FEWEST} are needed; take pictures with more detail"
         )
-    if (different := min(len(np.unique(points, axis=0)) for points in (left_px, right_px))) < FEWEST:
+    if (different := min(len(np.unique(points, axis=0)) for points in matches)) < FEWEST:
         raise DegenerateMatches(
             "duplicate", f"{different} different points in {len(pairs)} matches, but {FEWEST} are needed"
         )
-    for side, points in (("left", left_px), ("right", right_px)):
+    for side, points in zip(("left", "right"), matches, strict=True):
         if _is_line(points):
             raise DegenerateMatches("collinear", f"the {side} points are collinear; add matches off that line")
 
@@ -83,18 +85,16 @@ def normalise(points_px: np.ndarray) -> tuple[Float64[np.ndarray, "n 3"], Float6
     return product(homogeneous(points_px), transform.T), transform
 
 
-def eight_point(
-    left_px: np.ndarray, right_px: np.ndarray, weights: np.ndarray | None = None
-) -> Float64[np.ndarray, "3 3"]:
-    """Estimate F, of unit norm and rank 2, from at least eight trusted matches (n, 2), (n, 2).
+def eight_point(matches: Matches, weights: np.ndarray | None = None) -> Float64[np.ndarray, "3 3"]:
+    """Estimate F, of unit norm and rank 2, from at least eight trusted matches.
 
     weights (n,) multiply each match's equation; 1 when left out.
     Raises: DegenerateMatches as `check_matches`, or "homography" if the equations leave more than one F: the points
     are on a plane, or the camera only rotated.
     Source: Hartley & Zisserman, 2nd ed., alg. 11.1.
     """
-    check_matches(left_px, right_px)
-    (left, to_left), (right, to_right) = normalise(left_px), normalise(right_px)
+    check_matches(matches)
+    (left, to_left), (right, to_right) = map(normalise, matches)
     rows = np.einsum("ni,nj->nij", left, right).reshape(-1, 9)
     if weights is not None:
         rows = rows * (weights / weights.max())[:, None]
@@ -109,9 +109,7 @@ def eight_point(
 _NO_PARALLAX = "one homography explains the matches (a flat scene, or a camera that only rotated)"
 
 
-def robust_fundamental(
-    left_px: np.ndarray, right_px: np.ndarray, threshold_px: float = 1.0, fit: Fit = eight_point
-) -> Fundamental:
+def robust_fundamental(matches: Matches, threshold_px: float = 1.0, fit: Fit = eight_point) -> Fundamental:
     """Estimate F from matches of which some are wrong: MAGSAC (OpenCV), then reweighted eight-point on its inliers.
 
     threshold_px: largest Sampson distance of an inlier; fit: estimates F from inliers. Deterministic.
@@ -119,58 +117,59 @@ def robust_fundamental(
     "outliers" if no F explains more matches than chance would. An object before a flat scene is enough.
     Source: Barath et al., MAGSAC++, CVPR 2020; Moisan & Stival, IJCV 2004, for the share that chance explains.
     """
-    check_matches(left_px, right_px)
-    first = _magsac(left_px, right_px, threshold_px)
-    plane = best_plane(left_px, right_px, threshold_px)
-    flat = np.zeros(len(left_px), np.bool_) if plane is None else plane.near
+    check_matches(matches)
+    first = _magsac(matches, threshold_px)
+    plane = best_plane(matches, threshold_px)
+    flat = np.zeros(len(matches.left_px), np.bool_) if plane is None else plane.near
     if plane is not None and 2 * np.count_nonzero(flat) > len(flat):
-        first = _better_off_plane(plane, first, left_px, right_px, threshold_px)
+        first = _better_off_plane(plane, first, matches, threshold_px)
         if first is None:
             raise DegenerateMatches("homography", _NO_PARALLAX)
-    if first is None or _false_alarms(left_px, right_px, first.inliers, threshold_px) > 0:
+    if first is None or _false_alarms(matches, first.inliers, threshold_px) > 0:
         raise DegenerateMatches(
             "outliers",
-            f"no epipolar geometry explains more of the {len(left_px)} matches than chance would; "
+            f"no epipolar geometry explains more of the {len(matches.left_px)} matches than chance would; "
             "do both pictures show the same scene?",
         )
-    if _parallax_false_alarms(left_px, right_px, first.inliers, flat, threshold_px) > -log(CHANCE_SCENES):
+    if _parallax_false_alarms(matches, first.inliers, flat, threshold_px) > -log(CHANCE_SCENES):
         raise DegenerateMatches("homography", _NO_PARALLAX)
-    return _refine(first, left_px, right_px, threshold_px, fit)
+    return _refine(first, matches, threshold_px, fit)
 
 
-def _magsac(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Fundamental | None:
+def _magsac(matches: Matches, threshold_px: float) -> Fundamental | None:
     import cv2
 
     # OpenCV's convention is second^T F first = 0.
     try:
+        left_px, right_px = matches
         matrix, _ = cv2.findFundamentalMat(right_px, left_px, cv2.USAC_MAGSAC, threshold_px, 0.9999, 10_000)
     except cv2.error:  # an internal assertion fails if one plane explains nearly all matches
         return None
     if matrix is None or matrix.shape != (3, 3) or not np.isfinite(matrix).all() or not matrix.any():
         return None
-    return _with_inliers(matrix, left_px, right_px, threshold_px)
+    return _with_inliers(matrix, matches, threshold_px)
 
 
-def sampson_distance(fundamental: np.ndarray, left_px: np.ndarray, right_px: np.ndarray) -> Float64[np.ndarray, "n"]:
-    """Return the first-order distance in pixels of each match (n, 2), (n, 2) from the nearest pair that obeys F.
+def sampson_distance(fundamental: np.ndarray, matches: Matches) -> Float64[np.ndarray, "n"]:
+    """Return the first-order distance in pixels of each match from the nearest pair that obeys F.
 
     |l^T F r| / sqrt((F r)_1^2 + (F r)_2^2 + (F^T l)_1^2 + (F^T l)_2^2).
     Source: the root of Hartley & Zisserman, 2nd ed., eq. 11.9.
     """
-    left, right = homogeneous(left_px), homogeneous(right_px)
+    left, right = map(homogeneous, matches)
     in_left, in_right = product(right, fundamental.T), product(left, fundamental)
     value = np.einsum("ni,ni->n", left, in_left)
     normals = [np.einsum("ni,ni->n", each[:, :2], each[:, :2]) for each in (in_left, in_right)]
     return np.abs(value) / np.sqrt(np.maximum(normals[0] + normals[1], np.finfo(np.float64).tiny))
 
 
-def _with_inliers(matrix: np.ndarray, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Fundamental:
+def _with_inliers(matrix: np.ndarray, matches: Matches, threshold_px: float) -> Fundamental:
     matrix = matrix / np.linalg.norm(matrix)
-    return Fundamental(matrix, sampson_distance(matrix, left_px, right_px) <= threshold_px)
+    return Fundamental(matrix, sampson_distance(matrix, matches) <= threshold_px)
 
 
 def _better_off_plane(
-    plane: Plane, first: Fundamental | None, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float
+    plane: Plane, first: Fundamental | None, matches: Matches, threshold_px: float
 ) -> Fundamental | None:
     """Return the estimate that explains more matches off the dominant plane.
 
@@ -178,24 +177,22 @@ def _better_off_plane(
     """
     if first is not None and 2 * np.count_nonzero(first.inliers & ~plane.near) > np.count_nonzero(~plane.near):
         return first
-    matrix = fundamental_from_plane(plane, left_px, right_px, threshold_px)
-    other = None if matrix is None else _with_inliers(matrix, left_px, right_px, threshold_px)
+    matrix = fundamental_from_plane(plane, matches, threshold_px)
+    other = None if matrix is None else _with_inliers(matrix, matches, threshold_px)
     estimates = [each for each in (first, other) if each is not None]
     return max(estimates, key=lambda each: np.count_nonzero(each.inliers & ~plane.near), default=None)
 
 
-def fundamental_from_plane(
-    plane: Plane, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float
-) -> Float64[np.ndarray, "3 3"] | None:
+def fundamental_from_plane(plane: Plane, matches: Matches, threshold_px: float) -> Float64[np.ndarray, "3 3"] | None:
     """Return F = [e]x H with the epipole e of most matches off the plane; None with fewer than two of them.
 
     Two matches off the plane determine an epipole; a sample of seven would seldom contain two of a small object.
     Source: Chum, Werner & Matas, Two-View Geometry Estimation Unaffected by a Dominant Plane, CVPR 2005.
     """
-    off = np.flatnonzero(~plane.near)
-    left, moved = homogeneous(left_px[off]), homogeneous(transform(plane.matrix, right_px[off]))
+    off = matches.select(~plane.near)
+    left, moved = homogeneous(off.left_px), homogeneous(transform(plane.matrix, off.right_px))
     lines = np.cross(moved, left)
-    some = np.arange(len(off))[:: 1 + len(off) // MOST_SAMPLED]
+    some = np.arange(len(left))[:: 1 + len(left) // MOST_SAMPLED]
     one, other = (some[each] for each in np.triu_indices(len(some), 1))
     epipoles = np.cross(lines[one], lines[other])
     length = np.linalg.norm(epipoles, axis=1)
@@ -208,32 +205,30 @@ def fundamental_from_plane(
     return product(np.array([[0, -w, y], [w, 0, -x], [-y, x, 0]]), plane.matrix)
 
 
-def _false_alarms(left_px: np.ndarray, right_px: np.ndarray, inliers: np.ndarray, threshold_px: float) -> float:
+def _false_alarms(matches: Matches, inliers: np.ndarray, threshold_px: float) -> float:
     """Return the log number of geometries with as many inliers expected by chance (Moisan & Stival 2004, eq. 8)."""
     count, kept = len(inliers), int(np.count_nonzero(inliers))
     if kept < FEWEST:
         return np.inf
     tries = log(3 * (count - 7)) + _log_choose(count, kept) + _log_choose(kept, 7)
-    return tries + (kept - 7) * _log_chance(left_px, right_px, threshold_px)
+    return tries + (kept - 7) * _log_chance(matches, threshold_px)
 
 
-def _parallax_false_alarms(
-    left_px: np.ndarray, right_px: np.ndarray, inliers: np.ndarray, flat: np.ndarray, threshold_px: float
-) -> float:
+def _parallax_false_alarms(matches: Matches, inliers: np.ndarray, flat: np.ndarray, threshold_px: float) -> float:
     """Return the same for inliers of F off the homography: given a homography, two matches determine F.
 
     Matches of one cell count once, as neighbouring matches are wrong together.
     """
-    count, kept = (len(np.unique(left_px[each] // CELL_PX, axis=0)) for each in (~flat, inliers & ~flat))
+    count, kept = (len(np.unique(matches.left_px[each] // CELL_PX, axis=0)) for each in (~flat, inliers & ~flat))
     if kept < 3:
         return np.inf
     tries = log(count) + _log_choose(count, kept) + _log_choose(kept, 2)
-    return tries + (kept - 2) * _log_chance(left_px, right_px, threshold_px)
+    return tries + (kept - 2) * _log_chance(matches, threshold_px)
 
 
-def _log_chance(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> float:
+def _log_chance(matches: Matches, threshold_px: float) -> float:
     """Return the log probability that a random point lies near a random line: the line's strip over the picture."""
-    width, height = np.minimum(np.ptp(left_px, axis=0), np.ptp(right_px, axis=0))
+    width, height = np.minimum(*(np.ptp(points, axis=0) for points in matches))
     strip = 2 * threshold_px * float(np.hypot(width, height))
     return log(strip / (width * height)) if strip < width * height else 0.0
 
@@ -242,25 +237,23 @@ def _log_choose(n: int, k: int) -> float:
     return lgamma(n + 1) - lgamma(k + 1) - lgamma(n - k + 1)
 
 
-def _refine(
-    first: Fundamental, left_px: np.ndarray, right_px: np.ndarray, threshold_px: float, fit: Fit
-) -> Fundamental:
+def _refine(first: Fundamental, matches: Matches, threshold_px: float, fit: Fit) -> Fundamental:
     """Repeat eight-point on the inliers, weighting each equation by certainty and to a residual in pixels."""
     best = first
     for _ in range(5):
-        left, right = left_px[best.inliers], right_px[best.inliers]
-        doubt = 1 / np.hypot(1, sampson_distance(best.matrix, left, right) / threshold_px)
-        matrix = fit(left, right, doubt * pixel_weights(best.matrix, left, right))
-        inliers = sampson_distance(matrix, left_px, right_px) <= threshold_px
+        trusted = matches.select(best.inliers)
+        doubt = 1 / np.hypot(1, sampson_distance(best.matrix, trusted) / threshold_px)
+        matrix = fit(trusted, doubt * pixel_weights(best.matrix, trusted))
+        inliers = sampson_distance(matrix, matches) <= threshold_px
         if np.count_nonzero(inliers) < np.count_nonzero(best.inliers):
             break
         best = Fundamental(matrix, inliers)
     return best
 
 
-def pixel_weights(fundamental: np.ndarray, left_px: np.ndarray, right_px: np.ndarray) -> Float64[np.ndarray, "n"]:
+def pixel_weights(fundamental: np.ndarray, matches: Matches) -> Float64[np.ndarray, "n"]:
     """Return weights that turn the algebraic residual of `eight_point` into the Sampson distance (n,), largest 1."""
-    in_left = product(homogeneous(right_px), fundamental.T)[:, :2]
-    in_right = product(homogeneous(left_px), fundamental)[:, :2]
+    left, right = map(homogeneous, matches)
+    in_left, in_right = product(right, fundamental.T)[:, :2], product(left, fundamental)[:, :2]
     weights = 1 / np.sqrt((in_left**2).sum(axis=1) + (in_right**2).sum(axis=1) + np.finfo(np.float64).tiny)
     return weights / weights.max()

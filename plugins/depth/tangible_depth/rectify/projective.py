@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float64
 
+from ..sparse.matches import Matches
 from .least_squares import least_squares, robust_pull
 
 FOCAL_SPREAD, ZOOM_SPREAD, TURN_SPREAD = 0.35, 0.2, 0.5
@@ -97,19 +98,19 @@ class Plane(NamedTuple):
     near: Bool[np.ndarray, "n"]
 
 
-def best_plane(left_px: np.ndarray, right_px: np.ndarray, threshold_px: float) -> Plane | None:
-    """Find the homography that explains most matches (n, 2), (n, 2); None without one."""
+def best_plane(matches: Matches, threshold_px: float) -> Plane | None:
+    """Find the homography that explains most matches; None without one."""
     import cv2
 
-    matrix, _ = cv2.findHomography(right_px, left_px, cv2.USAC_MAGSAC, 2 * threshold_px)
+    matrix, _ = cv2.findHomography(matches.right_px, matches.left_px, cv2.USAC_MAGSAC, 2 * threshold_px)
     if matrix is None:
         return None
     with np.errstate(divide="ignore", invalid="ignore"):
-        away = np.linalg.norm(transform(matrix, right_px) - left_px, axis=1)
+        away = np.linalg.norm(transform(matrix, matches.right_px) - matches.left_px, axis=1)
     return Plane(matrix, away <= 3 * threshold_px)
 
 
-def is_pure_rotation(plane: Plane, left_px: np.ndarray, right_px: np.ndarray, shape: tuple[int, int]) -> bool:
+def is_pure_rotation(plane: Plane, matches: Matches, shape: tuple[int, int]) -> bool:
     """Test whether a camera that rotated about its centre, and perhaps zoomed, explains the matches as well as a plane.
 
     H = K R K'^-1 with a plausible focal length. A wall seen from two places does not fit: it is shifted, stretched
@@ -117,7 +118,7 @@ def is_pure_rotation(plane: Plane, left_px: np.ndarray, right_px: np.ndarray, sh
     Source: Hartley & Zisserman, Multiple View Geometry, 2nd ed., sec. 8.4.2; Schwarz, Estimating the Dimension of a
     Model, Annals of Statistics 1978, for how much three more parameters must explain.
     """
-    left, right = left_px[plane.near], right_px[plane.near]
+    left, right = matches.select(plane.near)
     spread = np.array([FOCAL_SPREAD, ZOOM_SPREAD, TURN_SPREAD, TURN_SPREAD, TURN_SPREAD])
 
     def cost(values: np.ndarray) -> np.ndarray:

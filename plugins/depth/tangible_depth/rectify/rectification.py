@@ -119,7 +119,7 @@ def _rotate(
     views: Views, left: np.ndarray, right: np.ndarray, matches: Matches, before: float, fit: Fit
 ) -> RectifiedPair:
     matches = unique_matches(matches)
-    plane = best_plane(*matches, threshold_px(views.shape))
+    plane = best_plane(matches, threshold_px(views.shape))
     if plane is not None and np.mean(plane.near) >= MOSTLY:
         off = match_off_plane(left, right, plane.matrix)
         right_px = transform(inverse(plane.matrix), off.right_px)
@@ -136,7 +136,7 @@ def _rotate(
         why = f"matches lie {before:.1f} px off their rows, but the rectification is uncertain: {doubt}"
         return _keep_pair(views, why, logging.WARNING)
     if rotation.plane is not None:
-        if is_pure_rotation(rotation.plane, *matches, views.shape):
+        if is_pure_rotation(rotation.plane, matches, views.shape):
             raise RectificationError(_PURE_ROTATION)
         note(logger, _FLAT_SCENE, logging.WARNING)
     if _all_negative(disparity):
@@ -210,5 +210,4 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 def unique_matches(matches: Matches) -> Matches:
     """Remove duplicate matches, which could validate themselves."""
     _, first = np.unique(np.hstack(matches), axis=0, return_index=True)
-    first = np.sort(first)
-    return Matches(matches.left_px[first], matches.right_px[first])
+    return matches.select(np.sort(first))

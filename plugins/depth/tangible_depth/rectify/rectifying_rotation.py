@@ -109,7 +109,7 @@ def find_rotation(matches: Matches, shape: tuple[int, int], fit: Fit) -> tuple[R
             plain,
             f"the matches that agree lie in {parts} of {PARTS**2} parts of the picture, {LEAST_PARTS} are needed",
         )
-    learnt, judges = (Matches(*(points[first::2] for points in matches)) for first in (0, 1))
+    learnt, judges = (matches.select(slice(first, None, 2)) for first in (0, 1))
     try:
         half = _fit_rotation(learnt, shape, fit)
     except RectificationError:
@@ -128,25 +128,21 @@ def _fit_rotation(matches: Matches, shape: tuple[int, int], fit: Fit) -> Rotatio
     """Fit a rotation without lens distortion."""
     threshold = threshold_px(shape)
     try:
-        found = robust_fundamental(*matches, threshold, fit)
+        found = robust_fundamental(matches, threshold, fit)
     except DegenerateMatches as error:
-        plane = best_plane(*matches, threshold) if error.reason == "homography" else None
+        plane = best_plane(matches, threshold) if error.reason == "homography" else None
         if plane is None:
             raise RectificationError(f"matches do not lie on their rows, and there is {error}") from error
         # The epipole is ambiguous: any that aligns the matches will do, and the nearest distorts least.
-        homographies = aligning_homographies(_select(matches, plane.near), shape, None)
+        homographies = aligning_homographies(matches.select(plane.near), shape, None)
         return Rotation(homographies, (0.0, 0.0), plane.near, plane)
     roll = epipole_roll(found.matrix, shape)
-    return Rotation(aligning_homographies(_select(matches, found.inliers), shape, roll), (0.0, 0.0), found.inliers)
-
-
-def _select(matches: Matches, trusted: np.ndarray) -> Matches:
-    return Matches(matches.left_px[trusted], matches.right_px[trusted])
+    return Rotation(aligning_homographies(matches.select(found.inliers), shape, roll), (0.0, 0.0), found.inliers)
 
 
 def _fit_lenses(rotation: Rotation, matches: Matches, shape: tuple[int, int], fit: Fit) -> Rotation:
     """Return the rotation with lens distortion; unchanged if no distortion explains more of the matches."""
-    few = Matches(*(points[:: 1 + len(points) // MOST_FITTED] for points in matches))
+    few = matches.select(slice(None, None, 1 + len(matches.left_px) // MOST_FITTED))
     radial = _best_radial(few, shape, fit)
     found = _fit_straight(matches, radial, shape, threshold_px(shape), fit) if radial else None
     if found is None:
@@ -155,7 +151,7 @@ def _fit_lenses(rotation: Rotation, matches: Matches, shape: tuple[int, int], fi
     lenses = Rotation(rotation.homographies, (radial, radial), trusted)
     for _ in range(3):
         some = np.flatnonzero(trusted)[:: 1 + np.count_nonzero(trusted) // MOST_FITTED]
-        lenses = Rotation(*aligning_lenses(_select(matches, some), shape, roll, lenses.radials), trusted)
+        lenses = Rotation(*aligning_lenses(matches.select(some), shape, roll, lenses.radials), trusted)
         if max(map(abs, lenses.radials)) > MOST_RADIAL:
             return rotation
         trusted = np.abs(lenses.shifts(matches, shape)[:, 1]) <= threshold_px(shape)
@@ -182,8 +178,9 @@ def _fit_straight(
     matches: Matches, radial: float, shape: tuple[int, int], threshold: float, fit: Fit
 ) -> Fundamental | None:
     """Return F of the matches without the distortion of both lenses; None if they determine none."""
+    straight = Matches(*(undistort(points, radial, shape) for points in matches))
     try:
-        return robust_fundamental(*(undistort(points, radial, shape) for points in matches), threshold, fit)
+        return robust_fundamental(straight, threshold, fit)
     except DegenerateMatches:
         return None
 

@@ -38,6 +38,10 @@ class Matches(NamedTuple):
     left_px: Float64[np.ndarray, "n 2"]
     right_px: Float64[np.ndarray, "n 2"]
 
+    def select(self, which: slice | np.ndarray) -> "Matches":
+        """Return the matches of a mask, of indices or of a slice."""
+        return Matches(self.left_px[which], self.right_px[which])
+
 
 NO_MATCHES = Matches(np.empty((0, 2)), np.empty((0, 2)))
 

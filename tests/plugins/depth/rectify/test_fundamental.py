@@ -18,6 +18,7 @@ from tangible_depth.rectify.fundamental import (
     sampson_distance,
 )
 from tangible_depth.rectify.projective import best_plane
+from tangible_depth.sparse.matches import Matches
 from two_cameras import seen_points, some_wrong
 
 
@@ -34,21 +35,21 @@ def test_normalised_points_are_centred_with_a_mean_distance_of_root_two():
     count=st.integers(9, 60),
 )
 def test_exact_points_give_their_geometry(turn, move, count):
-    left, right = seen_points(turn, move, count)
-    matrix = eight_point(left, right)
+    matches = seen_points(turn, move, count)
+    matrix = eight_point(matches)
     assert np.linalg.norm(matrix) == pytest.approx(1)
     assert np.linalg.svd(matrix, compute_uv=False)[2] < 1e-12
-    assert sampson_distance(matrix, left, right).max() < 1e-4
+    assert sampson_distance(matrix, matches).max() < 1e-4
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.6])
 def test_wrong_matches_are_outliers(share):
     noisy = seen_points(count=400, noise_px=0.3)
-    found = robust_fundamental(*some_wrong(*noisy, share), threshold_px=1.5)
+    found = robust_fundamental(some_wrong(*noisy, share), threshold_px=1.5)
     wrong = round(share * 400)
     assert found.inliers[wrong:].mean() > 0.97
     assert found.inliers[:wrong].mean() < 0.1 if wrong else True
-    assert np.median(sampson_distance(found.matrix, *seen_points(count=400))) < 0.1
+    assert np.median(sampson_distance(found.matrix, seen_points(count=400))) < 0.1
 
 
 def reason(call, *matches):
@@ -57,7 +58,7 @@ def reason(call, *matches):
 
 def refusal(call, *matches):
     with pytest.raises(DegenerateMatches) as caught:
-        call(*matches)
+        call(Matches(*matches))
     return caught.value
 
 
@@ -106,24 +107,24 @@ def before_a_wall(off, wrong, seed):
     cameras = {"turn": (0.02, -0.05, 0.05), "move_m": (-0.3, 0.02, 0.01)}
     wall = some_wrong(*seen_points(**cameras, count=600, flat=True, noise_px=0.1, seed=seed), wrong / 600)
     thing = seen_points(**cameras, count=off, noise_px=0.1, seed=seed + 100)
-    return tuple(np.vstack(each) for each in zip(wall, thing, strict=True))
+    return Matches(*(np.vstack(each) for each in zip(wall, thing, strict=True)))
 
 
 @pytest.mark.parametrize("seed", [1, 5])
 def test_few_matches_before_a_wall_determine_the_geometry(seed):
-    found = robust_fundamental(*before_a_wall(20, 60, seed))
+    found = robust_fundamental(before_a_wall(20, 60, seed))
     assert found.inliers[-20:].all()
 
 
 def test_two_matches_before_a_plane_determine_the_epipole():
-    left, right = before_a_wall(12, 12, 1)
-    plane = best_plane(left, right, 1.0)
+    matches = before_a_wall(12, 12, 1)
+    plane, off = best_plane(matches, 1.0), matches.select(slice(-12, None))
     assert plane is not None
-    matrix = fundamental_from_plane(plane, left, right, 1.0)
-    true = eight_point(*seen_points(turn=(0.02, -0.05, 0.05), move_m=(-0.3, 0.02, 0.01)))
-    assert sampson_distance(matrix, left[-12:], right[-12:]).max() <= 1
-    assert np.median(sampson_distance(matrix, *seen_points(turn=(0.02, -0.05, 0.05), move_m=(-0.3, 0.02, 0.01)))) <= 1
-    assert np.median(sampson_distance(true, left[-12:], right[-12:])) <= 1
+    matrix = fundamental_from_plane(plane, matches, 1.0)
+    true = eight_point(seen_points(turn=(0.02, -0.05, 0.05), move_m=(-0.3, 0.02, 0.01)))
+    assert sampson_distance(matrix, off).max() <= 1
+    assert np.median(sampson_distance(matrix, seen_points(turn=(0.02, -0.05, 0.05), move_m=(-0.3, 0.02, 0.01)))) <= 1
+    assert np.median(sampson_distance(true, off)) <= 1
 
 
 @pytest.mark.parametrize("count", [9, 30, 200, 1000])
@@ -133,13 +134,13 @@ def test_chance_matches_are_outliers(count):
 
 
 def test_equations_are_weighed_by_the_lengths_of_both_lines():
-    left, right = seen_points(count=30)
+    matches = seen_points(count=30)
     matrix = np.random.default_rng(0).normal(size=(3, 3))
-    rows = [np.column_stack([each, np.ones(30)]) for each in (left, right)]
+    rows = [np.column_stack([each, np.ones(30)]) for each in matches]
     value = np.abs(np.einsum("ni,ij,nj->n", rows[0], matrix, rows[1]))
-    weights = pixel_weights(matrix, left, right)
+    weights = pixel_weights(matrix, matches)
     assert weights.max() == 1
-    ratio = weights * value / sampson_distance(matrix, left, right)
+    ratio = weights * value / sampson_distance(matrix, matches)
     assert ratio == pytest.approx(np.full(30, ratio[0]))
 
 
@@ -150,4 +151,4 @@ def test_points_within_half_a_percent_of_a_line_are_collinear(share, refused):
     across *= share * np.linalg.norm(along) / np.linalg.norm(across)
     turn = np.array([[0.8, -0.6], [0.6, 0.8]])
     with pytest.raises(DegenerateMatches, match="collinear") if refused else nullcontext():
-        check_matches(np.column_stack([along, across]) @ turn + 400, seen_points(count=40)[0])
+        check_matches(Matches(np.column_stack([along, across]) @ turn + 400, seen_points(count=40)[0]))

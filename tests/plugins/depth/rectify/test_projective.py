@@ -6,6 +6,7 @@ import pytest
 from tangible_depth.rectify.fundamental import sampson_distance
 from tangible_depth.rectify.projective import best_plane, camera_matrix, inverse, is_pure_rotation, rotation
 from tangible_depth.rectify.rectifying_rotation import epipoles
+from tangible_depth.sparse.matches import Matches
 
 
 def test_inverse_of_any_matrix_is_numpys():
@@ -35,7 +36,7 @@ def test_distances_are_those_of_points_from_their_lines():
     value = np.einsum("ni,ni->n", rows[0], in_left)
     to_left, to_right = (value / np.hypot(*each[:, :2].T) for each in (in_left, in_right))
     # Both share the numerator: 1 / sampson^2 = 1 / d_left^2 + 1 / d_right^2.
-    assert sampson_distance(matrix, left, right) ** -2 == pytest.approx(to_left**-2 + to_right**-2)
+    assert sampson_distance(matrix, Matches(left, right)) ** -2 == pytest.approx(to_left**-2 + to_right**-2)
 
 
 def test_epipoles_of_known_cameras_are_exact():
@@ -59,7 +60,7 @@ def flat_matches(seed, focal, shift_px, noise_px, zoom=1.0, slant=0.4, turn=0.03
     points = rays * (5 / (1 + rays @ [*random.uniform(-slant, slant, 2), 0]))[:, None]
     moved = points @ rotation(*random.normal(0, turn, 3)).T - [5 * shift_px / (focal * SHAPE[1]), 0, 0]
     found = [seen[:, :2] / seen[:, 2:] for seen in (points @ camera.T, moved @ other.T)]
-    return [each + random.normal(0, noise_px, each.shape) for each in found]
+    return Matches(*(each + random.normal(0, noise_px, each.shape) for each in found))
 
 
 @pytest.mark.parametrize("seed", [1, 5])
@@ -67,17 +68,17 @@ def flat_matches(seed, focal, shift_px, noise_px, zoom=1.0, slant=0.4, turn=0.03
 @pytest.mark.parametrize("zoom", [1.0, 1.1])
 def test_rotated_camera_is_recognised(seed, focal, zoom):
     matches = flat_matches(seed, focal, 0.0, 0.3, zoom)
-    assert is_pure_rotation(best_plane(*matches, 1.0), *matches, SHAPE)
+    assert is_pure_rotation(best_plane(matches, 1.0), matches, SHAPE)
 
 
 @pytest.mark.parametrize("seed", [1, 5])
 @pytest.mark.parametrize(("focal", "shift_px"), [(0.6, 10), (1.0, 10), (2.0, 40)])
 def test_wall_from_two_places_is_not_a_rotated_camera(seed, focal, shift_px):
     matches = flat_matches(seed, focal, shift_px, 0.3)
-    assert not is_pure_rotation(best_plane(*matches, 1.0), *matches, SHAPE)
+    assert not is_pure_rotation(best_plane(matches, 1.0), matches, SHAPE)
 
 
 @pytest.mark.parametrize("seed", [1, 5])
 def test_frontal_wall_is_not_a_rotated_camera_of_infinite_focal_length(seed):
     matches = flat_matches(seed, 1.0, 40, 0.3, slant=0.0, turn=0.0)
-    assert not is_pure_rotation(best_plane(*matches, 1.0), *matches, SHAPE)
+    assert not is_pure_rotation(best_plane(matches, 1.0), matches, SHAPE)

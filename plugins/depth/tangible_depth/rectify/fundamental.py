@@ -13,7 +13,7 @@ from jaxtyping import Bool, Float64
 from tangible_core.errors import GeometryError
 
 from ..sparse.matches import Matches
-from .projective import Plane, best_plane, homogeneous, product, transform
+from .projective import Plane, homogeneous, product, transform
 
 Degeneracy = Literal["not finite", "too few", "duplicate", "collinear", "homography", "outliers"]
 Fit = Callable[[Matches, np.ndarray | None], Float64[np.ndarray, "3 3"]]
@@ -166,6 +166,18 @@ def sampson_distance(fundamental: np.ndarray, matches: Matches) -> Float64[np.nd
 def _with_inliers(matrix: np.ndarray, matches: Matches, threshold_px: float) -> Fundamental:
     matrix = matrix / np.linalg.norm(matrix)
     return Fundamental(matrix, sampson_distance(matrix, matches) <= threshold_px)
+
+
+def best_plane(matches: Matches, threshold_px: float) -> Plane | None:
+    """Find the homography that explains most matches; None without one."""
+    import cv2
+
+    matrix, _ = cv2.findHomography(matches.right_px, matches.left_px, cv2.USAC_MAGSAC, 2 * threshold_px)
+    if matrix is None:
+        return None
+    with np.errstate(divide="ignore", invalid="ignore"):
+        away = np.linalg.norm(transform(matrix, matches.right_px) - matches.left_px, axis=1)
+    return Plane(matrix, away <= 3 * threshold_px)
 
 
 def _better_off_plane(

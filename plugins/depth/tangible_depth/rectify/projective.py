@@ -98,18 +98,6 @@ class Plane(NamedTuple):
     near: Bool[np.ndarray, "n"]
 
 
-def best_plane(matches: Matches, threshold_px: float) -> Plane | None:
-    """Find the homography that explains most matches; None without one."""
-    import cv2
-
-    matrix, _ = cv2.findHomography(matches.right_px, matches.left_px, cv2.USAC_MAGSAC, 2 * threshold_px)
-    if matrix is None:
-        return None
-    with np.errstate(divide="ignore", invalid="ignore"):
-        away = np.linalg.norm(transform(matrix, matches.right_px) - matches.left_px, axis=1)
-    return Plane(matrix, away <= 3 * threshold_px)
-
-
 def is_pure_rotation(plane: Plane, matches: Matches, shape: tuple[int, int]) -> bool:
     """Test whether a camera that rotated about its centre, and perhaps zoomed, explains the matches as well as a plane.
 

@@ -15,8 +15,8 @@ from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import note
 
 from ..sparse.matches import NO_MATCHES, Matches, flow_matches, match_off_plane, sift_matches
-from .fundamental import Fit, eight_point
-from .projective import best_plane, homogeneous, inverse, is_pure_rotation, product, transform
+from .fundamental import Fit, best_plane, eight_point
+from .projective import homogeneous, inverse, is_pure_rotation, product, transform
 from .rectified_pair import RectifiedPair, unchanged_pair, warp_pair
 from .rectifying_rotation import (
     LEAST_TRUSTED,

@@ -19,9 +19,9 @@ from jaxtyping import Bool, Float64
 from tangible_core.errors import GeometryError
 
 from ..sparse.matches import Matches
-from .fundamental import DegenerateMatches, Fit, Fundamental, robust_fundamental
+from .fundamental import DegenerateMatches, Fit, Fundamental, best_plane, robust_fundamental
 from .least_squares import least_squares, robust_pull
-from .projective import Plane, best_plane, product, transform, undistort
+from .projective import Plane, product, transform, undistort
 
 logger: logging.Logger = logging.getLogger(__name__)
 

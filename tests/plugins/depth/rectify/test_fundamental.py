@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from tangible_depth.rectify.fundamental import (
     DegenerateMatches,
+    best_plane,
     check_matches,
     eight_point,
     fundamental_from_plane,
@@ -17,7 +18,6 @@ from tangible_depth.rectify.fundamental import (
     robust_fundamental,
     sampson_distance,
 )
-from tangible_depth.rectify.projective import best_plane
 from tangible_depth.sparse.matches import Matches
 from two_cameras import seen_points, some_wrong
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tangible_depth.rectify.fundamental import sampson_distance
-from tangible_depth.rectify.projective import best_plane, camera_matrix, inverse, is_pure_rotation, rotation
+from tangible_depth.rectify.fundamental import best_plane, sampson_distance
+from tangible_depth.rectify.projective import camera_matrix, inverse, is_pure_rotation, rotation
 from tangible_depth.rectify.rectifying_rotation import epipoles
 from tangible_depth.sparse.matches import Matches
 

@@ -19,7 +19,8 @@ from tangible_core.plugins.notes import note
 from ..dense.filling.gaps import Effort
 from ..dense.span import UNKNOWN, Span
 from ..dense.speckles import ISLAND_PX, remove_speckles
-from ..row_alignment.row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, row_offset, shift_rows
+from ..row_alignment.common_rows import shift_rows
+from ..row_alignment.row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, row_offset
 from ..search.bands import match_bands
 from ..search.pairs import Pair
 from ..sgm.costs import HEAVY, LEVELS, LIGHT, SHARP, Cost

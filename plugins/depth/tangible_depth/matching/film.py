@@ -12,8 +12,7 @@ from ..dense.span import Span
 from ..rectify.rectification import rectify
 from ..rectify.rectified_pair import RectifiedPair
 from ..rectify.rectifying_rotation import RectificationError
-from ..row_alignment.common_rows import align_rows, common_row_offset
-from ..row_alignment.row_offset import shift_rows
+from ..row_alignment.common_rows import align_rows, common_row_offset, shift_rows
 from ..search.bands import match_bands
 from ..search.disparity_range import find_disparity_range
 from ..search.pairs import Pair, grey_pair

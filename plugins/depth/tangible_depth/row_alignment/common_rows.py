@@ -17,7 +17,7 @@ from ..dense.span import UNKNOWN
 from ..search.bands import Bands
 from ..search.pairs import Pair
 from ..sparse.matches import track
-from .row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, LEAST_VOTES, row_votes, shift_rows
+from .row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, LEAST_VOTES, row_votes
 
 Points = Float32[np.ndarray, "n 1 2"]
 
@@ -183,6 +183,20 @@ def align_rows(pair: Pair, bands: Bands, most_row_offset_px: float) -> Pair | No
         return pair
     note(log, f"rows realigned by {row_offset_px:.2f} px")
     return shift_rows(pair, row_offset_px)
+
+
+def shift_rows(pair: Pair, row_offset_px: float) -> Pair:
+    """Move the right view up by `row_offset_px`, so that rows correspond; cubic between rows."""
+    import cv2
+
+    nearest = round(row_offset_px)
+    moved_px = nearest if abs(row_offset_px - nearest) < 0.15 else row_offset_px
+    move = np.array([[1, 0, 0], [0, 1, -moved_px]], np.float32)
+    with plain_opencv():
+        moved = cv2.warpAffine(
+            pair.right, move, pair.right.shape[::-1], flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE
+        )
+    return Pair.of(pair.left, moved)
 
 
 def common_row_offset(pair: Pair, bands: Bands) -> float | None:

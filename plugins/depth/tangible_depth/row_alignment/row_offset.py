@@ -10,7 +10,6 @@ from jaxtyping import Float32, Int16, Int64
 
 from tangible_core.compiled.compiling import KERNEL, inner, njit
 from tangible_core.compiled.threads import in_blocks
-from tangible_core.runtime.opencv import plain_opencv
 
 from ..dense.span import UNKNOWN
 from ..search.pairs import Pair
@@ -58,20 +57,6 @@ def row_offset(pair: Pair, rows: Int64[np.ndarray, "n"], disparity: Int16[np.nda
     votes = row_votes(pair, rows, disparity, factor)
     agreed = votes[np.isfinite(votes)]
     return float(np.median(agreed)) if agreed.size >= LEAST_VOTES else 0.0
-
-
-def shift_rows(pair: Pair, row_offset_px: float) -> Pair:
-    """Move the right view up by `row_offset_px`, so that rows correspond; cubic between rows."""
-    import cv2
-
-    nearest = round(row_offset_px)
-    moved_px = nearest if abs(row_offset_px - nearest) < 0.15 else row_offset_px
-    move = np.array([[1, 0, 0], [0, 1, -moved_px]], np.float32)
-    with plain_opencv():
-        moved = cv2.warpAffine(
-            pair.right, move, pair.right.shape[::-1], flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE
-        )
-    return Pair.of(pair.left, moved)
 
 
 @njit(**KERNEL)

@@ -16,8 +16,9 @@ from tangible_depth.row_alignment.common_rows import (
     corners_correspond,
     rows_correspond,
     rows_match_elsewhere,
+    shift_rows,
 )
-from tangible_depth.row_alignment.row_offset import row_votes, shift_rows
+from tangible_depth.row_alignment.row_offset import row_votes
 from tangible_depth.search.bands import match_bands
 from tangible_depth.search.disparity_range import find_range
 from tangible_depth.search.pairs import Pair, grey_pair

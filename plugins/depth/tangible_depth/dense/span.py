@@ -28,7 +28,7 @@ class Span(NamedTuple):
         """Return the range in pixels of a picture that is smaller by `factor`, rounded outwards."""
         return self if factor == 1 else Span(self.low // factor, -(-self.high // factor))
 
-    def clip(self, width: int) -> "Span":
+    def within(self, width: int) -> "Span":
         """Return the part that two columns of a picture of this width can have."""
         low = min(max(self.low, 1 - width), width - 1)
         return Span(low, max(min(self.high, width - 1), low))

@@ -66,7 +66,7 @@ class FilmMatcher:
             pair = shift_rows(pair, self._row_offset_px)
         if self._frames % SEARCH_EVERY == SEARCH_EVERY - 1:
             self._update_range(pair)
-        disparity = match_in_order(pair, self._span.clip(pair.width), self._search.fill, self._match)
+        disparity = match_in_order(pair, self._span.within(pair.width), self._search.fill, self._match)
         return disparity if rectified is None else rectified.to_original(disparity)
 
     @property

@@ -41,7 +41,7 @@ def match_scaled(pair: Pair, span: Span, options: Scaling) -> DenseMatches:
     """Match a pair and return a dense map of its full size."""
     factor = _factor(span, options)
     small = pair.downsample(factor)
-    dense = _match(small, span.downsample(factor).clip(small.width), options, factor)
+    dense = _match(small, span.downsample(factor).within(small.width), options, factor)
     while factor > 1:
         factor //= 2
         dense = enlarge(dense, pair.downsample(factor).left)

@@ -9,7 +9,6 @@ Source: the split into similarity and perspective is that of Loop & Zhang, Compu
 Stereo Vision, CVPR 1999; fitting to the matches that of Hartley, Theory and Practice of Projective Rectification, 1999.
 """
 
-import logging
 from math import cos, exp, log, sin
 from typing import NamedTuple
 
@@ -22,8 +21,6 @@ from ..sparse.matches import Matches
 from .fundamental import DegenerateMatches, Fit, Fundamental, best_plane, robust_fundamental
 from .least_squares import least_squares, robust_pull
 from .projective import Plane, product, transform, undistort
-
-logger: logging.Logger = logging.getLogger(__name__)
 
 LEAST_TRUSTED = 30
 """Fewest inliers of a trusted geometry: a few wrong matches agree on one by chance."""
@@ -43,8 +40,6 @@ MOST_RADIAL = 0.3
 """Largest plausible distortion coefficient of a lens."""
 MOST_FITTED = 800
 """Largest number of matches that lenses are fitted to; more do not improve the fit."""
-
-
 _PRIOR = np.array([0.5, 0.2, 0.5, 0.2, 0.2, 0.5, 0.5])
 """Standard deviations of the parameters about the start: left roll and tilt along x; right roll, tilts along x and y,
 logarithm of scale, shift along y. Rolls in radians, lengths in half the longer side of the picture, tilts in its
@@ -88,6 +83,10 @@ class Rotation(NamedTuple):
         )
         return left - right
 
+    def on_rows(self, matches: Matches, shape: tuple[int, int], share: float = 1.0) -> Bool[np.ndarray, "n"]:
+        """Find the matches on their rows, within a share of the threshold."""
+        return np.abs(self.shifts(matches, shape)[:, 1]) <= share * threshold_px(shape)
+
 
 def threshold_px(shape: tuple[int, int]) -> float:
     """Return the largest distance of an inlier from its epipolar line or row, in pixels."""
@@ -105,20 +104,18 @@ def find_rotation(matches: Matches, shape: tuple[int, int], fit: Fit) -> tuple[R
     if (count := np.count_nonzero(plain.trusted)) < LEAST_TRUSTED:
         return plain, f"only {count} of {len(plain.trusted)} matches agree, {LEAST_TRUSTED} are needed"
     if (parts := _count_parts(matches.left_px[plain.trusted], shape)) < LEAST_PARTS:
-        return (
-            plain,
-            f"the matches that agree lie in {parts} of {PARTS**2} parts of the picture, {LEAST_PARTS} are needed",
-        )
+        doubt = f"the matches that agree lie in {parts} of {PARTS**2} parts of the picture, {LEAST_PARTS} are needed"
+        return plain, doubt
     learnt, judges = (matches.select(slice(first, None, 2)) for first in (0, 1))
     try:
         half = _fit_rotation(learnt, shape, fit)
     except RectificationError:
         return plain, "half of the matches contradict the rest"
     lenses = _fit_lenses(half, learnt, shape, fit)
-    kept = max(_share_on_rows(each, judges, shape) for each in (half, lenses))
+    kept = max(np.mean(rotation.on_rows(judges, shape)) for rotation in (half, lenses))
     if kept < LEAST_KEPT * np.mean(half.trusted):
         return plain, f"it explains {kept:.0%} of the held-out matches"
-    near, better = (_share_on_rows(each, judges, shape, FINE) for each in (half, lenses))
+    near, better = (np.mean(rotation.on_rows(judges, shape, FINE)) for rotation in (half, lenses))
     if better > (1 + LEAST_MORE) * near:
         return _fit_lenses(plain, matches, shape, fit), None
     return plain, None
@@ -154,7 +151,7 @@ def _fit_lenses(rotation: Rotation, matches: Matches, shape: tuple[int, int], fi
         lenses = Rotation(*aligning_lenses(matches.select(some), shape, roll, lenses.radials), trusted)
         if max(map(abs, lenses.radials)) > MOST_RADIAL:
             return rotation
-        trusted = np.abs(lenses.shifts(matches, shape)[:, 1]) <= threshold_px(shape)
+        trusted = lenses.on_rows(matches, shape)
         if np.count_nonzero(trusted) < np.count_nonzero(rotation.trusted) / 2:
             return rotation
     return lenses._replace(trusted=trusted)
@@ -183,11 +180,6 @@ def _fit_straight(
         return robust_fundamental(straight, threshold, fit)
     except DegenerateMatches:
         return None
-
-
-def _share_on_rows(rotation: Rotation, matches: Matches, shape: tuple[int, int], share: float = 1.0) -> float:
-    """Return the share of the matches on their rows, within a share of the threshold."""
-    return float(np.mean(np.abs(rotation.shifts(matches, shape)[:, 1]) <= share * threshold_px(shape)))
 
 
 def _count_parts(points_px: np.ndarray, shape: tuple[int, int]) -> int:

@@ -69,7 +69,7 @@ def match_bands(pair: Pair, span: Span, width: int = FINE_WIDTH) -> Bands:
     band = np.empty((TALL, codes.shape[3] + 2 * RADIUS), np.uint8)
     _encode_bands(pair.left, pair.right, factor, OFFSETS, stride, total, band, rows, codes, grey, flat)
     disparity = np.empty((COUNT, columns), np.int16)
-    sweep_columns(codes[0], codes[1], grey, span.downsample(factor).clip(columns), SHARP.penalties, stride, disparity)
+    sweep_columns(codes[0], codes[1], grey, span.downsample(factor).within(columns), SHARP.penalties, stride, disparity)
     found = _remove_flat(flat, disparity)
     lost = remove_speckles(disparity, LARGEST_SPECK)
     return Bands(rows, disparity, factor, found - lost, lost / max(1, found))

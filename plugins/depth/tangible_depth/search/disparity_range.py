@@ -83,7 +83,7 @@ def _revealed_share(wide: Bands, near: Bands | None, reach: int) -> float:
 
 
 def _range_of_bands(pair: Pair, span: Span, width: int, margin: int) -> RangeEstimate | None:
-    bands = match_bands(pair, span.clip(pair.width), width)
+    bands = match_bands(pair, span.within(pair.width), width)
     factor = bands.factor
     if bands.known == 0:
         return None
@@ -157,7 +157,7 @@ def find_disparity_range(
         raise PictureError(
             f"the search range {low}..{most - 1} px is empty; raise max_disparity_px or lower min_disparity_px"
         )
-    return SearchRange(Span(low, most - 1).clip(pair.width), None)
+    return SearchRange(Span(low, most - 1).within(pair.width), None)
 
 
 def _estimate_range(pair: Pair, least: int | Auto, verified_px: tuple[int, int] | None) -> SearchRange:
@@ -180,7 +180,7 @@ def _estimate_range(pair: Pair, least: int | Auto, verified_px: tuple[int, int] 
     span = Span(low, high)
     if high > 0 and (verified_px is None or span.size <= MOST_FILLED):
         span = span.fill_lanes()
-    return SearchRange(span.clip(pair.width), estimate and estimate.bands, tuple(notes))
+    return SearchRange(span.within(pair.width), estimate and estimate.bands, tuple(notes))
 
 
 def _range_around_matches(seen: Span, bands: Bands | None) -> Span:

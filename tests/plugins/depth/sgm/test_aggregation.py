@@ -90,9 +90,9 @@ def test_span_fits_lanes_and_pictures():
     assert Span(2, 68).widen() == Span(2, 129)
     assert Span(-3, 3).lanes == 16
     assert Span(0, 3).widen() == Span(0, 15)
-    assert Span(-50, 500).clip(100) == Span(-50, 99)
-    assert Span(-500, 50).clip(100) == Span(-99, 50)
-    assert Span(500, 900).clip(1) == Span(0, 0)
+    assert Span(-50, 500).within(100) == Span(-50, 99)
+    assert Span(-500, 50).within(100) == Span(-99, 50)
+    assert Span(500, 900).within(1) == Span(0, 0)
     assert Span(-5, 5).downsample(2) == Span(-3, 3)
 
 

@@ -12,12 +12,12 @@ import numpy as np
 from jaxtyping import Float
 from pydantic import ValidationError
 
-from ..data import Calibration, DisparityMap, SegmentMap, Views
+from ..data import Calibration
 from ..data.arguments import as_picture
 from ..data.option_errors import sentences_about
-from ..data.pictures import fill_non_finite, used_range
 from ..errors import ConfigError, PictureError, wrong_argument
 from ..files.paths import as_path
+from .combining import PHONE_DEPTH, PICTURES, combine_parts
 from .formats.height_maps import find_picture, in_metres, metadata_beside, read_heights_metadata
 from .formats.multi_picture import Notify
 from .formats.pairs import Layout, Stored, halves, read_pair, read_stored, views_of
@@ -32,26 +32,17 @@ from .formats.pictures import (
     read_picture,
     read_truth,
     truth_of,
-    without,
 )
 from .formats.rigs import find_rig, read_rig
-from .framing import OFFSET, apply_framing, cut_out, measured_size
-from .rig import StereoRig, rectify_views
+from .rig import StereoRig
 from .scene_files import SceneFiles, as_numbers
-from .video.files import parts_of, read_video, still
+from .video.files import parts_of, read_video
 
 log: logging.Logger = logging.getLogger(__name__)
 
-_PICTURES = {"left", "right", "photo", "stereo"}
 _PARTS = ("left", "right", "stereo", "photo", "video", "height", "disparity", "depth", "segments", "truth")
 _DISPARITIES = ("disparity", "truth")
-_UNIT_CAMERA = Calibration(focal_px=1.0, baseline_m=1.0)
-"""The cameras whose disparity is one over the depth."""
-_DEPTH_UNIT_M = 0.001
-_PHONE_DEPTH = "phone depth"
 _INSTEAD_OF_RIG = ("rig", "focal_px", "disparity", "depth", "truth", "segments", "crop")
-FAR_APART_M = 10.0
-"""Baseline from which millimetres are more likely than metres, unless the pictures were taken from the air."""
 
 
 def _read_heights(path: Path, notify: Notify) -> Float[np.ndarray, "h w"]:
@@ -124,7 +115,7 @@ class SceneSource:
                 named = found.relative_to(self.folder) if found.is_relative_to(self.folder) else found
                 notes.append(f"{found.name} states the cameras of the pair; write `rig: {named}` to use it")
         warnings: list[str] = []
-        fields = _fields(files, parts, rig, notes, warnings)
+        fields = combine_parts(files, parts, rig, notes, warnings)
         for each in notes:
             log.info("%s", each)
         for each in warnings:
@@ -200,7 +191,7 @@ def _read(part: str, path: Path, files: SceneFiles, notify: Notify) -> dict[str,
         return read_pair(path, cast("Layout | None", files.layout), files.non_finite, notify)._asdict()
     if part in _DISPARITIES:
         return {part: read_truth(path, *_scale(part, files), notify)}
-    if part not in _PICTURES:
+    if part not in PICTURES:
         return {part: _READERS[part](path, notify)}
     may_shrink = part == "photo" and all(
         getattr(files, other) is None for other in ("crop", "segments", "disparity", "depth")
@@ -209,7 +200,7 @@ def _read(part: str, path: Path, files: SceneFiles, notify: Notify) -> dict[str,
     depth = None
     if part == "photo" and files.photo_depth and files.disparity is None and files.depth is None:
         depth = read_phone_depth(path, (picture.shape[0], picture.shape[1]), notify)
-    return {part: picture} if depth is None else {part: picture, _PHONE_DEPTH: depth}
+    return {part: picture} if depth is None else {part: picture, PHONE_DEPTH: depth}
 
 
 def _scale(part: str, files: SceneFiles) -> tuple[TruthScale | None, tuple[float, ...]]:
@@ -222,103 +213,7 @@ def _convert(part: str, values: np.ndarray, files: SceneFiles) -> dict[str, np.n
     name = str(getattr(files, part))
     if part in _DISPARITIES:
         return {part: truth_of(values.copy(), name, *_scale(part, files))}
-    if part not in _PICTURES:
+    if part not in PICTURES:
         return {part: _CONVERTERS[part](values.copy(), name)}
     picture = picture_of(values.copy(), name, files.non_finite)
     return halves(picture, cast("Layout | None", files.layout), name)._asdict() if part == "stereo" else {part: picture}
-
-
-def _fields(
-    files: SceneFiles, parts: dict[str, np.ndarray], rig: StereoRig | None, notes: list[str], warnings: list[str]
-) -> dict[str, Any]:
-    """Frame the parts and return them as fields of a `Scene`."""
-    if files.video is not None:
-        files = still(files)
-    elif files.stereo is not None:
-        files = files.model_copy(update={"left": files.stereo, "right": files.stereo, "stereo": None})
-    _check_sizes(files, parts)
-    measured = measured_size(files, parts["height"].shape) if files.height else None
-    parts = apply_framing(parts, files, warnings.append)
-    shown = None if files.height else _cut_out(parts, files, notes.append)
-    masked = files.non_finite == "mask" and files.main in _PICTURES
-    known = _both(_fill(parts, files.main) if masked else None, shown)
-    _stretch(parts, Path(getattr(files, files.main)).name, warnings.append)
-    camera = files.calibration or (_UNIT_CAMERA if files.depth else None)
-    views = None if files.height else Views(parts[files.main], parts.get("right"), camera)
-    if rig is not None and views is not None:
-        views, known = rectify_views(views, rig)
-        shown = None
-    if views is not None and views.calibration is not None and views.calibration.baseline_m >= FAR_APART_M:
-        cure = "rig_unit_m: 0.001" if rig is not None else f"baseline_m: {views.calibration.baseline_m:g} mm"
-        notes.append(
-            f"the cameras stand {views.calibration.baseline_m:.4g} m apart; if these are millimetres, write `{cure}`"
-        )
-    for each in (known, shown, parts.get("height"), parts.get("truth")):
-        if each is not None:
-            each.flags.writeable = False
-    return {
-        "views": views,
-        "disparity": _disparity(parts, files, camera),
-        "segments": SegmentMap(parts["segments"]) if "segments" in parts else None,
-        "height": parts.get("height"),
-        "offset": float(parts.get(OFFSET, 0.0)),
-        "measured": measured,
-        "truth": parts.get("truth"),
-        "known": known,
-        "shown": shown,
-    }
-
-
-def _disparity(parts: Mapping[str, np.ndarray], files: SceneFiles, camera: Calibration | None) -> DisparityMap | None:
-    if _PHONE_DEPTH in parts:
-        return DisparityMap(parts[_PHONE_DEPTH], unit="relative")
-    if "depth" in parts and camera is not None:
-        depth = without(parts["depth"], *as_numbers(files.nodata))
-        depth_m = np.where(depth > 0, depth, np.nan).astype(np.float64) * (files.depth_unit_m or _DEPTH_UNIT_M)
-        depth_m = np.clip(depth_m, files.near_m, files.far_m)
-        return DisparityMap((camera.focal_px * camera.baseline_m / depth_m - camera.offset_px).astype(np.float32))
-    return DisparityMap(parts["disparity"]) if "disparity" in parts else None
-
-
-def _check_sizes(files: SceneFiles, parts: Mapping[str, np.ndarray]) -> None:
-    main = files.main
-    size = parts[main].shape[1::-1]
-    for other in parts.keys() - {main}:
-        if (its := parts[other].shape[1::-1]) != size:
-            cure = "by its nearest neighbours, which mixes no labels" if other == "segments" else "or crop one of them"
-            raise PictureError(
-                f"{getattr(files, other)} ({other}) is {its[0]} x {its[1]} and {getattr(files, main)} ({main}) is "
-                f"{size[0]} x {size[1]}; all parts of a scene must be of one size; resize {cure}"
-            )
-
-
-def _fill(parts: dict[str, np.ndarray], main: str) -> np.ndarray | None:
-    """Fill non-finite pixels of the pictures; return the mask of the main one, None if it was finite everywhere."""
-    known: dict[str, np.ndarray] = {}
-    for name in parts.keys() & _PICTURES:
-        parts[name], known[name] = fill_non_finite(parts[name])
-    return None if known[main].all() else known[main]
-
-
-def _cut_out(parts: dict[str, np.ndarray], files: SceneFiles, notify: Notify) -> np.ndarray | None:
-    """Drop the fourth channel of the pictures; return the mask of the main one, None if it was opaque everywhere."""
-    shown: dict[str, np.ndarray] = {}
-    for name in [each for each in parts if each in _PICTURES and parts[each].shape[2:] == (4,)]:
-        parts[name], shown[name] = cut_out(parts[name], str(getattr(files, name)))
-    main = shown.get(files.main)
-    if main is None or main.all():
-        return None
-    notify(f"{100 * (1 - main.mean()):.0f} % of {Path(getattr(files, files.main)).name} is transparent: flat ground")
-    return main
-
-
-def _stretch(parts: dict[str, np.ndarray], name: str, notify: Notify) -> None:
-    """Stretch pictures of more than 8 bits that use little of their range to all of it, both views alike."""
-    pictures = {part: values for part, values in parts.items() if part in _PICTURES}
-    if (used := used_range(*pictures.values())) is not None:
-        parts.update({part: used.stretch(values) for part, values in pictures.items()})
-        notify(used.sentence(name))
-
-
-def _both(one: np.ndarray | None, other: np.ndarray | None) -> np.ndarray | None:
-    return other if one is None else one if other is None else one & other

@@ -15,15 +15,15 @@ from ...data.pictures import is_opaque
 from ...errors import PictureError, TangibleError, shown
 from ...files import arrays
 from ...files.paths import what_is_missing
-from ...files.reading import MOST_PIXELS, TOO_MANY_PIXELS, TooLargeError, check_size, read_bytes
+from ...files.reading import TOO_MANY_PIXELS, TooLargeError, check_size, read_bytes
 from ...runtime.opencv import silent_opencv
 from .grids import GRIDS, read_grid
 from .heif import is_heif, read_heif
-from .kinds import ASC, JPEG, JPEG_2000, NPY, PNG, VIDEOS, ZIP
+from .kinds import ASC, JPEG, JPEG_2000, NPY, VIDEOS, ZIP
 from .map_numbers import is_nodata
 from .multi_picture import Notify, count_pictures, ignore
 from .netpbm import NETPBM, read_netpbm
-from .tiff import TIFF, TiffRaster, UnreadableError, tiff_picture, tiff_size
+from .tiff import TIFF, TiffRaster, UnreadableError, tiff_picture
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -40,8 +40,6 @@ Purpose = Literal["picture", "map", "labels"]
 FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "WEBP", "PPM", "JPEG2000", "AVIF")
 """Formats that Pillow may read. Others that it knows run programs (EPS) or cannot be told from noise (TGA)."""
 
-MOST_REDUCED = 10 * MOST_PIXELS
-"""The most pixels of a picture that is reduced while it is decoded: more would take minutes."""
 
 _ORIENTATION = 0x0112  # tag of EXIF
 
@@ -54,7 +52,7 @@ def values_of(path: Path, data: bytes, notify: Notify, purpose: Purpose = "pictu
     if data[:6] == NPY or data[:4] == ZIP:
         return _array(path, data)
     if path.suffix.lower() in GRIDS or ASC.match(data):
-        with _picture_errors(path):
+        with picture_errors(path):
             return read_grid(path, data)
     return decode(path, data, purpose, notify)
 
@@ -96,75 +94,10 @@ def decode(
     path: Path, data: bytes, purpose: Purpose = "picture", notify: Notify = ignore, frame: int = 0
 ) -> np.ndarray:
     """Decode a picture by its first bytes, upright, with all its bits."""
-    with _picture_errors(path):
+    with picture_errors(path):
         values = _decode_tiff(path, data, purpose, notify) if data[:4] in TIFF else None
-        values = _decode(path, data, purpose, notify, frame) if values is None else values
+        values = decode_plain(path, data, purpose, notify, frame) if values is None else values
         return values if np.ma.isMaskedArray(values) else np.ascontiguousarray(values)
-
-
-def decode_reduced(path: Path, data: bytes, notify: Notify = ignore) -> np.ndarray | None:
-    """Decode a JPEG, PNG or TIFF of more than MOST_PIXELS at a half, a quarter or an eighth of its sides.
-
-    The whole picture is never in memory: the decoder of JPEG leaves out the finer waves of each block, and a PNG or
-    TIFF is decoded in bands of rows.
-    Returns: None for a picture that is not too large, larger than MOST_REDUCED, or of another format.
-    """
-    with _picture_errors(path):
-        if data[:3] == JPEG:
-            return _reduced_jpeg(path, data, notify)
-        if data[:8] == PNG or data[:4] in TIFF:
-            return _reduced_bands(path, data, notify)
-    return None
-
-
-def _reduced_jpeg(path: Path, data: bytes, notify: Notify) -> np.ndarray | None:
-    from PIL.JpegImagePlugin import JpegImageFile
-
-    with JpegImageFile(BytesIO(data)) as image:
-        times = _times(image.height, image.width)
-        if times is None:
-            return None
-        _notify_reduced(path, image.height, image.width, times, notify)
-        image.draft(image.mode, (image.width // times, image.height // times))
-        check_size((image.height, image.width, len(image.getbands())), 4)
-        image.load()
-        return np.ascontiguousarray(upright(_values(image, "picture"), orientation(image)))
-
-
-def _reduced_bands(path: Path, data: bytes, notify: Notify) -> np.ndarray | None:
-    shape = _png_size(data) if data[:8] == PNG else tiff_size(data)
-    times = _times(*shape)
-    if times is None:
-        return None
-    from .bands import WholePieceError, png_bands, reduced
-
-    _notify_reduced(path, *shape, times, notify)
-    try:
-        if data[:8] != PNG:
-            with tiff_picture(data, whole=False) as picture:
-                if picture is None:
-                    return None
-                bands = (_meaning(band, "picture", picture.nodata) for band in picture.bands)
-                return np.ascontiguousarray(upright(reduced(bands, *shape, times), picture.orientation))
-        orientation, files = png_bands(data)
-        pictures = (_decode(path, band, "picture", ignore, 0) for band in files)
-        return np.ascontiguousarray(upright(reduced(pictures, *shape, times), orientation))
-    except WholePieceError as error:
-        raise PictureError(f"{path}: {TOO_MANY_PIXELS} and cannot be reduced while it is read; {error}") from error
-
-
-def _times(rows: int, columns: int) -> int | None:
-    """Return the factor by which the sides of a picture are reduced; None if it is not too large, or much too large."""
-    if not MOST_PIXELS < columns * rows <= MOST_REDUCED:
-        return None
-    return next((each for each in (2, 4, 8) if -(-rows // each) * -(-columns // each) <= MOST_PIXELS), None)
-
-
-def _notify_reduced(path: Path, rows: int, columns: int, times: int, notify: Notify) -> None:
-    notify(
-        f"{path.name} has {columns * rows / 1e6:.0f} megapixels; it is reduced to {-(-columns // times)} x "
-        f"{-(-rows // times)} pixels while it is read"
-    )
 
 
 def look_at(path: Path, data: bytes, look: Callable[["Image"], T]) -> T:
@@ -172,14 +105,14 @@ def look_at(path: Path, data: bytes, look: Callable[["Image"], T]) -> T:
     from PIL import Image
     from PIL.JpegImagePlugin import jpeg_factory
 
-    with _picture_errors(path):
-        jpeg = data[:3] == JPEG  # may have more pixels than Pillow opens: `decode_reduced` has read it
+    with picture_errors(path):
+        jpeg = data[:3] == JPEG  # may have more pixels than Pillow opens: `reducing` has read it
         with jpeg_factory(BytesIO(data)) if jpeg else Image.open(BytesIO(data), formats=FORMATS) as image:
             return look(image)
 
 
 @contextmanager
-def _picture_errors(path: Path) -> Generator[None]:
+def picture_errors(path: Path) -> Generator[None]:
     """Turn whatever is wrong with a file into a PictureError."""
     from PIL import Image, UnidentifiedImageError
 
@@ -218,14 +151,14 @@ def _decode_tiff(path: Path, data: bytes, purpose: Purpose, notify: Notify) -> n
         (raster,) = picture.bands
         if raster.dropped:
             notify(f"{path.name} has {raster.dropped} more channels, such as infrared, which are left out")
-        values = _meaning(raster, purpose, picture.nodata)
+        values = meaning(raster, purpose, picture.nodata)
         if np.ma.isMaskedArray(values) and picture.nodata is not None:
             missing = np.count_nonzero(is_nodata(raster.values, picture.nodata))
             notify(f"{100 * missing / values.size:.1f} % of {path.name} is {picture.nodata:g}, its value for no data")
         return upright(values, picture.orientation)
 
 
-def _meaning(raster: TiffRaster, purpose: Purpose, nodata: float | None) -> np.ndarray:
+def meaning(raster: TiffRaster, purpose: Purpose, nodata: float | None) -> np.ndarray:
     """Return the numbers of a TIFF as a picture's brightness or colours, as a masked map, or as labels."""
     values, known = raster.values, raster.known
     if purpose == "labels":
@@ -266,7 +199,7 @@ def _with_alpha(values: np.ndarray, known: np.ndarray | None, alpha: np.ndarray 
     return np.dstack([colours, opacity if known is None else opacity * known])
 
 
-def _decode(path: Path, data: bytes, purpose: Purpose, notify: Notify, frame: int) -> np.ndarray:
+def decode_plain(path: Path, data: bytes, purpose: Purpose, notify: Notify, frame: int) -> np.ndarray:
     """Decode a picture that is not a TIFF: with Pillow, which reports faults, or another where Pillow drops bits."""
     from PIL import Image
 
@@ -285,7 +218,7 @@ def _decode(path: Path, data: bytes, purpose: Purpose, notify: Notify, frame: in
         if deep is None:
             image.load()
             deep = _deep_png(image, path, data, purpose) if image.format == "PNG" and data[24] == 16 else None
-        values = _values(image, purpose) if deep is None else deep
+        values = image_values(image, purpose) if deep is None else deep
         if image.format == "PNG" and purpose == "map" and data[24] < 8 and image.mode in ("1", "L"):
             values = values // (255 // ((1 << data[24]) - 1))
         return upright(values, orientation(image))
@@ -314,7 +247,8 @@ def _jpeg_2000(data: bytes, purpose: Purpose) -> np.ndarray | None:
     return values if purpose != "picture" or signed else _in_full(values, (2 << depth) - 1)
 
 
-def _values(image: "Image", purpose: Purpose) -> np.ndarray:
+def image_values(image: "Image", purpose: Purpose) -> np.ndarray:
+    """Return the pixels of a loaded picture, without a palette unless they are labels."""
     mode, transparent = image.mode, image.has_transparency_data
     if mode in ("F", "L", "RGB", "RGBA") and not (mode != "RGBA" and transparent):
         return np.asarray(image)
@@ -350,7 +284,7 @@ def _decode_with_opencv(path: Path, data: bytes) -> np.ndarray:
     """Decode a PNG; OpenCV has no limit on sizes, and another idea of which header counts than Pillow."""
     import cv2
 
-    check_size((*_png_size(data), 4), 2)
+    check_size((*png_size(data), 4), 2)
     try:
         with silent_opencv():  # the error below reports the fault in one line
             values: np.ndarray | None = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
@@ -363,7 +297,7 @@ def _decode_with_opencv(path: Path, data: bytes) -> np.ndarray:
     return values
 
 
-def _png_size(data: bytes) -> tuple[int, int]:
+def png_size(data: bytes) -> tuple[int, int]:
     """Return the rows and columns that the first chunk of a PNG states."""
     width, height = struct.unpack_from(">II", data, 16)
     return height, width

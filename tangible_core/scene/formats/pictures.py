@@ -10,10 +10,11 @@ from pydantic import Field
 
 from ...data.pictures import check_finite, check_picture, opaque
 from ...errors import PictureError
-from .decoding import bytes_of, decode_reduced, values_of
+from .decoding import bytes_of, values_of
 from .kinds import JPEG
 from .label_colours import labels_by_colour
 from .multi_picture import Notify, ignore
+from .reducing import decode_reduced
 
 TruthScale = Annotated[float, Field(gt=0, allow_inf_nan=False)] | Literal["sintel"]
 NonFinite = Literal["error", "mask"]

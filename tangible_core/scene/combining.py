@@ -1,0 +1,121 @@
+"""The parts of a scene, read from files or given as arrays, framed and combined to its fields."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..data import Calibration, DisparityMap, SegmentMap, Views
+from ..data.pictures import fill_non_finite, used_range
+from ..errors import PictureError
+from .formats.multi_picture import Notify
+from .formats.pictures import without
+from .framing import OFFSET, apply_framing, cut_out, measured_size
+from .rig import StereoRig, rectify_views
+from .scene_files import SceneFiles, as_numbers
+from .video.files import still
+
+PICTURES = {"left", "right", "photo", "stereo"}
+PHONE_DEPTH = "phone depth"
+_UNIT_CAMERA = Calibration(focal_px=1.0, baseline_m=1.0)
+"""The cameras whose disparity is one over the depth."""
+_DEPTH_UNIT_M = 0.001
+FAR_APART_M = 10.0
+"""Baseline from which millimetres are more likely than metres, unless the pictures were taken from the air."""
+
+
+def combine_parts(
+    files: SceneFiles, parts: dict[str, np.ndarray], rig: StereoRig | None, notes: list[str], warnings: list[str]
+) -> dict[str, Any]:
+    """Frame the parts and return them as fields of a `Scene`."""
+    if files.video is not None:
+        files = still(files)
+    elif files.stereo is not None:
+        files = files.model_copy(update={"left": files.stereo, "right": files.stereo, "stereo": None})
+    _check_sizes(files, parts)
+    measured = measured_size(files, parts["height"].shape) if files.height else None
+    parts = apply_framing(parts, files, warnings.append)
+    shown = None if files.height else _cut_out(parts, files, notes.append)
+    masked = files.non_finite == "mask" and files.main in PICTURES
+    known = _both(_fill(parts, files.main) if masked else None, shown)
+    _stretch(parts, Path(getattr(files, files.main)).name, warnings.append)
+    camera = files.calibration or (_UNIT_CAMERA if files.depth else None)
+    views = None if files.height else Views(parts[files.main], parts.get("right"), camera)
+    if rig is not None and views is not None:
+        views, known = rectify_views(views, rig)
+        shown = None
+    if views is not None and views.calibration is not None and views.calibration.baseline_m >= FAR_APART_M:
+        cure = "rig_unit_m: 0.001" if rig is not None else f"baseline_m: {views.calibration.baseline_m:g} mm"
+        notes.append(
+            f"the cameras stand {views.calibration.baseline_m:.4g} m apart; if these are millimetres, write `{cure}`"
+        )
+    for each in (known, shown, parts.get("height"), parts.get("truth")):
+        if each is not None:
+            each.flags.writeable = False
+    return {
+        "views": views,
+        "disparity": _disparity(parts, files, camera),
+        "segments": SegmentMap(parts["segments"]) if "segments" in parts else None,
+        "height": parts.get("height"),
+        "offset": float(parts.get(OFFSET, 0.0)),
+        "measured": measured,
+        "truth": parts.get("truth"),
+        "known": known,
+        "shown": shown,
+    }
+
+
+def _disparity(parts: Mapping[str, np.ndarray], files: SceneFiles, camera: Calibration | None) -> DisparityMap | None:
+    if PHONE_DEPTH in parts:
+        return DisparityMap(parts[PHONE_DEPTH], unit="relative")
+    if "depth" in parts and camera is not None:
+        depth = without(parts["depth"], *as_numbers(files.nodata))
+        depth_m = np.where(depth > 0, depth, np.nan).astype(np.float64) * (files.depth_unit_m or _DEPTH_UNIT_M)
+        depth_m = np.clip(depth_m, files.near_m, files.far_m)
+        return DisparityMap((camera.focal_px * camera.baseline_m / depth_m - camera.offset_px).astype(np.float32))
+    return DisparityMap(parts["disparity"]) if "disparity" in parts else None
+
+
+def _check_sizes(files: SceneFiles, parts: Mapping[str, np.ndarray]) -> None:
+    main = files.main
+    size = parts[main].shape[1::-1]
+    for other in parts.keys() - {main}:
+        if (its := parts[other].shape[1::-1]) != size:
+            cure = "by its nearest neighbours, which mixes no labels" if other == "segments" else "or crop one of them"
+            raise PictureError(
+                f"{getattr(files, other)} ({other}) is {its[0]} x {its[1]} and {getattr(files, main)} ({main}) is "
+                f"{size[0]} x {size[1]}; all parts of a scene must be of one size; resize {cure}"
+            )
+
+
+def _fill(parts: dict[str, np.ndarray], main: str) -> np.ndarray | None:
+    """Fill non-finite pixels of the pictures; return the mask of the main one, None if it was finite everywhere."""
+    known: dict[str, np.ndarray] = {}
+    for name in parts.keys() & PICTURES:
+        parts[name], known[name] = fill_non_finite(parts[name])
+    return None if known[main].all() else known[main]
+
+
+def _cut_out(parts: dict[str, np.ndarray], files: SceneFiles, notify: Notify) -> np.ndarray | None:
+    """Drop the fourth channel of the pictures; return the mask of the main one, None if it was opaque everywhere."""
+    shown: dict[str, np.ndarray] = {}
+    for name in [each for each in parts if each in PICTURES and parts[each].shape[2:] == (4,)]:
+        parts[name], shown[name] = cut_out(parts[name], str(getattr(files, name)))
+    main = shown.get(files.main)
+    if main is None or main.all():
+        return None
+    notify(f"{100 * (1 - main.mean()):.0f} % of {Path(getattr(files, files.main)).name} is transparent: flat ground")
+    return main
+
+
+def _stretch(parts: dict[str, np.ndarray], name: str, notify: Notify) -> None:
+    """Stretch pictures of more than 8 bits that use little of their range to all of it, both views alike."""
+    pictures = {part: values for part, values in parts.items() if part in PICTURES}
+    if (used := used_range(*pictures.values())) is not None:
+        parts.update({part: used.stretch(values) for part, values in pictures.items()})
+        notify(used.sentence(name))
+
+
+def _both(one: np.ndarray | None, other: np.ndarray | None) -> np.ndarray | None:
+    return other if one is None else one if other is None else one & other

@@ -41,7 +41,7 @@ FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "WEBP", "PPM", "JPEG2000", "AVIF
 """Formats that Pillow may read. Others that it knows run programs (EPS) or cannot be told from noise (TGA)."""
 
 
-_ORIENTATION = 0x0112  # tag of EXIF
+ORIENTATION = 0x0112  # tag of EXIF
 
 
 def values_of(path: Path, data: bytes, notify: Notify, purpose: Purpose = "picture") -> np.ndarray:
@@ -184,9 +184,9 @@ def meaning(raster: TiffRaster, purpose: Purpose, nodata: float | None) -> np.nd
 
 def _in_full(values: np.ndarray, white: int) -> np.ndarray:
     """Return brightness up to 255 or 65535, whose white was another number."""
-    full = 255 if white < 256 else 0xFFFF
     if white > 0xFFFF:
         return values
+    full = 255 if white < 256 else 0xFFFF
     scaled = values if white == full else (values.astype(np.uint64) * full + white // 2) // white
     return scaled.astype(np.uint8 if full == 255 else np.uint16, copy=False)
 
@@ -243,27 +243,25 @@ def _jpeg_2000(data: bytes, purpose: Purpose) -> np.ndarray | None:
     import imagecodecs
 
     values: np.ndarray = imagecodecs.jpeg2k_decode(data)
-    signed = bool(depth & 0x80)
-    return values if purpose != "picture" or signed else _in_full(values, (2 << depth) - 1)
+    return values if purpose != "picture" or depth & 0x80 else _in_full(values, (2 << depth) - 1)
 
 
 def image_values(image: "Image", purpose: Purpose) -> np.ndarray:
     """Return the pixels of a loaded picture, without a palette unless they are labels."""
     mode, transparent = image.mode, image.has_transparency_data
-    if mode in ("F", "L", "RGB", "RGBA") and not (mode != "RGBA" and transparent):
+    plain = mode == "RGBA" or (mode in ("F", "L", "RGB") and not transparent)
+    if plain or (mode == "P" and purpose == "labels"):
         return np.asarray(image)
     if mode.startswith("I"):
         whole = np.asarray(image)
         return whole.astype(np.uint16) if whole.min() >= 0 and whole.max() <= 0xFFFF else whole
-    if mode == "P" and purpose == "labels":
-        return np.asarray(image)
     return np.asarray(image.convert("RGBA" if transparent else "L" if mode == "1" else "RGB"))
 
 
 def orientation(image: "Image") -> int:
     """Return the orientation of the camera by EXIF; 1, upright, if there is none that can be read."""
     try:
-        return image.getexif().get(_ORIENTATION, 1)
+        return image.getexif().get(ORIENTATION, 1)
     except Exception as error:  # noqa: BLE001 - a picture is worth more than its damaged tags
         log.warning("EXIF tags are damaged (%s); the picture is taken as upright", error)
         return 1

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...data.pictures import MOST, full_scale, size_in_words
 from ...errors import PictureError
-from .decoding import bytes_of, decode, look_at, upright, values_of
+from .decoding import ORIENTATION, bytes_of, decode, look_at, upright, values_of
 from .kinds import JPEG
 from .multi_picture import Notify, ignore, view_numbers
 from .pictures import NonFinite, picture_of
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 Layout = Literal["side-by-side", "cross-eyed", "top-bottom", "bottom-top"]
 
-_ORIENTATION = 0x0112  # tag of EXIF
 _INSEPARABLE = {1: "both views in alternate rows (interleaved)", 4: "both views in one picture's colours (an anaglyph)"}
 
 
@@ -159,7 +158,7 @@ def _stated_layout(path: Path, data: bytes, notify: Notify) -> Layout:
 def _stated_orientation(path: Path, data: bytes, frame: int = 0) -> int | None:
     def look(image: "Image") -> int | None:
         image.seek(frame)
-        return image.getexif().get(_ORIENTATION)
+        return image.getexif().get(ORIENTATION)
 
     try:
         return look_at(path, data, look)

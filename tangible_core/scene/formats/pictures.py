@@ -146,9 +146,8 @@ def read_truth(
     red * 4 + green / 64 + blue / 16384, which cannot mark unknown pixels. nodata: numbers of the file for no data.
     Raises: PictureError as `read_map`.
     """
-    if scale == "sintel":
-        return truth_of(values_of(path, bytes_of(path), notify), str(path), scale)
-    return _in_pixels(without(read_map(path, notify), *nodata), scale)
+    purpose = "picture" if scale == "sintel" else "map"
+    return truth_of(values_of(path, bytes_of(path), notify, purpose), str(path), scale, nodata)
 
 
 def truth_of(

@@ -126,9 +126,9 @@ def _photo(path: Path) -> object:
 
 def _large(path: Path) -> object:
     """Read as if a picture of more than a hundred pixels were too large to be held."""
-    from tangible_core.scene.formats import decoding
+    from tangible_core.scene.formats import reducing
 
-    with patch.object(decoding, "MOST_PIXELS", 100):
+    with patch.object(reducing, "MOST_PIXELS", 100):
         return _picture(path)
 
 

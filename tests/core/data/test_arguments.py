@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from inspect import signature
 from pathlib import Path
-from typing import Any, TypedDict, Unpack
+from typing import Any, Unpack
 
 import numpy as np
 import pytest
@@ -23,6 +23,7 @@ from tangible_core.data.arguments import as_array, as_force, as_state, named_opt
 from tangible_core.data.device import Force, HapticState
 from tangible_core.data.ticks import TICK_COLUMNS
 from tangible_core.errors import ArgumentError, TangibleError
+from tangible_core.scene.scene_options import TurnOptions
 
 pytestmark = pytest.mark.usefixtures("unchecked_shapes")
 
@@ -62,11 +63,6 @@ def test_wrong_argument_gives_one_sentence_with_its_name(make: Callable[[], Any]
     assert "\n" not in str(raised.value)
 
 
-class Ink(TypedDict, total=False):
-    colour: str
-    wet: bool
-
-
 class Pen:
     @named_options
     def draw(self, at: int, /, wide: int = 1, *points: int, tall: int = 1, **more: int) -> int:
@@ -84,13 +80,13 @@ def test_unknown_option_lists_only_the_names_that_may_be_written():
 
 def test_options_of_a_typed_dict_are_in_the_signature_by_name():
     @named_options
-    def write(text: str, **ink: Unpack[Ink]) -> Mapping[str, object]:
-        return ink
+    def draw(text: str, **turn: Unpack[TurnOptions]) -> Mapping[str, object]:
+        return turn
 
-    assert str(signature(write)).startswith("(text: str, *, colour: str = Ellipsis, wet: bool = Ellipsis)")
-    assert write("a", wet=True) == {"wet": True}
-    with pytest.raises(ArgumentError, match=r"color: unknown option .*; known: text, colour, wet"):
-        write("a", color="red")
+    assert str(signature(draw)).startswith("(text: str, *, rotate: int = Ellipsis, invert: bool = Ellipsis)")
+    assert draw("a", invert=True) == {"invert": True}
+    with pytest.raises(ArgumentError, match="inverted: unknown option"):
+        draw("a", inverted=True)
 
 
 def test_convertible_arguments_are_converted():

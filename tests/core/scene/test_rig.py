@@ -1,5 +1,6 @@
 """If one of these fails, a raw pair of known cameras is felt at wrong depths, or a wrong calibration is not refused."""
 
+import re
 from pathlib import Path
 
 import cv2
@@ -9,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
+import file_readers
 from tangible_core import Pipeline, Workspace, load_pipeline
 from tangible_core.data import Calibration, Views
 from tangible_core.errors import ConfigError, GeometryError, PictureError
@@ -187,25 +189,8 @@ def test_camera_refuses_wrong_matrix_and_distortion(matrix, distortion, word):
         Camera(matrix, distortion)
 
 
-KALIBR = """\
-cam0:
-  camera_model: pinhole
-  intrinsics: [110.0, 113.0, 60.0, 44.0]
-  distortion_model: {model}
-  distortion_coeffs: {coefficients}
-  resolution: [120, 90]
-cam1:
-  T_cn_cnm1:
-  - [1.0, 0.0, 0.0, -0.1]
-  - [0.0, 1.0, 0.0, 0.01]
-  - [0.0, 0.0, 1.0, 0.005]
-  - [0.0, 0.0, 0.0, 1.0]
-  camera_model: pinhole
-  intrinsics: [115.0, 118.0, 60.0, 44.0]
-  distortion_model: {model}
-  distortion_coeffs: {coefficients}
-  resolution: [120, 90]
-"""
+KALIBR = re.sub(r"(distortion_model: ).*", r"\1{model}", file_readers.KALIBR.replace("[16, 12]", "[120, 90]"))
+KALIBR = re.sub(r"(distortion_coeffs: ).*", r"\1{coefficients}", KALIBR)
 KALIBR_NONE = KALIBR.format(model="none", coefficients=[])
 
 

@@ -223,6 +223,11 @@ def test_engine_with_other_products_makes_what_depends_on_them_and_neither_keeps
     assert (set((folder / "cache").iterdir()), heard) == (kept, before)
     assert pipe.make().surface is first
     assert "disparity" not in {each.product for each in other.outcomes if each.outcome == "ran"}
+    fresh = pipeline(folder)
+    fresh.plan()
+    fresh.with_products(disparity=down).make("segments")
+    fresh.make("segments")
+    assert outcome_kinds(fresh)["segments"] == "cached", "each engine reports what it made itself"
 
 
 def test_make_makes_each_needed_product_once(folder: Path):

@@ -9,7 +9,6 @@ import pytest
 from tangible_core.data import Calibration, DisparityMap, Views
 from tangible_core.plugins.notes import collected
 from tangible_depth.rectify import rectification, rectifying_rotation
-from tangible_depth.rectify import rectifying_rotation as module
 from tangible_depth.rectify.projective import distort, transform, undistort
 from tangible_depth.rectify.rectification import (
     RectificationError,
@@ -358,9 +357,12 @@ def test_parts_of_a_picture_are_quarters_of_its_sides():
     """A point in the middle of each part, and points on the border, which belong to the last parts."""
     x, y = np.meshgrid(np.arange(4) * 200 + 100, np.arange(4) * 50 + 25)
     points = np.column_stack([x.ravel(), y.ravel()]).astype(float)
-    assert module._count_parts(points, (200, 800)) == 16
-    assert module._count_parts(points[:6], (200, 800)) == 6
-    assert module._count_parts(np.array([[0, 0], [799, 0], [800, 0], [0, 200], [799, 199.5]]), (200, 800)) == 4
+    assert rectifying_rotation._count_parts(points, (200, 800)) == 16
+    assert rectifying_rotation._count_parts(points[:6], (200, 800)) == 6
+    assert (
+        rectifying_rotation._count_parts(np.array([[0, 0], [799, 0], [800, 0], [0, 200], [799, 199.5]]), (200, 800))
+        == 4
+    )
 
 
 @pytest.mark.parametrize(

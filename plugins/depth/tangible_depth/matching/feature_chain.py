@@ -5,6 +5,7 @@ features -> matches -> fundamental matrix -> rectification -> matches along rows
 
 import logging
 from collections.abc import Callable
+from math import ceil, floor
 from typing import NamedTuple
 
 import numpy as np
@@ -14,11 +15,12 @@ from tangible_core.data import DisparityMap, Views
 from tangible_core.data.pictures import to_grey
 from tangible_core.errors import PictureError
 
+from ..dense.span import Span
 from ..rectify.fundamental import Fit
 from ..rectify.rectification import rectify
 from ..rectify.rectified_pair import RectifiedPair
 from ..sparse.assembling import assemble
-from ..sparse.corner_range import MOST_CORNERS, MaxDisparity, clip_range, range_of_shifts
+from ..sparse.corner_range import MOST_CORNERS, MaxDisparity, range_of_shifts
 from ..sparse.harris import corners, least_response, row_edges
 from ..sparse.matches import Matches, corner_matches
 
@@ -69,9 +71,9 @@ def _match_features(views: Views, parts: Parts, least: float, least_score: float
     return assemble(disparity, score, views.left)
 
 
-def _range(matches: Matches, rectified: RectifiedPair, most: MaxDisparity) -> tuple[int, int]:
+def _range(matches: Matches, rectified: RectifiedPair, most: MaxDisparity) -> Span:
     """Return the lowest and highest disparity to try in the rectified views."""
     width = rectified.views.shape[1]
     if most != "auto":
-        return clip_range(-rectified.offset_px, most - rectified.offset_px, width)
+        return Span(floor(-rectified.offset_px), ceil(most - rectified.offset_px)).within(width)
     return range_of_shifts(rectified.left_place_px(matches.left_px) - rectified.right_place_px(matches.right_px), width)

@@ -1,10 +1,12 @@
 """The search range of a pair, from its matched corners."""
 
+from math import ceil, floor
 from typing import Literal
 
 import numpy as np
 from jaxtyping import Float32, Float64
 
+from ..dense.span import Span
 from .harris import corners, harris_response, least_response
 from .matches import corner_matches
 
@@ -16,7 +18,7 @@ FEWEST = 20
 MaxDisparity = int | Literal["auto"]
 
 
-def range_of_shifts(shift_px: Float64[np.ndarray, "n 2"], width: int) -> tuple[int, int]:
+def range_of_shifts(shift_px: Float64[np.ndarray, "n 2"], width: int) -> Span:
     """Return the lowest and highest disparity, both included, from shifts (x, y), left - right, of rectified matches.
 
     Matches off their rows are dropped; the range of the others is widened by a tenth. Zero is always included, as a far
@@ -24,24 +26,16 @@ def range_of_shifts(shift_px: Float64[np.ndarray, "n 2"], width: int) -> tuple[i
     """
     on_row = np.abs(shift_px[:, 1]) <= 2
     if np.count_nonzero(on_row) < FEWEST:
-        return clip_range(0, width / 4, width)
+        return Span(0, ceil(width / 4)).within(width)
     low, high = np.percentile(shift_px[on_row, 0], [1, 99])
     margin = max(4.0, 0.1 * (high - low))
-    return clip_range(min(0.0, low - margin), high + margin, width)
+    return Span(floor(min(0.0, low - margin)), ceil(high + margin)).within(width)
 
 
-def clip_range(low: float, high: float, width: int) -> tuple[int, int]:
-    """Clip to whole disparities that a picture of this width can have."""
-    first = int(np.clip(np.floor(low), 1 - width, width - 1))
-    return first, int(np.clip(np.ceil(high), first, width - 1))
-
-
-def range_of_pair(
-    left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h w"], most: MaxDisparity
-) -> tuple[int, int]:
+def range_of_pair(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h w"], most: MaxDisparity) -> Span:
     """Return the lowest and highest disparity of a rectified pair: 0 to `most`, or auto: by its corners."""
     if most != "auto":
-        return clip_range(0, most, left.shape[1])
+        return Span(0, most).within(left.shape[1])
     seen = [corners(harris_response(grey), least_response(0.005), MOST_CORNERS) for grey in (left, right)]
     matches = corner_matches(left, right, seen[0], seen[1])
     return range_of_shifts(matches.left_px - matches.right_px, left.shape[1])

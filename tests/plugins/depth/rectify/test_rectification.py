@@ -35,7 +35,7 @@ def offset_matches(before_px, after_px, monkeypatch):
 
 def rectified_points(noise_px=0.3, **cameras):
     """Rectify exact points by a pair with noisy ones."""
-    rectified = rectify(Views(BLANK, BLANK), matches=Matches(*seen_points(noise_px=noise_px, **cameras)))
+    rectified = rectify(Views(BLANK, BLANK), matches=seen_points(noise_px=noise_px, **cameras))
     left, right = seen_points(**cameras)
     shift = transform(rectified.left_homography, left) - transform(rectified.right_homography, right)
     return rectified, shift
@@ -75,7 +75,7 @@ def test_least_squares_fit_is_as_good_as_scipys(monkeypatch):
     fit = rectifying_rotation.least_squares
     monkeypatch.setattr(rectifying_rotation, "least_squares", both)
     for turn in ((0.02, -0.05, 0.01), (0, 0.175, 0), (0, 0, 0.35)):
-        matches = Matches(*some_wrong(*seen_points(noise_px=0.3, turn=turn, move_m=(-0.3, 0.02, 0.05)), 0.1))
+        matches = some_wrong(*seen_points(noise_px=0.3, turn=turn, move_m=(-0.3, 0.02, 0.05)), 0.1)
         aligning_homographies(matches, (HEIGHT, WIDTH))
     assert len(costs) == 6
     assert max(ours / theirs for ours, theirs in costs) <= 1 + 1e-6
@@ -243,7 +243,7 @@ def test_pictures_of_any_kind_are_rectified(dtype):
     views = warped_scene()[2]
     white = np.iinfo(dtype).max if np.issubdtype(dtype, np.integer) else 1
     colour = (np.stack([grey * white] * 4, axis=2).astype(dtype) for grey in (views.left, views.right))
-    found = rectify(Views(*colour), matches=Matches(*seen_points(count=200, width=320, noise_px=0.1))).views.left
+    found = rectify(Views(*colour), matches=seen_points(count=200, width=320, noise_px=0.1)).views.left
     assert found.shape[2] == 4
     assert found.dtype == (np.float32 if dtype in (np.bool_, np.float16) else dtype)
 
@@ -289,8 +289,8 @@ def test_search_starts_below_all_but_stray_disparities(low, high, start):
 
 class TestEvidence:
     def matches(self, asked=slice(None)):
-        left, right = seen_points(noise_px=0.2, turn=(0.02, -0.05, 0.03), move_m=(-0.3, 0.02, 0.05), count=120)
-        return Matches(left[asked], right[asked])
+        cameras = {"turn": (0.02, -0.05, 0.03), "move_m": (-0.3, 0.02, 0.05)}
+        return seen_points(**cameras, noise_px=0.2, count=120).select(asked)
 
     @pytest.mark.parametrize(("count", "believed"), [(29, False), (36, True)])
     def test_geometry_of_under_thirty_matches_is_not_trusted(self, count, believed):

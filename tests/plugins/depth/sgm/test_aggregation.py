@@ -93,6 +93,7 @@ def test_span_fits_lanes_and_pictures():
     assert Span(-50, 500).within(100) == Span(-50, 99)
     assert Span(-500, 50).within(100) == Span(-99, 50)
     assert Span(500, 900).within(1) == Span(0, 0)
+    assert Span(5, 2).within(9) == Span(5, 5)
     assert Span(-5, 5).downsample(2) == Span(-3, 3)
 
 

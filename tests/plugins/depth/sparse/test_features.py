@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from tangible_depth.sparse.corner_range import clip_range, range_of_shifts
+from tangible_depth.sparse.corner_range import range_of_shifts
 from tangible_depth.sparse.harris import corners, gaussian_window, harris_response, row_edges
 from tangible_depth.sparse.matches import (
     corner_matches,
@@ -116,13 +116,6 @@ def test_stray_matches_do_not_widen_the_range():
 
 def test_range_of_few_matches_is_a_quarter_of_the_width():
     assert range_of_shifts(np.empty((0, 2)), 200) == (0, 50)
-
-
-@pytest.mark.parametrize(
-    ("low", "high", "width", "range_px"), [(-9, 9, 4, (-3, 3)), (0, 64, 1, (0, 0)), (5, 2, 9, (5, 5))]
-)
-def test_range_is_clipped_to_the_picture(low, high, width, range_px):
-    assert clip_range(low, high, width) == range_px
 
 
 @pytest.mark.parametrize(("count", "range_px"), [(19, (0, 50)), (20, (0, 44))])

@@ -226,9 +226,9 @@ def _entry_points(site: Path, **of: str) -> metadata.EntryPoints:
 @pytest.fixture
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
     """A force loop that a busy machine does not let tick for a while is not ended for that."""
-    from tangible_core.servo import watchdog
+    from tangible_core.servo import limits
 
-    monkeypatch.setattr(watchdog, "TIMEOUT_S", STANDSTILL_S)
+    monkeypatch.setattr(limits, "WATCHDOG_PERIODS", 1000 * STANDSTILL_S)
 
 
 @pytest.fixture

@@ -1,6 +1,9 @@
-"""Pages that are written when the site is built: keys of a pipeline file, methods with their options, results."""
+"""Pages that are written when the site is built: keys of a pipeline file, methods, time limits, results."""
 
+import ast
+import inspect
 from importlib.metadata import entry_points
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +13,7 @@ from benchmarks import results
 from tangible_authoring.schema_page import schema_page
 from tangible_core.files.writing import write_text
 from tangible_core.pipeline.config.schema import json_schema
+from tangible_core.servo import limits
 
 DISTRIBUTION = "tangible-images"
 FAMILIES = {
@@ -44,11 +48,25 @@ def results_page() -> str:
     return "\n\n".join([head, *sections, ""])
 
 
+def limits_table() -> str:
+    """Return the time limits of a force loop as a table: constants, and their docstrings."""
+    body = ast.parse(inspect.getsource(limits)).body
+    rows = [
+        f"| `{name.id}` | {ast.literal_eval(value)} | {' '.join(ast.literal_eval(text).split())} |"
+        for line, after in pairwise(body)
+        if isinstance(line, ast.Assign) and isinstance(after, ast.Expr)
+        for name, value, text in [(line.targets[0], line.value, after.value)]
+        if isinstance(name, ast.Name)
+    ]
+    return "\n".join(["| limit | value, `_S` in seconds | |", "|---|---|---|", *rows, ""])
+
+
 def write_pages(app: Sphinx) -> None:
     """Write the pages among the others, which git does not know; a page that is as it was keeps its time."""
     pages = {
         "yaml.md": schema_page(json_schema(distribution=DISTRIBUTION)),
         "reference/methods.md": methods_page(),
+        "reference/limits.txt": limits_table(),
         "results.md": results_page(),
     }
     for name, text in pages.items():

@@ -18,7 +18,7 @@ from ..plugins.interfaces import Link, Touch, touch_of
 from ..runtime.system import priority
 from ..runtime.system.console import ENDING, PAUSING, end_before_console
 from ..runtime.system.streams import take_input
-from . import parcel, watchdog
+from . import limits, parcel, watchdog
 from .framing import End, Refusal, Start, StartReply, Swap, SwapReply, receive, send, sendable
 from .ring import COUNT, STOP, SWAP, Ring
 from .ticks import loop
@@ -27,8 +27,6 @@ TERMINATED = "the process received a signal to end"
 PAUSED = "the program was paused from the keyboard"
 SWITCH_S = 1e-4
 """Time after which a thread passes Python's lock to a waiting one, such as a loop that needs Python."""
-STOPPING_S = 0.5
-"""Time after which a loop that was stopped and still runs is abandoned: it is stuck in its force law or its device."""
 
 
 @final
@@ -68,15 +66,15 @@ class Child:
             self._serve(ring, link, touch, start)
 
     def _serve(self, ring: Ring, link: Link, touch: Touch, start: Start) -> None:
-        self._next = loop.prepare(link, touch, ring, start.settings)
+        self._next, self._timeout_s = loop.prepare(link, touch, ring, start.settings), start.timeout_s
         gc.freeze()  # what exists now stays, and is skipped when an earlier scene is collected
         failures: list[BaseException] = []
         thread = threading.Thread(target=self._tick, args=(ring, failures), daemon=True)
         thread.start()
         threading.Thread(target=self._listen, args=(ring, link), daemon=True).start()
-        dog = watchdog.Watchdog(ring.header, start.timeout_s, STOPPING_S)
-        while thread.is_alive() and not (_has_begun(ring) and dog.expired()):
-            thread.join(watchdog.POLL_S)  # a signal's handler runs between two joins
+        dog = watchdog.Watchdog(ring.header, limits.ABANDON_S)
+        while thread.is_alive() and not (_has_begun(ring) and dog.expired(limits.WATCHDOG_OWN_SHARE * self._timeout_s)):
+            thread.join(limits.WATCHDOG_POLL_S)  # a signal's handler runs between two joins
         if failures:
             raise failures[0]
         if thread.is_alive():  # the link is closed now, and a thread that wakes cannot write to it
@@ -117,6 +115,7 @@ class Child:
         if not ring.header[STOP]:  # read after clearing: the loop sets both when it ends, in this order
             self._taken.wait()
         if not ring.header[STOP]:
+            self._timeout_s = message.timeout_s
             self._reply(SwapReply(f"{self._granted}; {self._next.how}"))
 
     def stop(self, why: str = "") -> None:

@@ -27,7 +27,7 @@ class Start(NamedTuple):
     settings: np.ndarray
     """Settings of the guard."""
     timeout_s: float
-    """Time without a tick after which the process gives up."""
+    """The watchdog's time-out."""
 
 
 class Swap(NamedTuple):
@@ -35,6 +35,7 @@ class Swap(NamedTuple):
 
     scene: str
     settings: np.ndarray
+    timeout_s: float
 
 
 class StartReply(NamedTuple):

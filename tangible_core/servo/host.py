@@ -9,6 +9,7 @@ from typing import Any, Self, final
 from ..data import Relief, ServoReport
 from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import Film, HapticDevice, Touch, touch_of
+from . import limits as time_limits
 from . import parcel
 from .beacon import ALL_BUTTONS, ASKED, SEEN, Beacon, BeaconState
 from .framing import Start, StartReply, Swap, SwapReply
@@ -17,8 +18,8 @@ from .guard.stiffness import stiffness_of
 from .packed_touch import Packed
 from .reports import report
 from .ring import LAST, PERIOD_NS, STOP, Ring
-from .supervisor import NOT_STARTED, OVER, STOPPING_S, LoopProcess
-from .watchdog import OWN_SHARE, STOOD_STILL, timeout_s
+from .supervisor import NOT_STARTED, OVER, LoopProcess
+from .watchdog import STOOD_STILL, timeout_s
 
 FOREVER = 2**62
 """Number of ticks of a loop without end."""
@@ -50,7 +51,7 @@ class Servo:
         self._touch, self._device, self._limits = touch, device, limits or Safety()
         self._period_s = period_s
         self._ticks = FOREVER if seconds is None else max(1, round(seconds / period_s))
-        self._loop = LoopProcess(device, period_s)
+        self._loop = LoopProcess(device)
         self._ring: Ring | None = None
         self._film: Film | None = None
         self._sent = [touch.parcel] if isinstance(touch, Packed) else list[Path]()
@@ -68,8 +69,7 @@ class Servo:
             self.ring.guard[: memory.size] = memory
             self.ring.header[[PERIOD_NS, LAST]] = round(self._period_s * 1e9), self._ticks
             scene, film = self._pack(self._touch)
-            own_s = OWN_SHARE * timeout_s(self._period_s)
-            self._loop.start(self.ring, Start(str(self.ring.path), scene, self._device, settings, own_s))
+            self._loop.start(self.ring, Start(str(self.ring.path), scene, self._device, settings, self._timeout_s))
             self._note_scene(self._loop.reply(StartReply), film)
             self._loop.watch(self.ring)
             self.start_s = time.monotonic() - start_s
@@ -96,7 +96,7 @@ class Servo:
         self._limits = limits or self._limits
         try:
             scene, film = self._pack(touch)
-            self._loop.send(Swap(scene, self._arrays(touch)[0]))
+            self._loop.send(Swap(scene, self._arrays(touch)[0], self._timeout_s))
             self._note_scene(self._loop.reply(SwapReply), film)
         finally:
             self._remove_sent()
@@ -132,7 +132,7 @@ class Servo:
         if not self.running:
             raise self._loop.failure()
         self.ring.allocate_beacon()
-        until_s = time.monotonic() + STOPPING_S
+        until_s = time.monotonic() + time_limits.KILL_S
         while memory.words[SEEN]:  # until then, the loop may read the field of the beacon before
             if not self.running or time.monotonic() > until_s:
                 raise self._loop.failure()
@@ -209,6 +209,10 @@ class Servo:
         self._stiffness = stiffness_of(touch_of(touch), spec)
         return self._limits.arrays(spec, self._stiffness.n_per_m)
 
+    @property
+    def _timeout_s(self) -> float:
+        return timeout_s(self._limits.watchdog_s, self._period_s)
+
     def _note_scene(self, reply: StartReply | SwapReply, film: Film | None) -> None:
-        self._film = film
+        self._film, self._loop.timeout_s = film, self._timeout_s
         self.how = "; ".join(filter(None, (reply.how, self._stiffness.how)))

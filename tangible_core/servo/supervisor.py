@@ -13,15 +13,11 @@ from ..errors import DeviceError
 from ..plugins.interfaces import HapticDevice
 from ..runtime.child_process import command, pipe_of
 from ..runtime.system.processes import start_without_ctrl_c
-from . import watchdog
+from . import limits, watchdog
 from .framing import End, Refusal, Start, receive, send, sendable
 from .ring import STOP, Ring
 
 log: logging.Logger = logging.getLogger(__name__)
-COMPILING_S = 300.0
-"""Longest time until the first tick; compiling everything takes a tenth of it."""
-STOPPING_S = 3.0
-"""Time after which a loop that was stopped and has not ended is killed."""
 OVER = "the time is over"
 NOT_STARTED = "no force loop was started; use it in `with Servo(...) as servo:`"
 Reply = TypeVar("Reply")
@@ -31,12 +27,14 @@ Reply = TypeVar("Reply")
 class LoopProcess:
     """The process of one force loop, and the threads of the host that listen to it and watch it."""
 
-    def __init__(self, device: HapticDevice, period_s: float) -> None:
-        self._device, self._period_s = device, period_s
+    def __init__(self, device: HapticDevice) -> None:
+        self._device = device
         self._replies: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._child: subprocess.Popen[bytes] | None = None
         self._listener: threading.Thread | None = None
         self._over = threading.Event()
+        self.timeout_s: float = limits.MAX_WATCHDOG_S
+        """The longest time without a tick in the current scene, by `watchdog.timeout_s`."""
         self.why: str = ""
         """The reason for which the host ends the loop."""
         self.ended: End | None = None
@@ -55,7 +53,7 @@ class LoopProcess:
         """End the process: by a closed pipe, or by a kill if it does not end in time."""
         if self._listener is not None and self._listener.is_alive():
             self._close_pipe()
-            self._listener.join(STOPPING_S)
+            self._listener.join(limits.KILL_S)
             self._kill("it did not end when it was stopped")
             self._listener.join()
 
@@ -77,10 +75,10 @@ class LoopProcess:
     def reply(self, kind: type[Reply]) -> Reply:
         """Return the next reply. Raises: DeviceError, or a plugin's error, if it is a refusal or the loop has ended."""
         try:
-            message = self._replies.get(timeout=COMPILING_S)
+            message = self._replies.get(timeout=limits.FIRST_TICK_S)
         except queue.Empty:
             raise DeviceError(
-                f"the force loop has not answered for {COMPILING_S:g} s; see what the device prints"
+                f"the force loop has not answered for {limits.FIRST_TICK_S:g} s; see what the device prints"
             ) from None
         if isinstance(message, Refusal):
             raise message.error
@@ -136,7 +134,7 @@ class LoopProcess:
     def _wait_for_exit(self, child: subprocess.Popen[bytes]) -> int:
         """Return the exit code of a process that has sent its last message; kill it if it does not end."""
         with suppress(subprocess.TimeoutExpired):
-            return child.wait(STOPPING_S)
+            return child.wait(limits.KILL_S)
         self._kill("it did not end when it was stopped")
         return child.wait()
 
@@ -153,9 +151,9 @@ class LoopProcess:
 
     def _watch(self, header: np.ndarray) -> None:
         """Kill a loop that stands still, or does not end when it is stopped."""
-        dog = watchdog.Watchdog(header, watchdog.timeout_s(self._period_s), STOPPING_S)
-        while not self._over.wait(watchdog.POLL_S):
-            if dog.expired():
+        dog = watchdog.Watchdog(header, limits.KILL_S)
+        while not self._over.wait(limits.WATCHDOG_POLL_S):
+            if dog.expired(self.timeout_s):
                 self.why = self.why or watchdog.STOOD_STILL
                 self._kill(self.why)
                 return
@@ -166,7 +164,7 @@ class LoopProcess:
             return
         done = threading.Event()
         threading.Thread(target=_open_and_close, args=(self._device, done), daemon=True).start()
-        if not done.wait(STOPPING_S):
+        if not done.wait(limits.KILL_S):
             log.warning("the device does not answer and may still hold its last force; switch it off")
 
 

@@ -67,9 +67,9 @@ async def let_go(session: Any, tab: Any) -> None:
 
 def be_patient() -> None:
     """Let no loop be ended because a busy machine does not let it tick for a fifth of a second: as `patient`."""
-    from tangible_core.servo import watchdog
+    from tangible_core.servo import limits
 
-    watchdog.TIMEOUT_S = LONGEST_S
+    limits.WATCHDOG_PERIODS = 1000 * LONGEST_S
 
 
 def sleep_until_ticks() -> None:

@@ -16,7 +16,7 @@ from types import SimpleNamespace
 import pytest
 
 from tangible_core.runtime.system import priority
-from tangible_core.servo import child, supervisor
+from tangible_core.servo import child, limits, supervisor
 
 ENDING_S = 120.0
 """Longer than a loop takes to compile what it needs on a busy machine, before it hears that it is to end."""
@@ -78,7 +78,7 @@ class _Commands(io.FileIO):
 def loops_in_threads(patch: pytest.MonkeyPatch) -> None:
     """Start each loop in a thread from now on; it locks no memory, and leaves collecting garbage alone."""
     patch.setattr(supervisor, "start_without_ctrl_c", LoopThread)
-    patch.setattr(supervisor, "STOPPING_S", ENDING_S)
+    patch.setattr(limits, "KILL_S", ENDING_S)
     patch.setattr(child, "gc", SimpleNamespace(freeze=lambda: None, collect=lambda: None))
     asked = priority._c
     patch.setattr(priority, "_c", lambda name: (lambda *_: -1) if name == "mlockall" else asked(name))

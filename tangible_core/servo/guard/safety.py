@@ -8,6 +8,7 @@ from pydantic import ConfigDict, Field
 
 from ...data import DeviceSpec, TickFlag
 from ...data.quantities import Quantities
+from .. import limits
 from . import layout as at
 
 BRAKE_TIMES = 5
@@ -46,8 +47,13 @@ class Safety(Quantities):
     """Greatest change of force in a tick of 1 ms; in a shorter tick proportionally less, in a longer one no more."""
     ramp_s: Annotated[float, Field(ge=0, le=60, allow_inf_nan=False)] = 0.5
     """Time over which the force fades in: after the start, after a new scene, and whenever it was cut to zero."""
-    stale_s: Annotated[float, Field(ge=0.002, le=1, allow_inf_nan=False)] = 0.02
+    stale_s: Annotated[float, Field(ge=0.002, le=1, allow_inf_nan=False)] = limits.STALE_SAMPLE_S
     """Age of the last position at which the force is cut to zero."""
+    watchdog_s: Annotated[float, Field(ge=limits.MIN_WATCHDOG_S, le=limits.MAX_WATCHDOG_S, allow_inf_nan=False)] = (
+        limits.WATCHDOG_S
+    )
+    """Time-out of the watchdog: time without a tick after which a loop that stands still is ended, and its device
+    released; at least four periods. The loop's own process ends it after 70 % of that time, if it can."""
     stiffness_margin: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 0.8
     """Fraction of the stiffness limit that a force law may use. The rest compensates for the law's own damping, whose
     delay adds energy too."""

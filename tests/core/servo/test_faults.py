@@ -20,8 +20,9 @@ from loop_in_thread import loops_in_threads
 from loop_scenes import held_force, left_behind, proxy
 from tangible_core.errors import BrokenMethod, DeviceError
 from tangible_core.plugins.interfaces import Touch
-from tangible_core.servo import Safety, Servo, host, supervisor, watchdog
-from tangible_core.servo.ring import COUNT, Ring, shared_folder
+from tangible_core.runtime.system.timers import now_ns
+from tangible_core.servo import Safety, Servo, host, limits, supervisor, watchdog
+from tangible_core.servo.ring import COUNT, PREVIOUS_NS, Ring, shared_folder
 from waiting import until
 
 pytestmark = pytest.mark.usefixtures("own_memory")
@@ -30,6 +31,13 @@ AT_ONCE = Safety(ramp_s=0, max_step_n=10)
 MOST_TICKS_AFTER = 500
 """Of 1 ms each, after whatever ends a loop: on a machine that is busy elsewhere, and far from the 3 s of one that is
 not stopped but killed. How few they are on a machine that is not busy, the benchmark `servo_faults` says."""
+
+MOST_AFTER_S = 2.0
+"""Time that a busy machine takes, after a watchdog's time-out, to clear a process away and open the device again."""
+
+
+def limited(watchdog_s: float) -> Safety:
+    return AT_ONCE.model_copy(update={"watchdog_s": watchdog_s})
 
 
 def ticks(servo: Servo) -> int:
@@ -106,8 +114,8 @@ class TestInterruptedStart:
         until(lambda: not held_force(record) > 0)
 
     def test_start_that_takes_too_long_is_abandoned(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr(supervisor, "COMPILING_S", 1.0)
-        monkeypatch.setattr(supervisor, "STOPPING_S", 0.5)
+        monkeypatch.setattr(limits, "FIRST_TICK_S", 1.0)
+        monkeypatch.setattr(limits, "KILL_S", 0.5)
         servo = Servo(FaultyTouch(), Failing(opens="late"), AT_ONCE)
         with pytest.raises(DeviceError, match="has not answered for 1 s"):
             servo.__enter__()
@@ -167,6 +175,31 @@ class TestStandstill:
             assert held_force(record) == 0
             assert servo.report().ticks == 99
 
+    @pytest.mark.parametrize(
+        ("first_s", "then_s", "law", "limit_s"),
+        [
+            (0.5, None, FaultyTouch(), 0.5),  # the loop's process is stopped: the host kills it
+            (0.2, 0.5, FaultyTouch(), 0.5),
+            (0.2, 0.5, FaultyTouch("blocks", 3000), 0.35),  # its own watchdog ends it
+        ],
+    )
+    def test_force_is_zero_within_the_time_out_of_the_scene(
+        self, tmp_path: Path, first_s: float, then_s: float | None, law: FaultyTouch, limit_s: float
+    ) -> None:
+        record = tmp_path / "force"
+        device = Failing(fault="none", record=str(record), simulated=False)
+        with Servo(law if then_s is None else FaultyTouch(), device, limited(first_s)) as servo:
+            if then_s is not None:
+                servo.swap(law, limited(then_s))
+            until(lambda: held_force(record) > 0)
+            if limit_s == 0.5:
+                os.kill(servo.process_id, signal.SIGSTOP)
+            until(lambda: not servo.running)
+            still_s = (now_ns() - servo.ring.header[PREVIOUS_NS]) / 1e9
+            assert servo.report().stopped == watchdog.STOOD_STILL
+            assert held_force(record) == 0
+        assert limit_s - 0.05 <= still_s < limit_s + MOST_AFTER_S
+
     @pytest.mark.usefixtures("loop_in_thread")
     def test_law_that_compiles_on_first_use_is_not_a_standstill(self) -> None:
         """The law compiles before the first tick: its half second is not missing in the ticks."""
@@ -178,7 +211,7 @@ class TestStandstill:
     def test_device_that_cannot_be_reopened_is_logged(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
     ) -> None:
-        monkeypatch.setattr(supervisor, "STOPPING_S", 0.5)
+        monkeypatch.setattr(limits, "KILL_S", 0.5)
         record = tmp_path / "force"
         with self.feel(record, FaultyTouch(), opens="once") as servo:
             until(lambda: held_force(record) > 0)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tangible_core.servo import watchdog
+from tangible_core.servo import limits, watchdog
 from tangible_core.servo.ring import COUNT, LAST, STOP
 
 TICKING = [5, 5, 5, 5, *[6] * 99]
@@ -22,11 +22,11 @@ def polls_until_expired(clock: list[int], counts: list[int], word: int = -1, ste
     header[LAST] = 5 if word == LAST else 1000
     if word == STOP:
         header[word] = 1
-    dog = watchdog.Watchdog(header, timeout_s=0.25, stopping_s=3.0)
+    dog = watchdog.Watchdog(header, stopping_s=3.0)
     for poll, count in enumerate(counts, 1):
         clock[0] += step
         header[COUNT] = count
-        if dog.expired():
+        if dog.expired(0.25):
             return poll
     return 0
 
@@ -46,9 +46,13 @@ def test_watchdog_expires_after_its_limit_without_a_tick(clock: list[int], count
 
 
 def test_watchdog_that_stood_still_itself_polls_four_times_before_it_expires(clock: list[int]):
-    assert polls_until_expired(clock, [5] * 99, step=640) == 1 + watchdog.MIN_POLLS
+    assert polls_until_expired(clock, [5] * 99, step=640) == 1 + limits.WATCHDOG_POLLS
 
 
 def test_limit_grows_with_the_period_of_a_slow_loop():
-    assert watchdog.timeout_s(0.001) == 0.2
-    assert watchdog.timeout_s(0.3) == pytest.approx(1.2)
+    assert watchdog.timeout_s(0.2, 0.001) == 0.2
+    assert watchdog.timeout_s(0.2, 0.3) == pytest.approx(1.2)
+
+
+def test_own_watchdog_has_its_polls_within_the_least_timeout():
+    assert limits.WATCHDOG_POLLS * limits.WATCHDOG_POLL_S < limits.WATCHDOG_OWN_SHARE * limits.MIN_WATCHDOG_S

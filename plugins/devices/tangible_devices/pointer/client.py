@@ -8,6 +8,7 @@ from typing import Self, final
 
 from tangible_core.data import NO_FORCE, Force, Vector
 from tangible_core.errors import DeviceAbsent, DeviceError
+from tangible_core.servo.limits import POINTER_DEVICE_SILENCE_S
 
 from .channel import (
     CLIENT_OPEN,
@@ -21,9 +22,6 @@ from .channel import (
     Channel,
     device_is_open,
 )
-
-SILENT_S = 0.5
-"""Silence after which the device counts as gone, and its force as zero."""
 
 
 @final
@@ -94,7 +92,7 @@ class PointerClient:
         block = self._channel.take(FORCE, FORCE_WORDS)
         if block is not None and block[0] != self._heard[0]:
             self._heard = block[0], now
-        if block is None or self._released or now - self._heard[1] > SILENT_S:
+        if block is None or self._released or now - self._heard[1] > POINTER_DEVICE_SILENCE_S:
             return NO_FORCE
         return Force(*block[1])
 

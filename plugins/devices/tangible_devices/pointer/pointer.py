@@ -12,6 +12,7 @@ from pydantic import Field
 from tangible_core.compiled.touch import CompiledLink, LinkKernels
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState, Vector
 from tangible_core.plugins.interfaces import Attended, HapticDevice, Link
+from tangible_core.servo.limits import POINTER_SILENCE_S
 
 from ..simulated import LIKE_A_FALCON
 from .channel import DEVICE_OPEN, FORCE, FORCE_WORDS, MAGIC, MARK, SAMPLE, SAMPLE_WORDS, Channel, client_is_there
@@ -34,7 +35,7 @@ class Pointer(HapticDevice, Attended):
 
     channel: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")] = "pointer"
     """Name of the shared memory, the same for device and client."""
-    stale_after_s: Annotated[float, Field(ge=0.002, le=10)] = 0.1
+    stale_after_s: Annotated[float, Field(ge=0.002, le=10)] = POINTER_SILENCE_S
     """Silence after which the client's position is no longer used; a compiled loop counts it in ticks of 1 ms. Choose
     more if a busy machine delays the client; the force of a client that dies then stays for as long."""
     follow_s: Annotated[float, Field(ge=0, le=1)] = 0.0

@@ -28,8 +28,8 @@ def parse(text: str):
 class TestPipelineFile:
     def test_file_without_safety_has_the_documented_limits(self):
         stated = Safety(
-            max_force_n=None, max_step_n=0.5, ramp_s=0.5, stale_s=0.02, stiffness_margin=0.8, delay_ticks=0,
-            friction_n=None, passivity="coupled", coupling=None,
+            max_force_n=None, max_step_n=0.5, ramp_s=0.5, stale_s=0.02, watchdog_s=0.2, stiffness_margin=0.8,
+            delay_ticks=0, friction_n=None, passivity="coupled", coupling=None,
         )  # fmt: skip
         assert parse("").safety == Safety() == stated
 
@@ -44,6 +44,7 @@ class TestPipelineFile:
         [
             "max_force_n: 0", "max_force_n: -1", "max_force_n: .inf", "max_step: 1", "max_step_n: 0", "max_step_n: 11",
             "max_step_n: .nan", "ramp_s: .nan", "ramp_s: -1", "ramp_s: 61", "stale_s: 0.001", "stale_s: 1.1",
+            "watchdog_s: 0.11", "watchdog_s: 0.51", "watchdog_s: .nan",
             "stiffness_margin: 0", "stiffness_margin: 1.01", "delay_ticks: -1", "delay_ticks: 9", "friction_n: 0",
             "passivity: on", "coupling: on", "coupling: {stiffness_n_per_m: 900, damping_n_s_per_m: -0.1}",
             "coupling: {stiffness_n_per_m: 0, damping_n_s_per_m: 0}", "coupling: {stiffness_n_per_m: 900}",

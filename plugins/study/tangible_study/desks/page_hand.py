@@ -9,16 +9,13 @@ from typing import final
 from tangible_core.mapping import placement_of
 from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.servo import Servo
+from tangible_core.servo.limits import PAGE_FOLLOW_S, PAGE_SERVER_SILENCE_S
 from tangible_ui.feeling.hand import Hand
 from tangible_ui.feeling.state_frame import OtherLaw, frame_of, frame_without_loop
 from tangible_ui.framing import HOLDING, POINTER, POINTER_FRAME, RELEASE, RUNNING
 
 KEEP_S = 0.02
-"""Interval at which the loop hears from this program; it releases the hand after `STALE_S` without."""
-STALE_S = 0.3
-"""Silence of this program after which the loop releases the hand, s. A page's own silence is 0.1 s."""
-FOLLOW_S = 0.012
-"""Time constant with which the loop follows the page, s: its positions come some 60 times a second."""
+"""Interval at which the loop hears from this program; it releases the hand after `PAGE_SERVER_SILENCE_S` without."""
 BLIND = OtherLaw(blind=True)
 """The page shows no proxy, which not every force law has."""
 
@@ -39,8 +36,8 @@ class PageHand:
         return (
             "device.use=pointer",
             f"device.channel={self.channel}",
-            f"device.stale_after_s={STALE_S}",
-            f"device.follow_s={FOLLOW_S}",
+            f"device.stale_after_s={PAGE_SERVER_SILENCE_S}",
+            f"device.follow_s={PAGE_FOLLOW_S}",
         )
 
     def moves(self, device: HapticDevice) -> bool:

@@ -8,13 +8,13 @@ from typing import final
 from tangible_core.data import Vector
 from tangible_core.errors import DeviceError
 from tangible_core.servo import Packed, Safety, Servo, null_touch
+from tangible_core.servo.limits import PAGE_SERVER_SILENCE_S
 from tangible_devices.pointer import PointerClient
 from tangible_devices.pointer.pointer import Pointer
 
 from .feeling import end_loop
 
 NOTHING: Vector = (0.0, 0.0, 0.0)
-STALE_AFTER_S = 0.3
 FOLLOW_S = 0.008
 """Time constant with which the loop follows the hand, s; the hand arrives every 10 ms, and this law lags by so much."""
 HIGHEST_M = 0.5
@@ -81,7 +81,7 @@ class ComparisonLoop:
 
     def _start(self) -> None:
         self._end()
-        device = Pointer(channel=self._channel, stale_after_s=STALE_AFTER_S, follow_s=FOLLOW_S)
+        device = Pointer(channel=self._channel, stale_after_s=PAGE_SERVER_SILENCE_S, follow_s=FOLLOW_S)
         servo = Servo(null_touch(), device, Safety())
         servo.__enter__()
         self._servo = servo

@@ -13,17 +13,13 @@ from tangible_core.mapping import MappedDevice, WorkspaceMapping, placement_of
 from tangible_core.plugins.failures import sentence
 from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.servo import Beacon, Packed, Safety, Servo, null_touch
+from tangible_core.servo.limits import PAGE_FOLLOW_S, PAGE_SERVER_SILENCE_S
 from tangible_core.servo.ring import STOP
 
 from ..framing import BUTTON_BITS
 from .hand import Hand
 from .state_frame import ALONE, OtherLaw, frame_of, frame_without_loop
 
-STALE_AFTER_S = 0.3
-"""Silence of the server after which the loop releases the page's hand, s: a machine that starts a browser keeps the
-server waiting for a quarter of a second. A page's own silence is `hand.SILENT_S`."""
-FOLLOW_S = 0.012
-"""Time constant with which the loop follows the mouse, s: mice move 60 times a second, the loop ticks 1000 times."""
 BUTTONS, PRESSED = (1 << BUTTON_BITS) - 1, 1
 """Bits of a device's buttons; and the button by which the page's own hand is pressed down, which ends no beacon."""
 
@@ -106,8 +102,8 @@ class Feeling:
         return {
             "use": "pointer",
             "channel": self.channel,
-            "stale_after_s": STALE_AFTER_S,
-            "follow_s": FOLLOW_S,
+            "stale_after_s": PAGE_SERVER_SILENCE_S,
+            "follow_s": PAGE_FOLLOW_S,
         }
 
     @property

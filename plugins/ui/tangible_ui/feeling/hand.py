@@ -7,12 +7,11 @@ from typing import NamedTuple, final
 from tangible_core.data import Vector
 from tangible_core.errors import DeviceError
 from tangible_core.mapping import Placement
+from tangible_core.servo.limits import PAGE_SILENCE_S
 from tangible_devices.pointer import PointerClient
 
 from ..framing import BUTTON_BITS, TAGS
 
-SILENT_S = 0.1
-"""Silence after which a page counts as gone, and its hand is released, s."""
 FARTHEST_M = 1.0
 OPENING_S = 1.0
 """Longest wait for the pointer's channel, s; a running loop has opened its device long before."""
@@ -50,7 +49,7 @@ class Hand:
     @property
     def holding(self) -> bool:
         """True while a page moves the hand."""
-        return time.monotonic() - self._held.heard_s < SILENT_S
+        return time.monotonic() - self._held.heard_s < PAGE_SILENCE_S
 
     def open(self, to: Placement) -> None:
         """Connect to the device, which must be open. to: the picture's place under it. Raises: DeviceError."""

@@ -15,7 +15,8 @@ from tangible_core.data import NO_FORCE, TICK_COLUMNS, Force, HapticState, Servo
 from tangible_core.errors import DeviceError
 from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.servo import OVER, Safety
-from tangible_core.session import INTERRUPTED, STOPPED, Slot, kiosk, run_kiosk
+from tangible_core.session import INTERRUPTED, STOPPED, Slot, run_kiosk
+from tangible_core.session.kiosk import kiosk
 
 AT_ONCE = Safety(ramp_s=0, max_step_n=10, stale_s=1.0, passivity="off")  # late ticks change nothing
 pytestmark = pytest.mark.usefixtures("patient")

@@ -11,19 +11,19 @@ from typing import NamedTuple, final
 
 import numpy as np
 
-from ..data import TICK_COLUMNS, HapticSurface, ServoReport, TickFlag
-from ..errors import DeviceError, check_positive
-from ..plugins.interfaces import Film, HapticDevice, Touch
-from ..runtime.stopping import stop_asked, stoppable
-from ..runtime.system.timers import now_ns
-from ..servo import OVER, Beacon, Safety, Servo
-from ..servo.beacon import BUTTON
-from ..servo.reports import LoopTotals, brief_report, report
-from .film import Player, Reliefs
-from .live import LOOK_EVERY_S, ignore, watch_loop
-from .parts_felt import with_part
-from .recording import INTERRUPTED, STOPPED
-from .recording.tick_arrays import ARRAYS
+from ...data import TICK_COLUMNS, HapticSurface, ServoReport, TickFlag
+from ...errors import DeviceError, check_positive
+from ...plugins.interfaces import Film, HapticDevice, Touch
+from ...runtime.stopping import stop_asked, stoppable
+from ...runtime.system.timers import now_ns
+from ...servo import OVER, Beacon, Safety, Servo
+from ...servo.beacon import BUTTON
+from ...servo.reports import LoopTotals, brief_report, report
+from ..film import Player, Reliefs
+from ..live import LOOK_EVERY_S, ignore, watch_loop
+from ..parts_felt import with_part
+from ..recording import INTERRUPTED, STOPPED
+from ..recording.tick_arrays import ARRAYS
 
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 8.0
 """First and longest pause between two searches for a device; each is twice as long, as a search starts a process."""

@@ -42,6 +42,10 @@ class MappedDevice(HapticDevice):
         link, to = self.device.open(), placement_of(self)
         return MappedCompiledLink(link, to) if isinstance(link, CompiledLink) else MappedLink(link, to)
 
+    def follows(self, channel: str) -> bool:
+        """Return True if the device follows this channel."""
+        return self.device.follows(channel)
+
 
 def placement_of(device: HapticDevice) -> Placement:
     """Return the placement of the picture under this device's hand; the identity if the device has no mapping."""

@@ -172,6 +172,10 @@ class HapticDevice(Method):
     def open(self) -> Link:
         """Open the device. Raises: DeviceError if it is absent, not permitted or in use."""
 
+    def follows(self, channel: str) -> bool:
+        """Return True if another program moves the device through the channel of this name; by default none does."""
+        return False
+
 
 Medium = Literal["swell", "print", "pins", "force"]
 """A medium for fingers: swell paper, a printed solid, pins that rise, or a force device."""

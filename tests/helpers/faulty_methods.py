@@ -234,6 +234,9 @@ class Gadget(HapticDevice):
         axes = 7 if self.fault == "spec_makes_sense" else 3
         return DeviceSpec(8.0, 3000.0, 20.0, (0.08, 0.08, 0.08), 1e-4, axes)
 
+    def follows(self, channel: str) -> bool:
+        return self.fault == "no_strange_channel_is_followed"
+
     def open(self) -> Link:
         if self.fault == "device_can_be_opened_again" and next(ticket) % 2:
             raise DeviceError("in use")

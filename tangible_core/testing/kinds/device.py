@@ -139,9 +139,15 @@ def states_make_sense(method: HapticDevice) -> None:
         demand((np.abs(state.position_m) <= reach).all(), f"{state.position_m} m is far outside of {reach.tolist()} m")
 
 
+def no_strange_channel_is_followed(method: HapticDevice) -> None:
+    """Check that the device follows at most its own channel: the page would take it for its own hand."""
+    demand(method.follows("a channel of no device") is False, "it follows a channel that no device has")
+
+
 CHECKS: tuple[Check, ...] = (
     spec_makes_sense,
     absence_is_said,
+    no_strange_channel_is_followed,
     force_is_applied,
     forces_are_limited,
     broken_force_is_none,
@@ -152,5 +158,5 @@ CHECKS: tuple[Check, ...] = (
     velocity_is_that_of_the_positions,
     states_make_sense,
 )
-WITH_MOTORS = CHECKS[2:]
+WITH_MOTORS = CHECKS[3:]
 """The checks that open the device, most of them to push."""

@@ -25,6 +25,7 @@ from tangible_core.mapping.placement import turn
 from tangible_core.plugins.interfaces import HapticDevice, Link
 from tangible_core.testing.kinds.device import CHECKS as DEVICE_CHECKS
 from tangible_devices.mock import Mock
+from tangible_devices.pointer.pointer import Pointer
 
 SPEC = Mock().spec()
 near = st.floats(-0.2, 0.2)
@@ -194,6 +195,8 @@ class TestGeometry:
         spec = mapping.spec_on_picture(DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.06, 0.08), 2e-5, buttons=4))
         assert spec == DeviceSpec(8.0, 6000.0, 40.0, (0.03, 0.05, 0.04), 1e-5, buttons=4)
         assert MappedDevice(device=Mock(), mapping=mapping).spec() == mapping.spec_on_picture(SPEC)
+        mapped = MappedDevice(device=Pointer(channel="hand"), mapping=mapping)
+        assert (mapped.follows("hand"), mapped.follows("pointer")) == (True, False)
 
 
 class TestClutch:

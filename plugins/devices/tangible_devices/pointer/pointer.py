@@ -46,6 +46,10 @@ class Pointer(HapticDevice, Attended):
         """Return a Novint Falcon's force, stiffness and damping; the workspace is the client's, 1 m here."""
         return replace(LIKE_A_FALCON, workspace_m=(1.0, 1.0, 1.0), buttons=31)
 
+    def follows(self, channel: str) -> bool:
+        """Return True for its own channel."""
+        return channel == self.channel
+
     def unattended(self) -> str | None:
         """Return a message if there is no client, otherwise None."""
         if client_is_there(self.channel):

@@ -42,7 +42,7 @@ class PageHand:
 
     def moves(self, device: HapticDevice) -> bool:
         """Return True if a device is this hand's pointer."""
-        return getattr(getattr(device, "device", device), "channel", None) == self.channel
+        return device.follows(self.channel)
 
     @contextmanager
     def within(self, servo: Servo, device: HapticDevice) -> Iterator[None]:

@@ -55,8 +55,7 @@ class LoopInput(NamedTuple):
         touch = Packed(Path(made["parcel"]), made["stiffness_n_per_m"])
         device, mapping, safety = (pickle.loads(made[name]) for name in ("device", "mapping", "safety"))
         names = made["law"], made["device_name"]
-        found = cls(touch, *names, device, False, mapping, safety, made.get("materials", ""))
-        return found._replace(own_hand=getattr(found.unmapped_device, "channel", None) == channel)
+        return cls(touch, *names, device, device.follows(channel), mapping, safety, made.get("materials", ""))
 
     @property
     def unmapped_device(self) -> HapticDevice:

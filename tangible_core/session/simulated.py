@@ -14,20 +14,18 @@ from ..data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport
 from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import Film, HapticDevice, Link, Touch, touch_of
 from ..runtime.stopping import stop_asked, stoppable
-from ..servo import Beacon, Safety
+from ..servo import OVER, Beacon, Safety
 from ..servo.beacon import BeaconMemory
 from ..servo.guard.stiffness import stiffness_of
 from ..servo.reports import brief_report
 from ..servo.ticks.python_tick import GuardedForce, guard_touch
-from .live import ignore
+from .live import REPORT_EVERY_S, ignore
 from .recording import INTERRUPTED, STOPPED, Recording
 from .recording.replay import proxy_of
 
 log: logging.Logger = logging.getLogger(__name__)
 MOST_TICKS = 3_600_000
 """Greatest number of ticks of a recording in memory, at which the loop stops: an hour at 1 kHz, half a gigabyte."""
-REPORT_EVERY_S = 0.1
-"""Interval of the reports, in the device's time."""
 FIRST_S = 0.001
 """Assumed period of the first tick."""
 
@@ -73,7 +71,7 @@ def run_simulated(
             tape.ticks,
             tape.stopped,
         )
-    tape.report(tape.stopped or "the time is over")
+    tape.report(tape.stopped or OVER)
     recording = tape.recording()
     if recording.not_finite:
         log.warning("%d forces were not finite and were set to zero: the force law is at fault", recording.not_finite)

@@ -17,7 +17,7 @@ from skimage import data
 
 from tangible_core import HapticSurface, Pipeline, Scene, load_method
 from tangible_core.data import Calibration, DisparityMap, Relief
-from tangible_core.preflight import Hand, Loop, judge, survey
+from tangible_core.preflight import Hand, Loop, Settings, judge, survey
 from tangible_core.preflight.strokes import stroke
 from tangible_core.relief import ReliefChoice, relief_scale, shape_relief
 from tangible_core.scene.geometry import make_relief, smooth
@@ -161,8 +161,8 @@ def _hands() -> Iterator[Figure]:
         loops.append(loop_work_mj(law.touch(surface), surface))
         for device in DEVICES:
             flight = survey(
-                surface, law.touch(surface), law, load_method("device", device)(), size=_size(), slope=CHOICE.slope,
-                law_name="proxy", hand=Hand(), loop=Loop(seconds=0.01),
+                surface, law.touch(surface), law, load_method("device", device)(),
+                Settings(_size(), slope=CHOICE.slope, law_name="proxy"), hand=Hand(), loop=Loop(seconds=0.01),
             )  # fmt: skip
             complaints += [
                 f"{name}, {device}: {each.of}"

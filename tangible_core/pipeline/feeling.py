@@ -17,7 +17,7 @@ from ..errors import ConfigError
 from ..files.paths import as_path
 from ..plugins.failures import naming_plugins
 from ..plugins.interfaces import Film, HapticDevice, Medium, Reshaping, Touch
-from ..preflight import Flight, Hand, Legibility, Loop, Preflight, judge, survey
+from ..preflight import Flight, Hand, Legibility, Loop, Preflight, Settings, judge, survey
 from ..runtime.threads import limited_threads
 from ..servo import OVER, Beacon, Servo, beacon_to
 from ..session import About, PartFelt, Recording, Slot, TrackingError
@@ -211,13 +211,9 @@ class Feeling:
         if law is None:
             raise config.missing("render")
         touch, surface = self.touch, fit_to_device(self.pipeline.make("surface"), config, device)[0]
-        return survey(
-            law.method.felt(surface) if isinstance(law.method, Reshaping) else surface,
-            touch,
-            law.method,
-            device,
-            size=config.size,
-            safety=config.safety,
+        settings = Settings(
+            config.size,
+            config.safety,
             scene_relief_m=self.engine.scene.relief_m,
             exaggeration=None if config.workspace.scale is None else config.workspace.exaggeration,
             of_parts=config.heights is not None,
@@ -225,6 +221,13 @@ class Feeling:
             slope=config.relief.slope if config.relief_kind in ("depth", "edges") else None,
             law_name=law.name,
             fitted=config.materials.fit == "device",
+        )
+        return survey(
+            law.method.felt(surface) if isinstance(law.method, Reshaping) else surface,
+            touch,
+            law.method,
+            device,
+            settings,
             hand=hand,
             loop=loop,
         )

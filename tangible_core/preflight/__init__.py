@@ -6,6 +6,7 @@ from .fitting import fit_surface as fit_surface
 from .flight import Flight as Flight
 from .flight import Hand as Hand
 from .flight import Loop as Loop
+from .flight import Settings as Settings
 from .legibility import Legibility as Legibility
 from .preflight import Preflight as Preflight
 from .survey import survey as survey

@@ -1,7 +1,7 @@
 """The input of the checks: facts and measurements, all taken before the checks run."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ import numpy as np
 from ..data import DeviceSpec, HapticSurface, Material
 from ..errors import ConfigError
 from ..plugins.interfaces import ForceRenderer
-from ..scene.workspace import FeltSize
+from ..scene.workspace import FeltSize, Workspace
 from ..servo.guard import layout
 from ..servo.guard.safety import (
     NOMINAL_S,
@@ -79,6 +79,41 @@ class Ceiling(NamedTuple):
         return self.share * self.limit_n_per_m
 
 
+@dataclass(frozen=True)
+class Settings:
+    """The configuration of a surface and its force law, as far as verdicts and cures depend on it."""
+
+    size: FeltSize = field(default_factory=lambda: Workspace().size("heights"))
+    safety: Safety = field(default_factory=Safety)
+    scene_relief_m: float | None = None
+    """Height of the relief, if the scene sets it and not the workspace."""
+    exaggeration: float | None = None
+    """Exaggeration of heights at a scale, in place of a height of the relief."""
+    of_parts: bool = False
+    """True if heights are per part."""
+    smoothed: bool = True
+    """True if `workspace.smooth_m` rounds the relief; a relief that the scene brings is not rounded."""
+    slope: float | None = None
+    """Greatest slope, `relief.slope`, 0 for none; None for a relief whose slopes that key does not limit."""
+    law_name: str = ""
+    """Name of the force law in the configuration."""
+    fitted: bool = False
+    """True if the materials were limited to the device."""
+
+    @property
+    def relief_key(self) -> str:
+        """Config key that sets the relief height; empty if heights are per part."""
+        if self.of_parts:
+            return ""
+        of_scene = "scene.relief_m" if self.scene_relief_m else "workspace.relief_m"
+        return "workspace.exaggeration" if self.exaggeration else of_scene
+
+    @property
+    def relief_m(self) -> float:
+        """Its value: the height of the relief in metres, or the exaggeration of heights at a scale."""
+        return self.exaggeration or self.scene_relief_m or self.size.relief_m
+
+
 @dataclass(frozen=True, eq=False)
 class Flight:
     """A surface under a force law on a device, on this machine."""
@@ -88,20 +123,7 @@ class Flight:
     stiffness_n_per_m: float
     """Stated or else measured stiffness of the force law on level ground; 0 for one that is not a spring."""
     spec: DeviceSpec
-    size: FeltSize
-    relief_key: str
-    """Config key that sets the relief height; empty if heights are per part."""
-    relief_m: float
-    """Its value: the height of the relief in metres, or the exaggeration of heights at a scale."""
-    smoothed: bool
-    """True if `workspace.smooth_m` rounds the relief; a relief that the scene brings is not rounded."""
-    slope: float | None
-    """Greatest slope, `relief.slope`, 0 for none; None for a relief whose slopes that key does not limit."""
-    law_name: str
-    """Name of the force law in the configuration."""
-    fitted: bool
-    """True if the materials were limited to the device."""
-    safety: Safety
+    settings: Settings
     hand: Hand
     period_s: float
     probes: Probes
@@ -120,12 +142,12 @@ class Flight:
     @property
     def max_force_n(self) -> float:
         """Greatest force that reaches the hand."""
-        return min(self.safety.max_force_n or np.inf, self.spec.max_force_n)
+        return min(self.settings.safety.max_force_n or np.inf, self.spec.max_force_n)
 
     @property
     def max_step_n(self) -> float:
         """Greatest growth of a force in a tick."""
-        return self.safety.max_step_n * min(1.0, self.period_s / NOMINAL_S)
+        return self.settings.safety.max_step_n * min(1.0, self.period_s / NOMINAL_S)
 
     @property
     def damping_n_s_per_m(self) -> float:
@@ -135,7 +157,7 @@ class Flight:
     @cached_property
     def coupling_m_per_n(self) -> float:
         """Compliance of the loop's virtual coupling; 0 without one."""
-        settings, _ = self.safety.arrays(self.spec, self.stiffness_n_per_m)
+        settings, _ = self.settings.safety.arrays(self.spec, self.stiffness_n_per_m)
         stiffness = float(settings[layout.COUPLING])
         return 1 / stiffness if stiffness > 0 else 0.0
 
@@ -145,7 +167,7 @@ class Flight:
 
     def felt_damping_n_s_per_m(self, damping_n_s_per_m: float) -> float:
         """Return the part of a fast-changing damping that reaches the device through the coupling."""
-        settings, _ = self.safety.arrays(self.spec, self.stiffness_n_per_m)
+        settings, _ = self.settings.safety.arrays(self.spec, self.stiffness_n_per_m)
         if not settings[layout.COUPLING] > 0:
             return damping_n_s_per_m
         own = float(settings[layout.COUPLING_DAMPING])
@@ -154,17 +176,17 @@ class Flight:
     @property
     def nominal_n_per_m(self) -> float:
         """Stiffness of the stiffest wall that a loop of 1 kHz renders stably on this device, by its damping."""
-        return stiffness_limit_n_per_m(self.damping_n_s_per_m, NOMINAL_S, self.safety.delay_ticks)
+        return stiffness_limit_n_per_m(self.damping_n_s_per_m, NOMINAL_S, self.settings.safety.delay_ticks)
 
     def passive_n_per_m(self, late_s: float = 0.0) -> float:
         """Return the stiffness of the stiffest wall that this loop renders stably if ticks are late by `late_s`."""
-        return stiffness_limit_n_per_m(self.damping_n_s_per_m, self.period_s + late_s, self.safety.delay_ticks)
+        return stiffness_limit_n_per_m(self.damping_n_s_per_m, self.period_s + late_s, self.settings.safety.delay_ticks)
 
     @property
     def ceilings(self) -> Sequence[Ceiling]:
         """Limits of stiffness, the lowest first."""
         own = self.spec.max_stiffness_n_per_m * min(1.0, NOMINAL_S / self.period_s)
-        margin, friction_n = self.safety.stiffness_margin, self.safety.friction_n
+        margin, friction_n = self.settings.safety.stiffness_margin, self.settings.safety.friction_n
         ceilings = [Ceiling(self.passive_n_per_m(), margin, PASSIVE), Ceiling(own, 1.0, DEVICE)]
         if friction_n is not None:
             ceilings.append(Ceiling(encoder_limit_n_per_m(friction_n, self.spec.resolution_m), margin, ENCODER))

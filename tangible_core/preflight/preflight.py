@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 from .verdict import Change, Grade, Verdict
 from .wording import as_data
@@ -11,10 +11,13 @@ MOST_REASONS = 3
 """Number of reasons in a sentence; further ones are counted."""
 
 
-class Preflight(tuple[Verdict, ...]):
+class Verdicts(tuple[Verdict, ...]):
     """The verdicts in the order of the checks, one sentence on all of them, and cures that agree with each other."""
 
     __slots__ = ()
+    good: ClassVar[str]
+    """Name of the property that is True without a verdict of the worst grade, `bad`."""
+    bad: ClassVar[Grade]
 
     @classmethod
     def of(cls, verdicts: Iterable[Verdict]) -> Self:
@@ -30,9 +33,32 @@ class Preflight(tuple[Verdict, ...]):
         return worst(self)
 
     @property
+    def sentence(self) -> str:
+        """A sentence on the result."""
+        raise NotImplementedError
+
+    def as_data(self) -> dict[str, Any]:
+        """Return the verdicts as JSON data, for programs: see `wording.as_data`."""
+        summary = {"grade": self.grade, self.good: self.grade != self.bad, "sentence": self.sentence}
+        return {**summary, "verdicts": [as_data(verdict) for verdict in self]}
+
+    def __repr__(self) -> str:
+        wrong = [verdict for verdict in self if verdict.verdict != "ok"]
+        lines = (f"{one.verdict:<{len(self.bad)}} {one.check} of {one.of}: {one.cure}" for one in wrong)
+        return "\n".join([self.sentence, *lines])
+
+
+class Preflight(Verdicts):
+    """The verdicts on a surface before a session."""
+
+    __slots__ = ()
+    good = "safe"
+    bad = "unsafe"
+
+    @property
     def safe(self) -> bool:
         """True if nothing is unsafe."""
-        return self.grade != "unsafe"
+        return self.grade != self.bad
 
     @property
     def sentence(self) -> str:
@@ -44,16 +70,6 @@ class Preflight(tuple[Verdict, ...]):
         if self.grade == "ok":
             return "Safe: nothing is wrong."
         return f"{'Safe, but' if self.safe else 'Unsafe, because'} {reasons(self)}."
-
-    def as_data(self) -> dict[str, Any]:
-        """Return the verdicts as JSON data, for programs: see `wording.as_data`."""
-        summary = {"grade": self.grade, "safe": self.safe, "sentence": self.sentence}
-        return {**summary, "verdicts": [as_data(each) for each in self]}
-
-    def __repr__(self) -> str:
-        wrong = [each for each in self if each.verdict != "ok"]
-        lines = (f"{each.verdict:<6} {each.check} of {each.of}: {each.cure}" for each in wrong)
-        return "\n".join([self.sentence, *lines])
 
 
 GRADES: tuple[Grade, ...] = ("unsafe", "illegible", "warn", "ok")

@@ -10,10 +10,8 @@ from ..errors import BrokenMethod
 from ..plugins.interfaces import ForceRenderer, HapticDevice, Touch
 from ..plugins.naming import plugin_name
 from ..scene.geometry import workspace_to_picture
-from ..scene.workspace import FeltSize, Workspace
-from ..servo.guard.safety import Safety
 from ..servo.guard.stiffness import stiffness_of
-from .flight import Flight, Hand, Loop
+from .flight import Flight, Hand, Loop, Settings
 from .probes import Probes, probe
 from .strokes import stroke
 from .timing import TICKS, measure_lateness, measure_ticks
@@ -24,49 +22,27 @@ def survey(
     touch: Touch,
     law: ForceRenderer,
     device: HapticDevice,
+    settings: Settings | None = None,
     *,
-    size: FeltSize | None = None,
-    safety: Safety | None = None,
-    scene_relief_m: float | None = None,
-    exaggeration: float | None = None,
-    of_parts: bool = False,
-    smoothed: bool = True,
-    slope: float | None = None,
-    law_name: str = "",
-    fitted: bool = False,
     hand: Hand | None = None,
     loop: Loop | None = None,
 ) -> Flight:
     """Gather facts and measurements of a surface and its touch under a force law, on a device that is not opened.
 
-    scene_relief_m: height of the relief if the scene sets it and not the workspace. exaggeration: of heights at a
-    scale, in place of a height of the relief. of_parts: heights are per part.
-    smoothed: `workspace.smooth_m` rounds the relief. slope: `relief.slope`, where it limits this relief. law_name: of
-    the force law in the configuration. fitted: the materials were limited to the device.
     Takes `loop.seconds`, in which this machine's lateness is measured, and a moment more.
     Raises: BrokenMethod if the touch gives a force that is not finite, as a bound cannot be computed then.
     """
-    size, safety = size or Workspace().size("heights"), safety or Safety()
-    hand, loop = hand or Hand(), loop or Loop()
+    settings, hand, loop = settings or Settings(), hand or Hand(), loop or Loop()
     period_s, spec = loop.period_s, device.spec()
     stiffness = stiffness_of(touch, spec).n_per_m
     probes = probe(touch, surface, hand.press_n, stiffness, spec.workspace_m[2], period_s)
-    of_scene = "scene.relief_m" if scene_relief_m else "workspace.relief_m"
-    key = "workspace.exaggeration" if exaggeration else of_scene
     _check_finite(law, probes)
     return Flight(
         surface=surface,
         law=law,
         stiffness_n_per_m=stiffness,
         spec=spec,
-        size=size,
-        relief_key="" if of_parts else key,
-        relief_m=exaggeration or scene_relief_m or size.relief_m,
-        smoothed=smoothed,
-        slope=slope,
-        law_name=law_name,
-        fitted=fitted,
-        safety=safety,
+        settings=settings,
         hand=hand,
         period_s=period_s,
         probes=probes,

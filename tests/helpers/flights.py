@@ -10,13 +10,12 @@ import numpy as np
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import DeviceSpec, Material
-from tangible_core.preflight.flight import Flight, Hand
+from tangible_core.preflight.flight import Flight, Hand, Settings
 from tangible_core.preflight.probes import probe
 from tangible_core.preflight.strokes import stroke
 from tangible_core.preflight.timing import Lateness, TickCost
 from tangible_core.preflight.verdict import Verdict
 from tangible_core.scene.workspace import Workspace
-from tangible_core.servo.guard.safety import Safety
 
 SPEC = DeviceSpec(
     max_force_n=8.0,
@@ -42,21 +41,16 @@ def fly(surface: HapticSurface, law: str = "proxy", device: Any = None, **change
     assert isinstance(touch, CompiledTouch)
     period_s = changes.pop("period_s", 0.001)
     stiffness = touch.stiffness_n_per_m
+    size = Workspace().size("depth")._replace(relief_m=changes.pop("relief_m", 0.02))
+    of_file = {name: changes.pop(name) for name in list(changes) if name in vars(Settings())}
     fields: dict[str, Any] = {
-        "size": Workspace().size("depth"),
-        "relief_key": "workspace.relief_m",
-        "relief_m": 0.02,
-        "smoothed": True,
-        "slope": None,
-        "law_name": law,
-        "fitted": False,
-        "safety": Safety(),
         "probes": probe(touch, surface, hand.press_n, stiffness, spec.workspace_m[2], period_s),
         "strokes": stroke(touch, surface, hand.press_n, hand.speed_m_per_s, period_s),
         "lateness": Lateness(np.full(1000, 1e-5), period_s, True),
         "cost": TickCost(np.full(1000, 2e-6), 1e-6),
     } | changes
-    return Flight(surface, renderer, stiffness, spec, hand=hand, period_s=period_s, **fields)
+    settings = Settings(**{"size": size, "law_name": law} | of_file)
+    return Flight(surface, renderer, stiffness, spec, settings, hand=hand, period_s=period_s, **fields)
 
 
 def level(height_m: float = 0.01, cells: int = 32, **materials: Any) -> HapticSurface:

@@ -54,7 +54,7 @@ def _softer(flight: Flight, softer: Sequence[Change], share: float) -> Cure:
     """Return the cure for a force that steps on contact; a spring's force does so only where a texture lifts it."""
     if softer:
         return [*softer, ", or a force law that is a spring, `render.use: proxy`"]
-    if flight.present_materials and not flight.fitted:
+    if flight.present_materials and not flight.settings.fitted:
         return [FIT]
     if flight.stiffness_n_per_m > 0:
         return soften(flight, share * flight.stiffness_n_per_m)

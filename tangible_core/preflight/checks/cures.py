@@ -41,9 +41,10 @@ def soften(flight: Flight, most_n_per_m: float) -> Cure:
 
 def soften_materials(flight: Flight, materials: Iterable[Material], most_n_per_m: float) -> Cure:
     """Return the cure that makes materials at most this stiff: fit them to the device, or use a custom library."""
-    if not flight.fitted:
+    if not flight.settings.fitted:
         return [FIT]
-    margin, stable = flight.safety.stiffness_margin, flight.safety.stiffness_margin * flight.nominal_n_per_m
+    margin = flight.settings.safety.stiffness_margin
+    stable = margin * flight.nominal_n_per_m
     if flight.period_s <= NOMINAL_S and most_n_per_m < stable:  # a slower loop's limits come down with the margin
         return [Change("safety.stiffness_margin", under(margin * most_n_per_m / stable), "at most")]
     softer = (f"`{each.name}: {{stiffness_n_per_m: {under(most_n_per_m)}}}`" for each in materials)
@@ -52,30 +53,31 @@ def soften_materials(flight: Flight, materials: Iterable[Material], most_n_per_m
 
 def flatten(flight: Flight, share: float) -> Change | str:
     """Return the cure that scales all slopes by this share."""
-    if not flight.relief_key:
+    if not flight.settings.relief_key:
         return "lower parts (`height_m` under `parts:`)"
-    return Change(flight.relief_key, under(flight.relief_m * share), "at most")
+    return Change(flight.settings.relief_key, under(flight.settings.relief_m * share), "at most")
 
 
 def heighten(flight: Flight, times: float) -> Change | str:
     """Return the cure that makes the relief `times` as high."""
-    if not flight.relief_key:
+    if not flight.settings.relief_key:
         return "higher parts (`height_m` under `parts:`)"
-    return Change(flight.relief_key, over(flight.relief_m * times), "at least")
+    return Change(flight.settings.relief_key, over(flight.settings.relief_m * times), "at least")
 
 
 def narrow(flight: Flight, width_m: str) -> Change:
     """Return the cure that makes the surface at most this wide."""
-    rise = flight.size.rise.m_per_m
+    rise = flight.settings.size.rise.m_per_m
     if rise is None:
         return Change("workspace.width_m", width_m, "at most")
-    times = flight.relief_m / rise * flight.size.width_m / float(width_m)
+    times = flight.settings.relief_m / rise * flight.settings.size.width_m / float(width_m)
     return Change("workspace.scale", f"1:{math.ceil(times)}", "is")
 
 
 def gentler(flight: Flight, steepest: float, few: float) -> Cure:
     """Return the cures after which at most `few` of the surface is steeper than this: slope, rounding, height."""
-    if flight.slope is not None and (not flight.slope or flight.slope > steepest):
+    slope = flight.settings.slope
+    if slope is not None and (not slope or slope > steepest):
         return [Change("relief.slope", under(steepest), "at most")]
 
     def gentle(relief: Relief) -> bool:
@@ -105,10 +107,10 @@ def _rise(heights: Slopes) -> Slopes:
 
 def round_off(flight: Flight, gentle: Callable[[Relief], bool]) -> Change | None:
     """Return the smoothing that makes the relief gentle; None if it is not smoothed or no smoothing suffices."""
-    longest_m, before_m = max(flight.surface.extent_m), flight.size.smooth_m
+    longest_m, before_m = max(flight.surface.extent_m), flight.settings.size.smooth_m
     relief = reduce_relief(flight.surface.relief, longest_m / CELLS)
     sigma_m = 2 * longest_m / CELLS
-    while flight.smoothed and sigma_m < longest_m / 8:
+    while flight.settings.smoothed and sigma_m < longest_m / 8:
         if gentle(smooth(relief, sigma_m)):
             return Change("workspace.smooth_m", over(math.hypot(before_m, sigma_m)), "at least")
         sigma_m *= math.sqrt(2)

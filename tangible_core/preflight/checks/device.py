@@ -31,7 +31,7 @@ def damping(flight: Flight) -> Iterator[Verdict]:
 
 def friction(flight: Flight) -> Iterator[Verdict]:
     """Check that the handle's friction is known, which keeps the steps of its encoders from buzzing."""
-    friction_n = flight.safety.friction_n
+    friction_n = flight.settings.safety.friction_n
     known = flight.spec.simulated or friction_n is not None
     cure = "" if known else "unknown: measure the force at which the handle starts to move, `safety.friction_n: ...`"
     source = "simulated" if flight.spec.simulated else "`safety.friction_n`" if known else ""

@@ -49,14 +49,14 @@ def _less_stiff(flight: Flight, limit: float, most: float) -> Cure:
     if most <= LEVEL * level:
         return soften(flight, limit)
     ways: list[Cure] = []
-    if flight.present_materials and not flight.fitted:
+    if flight.present_materials and not flight.settings.fitted:
         ways.append([FIT])
-    if flight.safety.coupling is None:
+    if flight.settings.safety.coupling is None:
         ways.append([COUPLE])
     if level > 0 and not flight.present_materials:
         softer = level * limit / most
         ways += [soften(flight, softer)] if softer >= SOFTEST_N_PER_M else _rounder(flight, limit / level)
-    if flight.law_name != PROXY:
+    if flight.settings.law_name != PROXY:
         ways.append(f"a force law that slopes do not stiffen, `render.use: {PROXY}`")
     if not ways:
         ways.append([flatten(flight, limit / most)])
@@ -108,10 +108,10 @@ def _steadier(flight: Flight) -> Cure:
     """Return the cures of a force that grows too fast: gentler slopes for a penalty, otherwise a softer law."""
     stiffness = flight.stiffness_n_per_m
     per_tick_n = stiffness * flight.hand.speed_m_per_s * flight.period_s
-    if flight.law_name != PROXY and per_tick_n > 0:
+    if flight.settings.law_name != PROXY and per_tick_n > 0:
         steepest = flight.max_step_n / per_tick_n
         if np.any(slopes(flight.surface.relief) > steepest):
             return gentler(flight, steepest, RARE)
     if flight.present_materials:
-        return [FIT] if not flight.fitted else "materials that differ less in stiffness (`tangible materials`)"
+        return [FIT] if not flight.settings.fitted else "materials that differ less in stiffness (`tangible materials`)"
     return soften(flight, stiffness * flight.max_step_n / float(np.quantile(flight.strokes.rise_n, 1 - FEW)))

@@ -71,7 +71,7 @@ def law_damping(flight: Flight) -> Iterator[Verdict]:
     felt = np.array([flight.felt_damping_n_s_per_m(each) for each in flight.probes.damping_n_s_per_m.clip(0).tolist()])
     level = np.clip(flight.probes.stiffness_n_per_m, 0, flight.stiffness_n_per_m)  # `slope` checks that of slopes
     level_n_per_m = np.array([flight.felt_n_per_m(each) for each in level.tolist()])
-    tick_s = flight.period_s * (1 + 2 * flight.safety.delay_ticks) / 2
+    tick_s = flight.period_s * (1 + 2 * flight.settings.safety.delay_ticks) / 2
     left = np.maximum(0.0, flight.damping_n_s_per_m - tick_s * level_n_per_m)
     worst = int(np.argsort(felt - left, kind="stable")[math.ceil((1 - FEW) * (felt.size - 1))])
     damping, most = max(0.0, round(float(felt[worst]), 3)), float(left[worst])
@@ -87,9 +87,9 @@ def _less_damping(flight: Flight, damping: float, most: float) -> Cure:
     own, materials = getattr(flight.law, "damping_n_s_per_m", None), flight.present_materials
     if own and not (materials and type(flight.law).renders_materials):
         return [Change("render.damping_n_s_per_m", under(own * most / damping) if most else "0", "at most")]
-    if materials and not flight.fitted:
+    if materials and not flight.settings.fitted:
         return [FIT]
-    if flight.safety.coupling is None:
+    if flight.settings.safety.coupling is None:
         return [COUPLE]
     return "less `damping_n_s_per_m` of the materials, in a file for `materials.library`"
 

@@ -6,7 +6,7 @@ import pytest
 from flights import level
 from tangible_core import HapticSurface
 from tangible_core.errors import ConfigError
-from tangible_core.preflight import Hand, Loop, survey
+from tangible_core.preflight import Hand, Loop, Settings, survey
 from tangible_core.preflight.strokes import LINES, _ways
 from tangible_devices import Mock
 from tangible_render import Proxy
@@ -51,14 +51,17 @@ def test_strokes_cover_the_surface_in_lines_to_and_fro():
 
 def test_survey_has_the_facts_that_it_is_given():
     law, surface = Proxy(), level()
-    of_parts = survey(surface, law.touch(surface), law, Mock(), of_parts=True, loop=Loop(seconds=0.001), slope=2.0)
-    assert (of_parts.relief_key, of_parts.slope, of_parts.smoothed, of_parts.fitted) == ("", 2.0, True, False)
+    of_parts = survey(
+        surface, law.touch(surface), law, Mock(), Settings(of_parts=True, slope=2.0), loop=Loop(seconds=0.001)
+    )
+    assert of_parts.settings.relief_key == ""
     brought = survey(
-        surface, law.touch(surface), law, Mock(), scene_relief_m=0.007, smoothed=False, fitted=True, law_name="mine",
+        surface, law.touch(surface), law, Mock(), Settings(scene_relief_m=0.007),
         hand=Hand(press_n=1.0), loop=Loop(rate_hz=500, seconds=0.01),
     )  # fmt: skip
-    assert (brought.relief_key, brought.relief_m) == ("scene.relief_m", 0.007)
-    assert (brought.smoothed, brought.fitted, brought.law_name, brought.period_s) == (False, True, "mine", 0.002)
+    assert (brought.settings.relief_key, brought.settings.relief_m) == ("scene.relief_m", 0.007)
+    assert brought.period_s == 0.002
     assert brought.probes.strength_n == pytest.approx(1.0, rel=1e-4)
     assert len(brought.lateness.late_s) == 5
-    assert (of_parts.relief_m, of_parts.stiffness_n_per_m) == (of_parts.size.relief_m, law.stiffness_n_per_m)
+    assert of_parts.settings.relief_m == of_parts.settings.size.relief_m
+    assert of_parts.stiffness_n_per_m == law.stiffness_n_per_m

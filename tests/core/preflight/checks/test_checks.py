@@ -34,7 +34,7 @@ def test_check_bound_nan_meets_no_bound(relation: Any):
 def test_surface_at_a_scale_is_made_smaller_by_the_scale():
     """240 m at 1:2000 are 120 mm; what reaches 60 mm is 1:4000, and half as high is half the exaggeration."""
     size = Workspace(scale="1:2000", exaggeration=2).size("heights")._replace(width_m=0.12)
-    flight = fly(level(), size=size, relief_key="workspace.exaggeration", relief_m=2.0)
+    flight = fly(level(), size=size, exaggeration=2.0)
     assert str(narrow(flight, "0.06")) == "`workspace.scale: 1:4000`"
     assert str(flatten(flight, 0.5)) == "`workspace.exaggeration: 1`"
     assert str(narrow(fly(level()), "0.06")) == "`workspace.width_m: 0.06`"

@@ -105,9 +105,9 @@ class TestSlopes:
         lower = value_in_cure(given, "workspace.relief_m") / 0.02
         assert np.mean(slopes(HapticSurface.from_heights(lower * surface.height_m).relief) > 2) <= 0.001
         assert "smooth_m" not in given.cure
-        of_parts = of(cliffs(fly(surface, smoothed=False, relief_key="")), "a wall")
+        of_parts = of(cliffs(fly(surface, smoothed=False, of_parts=True)), "a wall")
         assert (of_parts.cure, of_parts.changes) == ("lower parts (`height_m` under `parts:`)", ())
-        both = of(cliffs(fly(surface, relief_key="")), "a wall")
+        both = of(cliffs(fly(surface, of_parts=True)), "a wall")
         assert both.cure.endswith(", or lower parts (`height_m` under `parts:`)")
         assert [each.key for each in both.changes] == ["workspace.smooth_m"]
 

@@ -1,5 +1,5 @@
 """The command line. Commands parse and print, and call functions that programs can call as well."""
 
-from .app import main
+import lazy_loader  # pyright: ignore[reportMissingTypeStubs]
 
-__all__ = ["main"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)  # pyright: ignore[reportUnknownVariableType]

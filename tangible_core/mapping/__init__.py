@@ -1,7 +1,5 @@
 """The mapping from hand to picture, for any device: scale, offset, rotation, zoom, clutch and limits."""
 
-from .device import MappedDevice, intended_path, map_device, over, placement_of
-from .options import WorkspaceMapping
-from .placement import Placement
+import lazy_loader  # pyright: ignore[reportMissingTypeStubs]
 
-__all__ = ["MappedDevice", "Placement", "WorkspaceMapping", "intended_path", "map_device", "over", "placement_of"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)  # pyright: ignore[reportUnknownVariableType]

@@ -1,5 +1,5 @@
 """Errors of disparity maps and of forces against the truth."""
 
-from .disparity import absolute_error as absolute_error
-from .disparity import disparity_errors as disparity_errors
-from .forces import force_errors as force_errors
+import lazy_loader  # pyright: ignore[reportMissingTypeStubs]
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)  # pyright: ignore[reportUnknownVariableType]

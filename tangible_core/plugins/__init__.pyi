@@ -14,13 +14,17 @@ from .interfaces import DeviceSpec as DeviceSpec
 from .interfaces import Exporter as Exporter
 from .interfaces import ForceRenderer as ForceRenderer
 from .interfaces import HapticDevice as HapticDevice
+from .interfaces import Hierarchical as Hierarchical
 from .interfaces import Medium as Medium
 from .interfaces import Method as Method
 from .interfaces import Outcome as Outcome
 from .interfaces import Plan as Plan
+from .interfaces import Previewing as Previewing
 from .interfaces import Segmenter as Segmenter
 from .interfaces import Work as Work
 from .link import Link as Link
+from .notes import note as note
+from .notes import silently as silently
 from .touch import Film as Film
 from .touch import Filming as Filming
 from .touch import PlainTouch as PlainTouch

@@ -1,1 +1,5 @@
 """The surroundings of the program: child processes, signals, standard output, threads, OpenCV, torch."""
+
+import lazy_loader  # pyright: ignore[reportMissingTypeStubs]
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)  # pyright: ignore[reportUnknownVariableType]

@@ -1,1 +1,5 @@
 """Scenes, stereo rigs, and the geometry from disparity to relief."""
+
+import lazy_loader  # pyright: ignore[reportMissingTypeStubs]
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)  # pyright: ignore[reportUnknownVariableType]

@@ -1,37 +1,5 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
-from .guard_summary import guard_summary as guard_summary
-from .kiosk import Slot as Slot
-from .kiosk import run_kiosk as run_kiosk
-from .live import RingDrain as RingDrain
-from .live import figures as figures
-from .live import keeping as keeping
-from .live import run_in_real_time as run_in_real_time
-from .parts_felt import BeaconFelt as BeaconFelt
-from .parts_felt import PartFelt as PartFelt
-from .parts_felt import beacons_felt as beacons_felt
-from .parts_felt import material_under as material_under
-from .parts_felt import materials_text as materials_text
-from .parts_felt import names_in as names_in
-from .parts_felt import names_of as names_of
-from .parts_felt import names_text as names_text
-from .parts_felt import part_label as part_label
-from .parts_felt import part_under as part_under
-from .parts_felt import parts_felt as parts_felt
-from .parts_felt import with_parts as with_parts
-from .recording import INTERRUPTED as INTERRUPTED
-from .recording import STOPPED as STOPPED
-from .recording import Recording as Recording
-from .recording import failure as failure
-from .recording.comparison import compare_recordings as compare_recordings
-from .recording.files import check_record_path as check_record_path
-from .recording.replay import compare_replay as compare_replay
-from .recording.replay import replay as replay
-from .recording.replay import unaltered_forces as unaltered_forces
-from .recording.tick_file import About as About
-from .recording.writer import Writer as Writer
-from .simulated import run_simulated as run_simulated
-from .tracking_error import EVERY as EVERY
-from .tracking_error import TickSampler as TickSampler
-from .tracking_error import TrackingError as TrackingError
-from .tracking_error import tracking_error as tracking_error
+import lazy_loader  # pyright: ignore[reportMissingTypeStubs]
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)  # pyright: ignore[reportUnknownVariableType]

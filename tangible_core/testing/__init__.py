@@ -6,9 +6,6 @@
 is a whole test module. `synthetic.scenes` has the analytic scenes of the checks, for your own tests.
 """
 
-from .checks import Check as Check
-from .checks import CheckFailure as CheckFailure
-from .kit import CheckResult as CheckResult
-from .kit import checks as checks
-from .kit import conforms as conforms
-from .kit import run_checks as run_checks
+import lazy_loader  # pyright: ignore[reportMissingTypeStubs]
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)  # pyright: ignore[reportUnknownVariableType]

@@ -1,0 +1,16 @@
+from .app import main as main
+from .command_table import add as add
+from .commands.run import device_of as device_of
+from .commands.run import open_pipeline as open_pipeline
+from .options import FAILED as FAILED
+from .options import Config as Config
+from .options import Json as Json
+from .options import NoCache as NoCache
+from .options import Sets as Sets
+from .options import Verbose as Verbose
+from .options import is_listing as is_listing
+from .sentences import approximately as approximately
+from .sentences import listing as listing
+from .show import plain as plain
+from .show import print_json as print_json
+from .verbosity import is_quiet as is_quiet

@@ -1,0 +1,11 @@
+from .editing import json_in_yaml as json_in_yaml
+from .editing import on_one_line as on_one_line
+from .parts_block import part_lines as part_lines
+from .parts_block import with_parts as with_parts
+from .source import Location as Location
+from .source import Source as Source
+from .source import parse_override as parse_override
+from .source import parse_source as parse_source
+from .source import parse_value as parse_value
+from .source import plain as plain
+from .source import read_text as read_text

@@ -1,0 +1,5 @@
+from .assignment import find as find
+from .assignment import library as library
+from .assignment import load_library as load_library
+from .files import VALUES as VALUES
+from .files import sources_of as sources_of

@@ -1,0 +1,10 @@
+from .export_folder import read_list as read_list
+from .export_result import Exported as Exported
+from .exporting import title_of as title_of
+from .exporting import work_for as work_for
+from .legible import drawn_width_m as drawn_width_m
+from .legible import with_width as with_width
+from .run_folder import default_name as default_name
+from .run_folder import make_writable as make_writable
+from .runs import about as about
+from .runs import join_descriptions as join_descriptions

@@ -1,0 +1,17 @@
+from .child_process import Place as Place
+from .child_process import command as command
+from .child_process import dumps as dumps
+from .child_process import import_from as import_from
+from .child_process import pipe_of as pipe_of
+from .child_process import place as place
+from .failure_log import where_kept as where_kept
+from .opencv import plain_opencv as plain_opencv
+from .signals import ENDING as ENDING
+from .standard_output import stream as stream
+from .stopping import check_stopped as check_stopped
+from .stopping import stoppable as stoppable
+from .threads import check_threads as check_threads
+from .threads import limited_threads as limited_threads
+from .torch_extra import TorchDevice as TorchDevice
+from .torch_extra import need as need
+from .torch_extra import pick_device as pick_device

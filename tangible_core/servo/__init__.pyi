@@ -1,0 +1,17 @@
+from .beacon import Beacon as Beacon
+from .beacon import BeaconState as BeaconState
+from .beacon import beacon_to as beacon_to
+from .beacon import part_number as part_number
+from .framing import receive as receive
+from .framing import send as send
+from .framing import sendable as sendable
+from .guard.safety import Safety as Safety
+from .host import Servo as Servo
+from .packed_touch import Packed as Packed
+from .packed_touch import pack_touch as pack_touch
+from .ring import PERIOD_NS as PERIOD_NS
+from .ring import SPINS as SPINS
+from .ring import STOP as STOP
+from .ring import Ring as Ring
+from .supervisor import OVER as OVER
+from .ticks.null_law import null_touch as null_touch

@@ -1,0 +1,15 @@
+from .reliefs import cliff as cliff
+from .reliefs import cone as cone
+from .reliefs import ridge as ridge
+from .reliefs import waves as waves
+from .scenes import KnownSurface as KnownSurface
+from .scenes import plane as plane
+from .scenes import ramp as ramp
+from .scenes import sphere_cap as sphere_cap
+from .stereo_scenes import KnownPair as KnownPair
+from .stereo_scenes import synthetic_pair as synthetic_pair
+from .texture_scenes import KnownSegments as KnownSegments
+from .texture_scenes import folder_textures as folder_textures
+from .texture_scenes import in_order as in_order
+from .texture_scenes import smooth_scene as smooth_scene
+from .texture_scenes import texture_mosaic as texture_mosaic

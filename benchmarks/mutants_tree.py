@@ -22,7 +22,7 @@ sys.exit({function}())
 """
 
 
-BUILT = "plugins/ui/tangible_ui/static"
+BUILT = "plugins/web/tangible_web/static"
 """The built page, which git does not know: tests of what is made of it need it."""
 
 

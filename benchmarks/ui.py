@@ -13,7 +13,7 @@ from .ui_late import lateness, stale_ticks
 from .ui_parts import editor
 from .ui_tasks import large_relief, memory, stopped, swapped
 
-STATIC = Path(__file__).parents[1] / "plugins/ui/tangible_ui/static"
+STATIC = Path(__file__).parents[1] / "plugins/web/tangible_web/static"
 IMPORTED = re.compile(r'(?:\bfrom|\bimport)\s*"\./([\w-]+\.js)"')
 RUNS = 3
 DRAG_S = 8.0

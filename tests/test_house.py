@@ -267,7 +267,8 @@ def test_texts_use_the_plainer_words():
 
 def test_no_text_names_a_part_by_its_label():
     """People read its number, which counts from one."""
-    rooms = [ROOT / "tangible_core", *(ROOT / "plugins").glob("*/tangible_*"), ROOT / "plugins/ui/web/src"]
+    pages = (ROOT / "plugins/web/kit", ROOT / "plugins/ui/web/src")
+    rooms = [ROOT / "tangible_core", *(ROOT / "plugins").glob("*/tangible_*"), *pages]
     files = [each for room in rooms for each in [*room.rglob("*.py"), *room.rglob("*.ts")]]
     files = [each for each in files if each.stem != "part_words"]
     assert len(files) > 500

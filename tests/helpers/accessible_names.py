@@ -37,7 +37,7 @@ SEEN = """function () {
 def axe_finds(page: "Page", rules: dict[str, Any] = RULES, within: tuple[str, ...] = ()) -> list[str]:
     """Return axe's violations in a page at rest. within: elements by selector; without, all of the page."""
     if not AXE.is_file():
-        lacking("axe-core is not installed: npm ci in plugins/ui/web")
+        lacking("axe-core is not installed: npm ci in plugins/web")
     page.evaluate(f"{AXE.read_text(encoding='utf-8')}; 0")
     page.evaluate(SETTLED)
     found = page.evaluate(

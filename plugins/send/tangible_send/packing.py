@@ -18,7 +18,7 @@ from tangible_core.data.records import digest_of
 from tangible_legibility.words.languages import LANGUAGES, Language, one_line
 from tangible_report.description import describe, facts
 from tangible_report.description.at_length import tell
-from tangible_ui.worker.view.files import material_of
+from tangible_web.materials import distinct_materials
 
 from .surface import SentSurface
 from .words import FIRST_FRAME
@@ -36,7 +36,7 @@ PLAIN = Material("", 800.0, 0.0, 0.0, 0.0)
 def pack(sent: SentSurface, work: Work) -> dict[str, Any]:
     """Return the data of the page, without the picture."""
     surface = _surface_in_words(sent, work)
-    materials, kinds = material_of(surface.materials or ())
+    materials, kinds = distinct_materials(surface.materials or ())
     digest = digest_of((sent.numbers, sent.labels, work.title, work.names))
     return {
         "meta": _meta(sent, surface, work, materials, digest),

@@ -13,7 +13,7 @@ from tangible_core.files.writing import write_text
 from tangible_core.plugins.interfaces import Exporter
 from tangible_core.plugins.notes import note
 from tangible_legibility.words.languages import spoken_language
-from tangible_ui.address import page_file
+from tangible_web.address import page_file
 
 log: logging.Logger = logging.getLogger(__name__)
 

@@ -5,7 +5,15 @@ import time
 from collections.abc import Callable
 from typing import final
 
-OWN = ("tangible_core", "tangible_depth", "tangible_texture", "tangible_render", "tangible_devices", "tangible_ui")
+OWN = (
+    "tangible_core",
+    "tangible_depth",
+    "tangible_texture",
+    "tangible_render",
+    "tangible_devices",
+    "tangible_ui",
+    "tangible_web",
+)
 """Packages whose information pages get too; from others, warnings and errors."""
 KNOWN = "tangible_core.plugins.observers.log"
 """The logger of stages, left out because pages get events of stages."""

@@ -24,7 +24,7 @@ from tangible_study.presenting.stimuli import Stimuli
 from tangible_study.session.start import begin
 from tangible_study.study_file import parse_study
 from tangible_study.trials import read_answers
-from tangible_ui.framing import ACK, POINTER, POINTER_FRAME, RELEASE, RELEASE_FRAME, STATE_FRAME
+from tangible_web.framing import ACK, POINTER, POINTER_FRAME, RELEASE, RELEASE_FRAME, STATE_FRAME
 from waiting import LONGEST_S, until
 
 FORCE = [TICK_COLUMNS.index(each) for each in ("fx_n", "fy_n", "fz_n")]

@@ -12,8 +12,8 @@ import pytest
 from broken_messages import broken_request, send_broken
 from tangible_study.desks.page import MOST_BYTES, Page
 from tangible_study.desks.page_hand import PageHand
-from tangible_ui.serving import connection
-from tangible_ui.serving.connection import MOST_STRANGERS
+from tangible_web import connection
+from tangible_web.connection import MOST_STRANGERS
 from waiting import LONGEST_S, until
 
 

@@ -16,10 +16,10 @@ from tangible_core.mapping import WorkspaceMapping
 from tangible_core.servo import Beacon, Safety, beacon_to, pack_touch
 from tangible_core.servo.ring import shared_folder
 from tangible_ui.feeling.feeling import Feeling, LoopInput
-from tangible_ui.framing import STATE_FRAME
 from tangible_ui.requests.document import take
 from tangible_ui.serving.serve import watch
 from tangible_ui.state.texts import Text
+from tangible_web.framing import STATE_FRAME
 from waiting import happened, until
 
 pytestmark = pytest.mark.anyio

@@ -14,9 +14,9 @@ from tangible_core.servo import Servo
 from tangible_ui.feeling.choice import Choice
 from tangible_ui.feeling.comparison import HIGHEST_M, ComparisonLoop
 from tangible_ui.feeling.doctor import LATE_US, figures
-from tangible_ui.framing import BUTTON_BITS
 from tangible_ui.worker.jobs import devices as mapping
 from tangible_ui.worker.state import WorkerState
+from tangible_web.framing import BUTTON_BITS
 
 
 def test_figures_are_those_of_the_last_second_and_of_the_whole_loop() -> None:
@@ -71,7 +71,7 @@ def test_hand_of_the_law_beside_is_released_above_every_surface(z: float, sent: 
     assert [name for name, _, _ in client.mock_calls] == ["send" if sent else "release"]
 
 
-CASES = Path(__file__).parents[3] / "plugins/ui/web/test/placement.json"
+CASES = Path(__file__).parents[3] / "plugins/web/test/placement.json"
 PATH = Path("p.yaml")
 
 

@@ -20,7 +20,7 @@ from tangible_core.plugins.interfaces import HapticDevice, Touch
 from tangible_core.servo import Safety, pack_touch
 from tangible_core.servo.ring import STOP, shared_folder
 from tangible_ui.feeling.feeling import Feeling, LoopInput
-from tangible_ui.framing import STATE_FRAME
+from tangible_web.framing import STATE_FRAME
 from waiting import LONGEST_S, until
 
 pytestmark = pytest.mark.usefixtures("own_memory")

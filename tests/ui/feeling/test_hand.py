@@ -18,11 +18,11 @@ from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.runtime.child_process import dumps
 from tangible_core.servo import Safety, pack_touch
 from tangible_ui.feeling.feeling import Feeling
-from tangible_ui.feeling.hand import high_without_client
 from tangible_ui.requests import REQUESTS
 from tangible_ui.serving.serve import watch
 from tangible_ui.state import session as session_module
 from tangible_ui.state.session import Session
+from tangible_web.hand import high_without_client
 from waiting import happened
 
 pytestmark = pytest.mark.anyio

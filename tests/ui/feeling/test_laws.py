@@ -20,11 +20,11 @@ from tangible_core.servo import Packed, Safety, pack_touch
 from tangible_ui.feeling.choice import Choice, NotConfirmed
 from tangible_ui.feeling.comparison import NOTHING, ComparisonLoop
 from tangible_ui.feeling.feeling import Feeling
-from tangible_ui.framing import STATE_FRAME
 from tangible_ui.requests import feeling as asks
 from tangible_ui.serving.serve import watch
 from tangible_ui.state.laws import Laws, Tally
 from tangible_ui.state.session import Session
+from tangible_web.framing import STATE_FRAME
 from waiting import happened
 
 TEXT = """\

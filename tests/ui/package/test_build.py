@@ -36,7 +36,8 @@ def tree(tmp_path: Path) -> Path:
     """Files of this tree that the hook and the builders read; the page is not built."""
     root = tmp_path / "tree"
     leave = shutil.ignore_patterns("node_modules", "static", "static-*", "__pycache__")
-    shutil.copytree(ROOT / "plugins/ui", root / "plugins/ui", ignore=leave)
+    for web in (WEB, *ROOT.glob("plugins/*/web")):
+        shutil.copytree(web, root / web.relative_to(ROOT), ignore=leave)
     for name in ("pyproject.toml", "hatch_build.py", "README.md", "LICENSE", ".gitignore"):
         shutil.copy(ROOT / name, root / name)
     return root
@@ -53,7 +54,7 @@ class Programs:
         self.called.append(words[0])
         code, output = self.ends[words[0]]
         if words[0] == "build.mjs" and not code:
-            write_page(Path(cwd), Path(words[1]))
+            write_page(Path(cwd).parent, Path(words[1]))
         return SimpleNamespace(returncode=code, stdout=output)
 
     def npm(self, words: list[str], return_completed_process: bool, *, cwd: str, **_: Any) -> SimpleNamespace:
@@ -71,12 +72,12 @@ def programs(monkeypatch: pytest.MonkeyPatch) -> Programs:
     return made
 
 
-def write_page(web: Path, static: Path) -> None:
+def write_page(plugins: Path, static: Path) -> None:
     module = hook()
     static.mkdir(parents=True, exist_ok=True)
     for name in PAGE:
         static.joinpath(name).write_text(name)
-    digests = {path.as_posix(): module._sha256(web / path) for path in module.sources(web)}
+    digests = {path.as_posix(): module._sha256(plugins / path) for path in module.sources(plugins)}
     static.joinpath("built.json").write_text(json.dumps(digests))
 
 
@@ -128,27 +129,27 @@ class TestHook:
         (tree / "plugins/ui/web/index.html").write_text("another")
         programs.ends["ping"] = (1, UNREACHABLE)
         assert built(WheelBuilder, tree) == set()
-        assert (tree / "plugins/ui/tangible_ui/static/index.html").is_file()
+        assert (tree / STATIC.relative_to(ROOT) / "index.html").is_file()
 
 
 class TestCurrency:
     @pytest.mark.parametrize(
         "change",
         [
-            lambda web: (web / "src/main.ts").write_text("1;"),
-            lambda web: (web / "package-lock.json").write_text("{}"),
-            lambda web: (web / "src/deeper").mkdir() or (web / "src/deeper/new.ts").touch(),
-            lambda web: (web / "src/server/protocol.ts").unlink(),
-            lambda web: (web / "index.html").rename(web / "other.html"),
-            lambda web: (web.parent / "tangible_ui/static/built.json").write_text("{"),
+            lambda plugins: (plugins / "study/web/main.ts").write_text("1;"),
+            lambda plugins: (plugins / "web/package-lock.json").write_text("{}"),
+            lambda plugins: (plugins / "web/kit/deeper").mkdir() or (plugins / "web/kit/deeper/new.ts").touch(),
+            lambda plugins: (plugins / "web/kit/server/protocol.ts").unlink(),
+            lambda plugins: (plugins / "ui/web/index.html").rename(plugins / "ui/web/other.html"),
+            lambda plugins: (plugins / "web/tangible_web/static/built.json").write_text("{"),
         ],
         ids=["edited", "locked", "new", "removed", "renamed", "damaged"],
     )
     def test_changed_source_makes_the_page_outdated(self, tree: Path, change: Callable[[Path], object]):
-        module, web = hook(), tree / "plugins/ui/web"
-        write_page(web, tree / "plugins/ui/tangible_ui/static")
+        module, plugins = hook(), tree / "plugins"
+        write_page(plugins, tree / STATIC.relative_to(ROOT))
         assert module.is_current(tree)
-        change(web)
+        change(plugins)
         assert not module.is_current(tree)
 
 
@@ -172,7 +173,7 @@ class TestBundler:
     @pytest.fixture
     def web(self, tree: Path) -> Path:
         node("--version", cwd=tree)  # skips where there is none
-        packages = tree / "plugins/ui/web/node_modules"
+        packages = tree / "plugins/web/node_modules"
         packages.mkdir()
         for path in (WEB / "node_modules").iterdir():
             (packages / path.name).symlink_to(path)
@@ -182,7 +183,7 @@ class TestBundler:
         done = node("build.mjs", cwd=web)
         assert done.returncode == 0, done.stderr
         assert hook().is_current(tree)
-        static = tree / "plugins/ui/tangible_ui/static"
+        static = tree / STATIC.relative_to(ROOT)
         assert {DIGEST.sub("", path.name) for path in static.iterdir()} == PAGE
         assert static.joinpath("LICENSES.txt").read_text("utf-8").startswith("three ")
         assert [path.name for path in static.parent.iterdir() if path.name.startswith("static")] == ["static"]
@@ -224,7 +225,7 @@ def test_typescript_tests_of_the_page_pass():
 
 
 def test_command_without_a_built_page_explains_how_to_build_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("tangible_ui.address.static", lambda: tmp_path)
+    monkeypatch.setattr("tangible_web.address.static", lambda: tmp_path)
     done = tangible("ui", "--no-browser", cwd=tmp_path)
     assert done.returncode == 2
     assert "the page was not built" in done.stderr

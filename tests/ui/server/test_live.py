@@ -10,11 +10,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tangible_core.errors import TangibleError
-from tangible_ui import framing as wire
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.requests import REQUESTS
 from tangible_ui.serving.live import LiveTab, _as_json
 from tangible_ui.serving.parsing import BadRequest, parse
+from tangible_web import framing as wire
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(),

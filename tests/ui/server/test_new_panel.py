@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from page_files import ROOT, WEB, node
+from page_files import ROOT, STATIC, WEB, node
 
 SERVER = Path("plugins/ui/tangible_ui")
 PAGE = Path("plugins/ui/web")
@@ -25,8 +25,9 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The page and its server with the example."""
     copy = tmp_path_factory.mktemp("copy")
     ignored = shutil.ignore_patterns("node_modules", "__pycache__", "static")
-    shutil.copytree(ROOT / "plugins/ui", copy / "plugins/ui", ignore=ignored)
-    (copy / PAGE / "node_modules").symlink_to(WEB / "node_modules")
+    for each in ("ui", "web", "send", "study"):
+        shutil.copytree(ROOT / "plugins" / each, copy / "plugins" / each, ignore=ignored)
+    (copy / WEB.relative_to(ROOT) / "node_modules").symlink_to(WEB / "node_modules")
     for path, text in example().items():
         target = copy / path
         if target.is_file():
@@ -51,7 +52,7 @@ def example() -> dict[Path, str]:
 def test_panel_of_the_contributing_page_passes_the_checks_of_the_page_and_is_built(copy: Path) -> None:
     types, tests, build = "node_modules/typescript/bin/tsc", "test/run.mjs --test-name-pattern=text|circle", "build.mjs"
     for words in (types, tests, build):
-        ran = node(*words.split(" "), cwd=copy / PAGE)
+        ran = node(*words.split(" "), cwd=copy / WEB.relative_to(ROOT))
         assert ran.returncode == 0, ran.stdout + ran.stderr
-    built = "".join(path.read_text("utf-8") for path in (copy / SERVER / "static").glob("*.js"))
+    built = "".join(path.read_text("utf-8") for path in (copy / STATIC.relative_to(ROOT)).glob("*.js"))
     assert "From {low} to {high} mm." in built

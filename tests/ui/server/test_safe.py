@@ -15,13 +15,13 @@ from websockets.exceptions import InvalidStatus
 
 from page_server import KEY, PageServer
 from tangible_core.files.reading import MOST_BYTES
-from tangible_ui.address import Address, new_key
-from tangible_ui.framing import ACK, ACK_FRAME, POINTER, POINTER_FRAME
-from tangible_ui.serving import connection, routes, serve
-from tangible_ui.serving.access import HEADERS
-from tangible_ui.serving.connection import AT_ONCE_BYTES, MOST_STRANGERS
 from tangible_ui.serving.live import IN_FLIGHT, MOST_ASKS
 from tangible_ui.serving.routes import WRONG_KEY
+from tangible_web import connection, routes, serve
+from tangible_web.access import HEADERS
+from tangible_web.address import Address, new_key
+from tangible_web.connection import AT_ONCE_BYTES, MOST_STRANGERS
+from tangible_web.framing import ACK, ACK_FRAME, POINTER, POINTER_FRAME
 from waiting import LONGEST_S, until
 
 NAMES = {"digest": "abc", "name": "a.f32", "batch": "0" * 16, "folder": "export-1", "panel": "glove"}

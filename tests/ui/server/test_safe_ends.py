@@ -20,7 +20,7 @@ from command_line import tangible
 from page_server import TestTab
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.servo.ring import STOP, Ring
-from tangible_ui.framing import POINTER, POINTER_FRAME
+from tangible_web.framing import POINTER, POINTER_FRAME
 from ui_server import START, UiServer
 from waiting import LONGEST_S, until
 

@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from page_files import WEB, node
+import tangible_ui
+from page_files import UI, WEB, node
 from tangible_core.data import TICK_COLUMNS, TickFlag
 from tangible_core.pipeline.config.schema import json_schema
 from tangible_legibility.words.languages import LANGUAGES, TABLES
-from tangible_ui import framing as wire
 from tangible_ui import requests
 from tangible_ui.feeling.recorder import BY_HAND
 from tangible_ui.requests import REQUESTS
@@ -22,14 +22,15 @@ from tangible_ui.serving.translating import in_language, language_of
 from tangible_ui.worker import jobs
 from tangible_ui.worker.jobs import JOBS
 from tangible_ui.worker.jobs.table import job
+from tangible_web import framing as wire
 
-SOURCES = Path(wire.__file__).parent
+SOURCES = Path(tangible_ui.__file__).parent
 SAID = (1, 5, 513, 4_000_000_000, 4_000_000, 77, 1.7e12 + 0.25)
 VECTORS = tuple(k / 8 for k in range(15))
 SCRIPT = """
 import { readFileSync } from "node:fs";
 import { transformSync } from "esbuild";
-const { code } = transformSync(readFileSync("src/server/protocol.ts", "utf8"), { loader: "ts", format: "esm" });
+const { code } = transformSync(readFileSync("kit/server/protocol.ts", "utf8"), { loader: "ts", format: "esm" });
 const page = await import("data:text/javascript," + encodeURIComponent(code));
 const hex = (buffer) => Buffer.from(buffer).toString("hex");
 const bytes = (text) => Uint8Array.from(Buffer.from(text, "hex")).buffer;
@@ -85,7 +86,7 @@ class TestFrames:
 
 
 def test_recording_columns_are_those_of_the_page() -> None:
-    said = (WEB / "src/panels/recordings/ticks.ts").read_text(encoding="utf-8")
+    said = (UI / "src/panels/recordings/ticks.ts").read_text(encoding="utf-8")
     (count,), (places,) = re.findall(r"COLUMNS = (\d+);", said), re.findall(r"AT = \{(.*?)\}", said)
     assert int(count) == len(TICK_COLUMNS)
     read = {name: TICK_COLUMNS[int(place)] for name, place in re.findall(r"(\w+): (\d+)", places)}
@@ -100,24 +101,28 @@ def sources(folder: Path, ending: str) -> str:
     return "\n".join(path.read_text(encoding="utf-8") for path in sorted(files))
 
 
+def page_sources() -> str:
+    return sources(UI / "src", ".ts") + sources(WEB / "kit", ".ts")
+
+
 class TestNames:
     def test_requests_of_the_page_exist(self) -> None:
-        asked = set(re.findall(r"\bask(?:<[^(]*>)?\(\s*[\"'](\w+)[\"']", sources(WEB / "src", ".ts")))
+        asked = set(re.findall(r"\bask(?:<[^(]*>)?\(\s*[\"'](\w+)[\"']", page_sources()))
         assert len(asked) > 20
         assert asked <= REQUESTS.keys()
 
     def test_requests_of_the_server_are_used_by_the_page(self) -> None:
-        written = set(re.findall(r"[\"'](\w+)[\"']", sources(WEB / "src", ".ts")))
+        written = set(re.findall(r"[\"'](\w+)[\"']", page_sources()))
         assert REQUESTS.keys() - written <= NOT_ASKED
 
     def test_event_names_are_those_of_the_page(self) -> None:
-        here, there = sources(SOURCES, ".py"), (WEB / "src/server/messages.ts").read_text(encoding="utf-8")
+        here, there = sources(SOURCES, ".py"), (WEB / "kit/server/messages.ts").read_text(encoding="utf-8")
         told = set(re.findall(r"(?:\btell|\bEvent)\(\s*\"(\w+)\"", here) + re.findall(r"\"event\": \"(\w+)\"", here))
         body = there[there.index("export interface Events") :]
         assert told - {"answer", "refused"} == set(re.findall(r"^  (\w+): Said\b", body, re.M)) - OF_THE_PAGE
 
     def test_code_of_a_wrong_key_is_the_page_s(self) -> None:
-        assert f"WRONG_KEY = {WRONG_KEY};" in (WEB / "src/server/connection.ts").read_text(encoding="utf-8")
+        assert f"WRONG_KEY = {WRONG_KEY};" in (WEB / "kit/server/connection.ts").read_text(encoding="utf-8")
 
 
 OF_THE_PAGE = {"gone", "refused"}
@@ -192,7 +197,7 @@ ROW = re.compile(r"^  (\w+): (\[.*\]),$", re.MULTILINE)
 
 
 def test_page_names_materials_as_descriptions_do():
-    rows = ROW.findall((WEB / "src/words/material_words.ts").read_text(encoding="utf-8"))
+    rows = ROW.findall((WEB / "kit/words/material_words.ts").read_text(encoding="utf-8"))
     found = {name: json.loads(words) for name, words in rows}
     assert found == {name: [TABLES[each].materials[name] for each in LANGUAGES] for name in TABLES["en"].materials}
 

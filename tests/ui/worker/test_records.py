@@ -14,9 +14,9 @@ from tangible_core.data import TICK_COLUMNS
 from tangible_core.servo import Servo
 from tangible_core.session import About, Recording, Writer
 from tangible_ui.feeling.recorder import BY_HAND, Recorder
-from tangible_ui.framing import FLAG_BITS
 from tangible_ui.worker.jobs import records
 from tangible_ui.worker.state import WorkerState
+from tangible_web.framing import FLAG_BITS
 from waiting import LONGEST_S, until
 
 

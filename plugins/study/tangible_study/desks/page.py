@@ -20,9 +20,9 @@ from tangible_core.errors import DeviceError
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.servo import Servo
 from tangible_core.servo.beacon import part_number
-from tangible_ui.address import HOST, Address, page_file
-from tangible_ui.serving.access import refusal_text
-from tangible_ui.serving.connection import HEAD_S, MOST_STRANGERS, Strangers
+from tangible_web.access import refusal_text
+from tangible_web.address import HOST, Address, page_file
+from tangible_web.connection import HEAD_S, MOST_STRANGERS, Strangers
 
 from .desk import LEAVE, Desk, Left
 from .page_hand import PageHand

@@ -10,9 +10,9 @@ from tangible_core.mapping import placement_of
 from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.servo import Servo
 from tangible_core.servo.limits import PAGE_FOLLOW_S, PAGE_SERVER_SILENCE_S
-from tangible_ui.feeling.hand import Hand
-from tangible_ui.feeling.state_frame import OtherLaw, frame_of, frame_without_loop
-from tangible_ui.framing import HOLDING, POINTER, POINTER_FRAME, RELEASE, RUNNING
+from tangible_web.framing import HOLDING, POINTER, POINTER_FRAME, RELEASE, RUNNING
+from tangible_web.hand import Hand
+from tangible_web.state_frame import OtherLaw, frame_of, frame_without_loop
 
 KEEP_S = 0.02
 """Interval at which the loop hears from this program; it releases the hand after `PAGE_SERVER_SILENCE_S` without."""

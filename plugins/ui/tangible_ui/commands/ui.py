@@ -19,7 +19,8 @@ def ui(
     The page is served to this machine alone; its address holds a key that changes with every start. Ctrl-C ends it.
     """
     _check_files(files or [])
-    from ..address import Address
+    from tangible_web.address import Address
+
     from ..prestart import prestart_worker
 
     with Address.of(port) as address, prestart_worker():

@@ -6,8 +6,7 @@ import numpy as np
 
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.servo import Servo
-
-from ..framing import BUTTON_BITS
+from tangible_web.framing import BUTTON_BITS
 
 LOOKED_BACK_S = 1.0
 LATE_US = 200

@@ -15,10 +15,9 @@ from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.servo import Beacon, Packed, Safety, Servo, null_touch
 from tangible_core.servo.limits import PAGE_FOLLOW_S, PAGE_SERVER_SILENCE_S
 from tangible_core.servo.ring import STOP
-
-from ..framing import BUTTON_BITS
-from .hand import Hand
-from .state_frame import ALONE, OtherLaw, frame_of, frame_without_loop
+from tangible_web.framing import BUTTON_BITS
+from tangible_web.hand import Hand
+from tangible_web.state_frame import ALONE, OtherLaw, frame_of, frame_without_loop
 
 BUTTONS, PRESSED = (1 << BUTTON_BITS) - 1, 1
 """Bits of a device's buttons; and the button by which the page's own hand is pressed down, which ends no beacon."""

@@ -8,9 +8,10 @@ from typing import Any, final
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from .. import framing
+from tangible_web import framing
+from tangible_web.connection import cut_off
+
 from ..state.session import Session, describe_error
-from .connection import cut_off
 from .parsing import BadRequest, ParsedRequest, parse
 from .translating import in_language, language_of
 

@@ -17,12 +17,12 @@ from starlette.websockets import WebSocket
 from tangible_core.errors import TangibleError
 from tangible_core.files.reading import MOST_BYTES, in_words
 from tangible_core.translation import translate
+from tangible_web.access import Guarded
+from tangible_web.address import static
+from tangible_web.connection import show_key
 
-from ..address import static
 from ..requests import feeling
 from ..state.session import Session
-from .access import Guarded
-from .connection import show_key
 from .live import LiveTab
 from .translating import language_of
 

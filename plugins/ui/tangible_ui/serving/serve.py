@@ -18,14 +18,14 @@ import uvicorn
 from starlette.types import ASGIApp
 
 from tangible_core.runtime.signals import ENDING
+from tangible_web.address import Address
+from tangible_web.connection import PING_S, Connection, Exchange, Strangers
 
-from ..address import Address
 from ..feeling.feeling import Feeling
 from ..logs import silence, tell_pages
 from ..requests import document
 from ..stale_files import channel_of_this_process, folder_of_this_process
 from ..state.session import Session
-from .connection import PING_S, Connection, Exchange, Strangers
 from .routes import application
 
 log: logging.Logger = logging.getLogger(__name__)

@@ -5,9 +5,10 @@ import secrets
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from tangible_web.state_frame import ALONE, OtherLaw
+
 from ..feeling.comparison import ComparisonLoop
 from ..feeling.feeling import Feeling
-from ..feeling.state_frame import ALONE, OtherLaw
 
 Choice = Literal[0, 1, 2]
 """The law named 1 or 2; 0 for neither."""

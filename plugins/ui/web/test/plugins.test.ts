@@ -1,9 +1,9 @@
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
-import { Hub } from "../src/hub";
+import { Hub } from "kit/hub";
 import type * as Plugins from "../src/panels/plugins";
 import type { Panel } from "../src/panels/panel";
-import type { PluginPanel } from "../src/server/messages";
+import type { PluginPanel } from "kit/server/messages";
 
 const GLOVE: PluginPanel = { name: "glove", title: { en: "Glove", de: "Handschuh" }, module: "/panels/glove/module.js", task: "advanced" };
 

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { keyName, SHORTCUTS } from "../src/shortcuts";
+import { keyName, SHORTCUTS } from "kit/shortcuts";
 import { t } from "../src/panels/help/shortcut_words";
 
 const press = (key: string, held: Partial<KeyboardEvent> = {}): string =>

@@ -11,8 +11,8 @@ from tangible_core.errors import OutputError
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.session import Recording, compare_recordings, compare_replay
 from tangible_core.session.recording.files import SUFFIXES
+from tangible_web.framing import FLAG_BITS
 
-from ...framing import FLAG_BITS
 from ..state import WorkerState
 from .table import job
 

@@ -13,9 +13,9 @@ import numpy as np
 from jaxtyping import Float32, Shaped
 from PIL import Image
 
-from tangible_core.data import Material
 from tangible_core.data.pictures import to_grey
 from tangible_core.errors import OutputError
+from tangible_web.materials import distinct_materials
 
 from .surface_view import SurfaceView
 
@@ -67,12 +67,6 @@ def leave(at: Path, what: str, write: Callable[[Path], None]) -> None:
             shutil.rmtree(part, ignore_errors=True)
 
 
-def material_of(materials: tuple[Material, ...]) -> tuple[list[Material], np.ndarray]:
-    """Return the distinct materials, and the index of each label's material among them."""
-    places = {each: place for place, each in enumerate(dict.fromkeys(materials))}
-    return list(places), np.array([places[each] for each in materials], "<u2")
-
-
 def label_type(labels: np.ndarray) -> str:
     """Return the smallest data type that holds the labels."""
     return "<u2" if int(labels.max(initial=0)) < 2**16 else "<u4"
@@ -92,7 +86,7 @@ def _about(seen: SurfaceView) -> dict[str, Any]:
         "levels": [{"step": step, "rows": -(-rows // step), "columns": -(-columns // step)} for step in steps],
         "labels": 0 if seen.labels is None else int(seen.labels.max()) + 1,
         "label_bytes": 2 if seen.labels is None else np.dtype(label_type(seen.labels)).itemsize,
-        "materials": [asdict(each) for each in material_of(seen.materials)[0]],
+        "materials": [asdict(each) for each in distinct_materials(seen.materials)[0]],
         "parts": None if seen.names is None else list(seen.names),
         "photo": seen.picture is not None,
         "fine_photo": None if seen.picture is None else _fine_size(seen.picture),
@@ -132,7 +126,7 @@ def _write_arrays(seen: SurfaceView, count: int, part: Path) -> None:
         kind = label_type(seen.labels)
         for level, labels in enumerate(middles(seen.labels, count)):
             _raw(part / f"labels-{level}.u", labels, kind)
-    _raw(part / "materials.u16", material_of(seen.materials)[1], "<u2")
+    _raw(part / "materials.u16", distinct_materials(seen.materials)[1], "<u2")
     for name, layer in seen.layers.items():
         _raw(part / f"{name}.f32", layer.values, "<f4")
 

@@ -1,6 +1,6 @@
 /** Complaints of the document's check: at their fields, and as a list that leads there. */
-import { button } from "../elements";
-import type { Complaint } from "../server/messages";
+import { button } from "kit/elements";
+import type { Complaint } from "kit/server/messages";
 import { t } from "./words";
 import { FIELD } from "./rows";
 

@@ -1,8 +1,8 @@
 /** Native controls for values of every kind. A control shows a value and reports changes by a person. */
-import { button } from "../elements";
+import { button } from "kit/elements";
 import { t } from "./words";
 import { type Kind, type Option, step } from "./kinds";
-import type { Plain } from "./schema";
+import type { Plain } from "kit/server/messages";
 import { asText, fits, isMap, setInside, same, type FieldChange, typedNumber, typedText, typedYaml } from "./values";
 
 export interface Control {

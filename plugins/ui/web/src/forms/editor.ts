@@ -1,8 +1,8 @@
 /** Changes of the document by forms, applied at once if the person chose that. */
-import type { Document } from "../server/messages";
-import type { Page } from "../page";
+import type { Document } from "kit/server/messages";
+import type { Page } from "kit/page";
 import { isLabels } from "./section";
-import type { Plain } from "./schema";
+import type { Plain } from "kit/server/messages";
 import { at, type Edit } from "./values";
 
 const KEPT = "apply-at-once";

@@ -1,5 +1,6 @@
 /** Kinds of controls by schema. Values without a control are written in YAML. */
-import { alternatives, type Definitions, type Plain, type Schema } from "./schema";
+import { alternatives, type Definitions, type Schema } from "./schema";
+import type { Plain } from "kit/server/messages";
 
 export interface Bounds {
   least?: number;

@@ -1,9 +1,9 @@
 /** A row of a form: name, control, unit, help, reset to the default, and complaint. */
-import { button } from "../elements";
+import { button } from "kit/elements";
 import { t } from "./words";
 import { type Row, controlOrYaml } from "./controls";
 import { formatRange, type Kind, type Option } from "./kinds";
-import type { Plain } from "./schema";
+import type { Plain } from "kit/server/messages";
 import { asText } from "./values";
 
 /** Prefix of the fields' ids; the key follows, as in "field:render.stiffness_n_per_m". */

@@ -1,6 +1,5 @@
 /** The part of JSON Schema that pipeline files use. */
-
-export type Plain = string | number | boolean | null | Plain[] | { [key: string]: Plain };
+import type { Plain } from "kit/server/messages";
 
 export interface Schema {
   type?: string;

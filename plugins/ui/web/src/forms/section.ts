@@ -1,10 +1,10 @@
 /** Form of a section of the file: method and options, rarer ones folded. */
-import type { Document } from "../server/messages";
+import type { Document } from "kit/server/messages";
 import { t } from "./words";
 import { FIELD, rows } from "./rows";
 import { PLAIN, type Method, type Section } from "./sections";
 import type { Option as Choice } from "./kinds";
-import type { Plain } from "./schema";
+import type { Plain } from "kit/server/messages";
 import { at, type Edit, edit, isMap } from "./values";
 
 export type Change = (edit: Edit) => void;

@@ -1,6 +1,6 @@
 /** Values of a pipeline file as people read and type them. */
 import type { Kind } from "./kinds";
-import type { Plain } from "./schema";
+import type { Plain } from "kit/server/messages";
 
 /** Change of a key by its field: a value, a value written in YAML, or removal, so that the default applies. */
 export type FieldChange = { value: Plain } | { written: string } | { gone: true };

@@ -1,8 +1,8 @@
 /** A notice over the canvas that says why nothing is drawn. */
 import "./graphics_notice.css";
-import type { Page } from "../page";
-import type { Trouble } from "../view/view";
-import { t } from "../view/words";
+import type { Page } from "kit/page";
+import type { Trouble } from "kit/view/view";
+import { t } from "kit/view/words";
 
 export function showGraphicsTrouble(page: Pick<Page, "view" | "canvas">): void {
   const box = document.createElement("p");

@@ -1,5 +1,5 @@
 /** The sentence in the head of the page: one, and true, from the latest facts about connection, work and force. */
-import type { Hub } from "../hub";
+import type { Hub } from "kit/hub";
 import { productName } from "../words/product_words";
 import { t } from "./status_words";
 

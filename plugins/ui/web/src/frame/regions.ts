@@ -1,9 +1,9 @@
 /** The page's regions: their names, the links that jump to them, and F6, which goes from one to the next. */
-import type { Page } from "../page";
-import { on } from "../shortcuts";
+import type { Page } from "kit/page";
+import { on } from "kit/shortcuts";
 import { t } from "./words";
-import { speak, language, LANGUAGES } from "../words/words";
-import { THEMES, type Theme } from "./themes";
+import { speak, language, LANGUAGES } from "kit/words/words";
+import { THEMES, type Theme } from "kit/themes";
 
 /** Ids of the regions in the order of F6, and of the elements that take the focus there. */
 const REGIONS = { main: "terrain", left: "left", right: "right", bottom: "bottom", head: "head", "parts-editor": "parts-picture" } as const;

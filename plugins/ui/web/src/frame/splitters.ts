@@ -1,5 +1,5 @@
 /** Splitters between regions, moved by the pointer or the arrow keys; the sizes are kept. */
-import { recall, remember } from "../preferences";
+import { recall, remember } from "kit/preferences";
 import { t } from "./words";
 
 interface Split {

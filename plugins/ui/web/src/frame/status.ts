@@ -1,6 +1,6 @@
 /** The head: the sentence about what goes on, the stop button, and the buttons for force and hand. */
-import type { Page } from "../page";
-import { on } from "../shortcuts";
+import type { Page } from "kit/page";
+import { on } from "kit/shortcuts";
 import { productName } from "../words/product_words";
 import { follow, headline, type Facts } from "./headline";
 import { t as says } from "./status_words";

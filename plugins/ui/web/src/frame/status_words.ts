@@ -1,4 +1,4 @@
-import { words } from "../words/words";
+import { words } from "kit/words/words";
 
 /** What the head of the page says. */
 export const t = words({

@@ -1,9 +1,8 @@
 /** The four tasks of the page, as tabs above their panels, and the switch for all settings. */
-import { recall, remember } from "../preferences";
+import { recall, remember } from "kit/preferences";
+import { TASKS, type Task } from "kit/server/messages";
 import { t } from "./task_words";
 
-export const TASKS = ["picture", "parts", "feel", "hand-on"] as const;
-export type Task = (typeof TASKS)[number];
 /** A task, or: advanced, all settings; log, the log under them; any, below the panels of every task. */
 export type Place = Task | "advanced" | "log" | "any";
 

@@ -1,4 +1,4 @@
-import { words } from "../words/words";
+import { words } from "kit/words/words";
 
 /** The page's frame: what stands around the panels. */
 export const t = words({

@@ -1,8 +1,8 @@
 /** The notice over the relief of a photograph without depth: it does not have the shape of things. */
-import { button } from "../elements";
+import { button } from "kit/elements";
 import { bring } from "../frame/tasks";
-import type { Page } from "../page";
-import type { Document } from "../server/messages";
+import type { Page } from "kit/page";
+import type { Document } from "kit/server/messages";
 import { notice } from "./notice";
 import { t } from "./words";
 

@@ -1,7 +1,7 @@
 /** The notice that the touch is older than the file, where it is not made again by itself. */
-import { button } from "../elements";
+import { button } from "kit/elements";
 import { DocumentEditor } from "../forms/editor";
-import type { Page } from "../page";
+import type { Page } from "kit/page";
 import { notice } from "./notice";
 import { t } from "./words";
 

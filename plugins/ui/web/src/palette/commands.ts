@@ -1,10 +1,11 @@
 /** What the palette reaches: keys, tasks, panels, views, and every control of the panels, by their names on the page. */
-import { TASKS, showTask } from "../frame/tasks";
-import type { Page } from "../page";
+import { TASKS } from "kit/server/messages";
+import { showTask } from "../frame/tasks";
+import type { Page } from "kit/page";
 import { reveal } from "../panels/panel";
 import { t as does } from "../panels/help/shortcut_words";
-import { SHORTCUTS, run, type Name } from "../shortcuts";
-import { language, LANGUAGES, tables } from "../words/words";
+import { SHORTCUTS, run, type Name } from "kit/shortcuts";
+import { language, LANGUAGES, tables } from "kit/words/words";
 import { t } from "./words";
 
 export interface Command {

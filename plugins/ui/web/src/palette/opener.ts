@@ -1,7 +1,7 @@
 /** The button and the key that open the command palette, which is loaded then. */
-import type { Page } from "../page";
-import { caps } from "../panels/help/key_caps";
-import { on, SHORTCUTS } from "../shortcuts";
+import type { Page } from "kit/page";
+import { caps } from "kit/key_caps";
+import { on, SHORTCUTS } from "kit/shortcuts";
 import { t } from "./words";
 
 export function findCommands(page: Pick<Page, "hub" | "canvas" | "say">): void {

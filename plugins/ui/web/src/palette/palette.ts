@@ -1,8 +1,8 @@
 /** The command palette: a combobox over all commands, in a dialog. */
-import type { Page } from "../page";
-import { caps } from "../panels/help/key_caps";
+import type { Page } from "kit/page";
+import { caps } from "kit/key_caps";
 import { fillAll } from "../panels/lazy";
-import { keyName, SHORTCUTS } from "../shortcuts";
+import { keyName, SHORTCUTS } from "kit/shortcuts";
 import { commands, type Command } from "./commands";
 import { ranked } from "./match";
 import "./palette.css";

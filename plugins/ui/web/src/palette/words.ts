@@ -1,4 +1,4 @@
-import { words } from "../words/words";
+import { words } from "kit/words/words";
 
 /** The command palette. */
 export const t = words({

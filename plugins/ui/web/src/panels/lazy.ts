@@ -1,6 +1,6 @@
 /** A panel whose module is loaded when it is first seen open, so that the page starts sooner. */
 import { onComingOrGoing } from "../frame/tasks";
-import type { Page } from "../page";
+import type { Page } from "kit/page";
 import type { Panel } from "./panel";
 import { t } from "./words";
 

@@ -1,7 +1,7 @@
 /** A panel of the page: an independent section under a heading. */
-import type { Page } from "../page";
+import type { Page } from "kit/page";
 import { bring, holder, type Place } from "../frame/tasks";
-import { recall, remember } from "../preferences";
+import { recall, remember } from "kit/preferences";
 import { t } from "./words";
 
 export interface Panel {

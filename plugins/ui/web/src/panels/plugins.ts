@@ -1,8 +1,8 @@
 /** Panels of plugins: each is an ES module that the server serves, loaded when its panel is first opened. */
-import type { Page } from "../page";
-import type { Events, PluginPanel } from "../server/messages";
-import { token } from "../server/token";
-import { language, type Language, type Table, type Words, words } from "../words/words";
+import type { Page } from "kit/page";
+import type { Events, PluginPanel } from "kit/server/messages";
+import { token } from "kit/server/token";
+import { language, type Language, type Table, type Words, words } from "kit/words/words";
 import { lazy } from "./lazy";
 import type { Panel } from "./panel";
 

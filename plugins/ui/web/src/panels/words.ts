@@ -1,4 +1,4 @@
-import { words } from "../words/words";
+import { words } from "kit/words/words";
 
 /** Titles of the panels that are loaded when they are opened, and why one cannot be shown. */
 export const t = words({

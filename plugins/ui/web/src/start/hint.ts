@@ -1,6 +1,6 @@
 /** One line on the canvas that says how to feel; it goes once somebody has felt. */
-import type { Page } from "../page";
-import { isTouching } from "../server/protocol";
+import type { Page } from "kit/page";
+import { isTouching } from "kit/server/protocol";
 import "./hint.css";
 import { t } from "./words";
 

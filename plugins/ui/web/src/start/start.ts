@@ -1,6 +1,6 @@
 /** The start without a file: three tiles in place of the surface. */
-import { button, paragraph } from "../elements";
-import type { Page } from "../page";
+import { button, paragraph } from "kit/elements";
+import type { Page } from "kit/page";
 import { reveal } from "../panels/panel";
 import "./start.css";
 import { t } from "./words";

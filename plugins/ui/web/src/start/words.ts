@@ -1,4 +1,4 @@
-import { words } from "../words/words";
+import { words } from "kit/words/words";
 
 /** The start without a file, and the line that says how to feel. */
 export const t = words({

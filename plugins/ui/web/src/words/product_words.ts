@@ -1,4 +1,4 @@
-import { words } from "./words";
+import { words } from "kit/words/words";
 
 const t = words({
   views: ["Pictures", "Bilder", "Images"],

@@ -4,10 +4,11 @@ import { test } from "node:test";
 import { fieldOf } from "../../src/forms/complaints";
 import { expandMaterials } from "../../src/forms/editor";
 import { formatRange, type Kind, kindOf, type Option, step } from "../../src/forms/kinds";
-import { alternatives, type FileSchema, type Plain, type Schema } from "../../src/forms/schema";
+import { alternatives, type FileSchema, type Schema } from "../../src/forms/schema";
+import type { Plain } from "kit/server/messages";
 import { sections } from "../../src/forms/sections";
 import { asText, edit, fits, setInside, typedNumber, typedText, typedYaml } from "../../src/forms/values";
-import type { Document } from "../../src/server/messages";
+import type { Document } from "kit/server/messages";
 
 const LENGTH = { type: "string", examples: ["6 mm"], pattern: "^[-+]?\\d+\\s*(m|cm|mm|um)$" };
 const DEFS = { Hand: { type: "object", title: "Hand", properties: { mass_kg: { type: "number", minimum: 0, default: 1 } } } };

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { follow, headline } from "../../src/frame/headline";
-import { Hub } from "../../src/hub";
+import { Hub } from "kit/hub";
 
 /** A hub, and a function that tells it events and returns the sentence after the last. */
 function head() {

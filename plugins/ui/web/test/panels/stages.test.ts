@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Outcome, Plan } from "../../src/server/messages";
+import type { Outcome, Plan } from "kit/server/messages";
 import { materialEdit } from "../../src/panels/materials/edit";
 import { withoutNotes, progressOf, StageTable } from "../../src/panels/stages/table";
 

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { actionOf, KEYS, TOOL_KEYS } from "../../src/panels/parts/editor/keys";
 import { LiveUpdate, type Update } from "../../src/panels/parts/editor/live_update";
-import { SHORTCUTS } from "../../src/shortcuts";
+import { SHORTCUTS } from "kit/shortcuts";
 
 test("what is dragged is sent one at a time, the newest last, and what is felt already is not", async () => {
   const sent: number[] = [];

@@ -1,9 +1,9 @@
 /** The long description in a chosen language: to read, hear, copy and download. */
-import { button, field, hint, paragraph } from "../../elements";
+import { button, field, hint, paragraph } from "kit/elements";
 import { copy, download } from "../../files";
-import type { Page } from "../../page";
+import type { Page } from "kit/page";
 import { t } from "./words";
-import { language as ours } from "../../words/words";
+import { language as ours } from "kit/words/words";
 
 const LANGUAGES = ["en", "de", "fr"] as const;
 type Language = (typeof LANGUAGES)[number];

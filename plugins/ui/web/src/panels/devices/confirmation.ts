@@ -1,5 +1,5 @@
 /** Dialog that asks before a device with a motor is started, and says what will happen. */
-import { button } from "../../elements";
+import { button } from "kit/elements";
 import { t } from "./words";
 
 export interface About {

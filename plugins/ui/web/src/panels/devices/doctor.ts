@@ -1,8 +1,8 @@
 /** Figures of the force loop, four times a second while visible. */
-import type { Page } from "../../page";
-import { LIMITS } from "../../contact/limits";
+import type { Page } from "kit/page";
+import { LIMITS } from "kit/contact/limits";
 import { t } from "./words";
-import { t as named } from "../../overlay/words";
+import { t as named } from "kit/overlay/words";
 import { Spark } from "./sparkline";
 
 const LOOK_MS = 250;

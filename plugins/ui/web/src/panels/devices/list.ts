@@ -1,6 +1,6 @@
 /** List items of installed devices: kind, presence, problems. */
-import { button } from "../../elements";
-import type { Page } from "../../page";
+import { button } from "kit/elements";
+import type { Page } from "kit/page";
 import { t } from "./words";
 
 interface Unit {

@@ -1,6 +1,6 @@
 /** The devices panel: installed devices, the choice of one, and figures of its loop. */
-import { button } from "../../elements";
-import type { Page } from "../../page";
+import { button } from "kit/elements";
+import type { Page } from "kit/page";
 import { type Panel, reveal } from "../panel";
 import { t } from "./words";
 import { deviceItem, type Device } from "./list";

@@ -1,8 +1,8 @@
 /** Selection of exporters with options, local to the panel until written into the file. */
-import { button, paragraph } from "../../elements";
+import { button, paragraph } from "kit/elements";
 import type { Option } from "../../forms/kinds";
 import { FIELD, rows } from "../../forms/rows";
-import type { Plain } from "../../forms/schema";
+import type { Plain } from "kit/server/messages";
 import { setInside, type FieldChange } from "../../forms/values";
 import { t } from "./words";
 import { blocksOf, entriesOf, type Entry } from "./entries";

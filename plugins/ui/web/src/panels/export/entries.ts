@@ -1,5 +1,5 @@
 /** Entries of the `export` key: a list of names, or of blocks with options. */
-import type { Plain } from "../../forms/schema";
+import type { Plain } from "kit/server/messages";
 import { isMap, same } from "../../forms/values";
 
 export interface Entry {

@@ -1,9 +1,9 @@
 /** Outcome of each exporter: files, decisions, and tactile legibility. */
-import { paragraph } from "../../elements";
-import { token } from "../../server/token";
-import type { Exported, Outcome } from "../../server/messages";
+import { paragraph } from "kit/elements";
+import { token } from "kit/server/token";
+import type { Exported, Outcome } from "kit/server/messages";
 import { t } from "./words";
-import { decimal } from "../../words/words";
+import { decimal } from "kit/words/words";
 import { type Cure, gradeSentence, verdictTables } from "../verdicts/verdicts";
 import { exporterName } from "./choices";
 

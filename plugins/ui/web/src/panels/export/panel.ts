@@ -1,11 +1,12 @@
 /** The export panel: choose exporters, run them, stop, and download the files. */
-import { button, hint, paragraph } from "../../elements";
+import { button, hint, paragraph } from "kit/elements";
 import { DocumentEditor } from "../../forms/editor";
 import { options } from "../../forms/kinds";
-import { alternatives, type FileSchema, type Plain } from "../../forms/schema";
+import { alternatives, type FileSchema } from "../../forms/schema";
+import type { Plain } from "kit/server/messages";
 import { isMap, same } from "../../forms/values";
-import type { Exported } from "../../server/messages";
-import type { Page } from "../../page";
+import type { Exported } from "kit/server/messages";
+import type { Page } from "kit/page";
 import { t } from "./words";
 import type { Cure } from "../verdicts/verdicts";
 import { Choices, type Exporter } from "./choices";

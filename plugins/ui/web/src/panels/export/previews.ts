@@ -1,10 +1,10 @@
 /** Pictures of the files before they are written: the page that will be swollen, the print, the pins. */
-import { paragraph } from "../../elements";
-import type { Page } from "../../page";
-import { token } from "../../server/token";
+import { paragraph } from "kit/elements";
+import type { Page } from "kit/page";
+import { token } from "kit/server/token";
 import { isMap } from "../../forms/values";
-import type { Plain } from "../../forms/schema";
-import { decimal } from "../../words/words";
+import type { Plain } from "kit/server/messages";
+import { decimal } from "kit/words/words";
 import { exporterName } from "./choices";
 import { t } from "./words";
 

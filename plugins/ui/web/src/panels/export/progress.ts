@@ -1,5 +1,5 @@
 /** The progress of an export: file by file, with the product that is made for it. */
-import type { Page } from "../../page";
+import type { Page } from "kit/page";
 import { productName } from "../../words/product_words";
 import { exporterName } from "./choices";
 import { t } from "./words";

@@ -1,4 +1,4 @@
-import { words } from "../../words/words";
+import { words } from "kit/words/words";
 
 /** Export: files for others. */
 export const t = words({

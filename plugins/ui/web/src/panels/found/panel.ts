@@ -1,7 +1,7 @@
 /** What was found about the picture: what it was read as, what the relief is made of, sizes, parts, and what is doubtful. */
-import type { Note } from "../../server/messages";
-import type { Page } from "../../page";
-import { decimal } from "../../words/words";
+import type { Note } from "kit/server/messages";
+import type { Page } from "kit/page";
+import { decimal } from "kit/words/words";
 import type { Panel } from "../panel";
 import "./found.css";
 import { t } from "./words";

@@ -1,9 +1,9 @@
 /** Settings of this page's hand: whether it is active, its mover, and its penetration. */
-import { button, field, hint } from "../../elements";
-import { type HandState, PRESS_M } from "../../hand/state";
-import type { Page } from "../../page";
+import { button, field, hint } from "kit/elements";
+import { type HandState, PRESS_M } from "kit/hand/state";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
-import { t } from "../../hand/words";
+import { t } from "kit/hand/words";
 
 function build(page: Page, root: HTMLElement): void {
   const status = Object.assign(document.createElement("p"), { id: "hand-held" });

@@ -1,8 +1,8 @@
 /** Help: all keys, from the table of shortcuts, and the ten main tasks. */
-import type { Page } from "../../page";
+import type { Page } from "kit/page";
 import { reveal, type Panel } from "../panel";
-import { on, SHORTCUTS, type Name } from "../../shortcuts";
-import { caps } from "./key_caps";
+import { on, SHORTCUTS, type Name } from "kit/shortcuts";
+import { caps } from "kit/key_caps";
 import { t } from "./words";
 import { t as does } from "./shortcut_words";
 

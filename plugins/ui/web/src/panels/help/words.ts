@@ -1,4 +1,4 @@
-import { words } from "../../words/words";
+import { words } from "kit/words/words";
 
 export const t = words({
   title: ["Keys and help", "Tasten und Hilfe", "Touches et aide"],
@@ -37,18 +37,4 @@ export const t = words({
     "Vérifier la sécurité avant que d'autres touchent la surface, et corriger ce qui est trouvé : section Contrôle préalable."],
   save: ["Save the pipeline file: panel Pipeline file.", "Die Pipeline-Datei speichern: Abschnitt „Pipeline-Datei“.",
     "Enregistrer le fichier de pipeline : section Fichier de pipeline."],
-  Space: ["Space", "Leertaste", "Espace"],
-  Escape: ["Esc", "Esc", "Échap"],
-  Shift: ["Shift", "Umschalt", "Maj"],
-  Ctrl: ["Ctrl", "Strg", "Ctrl"],
-  Alt: ["Alt", "Alt", "Alt"],
-  ArrowLeft: ["Left", "Links", "Gauche"],
-  ArrowRight: ["Right", "Rechts", "Droite"],
-  ArrowUp: ["Up", "Hoch", "Haut"],
-  ArrowDown: ["Down", "Runter", "Bas"],
-  PageUp: ["Page up", "Bild hoch", "Page haut"],
-  PageDown: ["Page down", "Bild runter", "Page bas"],
-  Enter: ["Enter", "Eingabe", "Entrée"],
-  Home: ["Home", "Pos 1", "Début"],
-  End: ["End", "Ende", "Fin"],
 });

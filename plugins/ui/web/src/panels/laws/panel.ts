@@ -1,7 +1,7 @@
 /** Two laws on one hand: side by side, or blindly with a tally. */
-import { button, field, hint } from "../../elements";
-import type { Events } from "../../server/messages";
-import type { Page } from "../../page";
+import { button, field, hint } from "kit/elements";
+import type { Events } from "kit/server/messages";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { t } from "./words";
 

@@ -1,4 +1,4 @@
-import { words } from "../../words/words";
+import { words } from "kit/words/words";
 
 /** Two force laws on one hand. */
 export const t = words({

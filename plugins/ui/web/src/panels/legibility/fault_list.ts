@@ -1,9 +1,9 @@
 /** List of the places at which a verdict fails, each with a button that leads there. */
-import { button, paragraph } from "../../elements";
-import type { Verdict } from "../../server/messages";
-import type { Page } from "../../page";
+import { button, paragraph } from "kit/elements";
+import type { Verdict } from "kit/server/messages";
+import type { Page } from "kit/page";
 import { t } from "./words";
-import { ninthOfPicture } from "../../words/place_words";
+import { ninthOfPicture } from "kit/words/place_words";
 import type { Fault, FaultMarks } from "./fault_marks";
 
 /** Greatest number of places listed per verdict. */

@@ -1,6 +1,6 @@
 /** Numbered marks over the surface, hidden from screen readers: the panel lists them in words. */
-import type { Page } from "../../page";
-import type { Vec } from "../../server/protocol";
+import type { Page } from "kit/page";
+import type { Vec } from "kit/server/protocol";
 
 /** A failing place: shares from the left and from the top. */
 export interface Fault {

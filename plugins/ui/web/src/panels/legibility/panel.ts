@@ -1,11 +1,11 @@
 /** Verdicts of tactile legibility by medium, with places and cures. */
-import { button, field, hint, paragraph } from "../../elements";
+import { button, field, hint, paragraph } from "kit/elements";
 import { DocumentEditor } from "../../forms/editor";
 import { onComingOrGoing } from "../../frame/tasks";
-import type { Legible, Medium } from "../../server/messages";
-import type { Page } from "../../page";
+import type { Legible, Medium } from "kit/server/messages";
+import type { Page } from "kit/page";
 import { t } from "./words";
-import { decimal } from "../../words/words";
+import { decimal } from "kit/words/words";
 import { sentenceOf } from "../verdicts/cures";
 import { type Cure, gradeSentence, verdictTables } from "../verdicts/verdicts";
 import { FaultMarks } from "./fault_marks";

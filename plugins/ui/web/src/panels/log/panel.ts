@@ -1,13 +1,13 @@
 /** The log panel, with filters and search. */
-import { button } from "../../elements";
+import { button } from "kit/elements";
 import { download } from "../../files";
-import type { Events } from "../../server/messages";
-import type { Page } from "../../page";
+import type { Events } from "kit/server/messages";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
-import { recall, remember } from "../../preferences";
+import { recall, remember } from "kit/preferences";
 import { t } from "./words";
 import { productName } from "../../words/product_words";
-import { decimal, language } from "../../words/words";
+import { decimal, language } from "kit/words/words";
 import { asText, LEVELS, Lines, isShown, type Level, type Line } from "./lines";
 import "./log.css";
 

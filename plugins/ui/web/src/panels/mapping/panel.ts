@@ -1,10 +1,10 @@
 /** Mapping of the picture to the hand: a frame to drag, and a region to enlarge. */
 import "../overlay/overlay.css";
-import { button } from "../../elements";
-import { MappingFrame } from "../../overlay/tools/mapping_frame";
-import type { Page } from "../../page";
+import { button } from "kit/elements";
+import { MappingFrame } from "kit/overlay/tools/mapping_frame";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
-import { t } from "../../overlay/words";
+import { t } from "kit/overlay/words";
 
 function build(page: Page, root: HTMLElement): void {
   const frame = new MappingFrame(page);

@@ -1,7 +1,7 @@
 /** The edit of the document that gives a segment another material. */
 import { isLabels } from "../../forms/section";
 import { at, type Edit, isMap } from "../../forms/values";
-import type { Plain } from "../../forms/schema";
+import type { Plain } from "kit/server/messages";
 
 /** Return the edit: in a map from label to material, the segment's entry alone. If segments go by roughness, or a rule
  * decided this one, a rule for it comes first, and the others stay as they are. */

@@ -1,12 +1,12 @@
 /** Materials of the segments with reasons and areas; and the library with figures and sources. */
-import { tableWithHeads } from "../../elements";
+import { tableWithHeads } from "kit/elements";
 import { DocumentEditor } from "../../forms/editor";
 import { LIBRARY } from "../../forms/rows";
-import type { Material, Segment } from "../../server/messages";
-import type { Page } from "../../page";
-import { materialWord } from "../../words/material_words";
-import { shownNumber } from "../../words/part_words";
-import { decimal, notation } from "../../words/words";
+import type { Material, Segment } from "kit/server/messages";
+import type { Page } from "kit/page";
+import { materialWord } from "kit/words/material_words";
+import { shownNumber } from "kit/words/part_words";
+import { decimal, notation } from "kit/words/words";
 import type { Panel } from "../panel";
 import { t } from "./words";
 import { materialEdit } from "./edit";

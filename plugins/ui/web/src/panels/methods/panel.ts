@@ -1,11 +1,11 @@
 /** The methods panel: forms of the document; run and stop; undo and redo. */
-import { button } from "../../elements";
+import { button } from "kit/elements";
 import { showComplaints } from "../../forms/complaints";
 import { DocumentEditor } from "../../forms/editor";
 import { SectionForm } from "../../forms/section";
 import { sections } from "../../forms/sections";
 import type { FileSchema } from "../../forms/schema";
-import type { Page } from "../../page";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { t } from "../../forms/words";
 import { runControls } from "./run_controls";

@@ -1,7 +1,7 @@
 /** Buttons to compute depth, texture or everything, to stop, and a note if the surface is outdated. */
-import { button } from "../../elements";
+import { button } from "kit/elements";
 import type { DocumentEditor } from "../../forms/editor";
-import type { Page } from "../../page";
+import type { Page } from "kit/page";
 import { t } from "../../forms/words";
 
 export function runControls(page: Page, editor: DocumentEditor): HTMLElement {

@@ -1,5 +1,5 @@
 /** A picture from the camera, which is on only between the person's start and the picture. */
-import { button } from "../../elements";
+import { button } from "kit/elements";
 import { t } from "./words";
 
 export function camera(take: (files: File[]) => void, say: (text: string) => void): HTMLElement {

@@ -1,7 +1,7 @@
 /** Offer of unsaved edits of a previous program: to open or discard. */
-import { button } from "../../elements";
-import type { Page } from "../../page";
-import { language } from "../../words/words";
+import { button } from "kit/elements";
+import type { Page } from "kit/page";
+import { language } from "kit/words/words";
 import { t } from "./draft_words";
 
 export function draftOffer({ hub, net, say }: Page): HTMLElement {

@@ -1,6 +1,6 @@
 /** Browser of folders on this computer: one file or a pair is chosen from a list. */
-import { button, field } from "../../elements";
-import type { Server } from "../../page";
+import { button, field } from "kit/elements";
+import type { Server } from "kit/page";
 import { t } from "./words";
 
 type Kind = "folder" | "picture" | "video" | "heights" | "recording" | "pipeline";

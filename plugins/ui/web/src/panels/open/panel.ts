@@ -1,6 +1,6 @@
 /** Open pictures, pairs, height maps, recordings, pipeline files and examples. */
-import { button, field } from "../../elements";
-import type { Page } from "../../page";
+import { button, field } from "kit/elements";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { t } from "./words";
 import { camera } from "./camera";

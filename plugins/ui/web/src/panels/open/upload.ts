@@ -1,7 +1,7 @@
 /** Upload of files, one after the other; then they are opened together. */
-import type { Server } from "../../page";
-import { token } from "../../server/token";
-import { language } from "../../words/words";
+import type { Server } from "kit/page";
+import { token } from "kit/server/token";
+import { language } from "kit/words/words";
 
 /** Called with the share of a file that is sent, 0 to 100. */
 export type Progress = (name: string, percent: number) => void;

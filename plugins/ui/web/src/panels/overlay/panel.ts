@@ -1,10 +1,10 @@
 /** Settings of the overlay, and what limits the force. */
 import "./overlay.css";
-import { LIMITS, perSecond, type Counts } from "../../contact/limits";
-import { MM_PER_N, SECONDS, SWITCHES } from "../../overlay/settings";
-import type { Page } from "../../page";
+import { LIMITS, perSecond, type Counts } from "kit/contact/limits";
+import { MM_PER_N, SECONDS, SWITCHES } from "kit/overlay/settings";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
-import { t } from "../../overlay/words";
+import { t } from "kit/overlay/words";
 
 const ASK_MS = 1000;
 

@@ -1,7 +1,7 @@
 /** List of named parts, and guidance of the hand to one of them by a device. */
-import { button } from "../../elements";
-import type { Events } from "../../server/messages";
-import type { Page } from "../../page";
+import { button } from "kit/elements";
+import type { Events } from "kit/server/messages";
+import type { Page } from "kit/page";
 import { t } from "./words";
 
 interface Named {

@@ -1,6 +1,6 @@
 /** The parts panel: opens the editor, whose module is loaded then. */
-import { button, hint } from "../../elements";
-import type { Page } from "../../page";
+import { button, hint } from "kit/elements";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { t } from "./words";
 import { namedParts } from "./guidance";

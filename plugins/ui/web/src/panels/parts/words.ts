@@ -1,4 +1,4 @@
-import { words } from "../../words/words";
+import { words } from "kit/words/words";
 
 /** Texts of the parts panel; those of the editor are in editor/words.ts, loaded with it. */
 export const t = words({

@@ -1,8 +1,8 @@
 /** Preflight: verdicts on safety and perceptibility, with cures that change the document. */
-import { button, paragraph } from "../../elements";
+import { button, paragraph } from "kit/elements";
 import { DocumentEditor } from "../../forms/editor";
-import type { Judged } from "../../server/messages";
-import type { Page } from "../../page";
+import type { Judged } from "kit/server/messages";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { t } from "./words";
 import { type Cure, gradeSentence, verdictTables } from "../verdicts/verdicts";

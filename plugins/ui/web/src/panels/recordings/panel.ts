@@ -1,7 +1,7 @@
 /** Recordings: record touch, list recordings, play them, replay them with another law, compare two. */
-import { button, field } from "../../elements";
-import { bulk } from "../../server/connection";
-import type { Page } from "../../page";
+import { button, field } from "kit/elements";
+import { bulk } from "kit/server/connection";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { Player } from "./player";
 import { COLUMNS, Ticks } from "./ticks";

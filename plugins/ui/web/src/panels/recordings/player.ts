@@ -1,5 +1,5 @@
 /** Player of a recording: its ticks replace the loop's in drawing and announcements. */
-import type { Page } from "../../page";
+import type { Page } from "kit/page";
 import type { Ticks } from "./ticks";
 
 export class Player {

@@ -1,5 +1,5 @@
 /** Table of figures by name. */
-import { notation } from "../../words/words";
+import { notation } from "kit/words/words";
 import { t } from "./words";
 
 export function table(figures: Record<string, number>): HTMLTableElement {

@@ -1,5 +1,5 @@
 /** A recording: a row per tick, as the core's TICK_COLUMNS, each convertible to a state. */
-import { FLAGS, now, type State, type Vec } from "../../server/protocol";
+import { FLAGS, now, type State, type Vec } from "kit/server/protocol";
 
 export const COLUMNS = 17;
 const AT = { time: 0, late: 1, hand: 2, velocity: 5, proxy: 8, force: 11, flags: 14, buttons: 15 } as const;

@@ -1,4 +1,4 @@
-import { words } from "../../words/words";
+import { words } from "kit/words/words";
 
 /** Recordings: keep, list, play, compare. */
 export const t = words({

@@ -1,14 +1,14 @@
 /** The ruler and the markers: figures, a profile, and the keyboard's way to both. */
 import "../overlay/overlay.css";
-import { button } from "../../elements";
-import { Markers } from "../../overlay/tools/markers";
-import type { Measurement } from "../../overlay/tools/measurement";
-import { profile } from "../../overlay/tools/profile";
-import { Ruler } from "../../overlay/tools/ruler";
-import { formatFixed } from "../../contact/values";
-import type { Page } from "../../page";
+import { button } from "kit/elements";
+import { Markers } from "kit/overlay/tools/markers";
+import type { Measurement } from "kit/overlay/tools/measurement";
+import { profile } from "kit/overlay/tools/profile";
+import { Ruler } from "kit/overlay/tools/ruler";
+import { formatFixed } from "kit/contact/values";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
-import { t } from "../../overlay/words";
+import { t } from "kit/overlay/words";
 
 function build(page: Page, root: HTMLElement): void {
   const ruler = new Ruler(page);

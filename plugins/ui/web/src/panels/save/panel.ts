@@ -1,7 +1,7 @@
 /** Save the pipeline file on this computer, or download it. */
-import { button, field } from "../../elements";
+import { button, field } from "kit/elements";
 import { download } from "../../files";
-import type { Page } from "../../page";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { t } from "./words";
 

@@ -1,4 +1,4 @@
-import { words } from "../../words/words";
+import { words } from "kit/words/words";
 
 /** Saving of the pipeline file. */
 export const t = words({

@@ -1,13 +1,13 @@
 /** Settings of the person: colours, language, sizes, keys. Kept in this browser, not in the pipeline file. */
-import { button } from "../../elements";
-import type { Page } from "../../page";
+import { button } from "kit/elements";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
-import { recall, remember } from "../../preferences";
-import { letters } from "../../shortcuts";
+import { recall, remember } from "kit/preferences";
+import { letters } from "kit/shortcuts";
 import { resetSizes, resize } from "../../frame/splitters";
-import { THEMES, type Theme } from "../../frame/themes";
+import { THEMES, type Theme } from "kit/themes";
 import { t } from "./words";
-import { LANGUAGES, language, speak, type Language } from "../../words/words";
+import { LANGUAGES, language, speak, type Language } from "kit/words/words";
 
 function build(page: Page, root: HTMLElement): void {
   root.append(colours(page), languages(), sizes(), keys(), readLogSwitch(page));

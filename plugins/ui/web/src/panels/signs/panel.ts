@@ -1,7 +1,7 @@
 /** What the signs on the surface and the words at the contact mean. */
-import { GLYPHS } from "../../overlay/pieces/contact_label";
-import { t as overlay } from "../../overlay/words";
-import type { Page } from "../../page";
+import { GLYPHS } from "kit/overlay/pieces/contact_label";
+import { t as overlay } from "kit/overlay/words";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import "./signs.css";
 import { t } from "./words";

@@ -1,10 +1,10 @@
 /** Settings of sound and speech. */
-import { button } from "../../elements";
-import type { Page } from "../../page";
+import { button } from "kit/elements";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
-import { on } from "../../shortcuts";
-import { VOICES, type VoiceName } from "../../sound/sound";
-import { RATES } from "../../speech/speech";
+import { on } from "kit/shortcuts";
+import { VOICES, type VoiceName } from "kit/sound/sound";
+import { RATES } from "kit/speech/speech";
 import { t } from "./words";
 import "./sound.css";
 

@@ -1,4 +1,4 @@
-import { words } from "../../words/words";
+import { words } from "kit/words/words";
 
 export const t = words({
   title: ["Sound and speech", "Ton und Sprache", "Son et parole"],

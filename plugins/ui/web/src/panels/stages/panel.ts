@@ -1,5 +1,5 @@
 /** Products of the pipeline: method, outcome, reason and time of each. */
-import type { Page } from "../../page";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { productName } from "../../words/product_words";
 import { t } from "./words";

@@ -1,5 +1,5 @@
 /** State of each product from the program's messages: first the plan, then running stages, then outcomes. */
-import type { Note, Outcome, Plan } from "../../server/messages";
+import type { Note, Outcome, Plan } from "kit/server/messages";
 
 export type StateOf = "waiting" | "running" | "ran" | "cached" | "given" | "skipped" | "refused" | "failed" | "stopped";
 

@@ -1,6 +1,6 @@
 /** Cures as sentences: what a change of the document does, for people who have never seen its keys. */
-import type { Verdict } from "../../server/messages";
-import { decimal } from "../../words/words";
+import type { Verdict } from "kit/server/messages";
+import { decimal } from "kit/words/words";
 import { t } from "./words";
 
 type Value = Verdict["changes"][number]["value"];

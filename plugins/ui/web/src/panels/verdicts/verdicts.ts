@@ -1,6 +1,6 @@
 /** Verdicts as tables, with source, cure in words, and buttons that change the document. */
-import { button, tableWithHeads, paragraph } from "../../elements";
-import type { Grade, Verdict } from "../../server/messages";
+import { button, tableWithHeads, paragraph } from "kit/elements";
+import type { Grade, Verdict } from "kit/server/messages";
 import { distinct, restOf, sentenceOf } from "./cures";
 import { t } from "./words";
 

@@ -1,4 +1,4 @@
-import { words } from "../../words/words";
+import { words } from "kit/words/words";
 
 /** Verdicts of preflight and of legibility. */
 export const t = words({

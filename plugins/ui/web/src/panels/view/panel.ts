@@ -1,18 +1,18 @@
 /** Settings of the view: light, steep walls, magnifier and camera. The strip below the surface has what it shows. */
 import "./view.css";
-import { slider } from "../../elements";
-import { CAMERA_KEYS, type CameraAct } from "../../view/camera_input";
-import { Magnifier } from "../../view/magnifier";
-import type { Page } from "../../page";
+import { slider } from "kit/elements";
+import { CAMERA_KEYS, type CameraAct } from "kit/view/camera_input";
+import { Magnifier } from "kit/view/magnifier";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
-import { COARSEST, DENSITIES } from "../../terrain/needles";
-import { Refiner } from "../../surface/refinement";
-import { STEEPS } from "../../terrain/shader";
-import { BOUNDS, type Settings } from "../../view/settings";
-import { looksOf, Look } from "../../view/look";
-import { lookChoice } from "../../view/look_choice";
-import { colour } from "../../frame/themes";
-import { t } from "../../view/words";
+import { COARSEST, DENSITIES } from "kit/terrain/needles";
+import { Refiner } from "kit/surface/refinement";
+import { STEEPS } from "kit/terrain/shader";
+import { BOUNDS, type Settings } from "kit/view/settings";
+import { looksOf, Look } from "kit/view/look";
+import { lookChoice } from "kit/view/look_choice";
+import { colour } from "kit/themes";
+import { t } from "kit/view/words";
 
 type Word = Parameters<typeof t>[0];
 const LENSES_MM = [0, 5, 10, 20];

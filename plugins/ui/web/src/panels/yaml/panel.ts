@@ -1,9 +1,9 @@
 /** The pipeline file as text: to read, edit and copy. */
-import { button, field } from "../../elements";
+import { button, field } from "kit/elements";
 import { copy } from "../../files";
 import { DocumentEditor } from "../../forms/editor";
-import type { Complaint } from "../../server/messages";
-import type { Page } from "../../page";
+import type { Complaint } from "kit/server/messages";
+import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { t } from "./words";
 import "./yaml.css";

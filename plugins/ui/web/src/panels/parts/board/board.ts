@@ -1,6 +1,6 @@
 /** The picture with borders, numbers and names of its parts, and the marks of the tool, at screen resolution. */
-import { measuring } from "../../../instrumentation";
-import { colour } from "../../../frame/themes";
+import { measuring } from "kit/instrumentation";
+import { colour } from "kit/themes";
 import { borders, borderReach } from "./borders";
 import type { Drawing } from "../drawing/drawing";
 import { union, type Box, EMPTY, isEmpty, type Point } from "../pixels/labels";

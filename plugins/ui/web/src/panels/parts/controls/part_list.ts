@@ -1,7 +1,7 @@
 /** List of the parts from front to back, and fields of the selected one. */
-import { button, field, hint } from "../../../elements";
-import { materialWord } from "../../../words/material_words";
-import { shownNumber } from "../../../words/part_words";
+import { button, field, hint } from "kit/elements";
+import { materialWord } from "kit/words/material_words";
+import { shownNumber } from "kit/words/part_words";
 import { t } from "../editor/words";
 import type { Drawing, Part } from "../drawing/drawing";
 import { frontToBack } from "../drawing/order";

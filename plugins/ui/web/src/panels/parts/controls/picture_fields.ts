@@ -1,5 +1,5 @@
 /** Fields for the picture's title and language, and for the shape of all parts. */
-import { field } from "../../../elements";
+import { field } from "kit/elements";
 import { SHAPES } from "../drawing/picture_details";
 import type { EditorState } from "../editor/state";
 import { t } from "../editor/words";

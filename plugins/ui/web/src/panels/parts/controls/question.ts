@@ -1,5 +1,5 @@
 /** A dialog with a question, answered by a button; Escape is the first answer, which changes nothing. */
-import { button } from "../../../elements";
+import { button } from "kit/elements";
 
 export function question<T extends string>(title: string, texts: string[], answers: readonly (readonly [T, string])[]): Promise<T> {
   const dialog = document.createElement("dialog");

@@ -1,7 +1,7 @@
 /** Toolbar of the tools, their options, and undo, redo and zoom. */
-import { button, field } from "../../../elements";
+import { button, field } from "kit/elements";
 import { t } from "../editor/words";
-import { caps } from "../../help/key_caps";
+import { caps } from "kit/key_caps";
 import { KINDS } from "../editor/requests";
 import { TOOL_KEYS } from "../editor/keys";
 import type { EditorState } from "../editor/state";

@@ -1,6 +1,6 @@
 /** The parts editor: the picture with the borders of its parts, in place of the page's columns. */
-import type { Page, Server } from "../../../page";
-import { letters, keyName } from "../../../shortcuts";
+import type { Page, Server } from "kit/page";
+import { letters, keyName } from "kit/shortcuts";
 import { type Action, actionOf } from "./keys";
 import { firstParts, type Opened, openParts, proposePart, snapOutline } from "./requests";
 import { Saving } from "./saving";

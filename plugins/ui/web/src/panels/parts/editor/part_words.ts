@@ -1,7 +1,7 @@
 /** Parts in words: their names, heights, sizes and places. */
 import { t } from "./words";
-import { ninthOfPicture } from "../../../words/place_words";
-import { decimal } from "../../../words/words";
+import { ninthOfPicture } from "kit/words/place_words";
+import { decimal } from "kit/words/words";
 import type { Part } from "../drawing/drawing";
 import type { Labels } from "../pixels/labels";
 import type { Place } from "../pixels/pieces";

@@ -1,8 +1,8 @@
 /** Requests of the parts editor to the server. */
-import type { Server } from "../../../page";
-import { bulk } from "../../../server/connection";
-import { token } from "../../../server/token";
-import { language as ours } from "../../../words/words";
+import type { Server } from "kit/page";
+import { bulk } from "kit/server/connection";
+import { token } from "kit/server/token";
+import { language as ours } from "kit/words/words";
 import type { HowToPropose } from "../controls/tools";
 import type { Part } from "../drawing/drawing";
 import type { Heights } from "../drawing/picture_details";

@@ -1,5 +1,5 @@
 /** Saving of the parts after questions, and live updates of heights and materials. */
-import type { Server } from "../../../page";
+import type { Server } from "kit/page";
 import { LiveUpdate } from "./live_update";
 import { shareOf, sliversInWords } from "./part_words";
 import { question } from "../controls/question";

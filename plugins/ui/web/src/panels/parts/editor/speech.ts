@@ -1,5 +1,5 @@
 /** The texts of the parts editor: its status line, and what it announces. */
-import type { Page } from "../../../page";
+import type { Page } from "kit/page";
 import { heightOf, nameOf, placeOf, shareOf } from "./part_words";
 import type { EditorState, Notice } from "./state";
 import { t } from "./words";

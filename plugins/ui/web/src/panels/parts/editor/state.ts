@@ -1,7 +1,7 @@
 /** State of the parts editor: drawing, tools, crosshair, notice and saved state. It knows neither elements nor texts;
  * view, speech and saving subscribe to it. */
-import { Hub } from "../../../hub";
-import { shownNumber } from "../../../words/part_words";
+import { Hub } from "kit/hub";
+import { shownNumber } from "kit/words/part_words";
 import { type Fault, type Tool, type ToolRequests, Tools } from "../controls/tools";
 import { Drawing, Full, type Part } from "../drawing/drawing";
 import type { Step } from "../drawing/history";

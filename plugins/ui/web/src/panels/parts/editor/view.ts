@@ -1,7 +1,7 @@
 /** The elements of the parts editor: they show its state and change with it. */
-import { button, tableWithHeads } from "../../../elements";
+import { button, tableWithHeads } from "kit/elements";
 import { t as frame } from "../../../frame/words";
-import { caps } from "../../help/key_caps";
+import { caps } from "kit/key_caps";
 import { Board } from "../board/board";
 import { attachPointers } from "../board/pointers";
 import { PartList } from "../controls/part_list";

@@ -1,4 +1,4 @@
-import { words } from "../../../words/words";
+import { words } from "kit/words/words";
 
 /** The editor of parts. */
 export const t = words({

@@ -1,0 +1,86 @@
+"""The page's address, printed and opened before the server itself is imported.
+
+The browser takes as long to open a page as the server takes to start; its first requests wait in the socket.
+"""
+
+import os
+import secrets
+import socket
+import threading
+import webbrowser
+from collections.abc import Generator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Self
+
+from tangible_core.errors import ConfigError
+from tangible_core.runtime.standard_output import stream
+
+HOST = "127.0.0.1"
+HTTP_PORT = 80
+"""The port that an address may leave out."""
+NOT_BUILT = (
+    "the page was not built when this was installed, as npm could not be reached; install again where it can (`pip "
+    "install --force-reinstall --no-deps .`), or build it: `npm ci && npm run build` in plugins/web"
+)
+"""Complaint of everything that needs the built page."""
+
+
+@dataclass(frozen=True)
+class Address:
+    """A socket that listens on this machine alone, and the key that every request must carry."""
+
+    listening: socket.socket
+    key: str
+
+    @classmethod
+    @contextmanager
+    def of(cls, port: int) -> Generator[Self]:
+        """Listen on a port; 0 takes a free one. Raises: ConfigError if the page was not built, or the port is taken."""
+        if not (static() / "app.js").is_file():
+            raise ConfigError(NOT_BUILT)
+        try:
+            listening = socket.create_server((HOST, port))
+        except OSError as error:
+            why = os.strerror(error.errno) if error.errno else error
+            raise ConfigError(f"--port {port}: {why}; 0 takes a free one") from error
+        with listening:
+            yield cls(listening, new_key())
+
+    @property
+    def port(self) -> int:
+        """The port that listens."""
+        return self.listening.getsockname()[1]
+
+    @property
+    def hosts(self) -> frozenset[str]:
+        """The names of this machine under which a browser may reach the server, in small letters, with the port."""
+        ports = (f":{self.port}", "") if self.port == HTTP_PORT else (f":{self.port}",)
+        return frozenset(f"{name}{port}" for name in (HOST, "localhost", "[::1]") for port in ports)
+
+    def announce(self, browser: bool) -> None:
+        """Print the address. browser: open it too."""
+        url = f"http://{HOST}:{self.port}/?token={self.key}"
+        print(url, file=stream(), flush=True)
+        if browser:  # in a thread, as a browser in the terminal blocks until it ends
+            threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
+
+
+def new_key() -> str:
+    """Return a new key of 128 bits, or $TANGIBLE_UI_TOKEN, which tests set."""
+    return os.environ.get("TANGIBLE_UI_TOKEN") or secrets.token_urlsafe(16)
+
+
+def static() -> Path:
+    """Return the folder of the built page; it does not exist if the page was not built."""
+    return Path(str(files("tangible_web"))) / "static"
+
+
+def page_file(name: str) -> str:
+    """Return the text of a file of the built page. Raises: ConfigError if the page was not built."""
+    try:
+        return (static() / name).read_text("utf-8")
+    except FileNotFoundError as error:
+        raise ConfigError(NOT_BUILT) from error

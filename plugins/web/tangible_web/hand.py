@@ -1,0 +1,105 @@
+"""The page's hand: the pointer device of this server, kept alive with the page, released when the page falls silent."""
+
+import math
+import time
+from typing import NamedTuple, final
+
+from tangible_core.data import Vector
+from tangible_core.errors import DeviceError
+from tangible_core.mapping import Placement
+from tangible_core.servo.limits import PAGE_SILENCE_S
+from tangible_devices.pointer import PointerClient
+
+from .framing import BUTTON_BITS, TAGS
+
+FARTHEST_M = 1.0
+OPENING_S = 1.0
+"""Longest wait for the pointer's channel, s; a running loop has opened its device long before."""
+HIGH_M: Vector = (0.0, 0.0, FARTHEST_M)
+"""Position of a released hand in the picture's frame, above every surface."""
+CLEAR_M = 0.5
+"""Minimum height of a released pointer in the picture, m; a lower one is held up from here."""
+
+
+class Held(NamedTuple):
+    """A position of the hand; by default high above, which is a released hand."""
+
+    at: Vector = HIGH_M
+    """Position in the picture's frame, m."""
+    buttons: int = 0
+    heard_s: float = -math.inf
+
+
+NOBODY = Held()
+
+
+@final
+class Hand:
+    """The client of this server's pointer device.
+
+    A page sends positions in the picture; the document's mapping turns them into positions in the pointer's own frame.
+    """
+
+    def __init__(self, channel: str) -> None:
+        self._channel = channel
+        self._to = Placement()
+        self._client: PointerClient | None = None
+        self._held = NOBODY
+
+    @property
+    def holding(self) -> bool:
+        """True while a page moves the hand."""
+        return time.monotonic() - self._held.heard_s < PAGE_SILENCE_S
+
+    def open(self, to: Placement) -> None:
+        """Connect to the device, which must be open. to: the picture's place under it. Raises: DeviceError."""
+        self.close()
+        self._to = to
+        self._client = PointerClient(self._channel, OPENING_S)
+        self.release()
+
+    def point(self, at: Vector, buttons: int, tag: int) -> None:
+        """Move the hand to where a page has it; ignored if not finite, or farther than a metre."""
+        if all(abs(part) < FARTHEST_M for part in at):
+            self._held = Held(at, (tag & TAGS) << BUTTON_BITS | buttons & 0xFF, time.monotonic())
+            self._send()
+
+    def release(self) -> None:
+        """Release the hand: no force from the next tick on."""
+        self._held = NOBODY
+        self._send()
+
+    def keep(self) -> None:
+        """Tell the loop that the server lives; release the hand of a page that fell silent. Meant to be polled."""
+        if self._held is not NOBODY and not self.holding:
+            self.release()
+        else:
+            self._send()
+
+    def close(self) -> None:
+        """Disconnect from the device."""
+        client, self._client = self._client, None
+        if client is not None:
+            client.close()
+
+    def _send(self) -> None:
+        """Send the position; another thread may disconnect meanwhile, and the loop may end."""
+        if (client := self._client) is None:
+            return
+        held = self._held
+        try:
+            if held is NOBODY and high_without_client(self._to):
+                client.release()
+            else:
+                client.send(self._to.under_hand(held.at), held.buttons)
+        except DeviceError:
+            if self._client is client:
+                self.close()
+
+
+def high_without_client(to: Placement) -> bool:
+    """Return True if a pointer without a client, a metre up in its own frame, is above every surface.
+
+    Under a mapping that enlarges or lifts much, that metre may lie inside a surface.
+    """
+    return (FARTHEST_M - to.offset_z_m) / to.scale >= CLEAR_M

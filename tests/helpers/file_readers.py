@@ -587,9 +587,10 @@ def _draft(path: Path) -> object:
 
 
 def _request(path: Path) -> object:
-    from tangible_ui.serving.parsing import parse
+    from tangible_ui.requests import REQUESTS
+    from tangible_web.parsing import parse
 
-    return parse(path.read_bytes().decode(errors="replace"))
+    return parse(path.read_bytes().decode(errors="replace"), REQUESTS)
 
 
 REQUESTS = {

@@ -14,9 +14,10 @@ from websockets.sync.client import ClientConnection, connect
 
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.serving.routes import application
-from tangible_ui.serving.serve import Server, settings, watch
+from tangible_ui.serving.serve import Server, watch
 from tangible_ui.state.session import Session
 from tangible_web.address import HOST, Address
+from tangible_web.server import settings
 from waiting import LONGEST_S
 
 KEY = "key-of-a-test-0123456789"

@@ -2,17 +2,19 @@
 
 import math
 import time
-from typing import NamedTuple, final
+from typing import Any, NamedTuple, final
 
 from tangible_core.data import Vector
 from tangible_core.errors import DeviceError
 from tangible_core.mapping import Placement
-from tangible_core.servo.limits import PAGE_SILENCE_S
+from tangible_core.servo.limits import PAGE_FOLLOW_S, PAGE_SERVER_SILENCE_S, PAGE_SILENCE_S
 from tangible_devices.pointer import PointerClient
 
 from .framing import BUTTON_BITS, TAGS
 
 FARTHEST_M = 1.0
+KEEP_S = 0.01
+"""Interval at which a program polls `Hand.keep`, s."""
 OPENING_S = 1.0
 """Longest wait for the pointer's channel, s; a running loop has opened its device long before."""
 HIGH_M: Vector = (0.0, 0.0, FARTHEST_M)
@@ -41,10 +43,20 @@ class Hand:
     """
 
     def __init__(self, channel: str) -> None:
-        self._channel = channel
+        self.channel = channel
         self._to = Placement()
         self._client: PointerClient | None = None
         self._held = NOBODY
+
+    @property
+    def device(self) -> dict[str, Any]:
+        """The device that this hand moves, as a pipeline file writes it."""
+        return {
+            "use": "pointer",
+            "channel": self.channel,
+            "stale_after_s": PAGE_SERVER_SILENCE_S,
+            "follow_s": PAGE_FOLLOW_S,
+        }
 
     @property
     def holding(self) -> bool:
@@ -55,7 +67,7 @@ class Hand:
         """Connect to the device, which must be open. to: the picture's place under it. Raises: DeviceError."""
         self.close()
         self._to = to
-        self._client = PointerClient(self._channel, OPENING_S)
+        self._client = PointerClient(self.channel, OPENING_S)
         self.release()
 
     def point(self, at: Vector, buttons: int, tag: int) -> None:

@@ -11,8 +11,8 @@ import pytest
 from broken_messages import BINARY, CLOSE, TEXT, broken_frames, broken_request, frame, send_broken
 from page_server import KEY, PageServer
 from tangible_ui.serving import routes
-from tangible_ui.serving.serve import MOST_MESSAGE_BYTES
 from tangible_web.address import HOST
+from tangible_web.server import MOST_MESSAGE_BYTES
 from waiting import LONGEST_S, until
 
 

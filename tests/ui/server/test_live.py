@@ -3,6 +3,7 @@
 import json
 import math
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -10,11 +11,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tangible_core.errors import TangibleError
-from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.requests import REQUESTS
-from tangible_ui.serving.live import LiveTab, _as_json
-from tangible_ui.serving.parsing import BadRequest, parse
 from tangible_web import framing as wire
+from tangible_web.hand import Hand
+from tangible_web.live import LiveTab, _as_json
+from tangible_web.parsing import BadRequest, parse
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(),
@@ -28,30 +29,22 @@ WHOLE = {
 }
 
 
-class QuietSession:
-    """A session of one tab, which holds, and what it began."""
-
-    def __init__(self) -> None:
-        self.feeling = Feeling("ui-test")
-        self.holder: Any = None
-
-
-def tab() -> tuple[Any, QuietSession]:
-    session: Any = QuietSession()
+def tab() -> tuple[Any, Hand]:
+    """A tab that holds the hand, and the hand."""
+    hand = Hand("ui-test")
     tab: Any = LiveTab.__new__(LiveTab)
-    tab._session, tab._seq, tab._drawn = session, 2, 0
-    tab._acked = type("Acked", (), {"set": lambda self: None})()
-    session.holder = tab
-    return tab, session
+    tab._program, tab._seq, tab._drawn = SimpleNamespace(hand=hand, holds=lambda _: True), 2, 0
+    tab._acked = SimpleNamespace(set=lambda: None)
+    return tab, hand
 
 
 class TestFrames:
     def test_frame_that_is_complete_is_handled(self) -> None:
-        live, session = tab()
+        live, hand = tab()
         live._handle_frame(WHOLE[wire.POINTER])
-        assert session.feeling.hand.holding
+        assert hand.holding
         live._handle_frame(WHOLE[wire.RELEASE])
-        assert not session.feeling.hand.holding
+        assert not hand.holding
         live._handle_frame(WHOLE[wire.ACK])
         assert live._drawn == 1
 
@@ -61,11 +54,11 @@ class TestFrames:
         for damaged in [*(frame[:end] for end in range(1, len(frame))), frame + b"\0", frame * 2]:
             if damaged in WHOLE.values():
                 continue
-            live, session = tab()
-            session.feeling.hand.point((0.01, 0.0, 0.0), 0, 0)
-            held = session.feeling.hand._held
+            live, hand = tab()
+            hand.point((0.01, 0.0, 0.0), 0, 0)
+            held = hand._held
             live._handle_frame(damaged)
-            assert (session.feeling.hand._held, live._drawn) == (held, 0)
+            assert (hand._held, live._drawn) == (held, 0)
 
     @given(st.binary(min_size=1, max_size=100))
     def test_frame_of_any_bytes_leaves_a_finite_hand(self, frame: bytes) -> None:
@@ -73,9 +66,9 @@ class TestFrames:
 
 
 def check(frame: bytes) -> None:
-    live, session = tab()
+    live, hand = tab()
     live._handle_frame(frame)
-    assert all(abs(part) <= 1.0 for part in session.feeling.hand._held.at)
+    assert all(abs(part) <= 1.0 for part in hand._held.at)
     assert 0 <= live._drawn <= live._seq
 
 
@@ -85,7 +78,7 @@ def ask(**said: Any) -> str:
 
 class TestAsks:
     def test_request_that_is_valid_is_parsed(self) -> None:
-        asked = parse(ask(ask="edit", text="scene: x", apply=True))
+        asked = parse(ask(ask="edit", text="scene: x", apply=True), REQUESTS)
         assert (asked.number, asked.ask, asked.told) == (1, REQUESTS["edit"], {"text": "scene: x", "apply": True})
 
     def test_request_that_is_invalid_is_refused_with_a_sentence(self) -> None:
@@ -108,7 +101,7 @@ class TestAsks:
             (ask(ask="begin", files=[1]), 1, "files.0: .*string"),
         ):
             with pytest.raises(BadRequest, match=says) as refused:
-                parse(text)
+                parse(text, REQUESTS)
             assert refused.value.number == number
             assert len(str(refused.value)) < 400 and "\n" not in str(refused.value)
 
@@ -118,7 +111,7 @@ class TestAsks:
         """Every JSON is parsed or refused; nothing else happens."""
         for said in (told, {"number": 1, "ask": told}, {"number": 1, "ask": name, "path": told, "text": told}):
             try:
-                asked = parse(json.dumps(said))
+                asked = parse(json.dumps(said), REQUESTS)
             except TangibleError as error:
                 assert str(error)
             else:

@@ -15,13 +15,14 @@ from websockets.exceptions import InvalidStatus
 
 from page_server import KEY, PageServer
 from tangible_core.files.reading import MOST_BYTES
-from tangible_ui.serving.live import IN_FLIGHT, MOST_ASKS
+from tangible_ui.serving import routes
 from tangible_ui.serving.routes import WRONG_KEY
-from tangible_web import connection, routes, serve
+from tangible_web import connection, server
 from tangible_web.access import HEADERS
 from tangible_web.address import Address, new_key
 from tangible_web.connection import AT_ONCE_BYTES, MOST_STRANGERS
 from tangible_web.framing import ACK, ACK_FRAME, POINTER, POINTER_FRAME
+from tangible_web.live import IN_FLIGHT, MOST_ASKS
 from waiting import LONGEST_S, until
 
 NAMES = {"digest": "abc", "name": "a.f32", "batch": "0" * 16, "folder": "export-1", "panel": "glove"}
@@ -34,7 +35,7 @@ def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[PageServer
     (static / "index.html").write_text("<title>t</title>")
     (static / "app.js").write_text("1")
     monkeypatch.setattr(routes, "static", lambda: static)
-    monkeypatch.setattr(serve, "PING_S", 600.0)  # a page that answers no ping is cut off for that alone
+    monkeypatch.setattr(server, "PING_S", 600.0)  # a page that answers no ping is cut off for that alone
     with PageServer(tmp_path, monkeypatch) as page:
         yield page
 
@@ -219,7 +220,7 @@ class TestFloods:
         raw.close()
 
     def test_browser_that_answers_no_ping_is_removed(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr(serve, "PING_S", 0.1)
+        monkeypatch.setattr(server, "PING_S", 0.1)
         monkeypatch.setattr(routes, "static", lambda: tmp_path)
         with PageServer(tmp_path, monkeypatch) as page, handshake(page, page.host) as raw:
             assert raw.recv(4) == b"HTTP"

@@ -8,7 +8,6 @@ from typing import Any
 
 import pytest
 
-import tangible_ui
 from page_files import UI, WEB, node
 from tangible_core.data import TICK_COLUMNS, TickFlag
 from tangible_core.pipeline.config.schema import json_schema
@@ -24,7 +23,6 @@ from tangible_ui.worker.jobs import JOBS
 from tangible_ui.worker.jobs.table import job
 from tangible_web import framing as wire
 
-SOURCES = Path(tangible_ui.__file__).parent
 SAID = (1, 5, 513, 4_000_000_000, 4_000_000, 77, 1.7e12 + 0.25)
 VECTORS = tuple(k / 8 for k in range(15))
 SCRIPT = """
@@ -116,7 +114,8 @@ class TestNames:
         assert REQUESTS.keys() - written <= NOT_ASKED
 
     def test_event_names_are_those_of_the_page(self) -> None:
-        here, there = sources(SOURCES, ".py"), (WEB / "kit/server/messages.ts").read_text(encoding="utf-8")
+        here = sources(UI.parent / "tangible_ui", ".py") + sources(WEB / "tangible_web", ".py")
+        there = (WEB / "kit/server/messages.ts").read_text(encoding="utf-8")
         told = set(re.findall(r"(?:\btell|\bEvent)\(\s*\"(\w+)\"", here) + re.findall(r"\"event\": \"(\w+)\"", here))
         body = there[there.index("export interface Events") :]
         assert told - {"answer", "refused"} == set(re.findall(r"^  (\w+): Said\b", body, re.M)) - OF_THE_PAGE

@@ -13,7 +13,6 @@ from tangible_core.mapping import MappedDevice, WorkspaceMapping, placement_of
 from tangible_core.plugins.failures import sentence
 from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.servo import Beacon, Packed, Safety, Servo, null_touch
-from tangible_core.servo.limits import PAGE_FOLLOW_S, PAGE_SERVER_SILENCE_S
 from tangible_core.servo.ring import STOP
 from tangible_web.framing import BUTTON_BITS
 from tangible_web.hand import Hand
@@ -97,12 +96,7 @@ class Feeling:
     @property
     def own_device(self) -> dict[str, Any]:
         """The page's own device, as a pipeline file writes it."""
-        return {
-            "use": "pointer",
-            "channel": self.channel,
-            "stale_after_s": PAGE_SERVER_SILENCE_S,
-            "follow_s": PAGE_FOLLOW_S,
-        }
+        return self.hand.device
 
     @property
     def servo(self) -> Servo | None:

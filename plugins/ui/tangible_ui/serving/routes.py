@@ -10,7 +10,6 @@ from starlette.applications import Starlette
 from starlette.requests import ClientDisconnect, HTTPConnection, Request
 from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
-from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
@@ -20,15 +19,15 @@ from tangible_core.translation import translate
 from tangible_web.access import Guarded
 from tangible_web.address import static
 from tangible_web.connection import show_key
+from tangible_web.live import LiveTab
+from tangible_web.server import ASK_AGAIN, BuiltPage
 
 from ..requests import feeling
 from ..state.session import Session
-from .live import LiveTab
+from .session_program import SessionProgram
 from .translating import language_of
 
 FOREVER = "private, max-age=31536000, immutable"
-ASK_AGAIN = "no-cache"
-"""Cache rule: a browser may keep the file, and asks each time if it is still current."""
 WRONG_KEY = 4401
 EXPORTS = "export-"
 """Prefix of the worker's folders of exported files."""
@@ -39,16 +38,6 @@ WINDOW = frozenset({"row", "rows", "column", "columns", "of", "bytes"})
 MOST_ITEMS = 4_000_000
 
 Answer = Callable[[Request], Awaitable[Response]]
-
-
-class BuiltPage(StaticFiles):
-    """The page's own files; a new build is used at the next load."""
-
-    def file_response(self, *args: Any, **options: Any) -> Response:
-        """Return the file with its ETag, which the browser must send each time."""
-        response = super().file_response(*args, **options)
-        response.headers["cache-control"] = ASK_AGAIN
-        return response
 
 
 def application(session: Callable[[], Session], key: str, hosts: frozenset[str], lifespan: Any) -> ASGIApp:
@@ -123,7 +112,7 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
 
     async def live(socket: WebSocket) -> None:
         if has_key(socket):
-            await LiveTab(session(), socket).live()
+            await LiveTab(SessionProgram(session()), socket).live()
         else:  # only after an accept can a page tell a wrong key from a program that is gone
             await socket.accept()
             await socket.close(WRONG_KEY, NOT_YOURS)

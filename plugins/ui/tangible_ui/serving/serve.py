@@ -15,11 +15,11 @@ from types import FrameType
 from typing import Any, final
 
 import uvicorn
-from starlette.types import ASGIApp
 
 from tangible_core.runtime.signals import ENDING
 from tangible_web.address import Address
-from tangible_web.connection import PING_S, Connection, Exchange, Strangers
+from tangible_web.hand import KEEP_S
+from tangible_web.server import settings
 
 from ..feeling.feeling import Feeling
 from ..logs import silence, tell_pages
@@ -29,13 +29,9 @@ from ..state.session import Session
 from .routes import application
 
 log: logging.Logger = logging.getLogger(__name__)
-MOST_MESSAGE_BYTES = 2**20
-"""Size limit of a message, bytes; pipeline files are smaller."""
 THREADS = 32
 """Threads for waiting calls: a disk, a pipe, a loop that ends. Such a call must not wait for another one of them."""
 
-KEEP_S = 0.01
-"""Interval at which the server polls the loop, s: it proves that it lives, and moves the hand of a compared law."""
 LATEST_START_S = 2.0
 """Longest wait for a first scene before the loop starts, s."""
 
@@ -50,19 +46,6 @@ def serve(files: list[Path], sets: list[str], address: Address) -> None:
     served.raise_if_failed()
     for number in server.heard[:1]:
         signal.raise_signal(number)
-
-
-def settings(app: ASGIApp) -> uvicorn.Config:
-    """Return settings with which nobody can block the server, fill its memory, or find the key in a log."""
-    strangers = Strangers()
-    http: Any = partial(Exchange, strangers)
-    sockets: Any = partial(Connection, strangers)
-    return uvicorn.Config(
-        app, log_level="warning", access_log=False, server_header=False, loop="asyncio", http=http, lifespan="on",
-        ws=sockets, ws_per_message_deflate=False, ws_max_size=MOST_MESSAGE_BYTES,
-        ws_ping_interval=PING_S, ws_ping_timeout=PING_S,
-        timeout_graceful_shutdown=1,
-    )  # fmt: skip
 
 
 @final

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Protocol, final, runtime_checkable
 
-from tangible_core.errors import DeviceError, TangibleError
-from tangible_core.plugins.failures import sentence
+from tangible_core.errors import DeviceError
+from tangible_web.live import describe_error
 
 from ..feeling.choice import Choice, NotConfirmed
 from ..feeling.comparison import ComparisonLoop
@@ -209,8 +209,3 @@ class Session:
             await asyncio.to_thread(self.laws.comparison.close)
             if self.recorder is not None:
                 await asyncio.to_thread(self.recorder.stop)
-
-
-async def describe_error(error: BaseException) -> str:
-    """Return the sentence that a page shows for an error; of one that nobody foresaw, a file gets the traceback."""
-    return str(error) if isinstance(error, TangibleError) else await asyncio.to_thread(sentence, error)

@@ -3,17 +3,19 @@
 import asyncio
 import json
 import math
+from collections.abc import Coroutine, Mapping
 from contextlib import suppress
-from typing import Any, final
+from typing import Any, Protocol, final
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from tangible_web import framing
-from tangible_web.connection import cut_off
+from tangible_core.errors import TangibleError
+from tangible_core.plugins.failures import sentence
 
-from ..state.session import Session, describe_error
-from .parsing import BadRequest, ParsedRequest, parse
-from .translating import in_language, language_of
+from . import framing
+from .connection import cut_off
+from .hand import Hand
+from .parsing import BadRequest, ParsedRequest, Request, parse
 
 IN_FLIGHT = 2
 """Maximum number of states that a tab has not drawn yet; more would only queue up in the browser."""
@@ -30,24 +32,81 @@ MOST_ASKS = 32
 """Maximum number of requests that a tab may wait for at once; `stop` is always taken."""
 
 
+class Program(Protocol):
+    """What the tabs of a page show and move; used in the event loop's thread alone."""
+
+    @property
+    def requests(self) -> Mapping[str, Request]:
+        """What tabs may ask for, by name."""
+        ...
+
+    @property
+    def state(self) -> Any:
+        """First argument of every request."""
+        ...
+
+    @property
+    def hand(self) -> Hand:
+        """The hand, which the tab that holds it moves."""
+        ...
+
+    @property
+    def running(self) -> bool:
+        """True while forces are given."""
+        ...
+
+    def greeting(self) -> dict[str, Any]:
+        """Return the values of the first event of a tab."""
+        ...
+
+    def enter(self, tab: "LiveTab") -> None:
+        """Add a tab."""
+        ...
+
+    def leave(self, tab: "LiveTab") -> None:
+        """Remove a tab that was closed or is gone."""
+        ...
+
+    def holds(self, tab: "LiveTab") -> bool:
+        """Return True if this tab moves the hand."""
+        ...
+
+    def frame(self, seq: int, status: int) -> bytes | None:
+        """Return the newest tick as a STATE frame with this status; None if it was overwritten."""
+        ...
+
+    def begin(self, work: Coroutine[Any, Any, None]) -> None:
+        """Run a coroutine in the background."""
+        ...
+
+    def translate(self, event: dict[str, Any], language: str) -> dict[str, Any]:
+        """Return an event in the language of a tab."""
+        ...
+
+
 @final
 class LiveTab:
     """A connected tab."""
 
-    def __init__(self, session: Session, socket: WebSocket) -> None:
-        self._session, self._socket = session, socket
-        self._language = language_of(socket.query_params.get("language", ""))
+    def __init__(self, program: Program, socket: WebSocket) -> None:
+        self._program, self._socket = program, socket
+        self._language = socket.query_params.get("language", "")
         self._events: asyncio.Queue[str] = asyncio.Queue()
         self._waiting = self._asks = 0
         self._seq = self._drawn = 0
         self._acked = asyncio.Event()
         self._gone = False
 
+    @property
+    def unread(self) -> bool:
+        """True while events wait to be sent."""
+        return self._waiting > 0
+
     def say(self, event: dict[str, Any]) -> None:
         """Send an event; a tab that does not read is cut off."""
         if self._gone:
             return
-        text = _as_json(in_language(event, self._language))
+        text = _as_json(self._program.translate(event, self._language))
         self._waiting += len(text)
         if self._events.qsize() >= MOST_WAITING or self._waiting > MOST_WAITING_CHARACTERS:
             self._gone = True
@@ -58,17 +117,8 @@ class LiveTab:
     async def live(self) -> None:
         """Serve the tab until it is closed."""
         await self._socket.accept()
-        session = self._session
-        known = {"history": session.history, "scene": session.scene}
-        self.say(
-            {
-                "event": "hello",
-                "version": framing.VERSION,
-                **known,
-                "empty": session.waits_for_file and not session.text,
-            }
-        )
-        session.enter(self)
+        self.say({"event": "hello", "version": framing.VERSION, **self._program.greeting()})
+        self._program.enter(self)
         try:
             with suppress(WebSocketDisconnect):
                 async with asyncio.TaskGroup() as group:
@@ -78,7 +128,7 @@ class LiveTab:
                         each.cancel()
         finally:
             self._gone = True
-            self._session.leave(self)
+            self._program.leave(self)
 
     async def _hear(self) -> None:
         while (message := await self._socket.receive())["type"] != "websocket.disconnect":
@@ -89,32 +139,32 @@ class LiveTab:
 
     def _handle_frame(self, body: bytes) -> None:
         """Handle a binary frame; one that is incomplete or of an unknown kind is ignored."""
-        kind, hand = body[0], self._session.feeling.hand
+        kind, hand = body[0], self._program.hand
         if kind == framing.ACK and len(body) == framing.ACK_FRAME.size:
             self._drawn = max(self._drawn, min(framing.ACK_FRAME.unpack(body)[1], self._seq))
             self._acked.set()
-        elif kind == framing.POINTER and len(body) == framing.POINTER_FRAME.size and self._session.holder is self:
+        elif kind == framing.POINTER and len(body) == framing.POINTER_FRAME.size and self._program.holds(self):
             _, buttons, tag, _, x, y, z = framing.POINTER_FRAME.unpack(body)
             hand.point((x, y, z), buttons, tag)
-        elif kind == framing.RELEASE and len(body) == framing.RELEASE_FRAME.size and self._session.holder is self:
+        elif kind == framing.RELEASE and len(body) == framing.RELEASE_FRAME.size and self._program.holds(self):
             hand.release()
 
     def _begin_request(self, text: str) -> None:
         """Begin a request, or refuse it with a sentence."""
         try:
-            asked = parse(text)
+            asked = parse(text, self._program.requests)
         except BadRequest as error:
             self._refuse(error.number, str(error))
             return
         if self._asks < MOST_ASKS or asked.name == "stop":
             self._asks += 1
-            self._session.begin(self._answer(asked))
+            self._program.begin(self._answer(asked))
         else:
             self._refuse(asked.number, f"{MOST_ASKS} requests are not done yet; wait for them")
 
     async def _answer(self, asked: ParsedRequest) -> None:
         try:
-            found = await asked.ask(self._session, self, **asked.told)
+            found = await asked.ask(self._program.state, self, **asked.told)
         except Exception as error:  # noqa: BLE001 - whatever a plugin raises is for the page to say
             self._refuse(asked.number, await describe_error(error))
         else:
@@ -142,21 +192,18 @@ class LiveTab:
                     await self._acked.wait()
                     await asyncio.sleep(PAUSE_S)
                 await asyncio.sleep(sent_s + SPACING_S - loop.time())
-                while idle and not self._session.feeling.running and loop.time() < sent_s + IDLE_SPACING_S:
+                while idle and not self._program.running and loop.time() < sent_s + IDLE_SPACING_S:
                     await asyncio.sleep(SPACING_S)
-                sent_s, idle = loop.time(), not self._session.feeling.running
-                if frame := self._session.feeling.frame(self._seq + 1, self._status(), self._session.laws.other_law()):
+                sent_s, idle = loop.time(), not self._program.running
+                held = framing.HOLDING * self._program.holds(self)
+                if frame := self._program.frame(self._seq + 1, framing.RUNNING * self._program.running | held):
                     self._seq += 1
                     await self._socket.send_bytes(frame)
 
-    def _status(self) -> int:
-        recorder = self._session.recorder
-        recording = recorder is not None and recorder.recording
-        return (
-            framing.RUNNING * self._session.feeling.running
-            | framing.HOLDING * (self._session.holder is self)
-            | framing.RECORDING * recording
-        )
+
+async def describe_error(error: BaseException) -> str:
+    """Return the sentence that a page shows for an error; of one that nobody foresaw, a file gets the traceback."""
+    return str(error) if isinstance(error, TangibleError) else await asyncio.to_thread(sentence, error)
 
 
 def _as_json(event: dict[str, Any]) -> str:

@@ -2,6 +2,7 @@
 
 import inspect
 import json
+from collections.abc import Awaitable, Callable, Mapping
 from functools import cache
 from typing import Any, NamedTuple, NoReturn, get_type_hints
 
@@ -9,8 +10,8 @@ from pydantic import BaseModel, ConfigDict, ValidationError, create_model
 
 from tangible_core.errors import TangibleError, did_you_mean, quoted, shown
 
-from ..requests import REQUESTS, Request
-
+Request = Callable[..., Awaitable[Any]]
+"""A request's function: called with the program's state, the tab, and the tab's arguments by name."""
 MOST_SHOWN = 200
 
 
@@ -32,8 +33,8 @@ class ParsedRequest(NamedTuple):
     told: dict[str, Any]
 
 
-def parse(text: str) -> ParsedRequest:
-    """Parse a message. Raises: BadRequest."""
+def parse(text: str, requests: Mapping[str, Request]) -> ParsedRequest:
+    """Parse a message. requests: those that there are, by name. Raises: BadRequest."""
     try:
         said = json.loads(text, parse_constant=_refuse)
     except (ValueError, RecursionError) as error:
@@ -42,8 +43,8 @@ def parse(text: str) -> ParsedRequest:
     if type(number) is not int:
         raise BadRequest(None, 'the message is not a JSON object with a "number"')
     name = said.pop("ask", None)
-    if not isinstance(name, str) or (ask := REQUESTS.get(name)) is None:
-        hint = did_you_mean(name, REQUESTS) if isinstance(name, str) else ""
+    if not isinstance(name, str) or (ask := requests.get(name)) is None:
+        hint = did_you_mean(name, requests) if isinstance(name, str) else ""
         raise BadRequest(number, f"there is no request {quoted(name)}{hint}")
     return ParsedRequest(number, name, ask, _fitting(number, name, ask, said))
 
@@ -65,7 +66,7 @@ def _fitting(number: int, name: str, ask: Request, said: dict[str, Any]) -> dict
 def _arguments(ask: Request) -> type[BaseModel]:
     """Return a model of the arguments that a request takes, and no others."""
     types = get_type_hints(ask)
-    _, _, *rest = inspect.signature(ask).parameters.values()  # the session and the tab come first
+    _, _, *rest = inspect.signature(ask).parameters.values()  # the state and the tab come first
     fields: dict[str, Any] = {
         each.name: (types[each.name], ... if each.default is each.empty else each.default) for each in rest
     }

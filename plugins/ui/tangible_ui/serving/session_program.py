@@ -1,0 +1,58 @@
+"""The session as its tabs use it: what they are told, ask for and move."""
+
+from collections.abc import Coroutine
+from typing import Any, final
+
+from tangible_web.framing import RECORDING
+from tangible_web.live import LiveTab
+
+from ..requests import REQUESTS
+from ..state.session import Session
+from .translating import in_language, language_of
+
+
+@final
+class SessionProgram:
+    """The program behind the page of `tangible ui`."""
+
+    requests = REQUESTS
+
+    def __init__(self, session: Session) -> None:
+        self.state, self.hand = session, session.feeling.hand
+
+    @property
+    def running(self) -> bool:
+        """True while forces are given."""
+        return self.state.feeling.running
+
+    def greeting(self) -> dict[str, Any]:
+        """Return what happened before, the surface, and whether no file was opened yet."""
+        session = self.state
+        empty = session.waits_for_file and not session.text
+        return {"history": session.history, "scene": session.scene, "empty": empty}
+
+    def enter(self, tab: LiveTab) -> None:
+        """Add a tab; it gets the hand if no other tab holds it."""
+        self.state.enter(tab)
+
+    def leave(self, tab: LiveTab) -> None:
+        """Remove a tab; a hand that it held is released."""
+        self.state.leave(tab)
+
+    def holds(self, tab: LiveTab) -> bool:
+        """Return True if this tab moves the hand."""
+        return self.state.holder is tab
+
+    def frame(self, seq: int, status: int) -> bytes | None:
+        """Return the newest tick, with the force of a second law and whether ticks are recorded."""
+        recorder = self.state.recorder
+        recording = recorder is not None and recorder.recording
+        return self.state.feeling.frame(seq, status | RECORDING * recording, self.state.laws.other_law())
+
+    def begin(self, work: Coroutine[Any, Any, None]) -> None:
+        """Run a coroutine in the background; its errors are sent to all tabs."""
+        self.state.begin(work)
+
+    def translate(self, event: dict[str, Any], language: str) -> dict[str, Any]:
+        """Return an event in the language of a tab."""
+        return in_language(event, language_of(language))

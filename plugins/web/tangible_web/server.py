@@ -1,0 +1,97 @@
+"""The web server of a page: its limits, its files, and a thread for a program that has something else to do."""
+
+import asyncio
+from collections.abc import AsyncGenerator, Callable, Sequence
+from contextlib import asynccontextmanager
+from functools import partial
+from threading import Event, Thread
+from typing import Any, Self, TypeVar, final
+
+import uvicorn
+from starlette.applications import Starlette
+from starlette.responses import Response
+from starlette.routing import BaseRoute
+from starlette.staticfiles import StaticFiles
+from starlette.types import ASGIApp
+
+from .access import Guarded
+from .address import Address
+from .connection import PING_S, Connection, Exchange, Strangers
+from .hand import KEEP_S, Hand
+
+ASK_AGAIN = "no-cache"
+"""Cache rule: a browser may keep the file, and asks each time if it is still current."""
+MOST_MESSAGE_BYTES = 2**20
+"""Size limit of a message, bytes; pipeline files are smaller."""
+T = TypeVar("T")
+
+
+def settings(app: ASGIApp, log_level: str = "warning") -> uvicorn.Config:
+    """Return settings with which nobody can block the server, fill its memory, or find the key in a log."""
+    strangers = Strangers()
+    http: Any = partial(Exchange, strangers)
+    sockets: Any = partial(Connection, strangers)
+    return uvicorn.Config(
+        app, log_level=log_level, access_log=False, server_header=False, loop="asyncio", http=http, lifespan="on",
+        ws=sockets, ws_per_message_deflate=False, ws_max_size=MOST_MESSAGE_BYTES,
+        ws_ping_interval=PING_S, ws_ping_timeout=PING_S,
+        timeout_graceful_shutdown=1,
+    )  # fmt: skip
+
+
+class BuiltPage(StaticFiles):
+    """The pages' own files; a new build is used at the next load."""
+
+    def file_response(self, *args: Any, **options: Any) -> Response:
+        """Return the file with its ETag, which the browser must send each time."""
+        response = super().file_response(*args, **options)
+        response.headers["cache-control"] = ASK_AGAIN
+        return response
+
+
+@final
+class ServerThread:
+    """A server in a thread of its own, as a context manager; the hand that its page moves is released at the end.
+
+    What strangers send is not reported: the terminal is the program's.
+    """
+
+    def __init__(self, routes: Sequence[BaseRoute], address: Address, hand: Hand) -> None:
+        app = Guarded(Starlette(routes=routes, lifespan=self._lifespan), address.hosts)
+        self._server, self._hand, self._ready = uvicorn.Server(settings(app, "error")), hand, Event()
+        self._thread = Thread(target=self._server.run, kwargs={"sockets": [address.listening]}, daemon=True)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        self._ready.wait()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._server.should_exit = True
+        self._thread.join()
+
+    def call(self, work: Callable[[], T]) -> T:
+        """Call a function in the server's thread, and return its result."""
+
+        async def there() -> T:
+            return work()
+
+        return asyncio.run_coroutine_threadsafe(there(), self._loop).result()
+
+    def post(self, work: Callable[[], object]) -> None:
+        """Call a function in the server's thread, soon, after those that were posted before."""
+        self._loop.call_soon_threadsafe(work)
+
+    @asynccontextmanager
+    async def _lifespan(self, _: Any) -> AsyncGenerator[None]:
+        self._loop = asyncio.get_running_loop()
+        keeping = asyncio.ensure_future(self._keep())
+        self._ready.set()
+        yield
+        keeping.cancel()
+        self._hand.release()
+
+    async def _keep(self) -> None:
+        while True:
+            self._hand.keep()
+            await asyncio.sleep(KEEP_S)

@@ -10,20 +10,20 @@ import { attachKeyboard } from "kit/hand/keyboard";
 import { findPartCentres } from "kit/hand/part_centres";
 import { Hub } from "kit/hub";
 import { Shaking } from "kit/shaking";
+import { Connection } from "kit/server/connection";
 import { isTouching } from "kit/server/protocol";
 import { Sound, VOICES, type VoiceName } from "kit/sound/sound";
 import type { Scene } from "kit/surface/scene";
-import { HandChannel } from "./hand_channel";
 import { attachPad } from "./pad";
-import { Questions, type Told } from "./questions";
+import { Questions, type StudyEvents, type Told } from "./questions";
 import { fetchSurface } from "./surfaces";
 import { t } from "./words";
 
 const element = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 const now_s = (): number => Date.now() / 1000;
 
-const hub = new Hub();
-const net = new HandChannel(hub);
+const hub = new Hub<StudyEvents>();
+const net = new Connection(hub);
 const pad = element("pad");
 const said = element("said");
 const sound = new Sound(hub, () => page.scene);
@@ -40,9 +40,6 @@ attachKeyboard(hand, page);
 attachGamePad(hand);
 attachPad(hand, pad, () => page.scene);
 new Shaking(page, sound);
-hub.tell("loop", { event: "loop", at_s: now_s(), running: true, why: "", own_hand: true });
-hub.tell("holding", { event: "holding", at_s: now_s(), holding: true, free: false });
-
 let touched = false;
 hub.on("state", (state) => {
   if (!page.scene || isTouching(state) === touched) return;
@@ -61,7 +58,7 @@ async function feel({ surface, sounds, lead }: Told): Promise<void> {
   touched = false;
   pad.hidden = !surface;
   if (!surface) return;
-  const scene = await fetchSurface(surface).catch(() => null); // the interval is over
+  const scene = await fetchSurface(net, surface).catch(() => null); // the program is gone
   if (!scene || newest !== surface) return;
   for (const each of Object.keys(VOICES)) sound.let(each as VoiceName, sounds?.includes(each) ?? true);
   const [w, l] = scene.meta.extent_m;
@@ -82,8 +79,17 @@ for (const type of ["keydown", "pointerdown"]) document.addEventListener(type, w
 
 const questions = new Questions(
   { log: element("log"), answers: element("answers"), aloud: element<HTMLInputElement>("aloud") },
+  net,
   (told) => void feel(told),
 );
+hub.on("hello", ({ history }) => {
+  hub.tell("loop", { event: "loop", at_s: now_s(), running: true, why: "", own_hand: true });
+  hub.tell("holding", { event: "holding", at_s: now_s(), holding: true, free: false });
+  questions.takeAll(history as unknown as Told[]);
+});
+hub.on("said", (told) => questions.takeAll([told]));
+hub.on("gone", () => questions.lose());
+hub.on("state", ({ seq }) => net.drawn(seq)); // nothing is drawn that would take time
 const stop = (): void => void net.stop().catch(() => undefined);
 document.title = document.querySelector("h1")!.textContent = t("study");
 element("answers").ariaLabel = t("answers");
@@ -96,4 +102,3 @@ element("leave").addEventListener("click", () => {
   questions.leave();
 });
 document.addEventListener("keydown", ({ key }) => key === "Escape" && stop(), { capture: true });
-void questions.listen();

@@ -1,20 +1,21 @@
 /** What the program says and asks: lines of a log, read aloud if wanted, and answers as buttons and keys. */
 import { button, paragraph } from "kit/elements";
+import type { PageEvents } from "kit/events";
+import type { Server } from "kit/page";
 import { recall, remember } from "kit/preferences";
 import { language } from "kit/words/words";
 import { t } from "./words";
 
 /** Lines that stay readable above the answers. */
 const LINES = 4;
-/** Pause before the program is asked again after it did not answer, ms. */
-const AGAIN_MS = 1000;
 /** The key that leaves the study. */
 const LEAVE = "q";
 const ALOUD = "study aloud";
 
 /** An event of the program. */
 export interface Told {
-  number: number;
+  /** Number of the event in this session, from 1. */
+  line: number;
   text: string;
   /** Keys that answer, each with its meaning; null for a sentence that asks nothing. */
   choices: [key: string, meaning: string][] | null;
@@ -26,6 +27,11 @@ export interface Told {
   lead?: number | null;
 }
 
+/** Events of a participant's page. */
+export interface StudyEvents extends PageEvents {
+  said: Told;
+}
+
 interface Places {
   log: HTMLElement;
   answers: HTMLElement;
@@ -35,10 +41,13 @@ interface Places {
 export class Questions {
   private question: Told | null = null;
   private leaving = false;
+  private newest = 0;
+  private isLost = false;
 
   /** feel: called with each event about a surface. */
   constructor(
     private at: Places,
+    private net: Pick<Server, "ask">,
     private feel: (told: Told) => void,
   ) {
     at.aloud.checked = recall(ALOUD, true);
@@ -49,20 +58,10 @@ export class Questions {
     document.addEventListener("keydown", (event) => this.press(event));
   }
 
-  /** Take what the program says, until the page is closed. */
-  async listen(): Promise<never> {
-    for (let after = 0, lost = false; ; ) {
-      try {
-        const events = (await (await fetch(`events?after=${after}`)).json()) as Told[];
-        this.takeAll(events, after === 0);
-        after += events.length;
-        lost = false;
-      } catch {
-        if (!lost) this.show(t("lost"));
-        lost = true;
-        await new Promise((go) => setTimeout(go, AGAIN_MS));
-      }
-    }
+  /** Say once that the program does not answer. */
+  lose(): void {
+    if (!this.isLost) this.show(t("lost"));
+    this.isLost = true;
   }
 
   /** Leave the study: at once if a question waits, else at the next one. */
@@ -71,8 +70,12 @@ export class Questions {
     this.answer(LEAVE);
   }
 
-  /** Take events; a page that is loaded again goes on with the last lines and the present surface. */
-  private takeAll(events: Told[], again: boolean): void {
+  /** Take the events that are new; a page that is loaded again goes on with the last lines and the present surface. */
+  takeAll(all: Told[]): void {
+    const events = all.filter(({ line }) => line > this.newest);
+    const again = this.newest === 0;
+    this.newest = all.at(-1)?.line ?? this.newest;
+    this.isLost = false;
     const surfaces = events.filter(({ surface }) => surface !== undefined);
     const lines = events.filter(({ surface }) => surface === undefined);
     for (const each of again ? surfaces.slice(-1) : surfaces) this.feel(each);
@@ -107,11 +110,11 @@ export class Questions {
 
   private answer(key: string): void {
     if (!this.question) return;
-    const { number } = this.question;
+    const { line } = this.question;
     this.question = null;
     this.at.answers.replaceChildren();
     globalThis.speechSynthesis?.cancel();
-    fetch("answer", { method: "POST", body: JSON.stringify({ number, key }) }).catch(() => this.show(t("lost")));
+    this.net.ask("answer", { question: line, key }).catch(() => this.lose());
   }
 
   private press(event: KeyboardEvent): void {

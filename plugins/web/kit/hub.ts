@@ -3,8 +3,8 @@ import type { PageEvents } from "./events";
 
 /** E: the events by name, with what each carries. */
 export class Hub<E extends object = PageEvents> {
-  private listeners = new Map<keyof E, ((event: never) => void)[]>();
-  private latest = new Map<keyof E, unknown>();
+  private listeners = new Map<PropertyKey, ((event: never) => void)[]>();
+  private latest = new Map<PropertyKey, unknown>();
 
   on<K extends keyof E>(name: K, listener: (event: E[K]) => void): void {
     this.listeners.set(name, [...(this.listeners.get(name) ?? []), listener as (event: never) => void]);

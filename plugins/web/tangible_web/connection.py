@@ -1,10 +1,8 @@
 """Bounded connections: strangers cannot keep the holder of the key out, and a tab that reads nothing is cut off."""
 
-import time
 from asyncio import BaseTransport, TimerHandle
 from collections.abc import Callable
 from functools import partial
-from threading import Lock
 from typing import Any, final
 
 import h11
@@ -28,35 +26,23 @@ class Strangers:
     """The connections that have not shown the key; of too many, the one that has been open longest is cut off.
 
     So the holder of the key gets through whatever others open: the newest connection is never the one that is cut.
-    Any thread may call.
+    Used in the event loop's thread alone, so in the order in which connections are accepted.
     """
 
     def __init__(self) -> None:
-        self._open: dict[Any, float] = {}
-        self._lock = Lock()
+        self._open: dict[Any, None] = {}
 
     def add(self, transport: Any) -> None:
         """Add the transport of a new connection."""
-        with self._lock:
-            self._open[transport] = time.monotonic()
-            if len(self._open) > MOST_STRANGERS:
-                self._cut(1)
+        self._open[transport] = None
+        if len(self._open) > MOST_STRANGERS:
+            longest = next(iter(self._open))
+            del self._open[longest]
+            longest.abort()
 
     def remove(self, transport: Any) -> None:
         """Remove a connection that has shown the key, or is closed."""
-        with self._lock:
-            self._open.pop(transport, None)
-
-    def cut_late(self) -> None:
-        """Cut off those that have been open for HEAD_S; meant to be polled where nothing else limits the head."""
-        until_s = time.monotonic() - HEAD_S
-        with self._lock:
-            self._cut(sum(since_s < until_s for since_s in self._open.values()))
-
-    def _cut(self, count: int) -> None:
-        for longest in list(self._open)[:count]:
-            del self._open[longest]
-            longest.abort()
+        self._open.pop(transport, None)
 
 
 @final

@@ -16,8 +16,7 @@ from browser_tabs import OpenPage
 from page_files import built_page
 from studies import PIPELINE, write_study
 from tangible_core.session import Recording
-from tangible_study.desks.page import Page
-from tangible_study.desks.page_hand import PageHand
+from tangible_study.desks.page import Page, hand_changes, new_hand
 from tangible_study.presenting.stimuli import Stimuli
 from tangible_study.session.start import begin
 from tangible_study.study_file import parse_study
@@ -82,7 +81,7 @@ def participant(folder: Path, text: str, open_page: OpenPage, pipeline: str) -> 
     """Yield the page of a participant of this study; the session has ended at the end."""
     built_page()
     path = write_study(folder, text, pipeline)
-    hand = PageHand()
+    hand = new_hand()
     file = parse_study(text, path)
 
     with (
@@ -91,16 +90,16 @@ def participant(folder: Path, text: str, open_page: OpenPage, pipeline: str) -> 
     ):
 
         def run() -> int:
-            session = begin(file, Stimuli(file, hand.device), "P1", folder / "out", page)
+            session = begin(file, Stimuli(file, hand_changes(hand)), "P1", folder / "out", page)
             assert session is not None
             return session.run()
 
         done: Future[int] = background.submit(run)
         try:
             yield open_page(page.address)
-            assert "mellow" not in json.dumps(page.events_after(0)), "nothing tells the condition"
+            assert "mellow" not in json.dumps(page.greeting()), "nothing tells the condition"
         except BaseException:
-            page.take(len(page.events_after(0)), "q")  # so that the session ends with the test
+            page.take(len(page.greeting()["history"]), "q")  # so that the session ends with the test
             page.stop.set()
             raise
         assert done.result() == len(answers_in(folder))

@@ -19,9 +19,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from contextlib import ExitStack
 
+    from tangible_web.hand import Hand
+
     from ..design import Study
     from ..desks.desk import Desk
-    from ..desks.page_hand import PageHand
     from ..presenting.stimuli import Stimuli
 
 app: typer.Typer = typer.Typer(name="study", rich_markup_mode=None, add_completion=False, no_args_is_help=True)
@@ -92,7 +93,7 @@ def run(
     from ..session.start import begin
 
     hand = _own_hand(sets) if page and device is None else None
-    stimuli = _open(file, device, sets, () if hand is None else hand.device)
+    stimuli = _open(file, device, sets, hand)
     if hand is not None and stimuli.has_film:
         raise ConfigError(f"{file}: has a film, which is not felt on the page; name a device with --device")
     root = out or Path("out", file.stem)
@@ -119,16 +120,16 @@ def _terminal(design: Study) -> Desk:
     return Terminal(sys.stdin, _print, lambda text: translate(text, design.language))
 
 
-def _own_hand(sets: list[str] | None) -> PageHand:
+def _own_hand(sets: list[str] | None) -> Hand:
     """Return the hand by which the page is the device. Raises: ConfigError if keys of another device are set."""
-    from ..desks.page_hand import PageHand
+    from ..desks.page import new_hand
 
     if any(each.startswith("device.") for each in sets or ()):
         raise ConfigError("--set device...: the page is the device; name another one with --device")
-    return PageHand()
+    return new_hand()
 
 
-def _open_page(design: Study, hand: PageHand | None, stack: ExitStack) -> Desk:
+def _open_page(design: Study, hand: Hand | None, stack: ExitStack) -> Desk:
     """Serve the page until the stack ends, and open it in the browser."""
     import webbrowser
 
@@ -144,12 +145,16 @@ def _open_page(design: Study, hand: PageHand | None, stack: ExitStack) -> Desk:
     return served
 
 
-def _open(file: Path, device: str | None, sets: list[str] | None, own: tuple[str, ...] = ()) -> Stimuli:
+def _open(file: Path, device: str | None, sets: list[str] | None, hand: Hand | None = None) -> Stimuli:
     from ..presenting.stimuli import Stimuli
     from ..session.start import device_changes
     from ..study_file import load_study
 
-    return Stimuli(load_study(file), (*own, *device_changes(device, sets or [])))
+    if hand is None:
+        return Stimuli(load_study(file), device_changes(device, sets or []))
+    from ..desks.page import hand_changes
+
+    return Stimuli(load_study(file), (*hand_changes(hand), *device_changes(None, sets or [])))
 
 
 def _progress(stimuli: Stimuli) -> Callable[[int], None]:

@@ -68,7 +68,7 @@ export class Connection {
   }
 
   private async stopByHttp(): Promise<void> {
-    await fetch(`/stop?token=${encodeURIComponent(token)}`, { method: "POST", keepalive: true });
+    await fetch(`stop?token=${encodeURIComponent(token)}`, { method: "POST", keepalive: true });
   }
 
   point(hand: Vec, buttons: number): void {
@@ -92,7 +92,8 @@ export class Connection {
   }
 
   private connect(): void {
-    const socket = new WebSocket(`ws://${location.host}/live?token=${encodeURIComponent(token)}&language=${language}`);
+    const { href } = new URL(`live?token=${encodeURIComponent(token)}&language=${language}`, location.href);
+    const socket = new WebSocket(href.replace(/^http/, "ws"));
     socket.binaryType = "arraybuffer";
     socket.onopen = () => (this.pauseMs = FIRST_PAUSE_MS);
     socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) =>

@@ -22,7 +22,7 @@ from tangible_core.servo import Servo
 from tangible_core.servo.beacon import part_number
 from tangible_web.address import HOST, Address, static
 from tangible_web.connection import show_key
-from tangible_web.hand import Hand, is_on_channel
+from tangible_web.hand import Hand
 from tangible_web.live import LiveTab
 from tangible_web.server import BuiltPage, ServerThread
 from tangible_web.state_frame import OtherLaw, frame_of, frame_without_loop
@@ -124,7 +124,7 @@ class Page(Desk):
     def exploring(self, feeling: Feeling, servo: Servo, part: str | None) -> Iterator[None]:
         """Put a surface under the hand of the page, if that is the device; it begins once the page has it."""
         device = feeling.device
-        if not is_on_channel(device, self.hand.channel):
+        if not device.follows(self.hand.channel):
             yield
             return
         surface = feeling.pipeline.make("surface")

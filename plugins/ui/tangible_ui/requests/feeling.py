@@ -14,7 +14,7 @@ from tangible_core.session import part_label
 from ..feeling.feeling import LoopInput
 from ..state.laws import Choice, Tally
 from ..state.session import Session, Tab
-from ..state.uploads import user_folder
+from ..user_data import user_folder
 from .making import make
 from .table import forward, request
 

@@ -5,7 +5,7 @@ from typing import Any, Literal
 
 from ..state.session import Session, Tab
 from ..state.texts import Text
-from ..state.uploads import user_folder
+from ..user_data import user_folder
 from .document import take
 from .making import foresee
 from .table import forward, request

@@ -11,7 +11,7 @@ from tangible_core.session import About, names_in
 
 from ..feeling.recorder import Recorder
 from ..state.session import Session, Tab
-from ..state.uploads import user_folder
+from ..user_data import user_folder
 from .table import request
 
 FOLDER = "recordings"

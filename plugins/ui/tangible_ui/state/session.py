@@ -14,13 +14,14 @@ from ..feeling.choice import Choice, NotConfirmed
 from ..feeling.comparison import ComparisonLoop
 from ..feeling.feeling import Feeling, LoopInput
 from ..feeling.recorder import Recorder
+from ..user_data import user_folder
 from ..worker import Worker
 from ..worker.messages import Event
 from .drafts import Drafts
 from .laws import Laws
 from .scheduling import LatestWins, LongJobs
 from .texts import Texts
-from .uploads import UploadStore, user_folder
+from .uploads import UploadStore
 
 MOST_HISTORY, MOST_LOGGED = 500, 200
 """Numbers of past events and of log lines that a tab opened later gets."""

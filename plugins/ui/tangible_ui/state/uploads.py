@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import final
 
 from tangible_core.errors import ConfigError, quoted
-from tangible_core.files.paths import as_path
 from tangible_core.files.reading import MOST_BYTES, in_words
 
 MOST_FILES = 16
@@ -21,15 +20,6 @@ AT_ONCE_BYTES = 1 << 22
 """Bytes collected before they are written."""
 WRONG = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*]')
 """Characters that some system does not allow in file names."""
-
-
-def user_folder(name: str) -> Path:
-    """Return the folder of this user's data of one kind: below $TANGIBLE_DATA_DIR, or the system's folder."""
-    if named := os.environ.get("TANGIBLE_DATA_DIR"):
-        return as_path(named, "TANGIBLE_DATA_DIR") / name
-    from platformdirs import user_data_path
-
-    return user_data_path("tangible-images") / name
 
 
 @final

@@ -1,6 +1,7 @@
 """The session that all tabs share: otherwise its end leaves a force, or a tab is told of another state."""
 
 import asyncio
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -136,3 +137,14 @@ async def test_queue_rests_after_a_call_that_failed_too() -> None:
         with pytest.raises(DeviceError):
             await queue.run(work)
     assert np.diff(times)[0] > 0.19
+
+
+async def test_call_that_is_overtaken_is_answered_while_another_one_runs() -> None:
+    """Otherwise a slow worker keeps a dragging tab waiting for so many answers that the newest is refused."""
+    queue, may_end = LatestWins(), asyncio.Event()
+    running = asyncio.ensure_future(queue.run(may_end.wait))
+    waiting = [asyncio.ensure_future(queue.run(partial(asyncio.sleep, 0, k))) for k in range(40)]
+    assert await asyncio.gather(*waiting[:-1]) == [None] * 39
+    assert not running.done()
+    may_end.set()
+    assert await waiting[-1] == 39

@@ -1,7 +1,6 @@
 """Scheduling of jobs: long ones are numbered and give way to newer ones; of frequent ones the latest wins."""
 
 import asyncio
-import time
 from collections.abc import Awaitable, Callable
 from typing import TypeVar, final
 
@@ -40,20 +39,32 @@ class LatestWins:
 
     def __init__(self, pause_s: float = 0.0) -> None:
         """pause_s: after each call, for others; the first call after a longer rest starts at once."""
-        self._lock = asyncio.Lock()
-        self._newest = 0
-        self._pause_s, self._rested_s = pause_s, 0.0
+        self._pause_s = pause_s
+        self._busy = False
+        self._turn: asyncio.Future[bool] | None = None
+        """Resolved for the call that waits: True once it may run, False once a newer call came."""
 
     async def run(self, work: Callable[[], Awaitable[T]]) -> T | None:
-        """Run the call once the running one has ended; None if a newer call came before that."""
-        self._newest += 1
-        mine = self._newest
-        async with self._lock:
-            if mine == self._newest and (early_s := self._rested_s - time.monotonic()) > 0:
-                await asyncio.sleep(early_s)
-            if mine != self._newest:
+        """Run the call once the running one has ended; None as soon as a newer call comes before that."""
+        self._resolve(False)
+        loop = asyncio.get_running_loop()
+        if self._busy:
+            self._turn = turn = loop.create_future()
+            if not await turn:
                 return None
-            try:
-                return await work()
-            finally:
-                self._rested_s = time.monotonic() + self._pause_s
+        self._busy = True
+        try:
+            return await work()
+        finally:
+            loop.call_later(self._pause_s, self._end)
+
+    def _end(self) -> None:
+        self._busy = self._resolve(True)
+
+    def _resolve(self, is_next: bool) -> bool:
+        """Tell the call that waits; return True if there is one."""
+        turn, self._turn = self._turn, None
+        if turn is None or turn.done():
+            return False
+        turn.set_result(is_next)
+        return True

@@ -1,30 +1,25 @@
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { actionOf, KEYS, TOOL_KEYS } from "../../src/panels/parts/editor/keys";
-import { LiveUpdate, type Update } from "../../src/panels/parts/editor/live_update";
+import type { Update } from "../../src/panels/parts/editor/state";
 import { SHORTCUTS } from "kit/shortcuts";
 
-test("what is dragged is sent one at a time, the newest last, and what is felt already is not", async () => {
+test("every height that is dragged is sent once, and after a failure again", async () => {
+  Object.assign(globalThis, { location: { href: "http://127.0.0.1/?token=t" }, sessionStorage: {} });
+  const { Saving } = await import("../../src/panels/parts/editor/saving");
   const sent: number[] = [];
-  const arrive: (() => void)[] = [];
+  const failed: string[] = [];
   const at = (height: number): Update => ({ heights_m: [height], materials: [null], heights: {} });
-  const live = new LiveUpdate(({ heights_m }) => {
-    sent.push(heights_m[0]!);
-    return new Promise<void>((done) => arrive.push(done));
-  }, assert.fail);
-  live.send(at(0), at(0));
-  for (const height of [1, 2, 3]) live.send(at(height), at(0));
-  assert.deepEqual(sent, [1]);
-  arrive[0]!();
-  await new Promise(setImmediate);
-  assert.deepEqual(sent, [1, 3]);
-  arrive[1]!();
-  await new Promise(setImmediate);
-  live.send(at(3), at(0));
-  await new Promise(setImmediate);
-  assert.deepEqual(sent, [1, 3]);
-  live.send(at(0), at(0));
-  assert.deepEqual(sent, [1, 3, 0], "also back to what was opened");
+  const state = { base: at(0), events: { on: () => undefined }, fail: ({ message }: Error) => failed.push(message) };
+  const net = { ask: (_: string, { heights_m }: Update) => (sent.push(heights_m[0]!), heights_m[0] === 9 ? Promise.reject(new Error("high")) : Promise.resolve(null)) };
+  const saving = new Saving(state as never, net as never, () => true);
+  for (const height of [0, 1, 2, 2, 3, 0]) saving.update(at(height));
+  assert.deepEqual(sent, [1, 2, 3, 0], "what is felt already is not sent, and what was opened is");
+  for (const height of [9, 9]) {
+    saving.update(at(height));
+    await new Promise(setImmediate);
+  }
+  assert.deepEqual([sent.slice(4), failed], [[9, 9], ["high", "high"]]);
 });
 
 test("no key of the editor is one that means something else wherever the focus is", () => {

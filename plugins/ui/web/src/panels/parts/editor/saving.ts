@@ -1,11 +1,10 @@
 /** Saving of the parts after questions, and live updates of heights and materials. */
 import type { Server } from "kit/page";
-import { LiveUpdate } from "./live_update";
 import { shareOf, sliversInWords } from "./part_words";
 import { question } from "../controls/question";
 import { saveParts } from "./requests";
 import { nameIn } from "./speech";
-import type { EditorState } from "./state";
+import type { EditorState, Update } from "./state";
 import { t } from "./words";
 
 /** Parts in pieces, and sizes of each, that a question lists. */
@@ -13,7 +12,8 @@ const MOST_LISTED = 6;
 
 export class Saving {
   private running: Promise<boolean> | null = null;
-  private live: LiveUpdate;
+  /** What the surface is made of, as JSON; empty if that is not known. */
+  private felt: string;
 
   constructor(
     private state: EditorState,
@@ -21,13 +21,19 @@ export class Saving {
     /** Returns whether every field is valid. */
     private isValid: () => boolean,
   ) {
-    this.live = new LiveUpdate((update) => net.ask("parts_heights", { ...update }), (error) => state.fail(error));
+    this.felt = JSON.stringify(state.base);
     state.events.on("parts", () => this.update());
   }
 
-  /** Send heights and materials, so that they take effect before saving. */
-  update(): void {
-    this.live.send(this.state.update(), this.state.base);
+  /** Send heights and materials, so that they take effect before saving. Of those that wait, the server makes the newest alone. */
+  update(wanted: Update = this.state.update()): void {
+    const text = JSON.stringify(wanted);
+    if (text === this.felt) return;
+    this.felt = text;
+    this.net.ask("parts_heights", { ...wanted }).catch((error: Error) => {
+      if (this.felt === text) this.felt = "";
+      this.state.fail(error);
+    });
   }
 
   /** Save the parts; return whether they were saved. A save that runs is waited for. */
@@ -49,7 +55,7 @@ export class Saving {
     const answers = [["", t("goOn")], ["save", t("save")], ["lose", t("throwAway")]] as const;
     const answer = await question(t("unsaved"), [t("unsavedText")], answers);
     if (answer === "save") return this.save();
-    if (answer === "lose") this.live.send(this.state.base, this.state.base);
+    if (answer === "lose") this.update(this.state.base);
     return answer === "lose";
   }
 
@@ -66,8 +72,8 @@ export class Saving {
       const { parts } = drawing;
       const steps = drawing.history.length;
       const saved = await saveParts(this.net, drawing.labels, parts, { ...state.savedDetails, of: state.digest, beside });
-      this.live.reset();
       state.markSaved(saved, parts, steps);
+      this.felt = JSON.stringify(state.base);
       if (given) state.notify("savedTidy", false, { path: saved.file, given: sliversInWords(given) });
       else state.notify("saved", false, { path: saved.file });
       return true;

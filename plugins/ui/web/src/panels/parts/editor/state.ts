@@ -8,7 +8,6 @@ import type { Step } from "../drawing/history";
 import { type PictureDetails, roundShapes } from "../drawing/picture_details";
 import { type Box, labelAt, type Point } from "../pixels/labels";
 import { findNeighbours, findPlaces, type Place } from "../pixels/pieces";
-import type { Update } from "./live_update";
 import type { FirstParts, Opened, Saved } from "./requests";
 import type { Word } from "./words";
 
@@ -24,6 +23,13 @@ export interface Notice {
   /** The selected part if it is left out; -1: outside of the picture. */
   label?: number;
   bad: boolean;
+}
+
+/** Heights and materials by the number of the part in the file (null: the program finds it), and the shape of all parts. */
+export interface Update {
+  heights_m: (number | null)[];
+  materials: (string | null)[];
+  heights: object;
 }
 
 /** Events of the state for its subscribers. */

@@ -595,7 +595,7 @@ def _request(path: Path) -> object:
 
 REQUESTS = {
     "find.json": {"number": 1, "ask": "open_batch", "batch": "a"},
-    "more.json": {"number": 2, "ask": "parts_snap", "points": [[1, 2.5], [3, 4]], "reach_px": 3.5},
+    "more.json": {"number": 2, "ask": "parts_propose", "points": [[1, 2.5], [3, 4]], "width_px": 3.5},
 }
 
 

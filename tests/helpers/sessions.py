@@ -11,7 +11,7 @@ from PIL import Image
 
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_ui.feeling.feeling import Feeling
-from tangible_ui.requests import REQUESTS
+from tangible_ui.requests import find_request
 from tangible_ui.state.session import Session
 from tangible_ui.worker.handle import WorkerKilled
 from tangible_ui.worker.jobs import JOBS
@@ -157,4 +157,4 @@ class SmallSession:
 
     async def ask(self, name: str, **told: Any) -> Any:
         """Send a request of the tab."""
-        return await REQUESTS[name](self.session, self.tab, **told)
+        return await find_request(name)(self.session, self.tab, **told)

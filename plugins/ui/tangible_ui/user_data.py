@@ -5,6 +5,9 @@ from pathlib import Path
 
 from tangible_core.files.paths import as_path
 
+RECORDINGS = "recordings"
+"""Name of the folder of recordings."""
+
 
 def user_folder(name: str) -> Path:
     """Return the folder of this user's data of one kind: below $TANGIBLE_DATA_DIR, or the system's folder."""

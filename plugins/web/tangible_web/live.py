@@ -3,7 +3,7 @@
 import asyncio
 import json
 import math
-from collections.abc import Coroutine, Mapping
+from collections.abc import Coroutine
 from contextlib import suppress
 from typing import Any, Protocol, final
 
@@ -35,9 +35,8 @@ MOST_ASKS = 32
 class Program(Protocol):
     """What the tabs of a page show and move; used in the event loop's thread alone."""
 
-    @property
-    def requests(self) -> Mapping[str, Request]:
-        """What tabs may ask for, by name."""
+    def find_request(self, name: str) -> Request | None:
+        """Return what answers a request of this name; None if nothing does."""
         ...
 
     @property
@@ -152,7 +151,7 @@ class LiveTab:
     def _begin_request(self, text: str) -> None:
         """Begin a request, or refuse it with a sentence."""
         try:
-            asked = parse(text, self._program.requests)
+            asked = parse(text, self._program.find_request)
         except BadRequest as error:
             self._refuse(error.number, str(error))
             return

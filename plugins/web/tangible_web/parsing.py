@@ -1,18 +1,26 @@
 """Parsing of a tab's requests: a known name and valid arguments, or a sentence that says what is wrong."""
 
-import inspect
 import json
+<<<<<<< HEAD:plugins/web/tangible_web/parsing.py
 from collections.abc import Awaitable, Callable, Mapping
 from functools import cache
 from typing import Any, NamedTuple, NoReturn, get_type_hints
+=======
+from typing import Any, NamedTuple, NoReturn
+>>>>>>> 38328574 (ui: let a job for pages be the request itself):plugins/ui/tangible_ui/serving/parsing.py
 
-from pydantic import BaseModel, ConfigDict, ValidationError, create_model
+from tangible_core.errors import ConfigError, TangibleError, quoted
 
+<<<<<<< HEAD:plugins/web/tangible_web/parsing.py
 from tangible_core.errors import TangibleError, did_you_mean, quoted, shown
 
 Request = Callable[..., Awaitable[Any]]
 """A request's function: called with the program's state, the tab, and the tab's arguments by name."""
 MOST_SHOWN = 200
+=======
+from ..requests import REQUESTS, Request, find_request
+from ..worker.arguments import checked_arguments
+>>>>>>> 38328574 (ui: let a job for pages be the request itself):plugins/ui/tangible_ui/serving/parsing.py
 
 
 class BadRequest(TangibleError):
@@ -43,6 +51,7 @@ def parse(text: str, requests: Mapping[str, Request]) -> ParsedRequest:
     if type(number) is not int:
         raise BadRequest(None, 'the message is not a JSON object with a "number"')
     name = said.pop("ask", None)
+<<<<<<< HEAD:plugins/web/tangible_web/parsing.py
     if not isinstance(name, str) or (ask := requests.get(name)) is None:
         hint = did_you_mean(name, requests) if isinstance(name, str) else ""
         raise BadRequest(number, f"there is no request {quoted(name)}{hint}")
@@ -71,6 +80,16 @@ def _arguments(ask: Request) -> type[BaseModel]:
         each.name: (types[each.name], ... if each.default is each.empty else each.default) for each in rest
     }
     return create_model(ask.__name__, __config__=ConfigDict(extra="forbid", strict=True), **fields)
+=======
+    if not isinstance(name, str):
+        raise BadRequest(number, f"there is no request {quoted(name)}")
+    if name not in REQUESTS:  # one that the worker answers, which checks its arguments
+        return ParsedRequest(number, name, find_request(name), said)
+    try:
+        return ParsedRequest(number, name, REQUESTS[name], checked_arguments(name, REQUESTS[name], 2, said))
+    except ConfigError as error:
+        raise BadRequest(number, str(error)) from error
+>>>>>>> 38328574 (ui: let a job for pages be the request itself):plugins/ui/tangible_ui/serving/parsing.py
 
 
 def _refuse(constant: str) -> NoReturn:

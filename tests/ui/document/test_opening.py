@@ -122,7 +122,7 @@ class TestBegin:
     def test_video_opens_with_a_new_pipeline(self, worker_state: WorkerState, tmp_path: Path) -> None:
         path = greys(tmp_path / "walk.avi", 3)
         assert read_values(opening.begin(worker_state, [path])["text"], path)["scene"] == {"video": str(path)}
-        assert {"name": "walk.avi", "kind": "video"} in opening.folder(worker_state, tmp_path)["entries"]
+        assert {"name": "walk.avi", "kind": "video"} in opening.folder(worker_state, str(tmp_path))["entries"]
 
     def test_two_pictures_open_as_a_pair_and_can_be_exchanged(self, worker_state: WorkerState, tmp_path: Path) -> None:
         found = opening.begin(worker_state, [picture(tmp_path / "l.png"), picture(tmp_path / "r.png")])
@@ -169,7 +169,7 @@ def test_folder_lists_what_can_be_opened(
     for name in ("b.PNG", "a.yaml", ".hidden.png", "note.txt", "felt.nc", "hill.npy"):
         (tmp_path / name).touch()
     (tmp_path / "more").mkdir()
-    found = opening.folder(worker_state, tmp_path)
+    found = opening.folder(worker_state, str(tmp_path))
     assert [(each["name"], each["kind"]) for each in found["entries"]] == [
         ("a.yaml", "pipeline"),
         ("b.PNG", "picture"),
@@ -179,7 +179,7 @@ def test_folder_lists_what_can_be_opened(
     ]
     assert found["more"] == 0
     monkeypatch.setattr(opening, "MOST", 3)
-    bounded = opening.folder(worker_state, tmp_path)
+    bounded = opening.folder(worker_state, str(tmp_path))
     assert (bounded["entries"], bounded["more"]) == (found["entries"][:3], 2)
     with pytest.raises(ConfigError, match="name a folder"):
-        opening.folder(worker_state, tmp_path / "missing")
+        opening.folder(worker_state, str(tmp_path / "missing"))

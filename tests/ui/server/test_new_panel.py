@@ -12,7 +12,6 @@ SERVER = Path("plugins/ui/tangible_ui")
 PAGE = Path("plugins/ui/web")
 FILES = {
     SERVER / "worker/jobs/statistics.py",
-    SERVER / "requests/statistics.py",
     PAGE / "src/panels/statistics/words.ts",
     PAGE / "src/panels/statistics/panel.ts",
     PAGE / "src/panels/index.ts",
@@ -47,6 +46,10 @@ def example() -> dict[Path, str]:
     texts = [re.sub(r"^   ", "", block.partition("\n")[2], flags=re.M) for block in parts[1::2]]
     paths = [re.findall(r"`(plugins/ui/[\w/.]+)`", before)[-1] for before in parts[:-1:2]]
     return dict(zip(map(Path, paths), texts, strict=True))
+
+
+def test_panel_touches_four_files() -> None:
+    assert example().keys() == FILES
 
 
 def test_panel_of_the_contributing_page_passes_the_checks_of_the_page_and_is_built(copy: Path) -> None:

@@ -15,7 +15,7 @@ from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import ConfigError, DeviceError, Stopped, TangibleError
 from tangible_core.servo.ring import PERIOD_NS, SPINS
 from tangible_ui.feeling.feeling import Feeling
-from tangible_ui.requests import REQUESTS, devices, making, preflight
+from tangible_ui.requests import devices, find_request, making, preflight
 from tangible_ui.requests import document as asks_document
 from tangible_ui.state.session import Session
 from tangible_ui.state.texts import Text
@@ -80,7 +80,7 @@ def ask(session: Session, tab: Heard) -> Ask:
     """Sends requests of the tab."""
 
     async def ask(request: str, /, **told: Any) -> Any:
-        return await REQUESTS[request](session, tab, **told)
+        return await find_request(request)(session, tab, **told)
 
     return ask
 
@@ -112,15 +112,11 @@ class TestDevices:
         told = [(each["why"], each["waiting"]) for each in tab.events if each["event"] == "loop"]
         assert told == [("unplugged", True), ("in use", True), ("unplugged", True)]
 
-    async def test_limits_are_counted_and_the_reach_is_the_document_s(self, session: Session, ask: Ask) -> None:
+    async def test_limits_are_counted(self, session: Session, ask: Ask) -> None:
         assert await ask("limits") is None
         report = SimpleNamespace(ticks=5000, overruns=3, flagged={"force": 7})
         session.feeling = Mock(Feeling, servo=SimpleNamespace(report=lambda: report))
         assert await ask("limits") == {"ticks": 5000, "overruns": 3, "flagged": {"force": 7}}
-        worker(session).answers["reach"] = {"device": "falcon"}
-        session.sets = ["want=touch"]
-        assert await ask("reach") == {"device": "falcon"}
-        assert worker(session).asked[-1][1]["sets"] == ["want=touch"]
 
 
 class TestDocument:

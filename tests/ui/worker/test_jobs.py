@@ -130,6 +130,26 @@ class TestHandle:
         assert await asked[1] == "the plan"
 
 
+@pytest.mark.anyio
+async def test_job_for_pages_is_asked_with_the_document_and_the_arguments_of_the_page(small: Any) -> None:
+    small.session.sets = ["device={use: mock}"]
+    assert (await small.ask("reach"))["device"] == "mock"
+    names = [each["name"] for each in (await small.ask("folder", path=str(small.session.path.parent)))["entries"]]
+    assert "mine.yaml" in names
+    for name, said, why in (
+        ("raech", {}, "no request .*raech.*did you mean .*reach"),
+        ("make", {}, "no request"),  # which the server answers
+        ("check", {"text": "", "path": "", "sets": []}, "no request"),
+        ("reach", {"sets": []}, "reach: sets: Extra"),
+        ("reach", {"state": 1}, "reach: state: Extra"),
+        ("examine", {}, "name: Field required"),
+        ("examine", {"name": 5}, "name: .*string"),
+        ("parts_snap", {"points": [["a"]], "reach_px": 1.0}, "points.0.0: .*number"),
+    ):
+        with pytest.raises(ConfigError, match=why):
+            await small.worker.quick("answer_page", request=name, arguments=said, **small.session.document())
+
+
 SLOW = """\
 scene: builtin/motorcycle
 depth: {use: luminance}

@@ -90,7 +90,7 @@ class TestRecorder:
 class TestShown:
     def test_shown_recording_of_an_old_clock_keeps_its_times(self, worker_state: WorkerState, tmp_path: Path) -> None:
         some(50).save(tmp_path / "a.nc")
-        shown = records.show_record(worker_state, tmp_path / "a.nc")
+        shown = records.show_record(worker_state, str(tmp_path / "a.nc"))
         rows = np.fromfile(tmp_path / shown["digest"] / "ticks.f32", "<f4").reshape(shown["rows"], shown["columns"])
         assert np.allclose(rows[:, 0], np.arange(50) / 1000, atol=1e-6)
         assert np.allclose(rows[:, 2], some(50).position_m[:, 0], atol=1e-8)
@@ -104,47 +104,51 @@ class TestShown:
         rows = long.rows.copy()
         rows[:, records.AT_FLAGS] = flags
         Recording(rows, "", long.about).save(tmp_path / "a.nc")
-        shown = records.show_record(worker_state, tmp_path / "a.nc")
+        shown = records.show_record(worker_state, str(tmp_path / "a.nc"))
         assert (shown["rows"], shown["every"]) == (17, 3)
         for ticks, every in ((0, 1), (20, 1), (21, 2), (41, 3)):
             some(ticks).save(tmp_path / f"{ticks}.nc")
-            assert records.show_record(worker_state, tmp_path / f"{ticks}.nc")["every"] == every
+            assert records.show_record(worker_state, str(tmp_path / f"{ticks}.nc"))["every"] == every
         rows = np.fromfile(tmp_path / shown["digest"] / "ticks.f32", "<f4").reshape(17, shown["columns"])
         np.testing.assert_array_equal(rows[:, records.AT_FLAGS], flags[::3] & FLAG_BITS)
 
     def test_list_of_recordings_has_the_newest_first_and_unreadable_ones(
         self, worker_state: WorkerState, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        some(5).save(tmp_path / "old.nc")
-        os.utime(tmp_path / "old.nc", (0, 0))
-        (tmp_path / "broken.nc").write_bytes(b"CDF nothing")
-        found = records.records(worker_state, tmp_path)
+        monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path))
+        assert records.records(worker_state) == []
+        some(5).save(tmp_path / "recordings/old.nc")
+        os.utime(tmp_path / "recordings/old.nc", (0, 0))
+        (tmp_path / "recordings/broken.nc").write_bytes(b"CDF nothing")
+        found = records.records(worker_state)
         assert [each["name"] for each in found] == ["broken.nc", "old.nc"]
         assert found[0]["trouble"] and found[1]["figures"]["ticks"] == 5
         monkeypatch.setattr(records, "MOST_LISTED", 1)
-        assert [each["name"] for each in records.records(worker_state, tmp_path)] == ["broken.nc"]
-        assert records.records(worker_state, tmp_path / "missing") == []
+        assert [each["name"] for each in records.records(worker_state)] == ["broken.nc"]
 
 
 def test_two_recordings_are_compared_place_by_place(worker_state: WorkerState, tmp_path: Path) -> None:
     some(50, 1.0).save(tmp_path / "a.nc")
     some(80, 1.5).save(tmp_path / "b.nc")
-    found = records.compare_records(worker_state, tmp_path / "a.nc", tmp_path / "b.nc")
+    found = records.compare_records(worker_state, str(tmp_path / "a.nc"), str(tmp_path / "b.nc"))
     assert found["error_n"] == pytest.approx(0.5)
     assert (found["first_peak_force_n"], found["second_peak_force_n"]) == (1.0, 1.5)
 
 
-def test_replay_with_another_law_uses_the_same_states(worker_state: WorkerState, tmp_path: Path) -> None:
+def test_replay_with_another_law_uses_the_same_states(
+    worker_state: WorkerState, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path))
     np.save(tmp_path / "flat.npy", np.zeros((8, 8)))
     text = (
         "scene: {height: flat.npy}\nwant: touch\nrender: {use: penalty, stiffness_n_per_m: 500}\n"
         "workspace: {relief_m: 0.001, smooth_m: 0}\n"
     )
     some(50).save(tmp_path / "a.nc")
-    shown = records.try_law(worker_state, tmp_path / "a.nc", text, tmp_path / "p.yaml", [], tmp_path)
+    shown = records.try_law(worker_state, text, tmp_path / "p.yaml", [], tmp_path / "a.nc")
     after = Recording.load(shown["path"])
     assert Path(shown["path"]).name == "a with penalty.nc"
-    again = records.try_law(worker_state, tmp_path / "a.nc", text, tmp_path / "p.yaml", [], tmp_path)
+    again = records.try_law(worker_state, text, tmp_path / "p.yaml", [], tmp_path / "a.nc")
     assert Path(again["path"]).name == "a with penalty 1.nc"
     assert np.allclose(after.force_n[1:-1, 2], 0.5, atol=0.05)
     assert shown["compared"]["worst_error_n"] == pytest.approx(0.5, abs=0.05)

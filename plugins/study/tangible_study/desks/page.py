@@ -24,6 +24,7 @@ from tangible_web.address import HOST, Address, static
 from tangible_web.connection import show_key
 from tangible_web.hand import Hand
 from tangible_web.live import LiveTab
+from tangible_web.parsing import FindRequest
 from tangible_web.server import BuiltPage, ServerThread
 from tangible_web.state_frame import OtherLaw, frame_of, frame_without_loop
 
@@ -81,7 +82,8 @@ class Page(Desk):
         self._tasks: set[asyncio.Future[None]] = set()
         self._open = ExitStack()
         self.hand: Hand = hand or new_hand()
-        self.state, self.requests = self, {"answer": answer, "surface": surface, "stop": stop}
+        self.state = self
+        self.find_request: FindRequest = {"answer": answer, "surface": surface, "stop": stop}.get
 
     @property
     def address(self) -> str:

@@ -1,4 +1,4 @@
-"""Requests about devices: list, choose and examine them, what they reach, how the loop runs."""
+"""Requests about the device: describe and choose one, wait for it, how its loop runs."""
 
 import asyncio
 from typing import Any
@@ -9,20 +9,11 @@ from ..feeling.choice import Choice
 from ..feeling.doctor import figures
 from ..state.session import Session, Tab
 from .making import make
-from .table import forward, request
-
-forward("examine", name=str)
-forward("reach", document=True)
+from .table import request
 
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 8.0
 """First and longest pause before a device is looked for again, s; each doubles the last, as a look starts a process."""
 KINDS = ("hand", "document", "other")
-
-
-@request()
-async def devices(session: Session, tab: Tab | None) -> dict[str, Any]:
-    """List the installed devices, and the chosen one; none is opened."""
-    return {"devices": await session.worker.ask("devices"), "kind": session.choice.kind, "name": session.choice.name}
 
 
 @request()

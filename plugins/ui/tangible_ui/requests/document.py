@@ -10,11 +10,7 @@ from tangible_core.files.paths import as_path
 from ..state.session import Session, Tab
 from ..state.texts import Text
 from .making import foresee, make
-from .table import forward, request
-
-forward("schema")
-forward("library", document=True)
-forward("examples")
+from .table import request
 
 
 @request()
@@ -118,12 +114,6 @@ def _follow_up(session: Session, found: dict[str, Any], apply: bool) -> dict[str
     if not found["complaints"]:
         session.begin(foresee(session, apply))
     return found
-
-
-@request()
-async def folder(session: Session, tab: Tab | None, path: str = "") -> dict[str, Any]:
-    """List what can be opened in a folder of this machine; the current folder without a path."""
-    return await session.worker.quick("folder", path=as_path(path) if path else Path.cwd())
 
 
 @request()

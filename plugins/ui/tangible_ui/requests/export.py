@@ -4,10 +4,7 @@ from typing import Any
 
 from ..state.session import Session, Tab
 from .making import long_job
-from .table import forward, request
-
-forward("export_preview", document=True, block=dict[str, Any] | str)
-forward("export_zip", folder=str)
+from .table import request
 
 
 @request()

@@ -16,9 +16,7 @@ from ..state.laws import Choice, Tally
 from ..state.session import Session, Tab
 from ..user_data import user_folder
 from .making import make
-from .table import forward, request
-
-forward("law_names")
+from .table import request
 
 
 @request()

@@ -4,9 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from ..state.session import Session, Tab
-from .table import forward, request
-
-forward("ask_panel", document=True, panel=str, request=str, arguments=(dict[str, Any], None))
+from .table import request
 
 
 @request()

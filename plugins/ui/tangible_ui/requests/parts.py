@@ -8,10 +8,7 @@ from ..state.texts import Text
 from ..user_data import user_folder
 from .document import take
 from .making import foresee
-from .table import forward, request
-
-forward("parts_first", document=True)
-forward("parts_snap", document=True, points=list[list[float]], reach_px=float)
+from .table import request
 
 
 @request()

@@ -1,4 +1,4 @@
-"""Requests about recordings: record, list, show, compare."""
+"""Requests about recordings: record, and replay with another law."""
 
 import asyncio
 from datetime import datetime
@@ -11,10 +11,8 @@ from tangible_core.session import About, names_in
 
 from ..feeling.recorder import Recorder
 from ..state.session import Session, Tab
-from ..user_data import user_folder
+from ..user_data import RECORDINGS, user_folder
 from .table import request
-
-FOLDER = "recordings"
 
 
 @request()
@@ -26,7 +24,7 @@ async def record(session: Session, tab: Tab | None) -> str:
     if session.recorder is not None and session.recorder.recording:
         raise ConfigError(f"{session.recorder.path}: is being recorded already; stop that first")
     now = datetime.now()  # the user's own clock: people look for files by it
-    path = user_folder(FOLDER) / f"{now:%Y-%m-%d %H.%M.%S} {felt.law}.nc"
+    path = user_folder(RECORDINGS) / f"{now:%Y-%m-%d %H.%M.%S} {felt.law}.nc"
     loop = asyncio.get_running_loop()
 
     def notify_end(path: Path, ticks: int, why: str) -> None:
@@ -49,31 +47,6 @@ async def stop_recording(session: Session, tab: Tab | None) -> None:
 
 
 @request()
-async def records(session: Session, tab: Tab | None) -> list[dict[str, Any]]:
-    """List the user's recordings, newest first: name, path, seconds, law, device, why each ended."""
-    return await session.worker.quick("records", folder=user_folder(FOLDER))
-
-
-@request()
-async def show_record(session: Session, tab: Tab | None, path: str) -> dict[str, Any]:
-    """Write a recording's ticks for pages to fetch; return its description and figures."""
-    return await session.worker.quick("show_record", path=as_path(path))
-
-
-@request()
-async def compare_records(session: Session, tab: Tab | None, path: str, other: str) -> dict[str, Any]:
-    """Compare two recordings: figures of both, and the distance between them."""
-    return await session.worker.quick("compare_records", path=as_path(path), other=as_path(other))
-
-
-@request()
-async def try_law(session: Session, tab: Tab | None, path: str) -> dict[str, Any]:
+async def try_law(session: Session, tab: Tab | None, record: str) -> dict[str, Any]:
     """Replay a recording with the document's force law: write the result as a recording, and compare both."""
-    return await session.worker.ask(
-        "try_law",
-        path=as_path(path),
-        text=session.text,
-        document=session.path,
-        sets=session.felt_sets(),
-        folder=user_folder(FOLDER),
-    )
+    return await session.worker.ask("try_law", **session.document(session.felt_sets()), record=as_path(record))

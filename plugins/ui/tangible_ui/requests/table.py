@@ -1,7 +1,6 @@
-"""The table of all requests by name, filled by the decorator at each, or by `forward`."""
+"""The table of requests that the server answers, by name, filled by the decorator at each."""
 
 from collections.abc import Awaitable, Callable
-from inspect import Parameter, Signature
 from typing import Any, TypeVar
 
 Request = Callable[..., Awaitable[Any]]
@@ -28,21 +27,13 @@ def request(name: str = "") -> Callable[[R], R]:
     return register
 
 
-def forward(job: str, *, document: bool = False, **types: Any) -> None:
-    """Register the worker's quick job of this name as a request.
+def find_request(name: str) -> Request:
+    """Return the request of this name: one of the table, or one that a job of the worker answers by itself.
 
-    document: the job takes the document too. types: of the tab's arguments; those with a default are a tuple of both.
+    The worker refuses a name that it does not know either, and checks the arguments: jobs are not imported here.
     """
 
-    async def ask(session: Any, tab: Any, **arguments: Any) -> Any:
-        return await session.worker.quick(job, **(session.document() if document else {}), **arguments)
+    async def ask_worker(session: Any, tab: Any, /, **arguments: Any) -> Any:
+        return await session.worker.quick("answer_page", request=name, arguments=arguments, **session.document())
 
-    ask.__name__ = job
-    ask.__annotations__ = {name: kind[0] if isinstance(kind, tuple) else kind for name, kind in types.items()}
-    defaults = {name: kind[1] for name, kind in types.items() if isinstance(kind, tuple)}
-    parameters = [Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in ("session", "tab")]
-    parameters += [
-        Parameter(name, Parameter.KEYWORD_ONLY, default=defaults.get(name, Parameter.empty)) for name in types
-    ]
-    ask.__dict__["__signature__"] = Signature(parameters)
-    request()(ask)
+    return REQUESTS.get(name, ask_worker)

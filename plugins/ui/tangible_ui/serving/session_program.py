@@ -6,7 +6,7 @@ from typing import Any, final
 from tangible_web.framing import RECORDING
 from tangible_web.live import LiveTab
 
-from ..requests import REQUESTS
+from ..requests import find_request
 from ..state.session import Session
 from .translating import in_language, language_of
 
@@ -15,7 +15,7 @@ from .translating import in_language, language_of
 class SessionProgram:
     """The program behind the page of `tangible ui`."""
 
-    requests = REQUESTS
+    find_request = staticmethod(find_request)
 
     def __init__(self, session: Session) -> None:
         self.state, self.hand = session, session.feeling.hand

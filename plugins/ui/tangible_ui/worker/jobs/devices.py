@@ -11,13 +11,13 @@ from ..state import WorkerState
 from .table import job
 
 
-@job(quick=True)
+@job(page=True)
 def devices(state: WorkerState) -> list[dict[str, Any]]:
     """List the installed devices: facts, connected units, and why one cannot be used."""
     return [{**asdict(each), "usable": each.usable} for each in installed_devices(state.registry)]
 
 
-@job(quick=True)
+@job(page=True)
 def examine(state: WorkerState, name: str) -> list[dict[str, Any]]:
     """Return what keeps a device from working, and the cure."""
     return [asdict(each) for each in examine_device(state.registry, name)]
@@ -38,7 +38,7 @@ def about_device(state: WorkerState, text: str, path: Path, sets: list[str]) -> 
     }
 
 
-@job(quick=True)
+@job(page=True)
 def reach(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
     """Return the document's device and its workspace; None without a device. Raises: ConfigError."""
     device = parse_config(text, path, state.registry, sets).device

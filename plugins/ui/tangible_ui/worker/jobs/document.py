@@ -8,6 +8,7 @@ from typing import Any, cast
 from ruamel.yaml.error import YAMLError
 
 from tangible_core.errors import Complaint, ConfigError, quoted
+from tangible_core.files.paths import as_path
 from tangible_core.files.writing import write_text
 from tangible_core.files.yaml.source import parse_value, plain, read_text
 from tangible_core.materials.assignment import load_library
@@ -71,13 +72,13 @@ def overridden(state: WorkerState, text: str, path: Path, sets: list[str]) -> st
     return with_overrides(text, path, sets)
 
 
-@job(quick=True)
+@job(page=True)
 def schema(state: WorkerState) -> dict[str, Any]:
     """Return the JSON Schema of all installed methods."""
     return json_schema(state.registry, None)
 
 
-@job(quick=True)
+@job(page=True)
 def library(state: WorkerState, text: str, path: Path, sets: list[str]) -> list[dict[str, Any]]:
     """List the materials that a document can name, with figures and sources. Raises: ConfigError."""
     return [asdict(each) for each in load_library(state.config_of(text, path, sets).materials.library).values()]
@@ -118,18 +119,21 @@ MOST = 2000
 """Maximum number of entries that are listed of a folder."""
 
 
-@job(quick=True)
-def folder(state: WorkerState, path: Path) -> dict[str, Any]:
-    """List folders, and files that can be opened, by name. Raises: ConfigError if it is not a folder."""
+@job(page=True)
+def folder(state: WorkerState, path: str = "") -> dict[str, Any]:
+    """List folders, and files that can be opened, by name. Raises: ConfigError if it is not a folder.
+
+    path: of a folder of this machine; the current one without a path.
+    """
+    place = as_path(path).absolute()
     try:
-        path = path.expanduser().absolute()
-        found = [(each.name, "folder" if each.is_dir() else KINDS.get(each.suffix.lower())) for each in path.iterdir()]
+        found = [(each.name, "folder" if each.is_dir() else KINDS.get(each.suffix.lower())) for each in place.iterdir()]
     except OSError as error:
-        raise ConfigError(f"{path}: {error.strerror or error}; name a folder of this machine") from error
+        raise ConfigError(f"{place}: {error.strerror or error}; name a folder of this machine") from error
     shown = sorted((name, kind) for name, kind in found if kind and not name.startswith("."))
     return {
-        "folder": str(path),
-        "parent": str(path.parent),
+        "folder": str(place),
+        "parent": str(place.parent),
         "entries": [{"name": name, "kind": kind} for name, kind in shown[:MOST]],
         "more": max(0, len(shown) - MOST),
     }
@@ -172,7 +176,7 @@ def _is_recording(path: Path) -> bool:
         return False
 
 
-@job(quick=True)
+@job(page=True)
 def examples(state: WorkerState) -> list[str]:
     """List the built-in scenes."""
     return list(BUILTINS)

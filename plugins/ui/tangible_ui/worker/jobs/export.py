@@ -57,8 +57,10 @@ def export(
     return found
 
 
-@job(quick=True)
-def export_preview(state: WorkerState, text: str, path: Path, sets: list[str], block: Any) -> dict[str, Any]:
+@job(page=True)
+def export_preview(
+    state: WorkerState, text: str, path: Path, sets: list[str], block: dict[str, Any] | str
+) -> dict[str, Any]:
     """Draw what an exporter would write, into a file that pages fetch; nothing slow is made for that.
 
     block: an item of `export:`. Returns: the file with its size in pixels and the width of the picture that is made, m;
@@ -82,7 +84,7 @@ def export_preview(state: WorkerState, text: str, path: Path, sets: list[str], b
     return {"file": f"{at}/picture.png", "waits": False, "columns": columns, "rows": rows, "width_m": width_m}
 
 
-@job(quick=True)
+@job(page=True)
 def export_zip(state: WorkerState, folder: str) -> str:
     """Pack the exported files of a folder into one, and return its name. Raises: ConfigError if they are gone."""
     at = state.folder / folder

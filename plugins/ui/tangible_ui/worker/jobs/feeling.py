@@ -26,7 +26,7 @@ def beacon(state: WorkerState, text: str, path: Path, sets: list[str], part: int
     return {"part": made.part, "name": made.name, "parcel": str(parcel.pack(made))}
 
 
-@job(quick=True)
+@job(page=True)
 def law_names(state: WorkerState) -> list[str]:
     """List the installed force laws."""
     return sorted(state.registry.names("render"))

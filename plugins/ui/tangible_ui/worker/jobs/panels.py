@@ -19,7 +19,7 @@ def panels(state: WorkerState) -> list[dict[str, Any]]:
     ]
 
 
-@job(quick=True)
+@job(page=True)
 def ask_panel(
     state: WorkerState,
     text: str,

@@ -67,7 +67,7 @@ def parts_open(
     }
 
 
-@job(quick=True)
+@job(page=True)
 def parts_first(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
     """Propose all parts of a picture that nobody has divided yet, as `tangible parts` does, with their heights.
 
@@ -114,9 +114,9 @@ def parts_propose(
     return {"box": list(box), "runs": runs(mask)}
 
 
-@job(quick=True)
+@job(page=True)
 def parts_snap(
-    state: WorkerState, text: str, path: Path, sets: list[str], points: Sequence[Sequence[float]], reach_px: float
+    state: WorkerState, text: str, path: Path, sets: list[str], points: list[list[float]], reach_px: float
 ) -> dict[str, Any]:
     """Move a closed outline to the strongest edges within reach. Raises: as `parts_propose`."""
     picture = opening.opened_of(state, opening.edited_of(state, text, path, sets)).picture

@@ -8,11 +8,13 @@ import numpy as np
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.data.records import digest_of
 from tangible_core.errors import OutputError
+from tangible_core.files.paths import as_path
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.session import Recording, compare_recordings, compare_replay
 from tangible_core.session.recording.files import SUFFIXES
 from tangible_web.framing import FLAG_BITS
 
+from ...user_data import RECORDINGS, user_folder
 from ..state import WorkerState
 from .table import job
 
@@ -22,12 +24,14 @@ MOST_LISTED = 500
 AT_FLAGS = TICK_COLUMNS.index("flags")
 
 
-@job(quick=True)
-def records(state: WorkerState, folder: Path) -> list[dict[str, Any]]:
-    """List the recordings of a folder, newest first; for an unreadable one, the reason."""
+@job(page=True)
+def records(state: WorkerState) -> list[dict[str, Any]]:
+    """List the user's recordings, newest first; for an unreadable one, the reason."""
     try:
         found = sorted(
-            (each for each in folder.iterdir() if each.suffix in SUFFIXES), key=_modification_time, reverse=True
+            (each for each in user_folder(RECORDINGS).iterdir() if each.suffix in SUFFIXES),
+            key=_modification_time,
+            reverse=True,
         )
     except OSError:
         return []
@@ -59,10 +63,10 @@ def _about(found: Recording) -> dict[str, Any]:
     }
 
 
-@job(quick=True)
-def show_record(state: WorkerState, path: Path) -> dict[str, Any]:
+@job(page=True)
+def show_record(state: WorkerState, path: str) -> dict[str, Any]:
     """Write the ticks where pages fetch them. Raises: OutputError if the file is not a recording."""
-    return _lay_out(state, Recording.load(path), str(path))
+    return _lay_out(state, Recording.load(as_path(path)), path)
 
 
 def _lay_out(state: WorkerState, found: Recording, path: str) -> dict[str, Any]:
@@ -79,18 +83,18 @@ def _lay_out(state: WorkerState, found: Recording, path: str) -> dict[str, Any]:
     return {"digest": digest, "path": path, "name": Path(path).name, **shape, **_about(found)}
 
 
-@job(quick=True)
-def compare_records(state: WorkerState, path: Path, other: Path) -> dict[str, Any]:
+@job(page=True)
+def compare_records(state: WorkerState, path: str, other: str) -> dict[str, Any]:
     """Compare two recordings place by place along their paths. Raises: OutputError if a file is not a recording."""
-    return compare_recordings(Recording.load(path), Recording.load(other))
+    return compare_recordings(Recording.load(as_path(path)), Recording.load(as_path(other)))
 
 
 @job()
-def try_law(state: WorkerState, path: Path, text: str, document: Path, sets: list[str], folder: Path) -> dict[str, Any]:
-    """Replay a recording with the document's law, write the result next to it, and compare both."""
-    before = Recording.load(path)
-    after = Feeling(state.pipeline_of(text, document, sets)).replay(before)
-    out = _free(folder, f"{path.stem} with {after.about.renderer}")
+def try_law(state: WorkerState, text: str, path: Path, sets: list[str], record: Path) -> dict[str, Any]:
+    """Replay a recording with the document's law, keep the result with the user's recordings, and compare both."""
+    before = Recording.load(record)
+    after = Feeling(state.pipeline_of(text, path, sets)).replay(before)
+    out = _free(user_folder(RECORDINGS), f"{record.stem} with {after.about.renderer}")
     after.save(out)
     return {**_lay_out(state, after, str(out)), "compared": compare_replay(before, after)}
 

@@ -29,7 +29,7 @@ MOST_PIXELS = 512
 LARGEST_M = 0.1
 
 
-@job(quick=True)
+@job(page=True)
 def texture_patch(
     state: WorkerState, digest: str, x_m: float, y_m: float, side_m: float, pixels: int = 192
 ) -> dict[str, Any]:
@@ -88,7 +88,7 @@ def _heights(
     return found
 
 
-@job(quick=True)
+@job(page=True)
 def description(state: WorkerState, language: Language) -> dict[str, Any] | None:
     """Describe the surface at length, as text and as an HTML page; None without a surface."""
     if state.described is None:

@@ -1,7 +1,12 @@
 """The table of all jobs by name, filled by the decorator at each."""
 
 from collections.abc import Callable
+from inspect import signature
+from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
+
+from tangible_core.errors import ConfigError, did_you_mean, quoted
+from tangible_web.arguments import checked_arguments
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -12,18 +17,36 @@ class Job(NamedTuple):
     do: Callable[..., Any]
     quick: bool = False
     """True if it runs next to a long job rather than after it; it must then leave `WorkerState.pipeline` alone."""
+    page: bool = False
+    """True if it is a request of pages too, whose answer is its result."""
 
 
 JOBS: dict[str, Job] = {}
 
 
-def job(*, quick: bool = False) -> Callable[[F], F]:
-    """Register a function as the job of its name. Raises: ValueError if there is a job of this name."""
+def job(*, quick: bool = False, page: bool = False) -> Callable[[F], F]:
+    """Register a function as the job of its name.
+
+    page: it answers a request of pages by itself; it is quick. After the state it takes `text`, `path` and `sets` of
+    the document if it needs them, and then what the page says, whose types are checked.
+    Raises: ValueError if there is a job of this name.
+    """
 
     def register(function: F) -> F:
         if function.__name__ in JOBS:
             raise ValueError(f"there are two jobs named {function.__name__}")
-        JOBS[function.__name__] = Job(function, quick)
+        JOBS[function.__name__] = Job(function, quick or page, page)
         return function
 
     return register
+
+
+@job(quick=True)
+def answer_page(state: Any, text: str, path: Path, sets: list[str], request: str, arguments: dict[str, Any]) -> Any:
+    """Answer a request of a page. Raises: ConfigError for an unknown one or wrong arguments; as the job."""
+    answers = {name: each.do for name, each in JOBS.items() if each.page}
+    if request not in answers:
+        raise ConfigError(f"there is no request {quoted(request)}{did_you_mean(request, answers)}")
+    do = answers[request]
+    own = (state, text, path, sets) if "text" in signature(do).parameters else (state,)
+    return do(*own, **checked_arguments(request, do, len(own), arguments))

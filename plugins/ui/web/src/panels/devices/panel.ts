@@ -39,7 +39,7 @@ function build(page: Page, root: HTMLElement): void {
 
   async function look(): Promise<void> {
     list.replaceChildren(Object.assign(document.createElement("li"), { textContent: t("looking") }));
-    const { devices } = await net.ask<{ devices: Device[] }>("devices");
+    const devices = await net.ask<Device[]>("devices");
     list.replaceChildren(...devices.map((each) => deviceItem(page, each, () => void choose("other", each.name))));
   }
 

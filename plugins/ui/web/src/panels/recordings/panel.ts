@@ -96,7 +96,7 @@ function build(page: Page, root: HTMLElement): void {
     button(t("open"), () => attempt(() => show(chosen(1)[0]!))),
     button(t("tryLaw"), () =>
       attempt(async () => {
-        await load(await net.ask<Shown>("try_law", { path: chosen(1)[0] }));
+        await load(await net.ask<Shown>("try_law", { record: chosen(1)[0] }));
         await look();
       }),
     ),

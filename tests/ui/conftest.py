@@ -42,7 +42,7 @@ DAILY = {
     "test_depth_and_texture_are_run_separately",
     "test_preflight_cure_corrects_the_document",
     "test_stroke_is_recorded_played_and_replayed_with_another_law",
-    "test_two_laws_are_compared_openly_and_blindly",
+    "test_two_laws_are_compared_and_a_blind_study_of_them_is_written",
     "test_enlarged_region_is_saved_and_opens_the_same",
     "test_tab_that_is_frozen_or_closed_gives_no_force",
     "test_page_with_results_has_no_violations_by_axe_and_fits_every_size",

@@ -1,54 +1,43 @@
-"""Parsing of a tab's requests: a known name and valid arguments, or a sentence that says what is wrong."""
+"""Check of what a page sends with a request, by the annotations of the function that answers it."""
 
+import inspect
 import json
-from collections.abc import Awaitable, Callable
-from typing import Any, NamedTuple, NoReturn
+from collections.abc import Callable
+from functools import cache
+from typing import Any, get_type_hints
 
-from tangible_core.errors import ConfigError, TangibleError, quoted
+from pydantic import BaseModel, ConfigDict, ValidationError, create_model
 
-from .arguments import checked_arguments
+from tangible_core.errors import ConfigError, shown
 
-Request = Callable[..., Awaitable[Any]]
-"""A request's function: called with the program's state, the tab, and the tab's arguments by name."""
-FindRequest = Callable[[str], Request | None]
-"""What finds a request by its name; None if there is none."""
+MAX_SHOWN = 200
 
 
-class BadRequest(TangibleError):
-    """A message that is not a valid request."""
+def checked_arguments(name: str, answer: Callable[..., Any], own: int, said: dict[str, Any]) -> dict[str, Any]:
+    """Return a page's arguments of a function, checked by their types; as they are, for one that takes any.
 
-    def __init__(self, number: int | None, text: str) -> None:
-        super().__init__(text)
-        self.number = number
-        """Number under which the tab waits for the answer; None if it gave none."""
-
-
-class ParsedRequest(NamedTuple):
-    """A valid request of a tab."""
-
-    number: int
-    name: str
-    ask: Request
-    told: dict[str, Any]
-
-
-def parse(text: str, find: FindRequest) -> ParsedRequest:
-    """Parse a message. Raises: BadRequest."""
+    name: of the request. own: number of leading parameters that the page may not give.
+    Raises: ConfigError for wrong, missing and further arguments.
+    """
+    if any(each.kind is each.VAR_KEYWORD for each in inspect.signature(answer).parameters.values()):
+        return said  # it checks them itself
     try:
-        said = json.loads(text, parse_constant=_refuse)
-    except (ValueError, RecursionError) as error:
-        raise BadRequest(None, "the message is not JSON") from error
-    number = said.pop("number", None) if isinstance(said, dict) else None
-    if type(number) is not int:
-        raise BadRequest(None, 'the message is not a JSON object with a "number"')
-    name = said.pop("ask", None)
-    if not isinstance(name, str) or (ask := find(name)) is None:
-        raise BadRequest(number, f"there is no request {quoted(name)}")
-    try:
-        return ParsedRequest(number, name, ask, checked_arguments(name, ask, 2, said))
-    except ConfigError as error:
-        raise BadRequest(number, str(error)) from error
+        found = _model(answer, own).model_validate_json(json.dumps(said))
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(map(str, first["loc"])) or "arguments"
+        raise ConfigError(shown(f"{name}: {where}: {first['msg']}", MAX_SHOWN)) from error
+    except RecursionError as error:
+        raise ConfigError(f"{name}: the arguments are nested too deeply") from error
+    return {key: getattr(found, key) for key in found.model_fields_set}
 
 
-def _refuse(constant: str) -> NoReturn:
-    raise ValueError(f"{constant} is not JSON")
+@cache
+def _model(answer: Callable[..., Any], own: int) -> type[BaseModel]:
+    """Return a model of the arguments after the first `own`, and no others."""
+    types = get_type_hints(answer)
+    rest = list(inspect.signature(answer).parameters.values())[own:]
+    fields: dict[str, Any] = {
+        each.name: (types[each.name], ... if each.default is each.empty else each.default) for each in rest
+    }
+    return create_model(answer.__name__, __config__=ConfigDict(extra="forbid", strict=True), **fields)

@@ -4,6 +4,7 @@ That a first visit and an option's way from its form to the file need no mouse i
 `test_forms_in_browser`.
 """
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ import pytest
 from browser_tabs import OpenPage
 from page_panels import list_folder, open_panel, wait_for_force
 from sessions import small_scene
+from tangible_study.study_file import load_study
 from waiting import until
 
 if TYPE_CHECKING:
@@ -90,7 +92,7 @@ def test_stroke_is_recorded_played_and_replayed_with_another_law(page: "Page") -
     says(page, "records", "worst error n")
 
 
-def test_two_laws_are_compared_openly_and_blindly(page: "Page") -> None:
+def test_two_laws_are_compared_and_a_blind_study_of_them_is_written(page: "Page") -> None:
     open_panel(page, "laws")
     until(lambda: page.locator("#laws-other option").count() > 3)
     page.locator("#laws-options").fill("{stiffness_n_per_m: 200}")
@@ -99,14 +101,13 @@ def test_two_laws_are_compared_openly_and_blindly(page: "Page") -> None:
     says(page, "laws", "You feel a: ")
     page.locator("#laws button", has_text="b: ").press("Enter")
     says(page, "laws", "You feel b: ")
-    press(page, "laws", "Start a blind test")
-    says(page, "laws", "Trial 1")
-    press(page, "laws", "Feel 2")
-    says(page, "laws", "you feel 2")
-    press(page, "laws", "Choose 2")
-    says(page, "laws", "Trial 2")
-    press(page, "laws", "End the test and reveal the laws")
-    says(page, "laws", "chosen 1 times")
+    page.locator("#laws-question").press("ArrowDown")
+    press(page, "laws", "Write a blind study of both laws")
+    says(page, "laws", "The study is written: ")
+    run, _ = page.locator("#laws pre").all_inner_texts()
+    _, _, _, file, *_ = shlex.split(run)
+    study = load_study(Path(file)).study
+    assert (study.comparisons[0].question, len(study.conditions)) == ("rougher", 2)
     press(page, "laws", "End the comparison")
     until(page.locator("#laws-other").is_visible)
 

@@ -1,4 +1,4 @@
-"""Two laws compared: otherwise the force of another law is felt or shown, or a blind comparison gives it away."""
+"""Two laws compared: otherwise the force of another law is felt or shown, or a study of them is of others."""
 
 import asyncio
 import math
@@ -16,13 +16,16 @@ from faulty_touch import FaultyTouch
 from sessions import Heard, InlineWorker
 from tangible_core import load_method
 from tangible_core.errors import ConfigError
+from tangible_core.plugins.registry import default_registry
 from tangible_core.servo import Packed, Safety, pack_touch
+from tangible_study.presenting.stimuli import Stimuli
+from tangible_study.study_file import config_of_recipe, load_study
 from tangible_ui.feeling.choice import Choice, NotConfirmed
 from tangible_ui.feeling.comparison import NOTHING, ComparisonLoop
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.requests import feeling as asks
 from tangible_ui.serving.serve import watch
-from tangible_ui.state.laws import Laws, Tally
+from tangible_ui.state.laws import Laws
 from tangible_ui.state.session import Session
 from tangible_web.framing import STATE_FRAME
 from waiting import happened
@@ -122,29 +125,21 @@ async def test_second_law_that_raises_is_reported_once_and_can_be_replaced(
     await press_until(session, lambda: not session.laws.comparison.running)  # and the session can be closed
 
 
-async def test_blind_comparison_hides_which_law_acts(session: Session, tab: Heard, tmp_path: Path) -> None:
-    await asks.compare_laws(session, None, "proxy", "")
-    tab.events.clear()
-    await asks.begin_blind(session, None, "?" * 300)
-    assert session.laws.message()["question"] == "?" * 200
-    tally = session.laws.tally
-    assert tally is not None
-    for called in (2, 1):
-        await asks.feel_blind(session, None, called)
-        await press_until(session, lambda: forces(session)[0] > 0.1)
-        frame = STATE_FRAME.unpack(session.feeling.frame(1, 0, session.laws.other_law()) or b"")
-        assert all(np.isnan(frame[10:13]))
-        assert frame[19:22] == (0, 0, 0)
-    assert not [event for event in tab.events if "penalty" in str(event) or "proxy" in str(event)]
-    chosen = tally.laws[tally.law(2)]
-    await asks.choose_blind(session, None, 2)
-    await asks.choose_blind(session, None, 0)
-    found = await asks.end_blind(session, None)
-    assert session.laws.message() == {"state": "two", "named": ["penalty", "proxy"], "felt": 0}
-    assert found["trials"][1][2] == ""
-    assert found["trials"][0][2] == chosen
-    assert Path(found["path"]).is_relative_to(tmp_path / "data")
-    assert chosen in Path(found["path"]).read_text()
+@pytest.mark.parametrize("question", ["same", "rougher", "higher"])
+async def test_study_of_both_laws_is_a_study_that_can_be_run(session: Session, question: str, tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="no other law"):
+        await asks.study_laws(session, None, question)
+    await asks.compare_laws(session, None, "penalty", "{stiffness_n_per_m: 800}")
+    found = await asks.study_laws(session, None, question, "de")
+    assert Path(found["file"]).is_relative_to(tmp_path / "data")
+    stimuli = Stimuli(load_study(Path(found["file"])))
+    stimuli.make(lambda _: None)
+    stimuli.check()
+    study = stimuli.file.study
+    assert (study.language, study.comparisons[0].question) == ("de", question)
+    configs = {key[1].condition: config_of_recipe(each, default_registry()) for key, each in stimuli.recipes.items()}
+    laws: Any = {name: each.render and each.render.method for name, each in configs.items()}
+    assert {name: law.stiffness_n_per_m for name, law in laws.items()} == {"penalty (a)": 400, "penalty (b)": 800}
 
 
 async def test_invalid_law_is_refused_and_the_law_before_stays(session: Session) -> None:
@@ -168,27 +163,6 @@ async def test_comparison_opens_no_motor_without_consent(session: Session) -> No
     await press_until(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
 
 
-def test_choice_counts_for_the_law_of_that_name() -> None:
-    tally = Tally(("proxy", "penalty"), "Which is smoother?")
-    for first, choice, chosen in ((0, 1, "proxy"), (1, 1, "penalty"), (0, 2, "penalty"), (1, 2, "proxy"), (0, 0, "")):
-        tally.first = first
-        assert (tally.law(1), tally.law(2)) == (first, 1 - first)
-        tally.choose(choice)
-        assert tally.trials[-1][2] == chosen
-    assert tally.counts == (2, 2, 1)
-    assert tally.trials[1] == ("penalty", "proxy", "penalty")
-
-
-@pytest.mark.parametrize(
-    ("one", "two", "neither", "chance"),
-    [(0, 0, 0, 1.0), (0, 0, 9, 1.0), (1, 0, 0, 1.0), (5, 0, 0, 0.0625), (9, 1, 3, 0.021484375), (5, 5, 0, 1.0)],
-)
-def test_chance_is_the_sign_test(one: int, two: int, neither: int, chance: float) -> None:
-    """Against tables of the binomial distribution: 2 (1 + 10) / 2^10 for nine of ten."""
-    trials = [("a", "b", "a")] * one + [("a", "b", "b")] * two + [("a", "b", "")] * neither
-    assert Tally(("a", "b"), "", trials).chance == chance
-
-
 @pytest.mark.parametrize("running", [True, False])
 def test_second_law_follows_the_hand_and_leaves_with_it(running: bool) -> None:
     ring = SimpleNamespace(latest=lambda: np.arange(17.0))
@@ -196,12 +170,3 @@ def test_second_law_follows_the_hand_and_leaves_with_it(running: bool) -> None:
     comparison = Mock(ComparisonLoop, running=True)
     Laws(comparison).follow(feeling)
     comparison.follow.assert_called_once_with((2.0, 3.0, 4.0 if running else math.inf))
-
-
-@pytest.mark.parametrize("first", [0, 1])
-def test_pages_know_nothing_of_the_laws_of_a_blind_comparison(first: int) -> None:
-    laws = Laws(Mock(ComparisonLoop, force_n=(0.0, 0.0, 1.0)), {"use": "proxy"}, ("penalty", "proxy"), felt=1, called=2)
-    assert laws.message() == {"state": "two", "named": ["penalty", "proxy"], "felt": 1}
-    laws.tally = Tally(laws.named, "Which is smoother?", [("penalty", "proxy", "proxy")], first)
-    assert laws.message() == {"state": "blind", "called": 2, "trials": 1, "question": "Which is smoother?"}
-    assert (laws.other_law().blind, laws.other_law().force_n) == (True, (0.0, 0.0, 0.0))

@@ -1,20 +1,15 @@
 """Requests about the hand and the force loop: hold, stop, beacons, and two force laws compared."""
 
 import asyncio
-import json
-from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from tangible_core.errors import ConfigError, DeviceError
-from tangible_core.files.writing import write_text
 from tangible_core.servo import Beacon, parcel
 from tangible_core.session import part_label
 
 from ..feeling.feeling import LoopInput
-from ..state.laws import Choice, Tally
 from ..state.session import Session, Tab
-from ..user_data import user_folder
 from .making import make
 from .table import request
 
@@ -63,7 +58,9 @@ def _tell(session: Session, part: int | None, name: str) -> dict[str, Any]:
 
 
 NAMES = ("a", "b")
-MOST_QUESTION = 200
+NO_OTHER = "there is no other law yet; choose one to compare with"
+StudyQuestion = Literal["same", "rougher", "higher"]
+"""What a study asks of two laws: which of three is not the same as the others, or which of two is more so."""
 
 
 @request()
@@ -80,7 +77,7 @@ async def compare_laws(session: Session, tab: Tab | None, use: str, options: str
 async def switch_law(session: Session, tab: Tab | None, to: str) -> None:
     """Use `a`, the document's law, or `b`; the page shows the force of the other one."""
     if session.laws.other is None or to not in NAMES:
-        raise ConfigError("there is no other law yet; choose one to compare with")
+        raise ConfigError(NO_OTHER)
     await _feel(session, NAMES.index(to))
 
 
@@ -95,54 +92,21 @@ async def end_laws(session: Session, tab: Tab | None) -> None:
 
 
 @request()
-async def begin_blind(session: Session, tab: Tab | None, question: str = "") -> None:
-    """Begin a blind comparison of both laws. Raises: ConfigError if there is no second law."""
+async def study_laws(
+    session: Session, tab: Tab | None, question: StudyQuestion, language: Literal["en", "de"] = "en"
+) -> dict[str, str]:
+    """Write a blind study of both laws into a folder of the user's.
+
+    Returns: paths and command lines, as `write_law_study`. Raises: ConfigError if there is no second law.
+    """
     if session.laws.other is None:
-        raise ConfigError("there is no other law yet; choose one to compare with")
-    session.laws.tally = tally = Tally(session.laws.named, question[:MOST_QUESTION])
-    tally.draw()
-    await feel_blind(session, tab, 1)
-
-
-@request()
-async def feel_blind(session: Session, tab: Tab | None, called: int) -> None:
-    """Use the law that is named 1, or 2, in this trial."""
-    tally = _tally(session)
-    session.laws.called = 2 if called == 2 else 1
-    await _feel(session, tally.law(session.laws.called))
-
-
-@request()
-async def choose_blind(session: Session, tab: Tab | None, choice: Choice) -> None:
-    """Count a choice, 0 for neither, and begin the next trial."""
-    tally = _tally(session)
-    tally.choose(choice if choice in (1, 2) else 0)
-    await feel_blind(session, tab, 1)
-
-
-@request()
-async def end_blind(session: Session, tab: Tab | None) -> dict[str, Any]:
-    """End the blind comparison: return its results, and write them to a file of the user's."""
-    tally = _tally(session)
-    found = tally.as_data()
-    session.laws.tally = None
-    if tally.trials:
-        path = user_folder("comparisons") / f"{datetime.now():%Y-%m-%d %H.%M.%S} {' and '.join(tally.laws)}.json"
-        text = json.dumps({**found, "document": session.text}, indent=2) + "\n"
-        await asyncio.to_thread(write_text, path, text, private=True)
-        found["path"] = str(path)
-    await _feel(session, 0)
-    return found
-
-
-def _tally(session: Session) -> Tally:
-    if session.laws.tally is None:
-        raise ConfigError("no blind comparison is running; begin one")
-    return session.laws.tally
+        raise ConfigError(NO_OTHER)
+    told = {"other": session.laws.other, "names": session.laws.named, "question": question, "language": language}
+    return await session.worker.quick("write_law_study", **session.document(), **told)
 
 
 async def _feel(session: Session, which: int, other: dict[str, Any] | None = None) -> None:
-    """Use one of the two laws; compute the other one in the background, unless the comparison is blind.
+    """Use one of the two laws; compute the other one in the background.
 
     other: a new second law.
     Raises: DeviceError if no loop runs, ConfigError for an invalid law, NotConfirmed for a motor that nobody
@@ -158,10 +122,7 @@ async def _feel(session: Session, which: int, other: dict[str, Any] | None = Non
         if await session.put(felt) is None:
             raise DeviceError("nothing is felt: force was stopped, or another device was chosen meanwhile")
         laws.other, laws.felt, laws.named = other or laws.other, which, _told_apart(made[0]["law"], made[1]["law"])
-        if laws.tally is None:
-            await asyncio.to_thread(laws.comparison.feel, shown.touch, shown.safety)
-        else:
-            await asyncio.to_thread(laws.comparison.close)
+        await asyncio.to_thread(laws.comparison.feel, shown.touch, shown.safety)
     finally:
         shown.touch.discard()
     session.tell("laws", **laws.message())

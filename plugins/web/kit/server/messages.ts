@@ -229,12 +229,7 @@ export interface Events {
   /** The chosen device changed. */
   device: Said & { kind: "hand" | "document" | "other"; name: string };
   error: Said & { text: string };
-  laws: Said &
-    (
-      | { state: "one" }
-      | { state: "two"; named: [string, string]; felt: number }
-      | { state: "blind"; called: number; trials: number; question: string }
-    );
+  laws: Said & ({ state: "one" } | { state: "two"; named: [string, string]; felt: number });
   recorder: Said & { recording: boolean; path: string; ticks: number; why: string };
   /** Records of Python's logging and warnings, in the server and in the computing process. */
   log: Said & { level: "detail" | "warning" | "error"; logger: string; text: string };

@@ -1,15 +1,21 @@
-"""Jobs that prepare input of the force loop: a beacon, and several force laws on one surface."""
+"""Jobs about what is felt: a beacon, several force laws on one surface, and a study of two of them."""
 
+import shlex
+from datetime import datetime
 from pathlib import Path
 from typing import Any, cast
 
 from tangible_core.data import HapticSurface
 from tangible_core.errors import ConfigError, quoted
+from tangible_core.files.writing import write_text
 from tangible_core.files.yaml.editing import json_in_yaml
 from tangible_core.files.yaml.source import parse_value, plain
+from tangible_core.pipeline.config.editing import relocate_text
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.servo import beacon_to, parcel
 
+from ...user_data import user_folder
 from ..loop_input import loop_input_of
 from ..state import WorkerState
 from ..view.surface_view import at_hand
@@ -57,3 +63,56 @@ def laws(
         raise first.config.missing("render")
     with_others = [state.config_of(text, path, [*sets, f"render={json_in_yaml(each)}"]) for each in others]
     return [loop_input_of(first), *(loop_input_of(Pipeline.from_config(config, like=first)) for config in with_others)]
+
+
+STUDY = """\
+# Two force laws, blindly: neither participant nor experimenter sees which one acts.
+#   {run}
+#   {analyse}
+study: laws
+title: {title}
+pipeline: pipeline.yaml
+conditions:
+  {first}: {{}}
+  {second}: {{set: {{render: {other}}}}}
+comparisons:
+- name: laws
+  question: {question}
+  repetitions: 18                  # trials; a multiple of 6 shows each arrangement equally often
+breaks: {{every: 18, seconds: 60}}
+language: {language}
+"""
+"""A study of the page's two laws."""
+
+
+@job(quick=True)
+def write_law_study(
+    state: WorkerState,
+    text: str,
+    path: Path,
+    sets: list[str],
+    other: dict[str, Any],
+    names: tuple[str, str],
+    question: str,
+    language: str,
+) -> dict[str, str]:
+    """Write a study of the document's law and another one, with the document, into a new folder of the user's.
+
+    other: as `render:` has it. names: of both laws. question, language: as a study file has them.
+    Returns: path of the study's `file`, and the command lines that `run` and `analyse` it.
+    Raises: ConfigError for a wrong document; OutputError.
+    """
+    folder = user_folder("studies") / f"{datetime.now():%Y-%m-%d-%H.%M.%S}"
+    file, pipeline, results = folder / "study.yaml", folder / "pipeline.yaml", folder / "results"
+    run = ["tangible", "study", "run", str(file), "--page", "--participant", "P1", "--out", str(results)]
+    found = {
+        "file": str(file),
+        "run": shlex.join(run),
+        "analyse": shlex.join(["tangible", "study", "analyse", str(results)]),
+    }
+    first, second = map(json_in_yaml, names)
+    blocks = {"title": json_in_yaml(" / ".join(names)), "other": json_in_yaml(other), "first": first, "second": second}
+    config = parse_config(text, path, state.registry, sets)
+    write_text(pipeline, relocate_text(text, path, config, pipeline), private=True)
+    write_text(file, STUDY.format(**found, **blocks, question=question, language=language), private=True)
+    return found

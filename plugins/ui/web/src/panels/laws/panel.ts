@@ -1,16 +1,16 @@
-/** Two laws on one hand: side by side, or blindly with a tally. */
+/** Two laws on one hand, side by side; and a blind study of both. */
 import { button, field, hint } from "kit/elements";
 import type { Events } from "kit/server/messages";
 import type { Page } from "kit/page";
+import { language } from "kit/words/words";
 import type { Panel } from "../panel";
 import { t } from "./words";
 
-interface Tally {
-  laws: [string, string];
-  chosen: [number, number];
-  neither: number;
-  chance: number;
-  path?: string;
+/** A study that was written: its file, and the commands that run and analyse it. */
+interface Study {
+  file: string;
+  run: string;
+  analyse: string;
 }
 
 const LETTERS = ["a", "b"] as const;
@@ -18,7 +18,7 @@ const LETTERS = ["a", "b"] as const;
 function build(page: Page, root: HTMLElement): void {
   const { hub, net } = page;
   const status = document.createElement("p");
-  const result = document.createElement("ul");
+  const written = document.createElement("div");
   const attempt = async (work: () => Promise<unknown>): Promise<void> => {
     try {
       await work();
@@ -34,58 +34,38 @@ function build(page: Page, root: HTMLElement): void {
   const choice = setup((use, options) => attempt(() => net.ask("compare_laws", { use, options })));
   const two = group(t("felt"));
   const letters = LETTERS.map((to) => button(to, () => attempt(() => net.ask("switch_law", { to }))));
-  const question = input("laws-question");
-  question.value = t("questionFirst");
+  const question = document.createElement("select");
+  question.id = "laws-question";
+  question.append(...(["same", "rougher", "higher"] as const).map((each) => new Option(t(each), each)));
+  const study = async (): Promise<void> => {
+    const asked = { question: question.value, language: language === "de" ? "de" : "en" };
+    const { file, run, analyse } = await net.ask<Study>("study_laws", asked);
+    written.replaceChildren(hint(t("studyHow")), ...[run, analyse].map(command));
+    say(t("studyWritten", { file }));
+  };
   two.append(
     ...letters,
     field(t("question"), question),
-    hint(t("blindHelp")),
-    button(t("blind"), () => attempt(() => net.ask("begin_blind", { question: question.value }))),
+    hint(t("studyHelp")),
+    button(t("study"), () => attempt(study)),
     button(t("end"), () => attempt(() => net.ask("end_laws"))),
   );
-  const blind = group("");
-  const asked = blind.querySelector("legend")!;
-  const trial = document.createElement("p");
-  const feel = ([1, 2] as const).map((called) => button(t(`feel${called}`), () => attempt(() => net.ask("feel_blind", { called }))));
-  const choose = (choice: number): Promise<void> => attempt(() => net.ask("choose_blind", { choice }));
-  blind.append(
-    trial,
-    ...feel,
-    button(t("choose1"), () => choose(1)),
-    button(t("choose2"), () => choose(2)),
-    button(t("chooseNone"), () => choose(0)),
-    button(t("reveal"), () => attempt(async () => reveal(await net.ask<Tally>("end_blind")))),
-  );
-
-  function reveal({ laws, chosen, neither, chance, path }: Tally): void {
-    const lines = laws.map((law, i) => t("result", { law, count: chosen[i]! }));
-    lines.push(t("neither", { count: neither }), t("chance", { percent: (100 * chance).toPrecision(2) }));
-    if (path) lines.push(t("kept", { path }));
-    result.replaceChildren(...lines.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
-    page.say(lines.slice(0, 2).join(" "));
-  }
-
   function show(message: Events["laws"]): void {
     choice.hidden = message.state !== "one";
     two.hidden = message.state !== "two";
-    blind.hidden = message.state !== "blind";
+    if (message.state === "one") written.replaceChildren();
     if (message.state === "two") {
       letters.forEach((each, i) => {
         each.textContent = t("named", { letter: LETTERS[i]!, law: message.named[i]! });
         each.setAttribute("aria-pressed", String(message.felt === i));
       });
       say(t("feeling", { letter: LETTERS[message.felt]!, law: message.named[message.felt]! }));
-    } else if (message.state === "blind") {
-      asked.textContent = message.question;
-      trial.textContent = t("trial", { number: message.trials + 1, called: message.called });
-      feel.forEach((each, i) => each.setAttribute("aria-pressed", String(message.called === i + 1)));
-      page.say(trial.textContent);
     } else status.textContent = "";
   }
 
   hub.on("laws", show);
   show({ event: "laws", at_s: 0, state: "one" });
-  root.append(hint(t("about")), choice, two, blind, result, status);
+  root.append(hint(t("about")), choice, two, status, written);
   let known = false;
   hub.on("touch", () => {
     if (known) return;
@@ -117,6 +97,10 @@ function group(title: string): HTMLFieldSetElement {
   legend.textContent = title;
   box.append(legend);
   return box;
+}
+
+function command(text: string): HTMLPreElement {
+  return Object.assign(document.createElement("pre"), { textContent: text });
 }
 
 function input(id: string): HTMLInputElement {

@@ -469,7 +469,7 @@ class TestHeights:
         parts = [{"label": 7, "height_m": 0.0007}]
         await saved(small, ask, parts=parts, heights={**GIVEN, "by": by})
         await ask("parts_heights", heights_m=[None, 0.0007, None])
-        seen = await happened(lambda: small.worker.state.kept.seen)
+        seen = await happened(lambda: small.worker.state.preview.seen)
         wanted = load_pipeline(tmp_path / "mine.yaml").relief.height_m
         np.testing.assert_array_equal(seen.relief.height_m, wanted)
 
@@ -510,11 +510,11 @@ class TestHeights:
         assert found == [{}, *[None] * 18, {}]
         assert small.worker.asked.count("parts_heights") == 2
         await happened(lambda: small.tab.last("scene")["height_m"][1] >= 19 / 1e4)
-        assert small.worker.state.kept.seen.relief.height_m.max() > 19 / 1e4
+        assert small.worker.state.preview.seen.relief.height_m.max() > 19 / 1e4
         assert small.session.text == text, "nothing is written before it is saved"
-        monkeypatch.setattr("tangible_ui.worker.parts.heights.MOST_CELLS", 200)
+        monkeypatch.setattr("tangible_core.pipeline.engine.preview.MAX_CELLS", 200)
         await ask("parts_heights", heights_m=[0.0, 0.002, 0.001])
-        assert small.worker.state.kept.grid.shape == (12, 16)
+        assert small.worker.state.preview.preview.grid.shape == (12, 16)
         await happened(lambda: small.tab.last("scene")["rows"] == 12)
 
 

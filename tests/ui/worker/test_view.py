@@ -11,6 +11,7 @@ from tangible_core import load_method
 from tangible_core.data import Material, Relief
 from tangible_core.errors import GeometryError, OutputError
 from tangible_core.metrics import absolute_error
+from tangible_core.pipeline.engine.preview import is_at_hand
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scene import Scene
 from tangible_render.haptic_textures import compile_textures
@@ -21,7 +22,7 @@ from tangible_ui.worker.jobs import surface as textures
 from tangible_ui.worker.state import WorkerState
 from tangible_ui.worker.view import files
 from tangible_ui.worker.view.files import KEPT, show
-from tangible_ui.worker.view.surface_view import Layer, SurfaceView, is_there, view_of
+from tangible_ui.worker.view.surface_view import Layer, SurfaceView, view_of
 
 RANDOM = np.random.default_rng(3)
 WOOD = Material("wood", 800.0, 1.0, 0.4, 0.3, roughness_m=3e-5, grain_m=6e-4, texture="stochastic", seed=4)
@@ -204,7 +205,7 @@ class TestSee:
         found = view_of(pipeline, "segments")
         assert found.shows == "segments"
         assert found.relief.height_m.max() == 0
-        assert not is_there(pipeline, "relief")
+        assert not is_at_hand(pipeline.engine, "relief")
         np.testing.assert_array_equal(found.labels, pipeline.segments.labels)
 
     def test_certainty_of_segments_spans_all_shares_and_is_left_out_where_all_are_certain(self):

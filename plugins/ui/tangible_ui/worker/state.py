@@ -89,8 +89,8 @@ class WorkerState:
         """The scene in the parts editor; used by quick jobs alone."""
         self.tree: Any = None
         """The picture in the parts editor, and its tree of regions; used by quick jobs alone."""
-        self.kept: Any = None
-        """Results that do not depend on the heights of parts; used by quick jobs alone."""
+        self.preview: Any = None
+        """The heights of parts that are tried; used by quick jobs alone."""
         self._cache = cache or Cache()
         self._stamps: WeakKeyDictionary[Pipeline, Stamp] = WeakKeyDictionary()
         self._newest, self._work = NEVER, None

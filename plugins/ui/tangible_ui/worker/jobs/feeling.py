@@ -1,4 +1,4 @@
-"""Jobs about what is felt: a beacon, several force laws on one surface, and a study of two of them."""
+"""Jobs about force: a beacon, several force laws on one surface, and a study of two of them."""
 
 import shlex
 from datetime import datetime
@@ -12,20 +12,20 @@ from tangible_core.files.yaml.editing import json_in_yaml
 from tangible_core.files.yaml.source import parse_value, plain
 from tangible_core.pipeline.config.editing import relocate_text
 from tangible_core.pipeline.config.parsing import parse_config
+from tangible_core.pipeline.engine.preview import product_at_hand
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.servo import beacon_to, parcel
 
 from ...user_data import user_folder
 from ..loop_input import loop_input_of
 from ..state import WorkerState
-from ..view.surface_view import at_hand
 from .table import job
 
 
 @job(quick=True)
 def beacon(state: WorkerState, text: str, path: Path, sets: list[str], part: int) -> dict[str, Any]:
     """Pack a beacon to a part of the document's surface, by number. Raises: ConfigError without a surface."""
-    surface: HapticSurface | None = at_hand(state.pipeline_of(text, path, sets), "surface")
+    surface: HapticSurface | None = product_at_hand(state.pipeline_of(text, path, sets).engine, "surface")
     if surface is None:
         raise ConfigError("the surface of this document is not made yet; make it, and a beacon leads to its parts")
     made = beacon_to(surface, part)

@@ -1,34 +1,47 @@
 """Jobs of the parts editor: open it, propose a part, follow edges, feel heights, save the parts."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from tangible_core.data import HapticSurface, Record, SegmentMap
+from tangible_core.data import HapticSurface, SegmentMap
 from tangible_core.data.records import digest_of
 from tangible_core.errors import ConfigError
-from tangible_core.parts import PartChoice, find_parts
+from tangible_core.parts import find_parts
 from tangible_core.pipeline.config.editing import edit_text, relocate_text
 from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.pipeline.engine import part_validation, working_grid
 from tangible_core.pipeline.engine.part_validation import check_parts
-from tangible_core.pipeline.engine.stages.touch import fit_to_device
+from tangible_core.pipeline.engine.preview import (
+    PartHeightPreview,
+    config_heights,
+    preview_config,
+    without_entries,
+)
 from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.plugins.notes import silently
 
 from ..loop_input import parcel_of
 from ..parts import opening, saving
-from ..parts.heights import Kept, coarse, kept_of, known_heights, materials_of, of_parts, validate
 from ..parts.label_files import as_png, unpack
 from ..parts.outlines import snap
 from ..parts.proposals import Kind, as_points, propose, propose_region, runs
 from ..state import WorkerState
 from ..view.files import show
-from ..view.surface_view import view_parts
+from ..view.surface_view import SurfaceView, view_parts
 from .table import job
+
+
+@dataclass
+class DrawnPreview:
+    """Heights that are tried, and what pages were shown of them."""
+
+    preview: PartHeightPreview
+    pipeline: Pipeline
+    seen: SurfaceView | None = None
+    """The last view; `surface` is the current surface if that is a newer one."""
+    surface: HapticSurface | None = None
 
 
 @job(quick=True)
@@ -47,7 +60,7 @@ def parts_open(
     at = f"{opening.FOLDER}{digest_of((edited.picture, edited.parts))}"
     opening.leave_files(edited, state.folder / at)
     in_file, beside = saving.is_in_file(path, opened), saving.folder_of_photograph(config, uploads)
-    by_parts = config.with_values(heights=opening.config_heights(config))
+    by_parts = config.with_values(heights=config_heights(config))
     rows, columns = edited.parts.labels.shape
     return {
         "columns": columns,
@@ -57,7 +70,7 @@ def parts_open(
         "digest": opening.digest(edited.parts, config),
         "parts": opening.part_entries(edited.parts, config.parts or {}),
         "divided": edited.scene.segments is not None or edited.parts.count > 1,
-        "heights": opening.config_heights(config).model_dump(mode="json"),
+        "heights": config_heights(config).model_dump(mode="json"),
         "top_m": max(0.0, by_parts.top_m),
         "widthM": by_parts.size.width_m,
         "file": str(path) if in_file else "",
@@ -82,7 +95,7 @@ def parts_first(state: WorkerState, text: str, path: Path, sets: list[str]) -> d
     joined = f"texture={{use: {opening.TREES}, segments: {segments_for()}}}"
     divided = state.pipeline_of(text, path, [*sets, joined])
     found, config = proposed_parts(divided), divided.config
-    by_parts = config.with_values(heights=opening.config_heights(config))
+    by_parts = config.with_values(heights=config_heights(config))
     heights = proposed_heights(divided, found, max(0.0, by_parts.top_m))
     at = f"{opening.FOLDER}{digest_of((opened.picture, found))}"
     opening.leave_files(opened._replace(parts=found), state.folder / at)
@@ -193,38 +206,26 @@ def parts_heights(
     """
     pipeline = opening.edited_of(state, text, path, sets)
     opening.opened_of(state, pipeline)
-    config = coarse(of_parts(pipeline.config, heights), pipeline.scene.shape)
-    if config.render is None:
-        raise config.missing("render")
+    config = preview_config(pipeline.config, heights, pipeline.scene.shape)
     if pipeline.scene.segments is None and not pipeline.config.by_parts:
         raise ConfigError("no parts are saved yet; save what was drawn, and its heights can be felt")
-    kept = kept_of(state, Pipeline.from_config(config, like=pipeline))
-    said = {number: validate(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
-    part_validation.check_parts(config.with_values(parts=said), kept.parts, kept.grid.scene.shape[1])
-    part_validation.check_numbers(config, kept.parts.count)
-    known = known_heights(kept, heights_m, (heights or {}).get("by", opening.config_heights(pipeline.config).by))
-    relief = working_grid.relief_of_layers(kept.layering, known, config.size, kept.grid.opaque_mask)
-    own = part_validation.own_materials(config) if materials is None else dict(enumerate(materials))
-    products: dict[str, Record] = {config.felt_parts: kept.parts, "relief": relief}
-    if kept.materials is not None:
-        products["materials"] = replace(kept.materials, materials=materials_of(kept.materials.materials, own, config))
-    made = kept.pipeline.engine.with_products(**products)
-    surface: HapticSurface = made.make("surface")
-    kept.surface, device = surface, config.felt_device
-    if device is not None:
-        surface = fit_to_device(surface, config, device)[0]
-    with silently():  # else every step of a height would log the device's limits
-        return parcel_of(made.make("touch"), surface, config)
+    bare, before = Pipeline.from_config(without_entries(config), like=pipeline), state.preview
+    if before is None or not before.preview.holds_for(bare.engine):
+        state.preview = DrawnPreview(PartHeightPreview(bare.engine, before and before.preview), bare)
+    by = (heights or {}).get("by", config_heights(pipeline.config).by)
+    tried = state.preview.preview.try_heights(config, heights_m, by, materials)
+    state.preview.surface = tried.surface
+    return parcel_of(tried.touch, tried.felt, config)
 
 
 @job(quick=True)
 def parts_shown(state: WorkerState) -> None:
     """Send pages the surface that `parts_heights` made last."""
-    kept: Kept | None = state.kept
-    if kept is None or kept.surface is None:
+    drawn: DrawnPreview | None = state.preview
+    if drawn is None or drawn.surface is None:
         return
-    surface, kept.surface = kept.surface, None
-    kept.seen = view_parts(kept.pipeline, surface, kept.seen)
-    if kept.seen.digest != state.shown:
-        state.tell("scene", **show(kept.seen, state.folder))
-        state.shown = kept.seen.digest
+    surface, drawn.surface = drawn.surface, None
+    drawn.seen = view_parts(drawn.pipeline, surface, drawn.seen)
+    if drawn.seen.digest != state.shown:
+        state.tell("scene", **show(drawn.seen, state.folder))
+        state.shown = drawn.seen.digest

@@ -12,16 +12,16 @@ from tangible_core.data import SegmentMap, SegmentTree
 from tangible_core.data.pictures import to_rgb8
 from tangible_core.data.records import digest_of
 from tangible_core.data.views import PartMap, border_pixels
-from tangible_core.parts import HeightChoice, PartChoice, find_parts, part_sizes
+from tangible_core.parts import PartChoice, find_parts, part_sizes
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.engine.part_validation import parts_of
+from tangible_core.pipeline.engine.preview import config_heights, is_at_hand
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.interfaces import Hierarchical
 from tangible_core.scene.scene import Scene
 
 from ..state import WorkerState
 from ..view.files import leave, write_whole
-from ..view.surface_view import is_there
 
 FOLDER = "parts-"
 TREES = "hierarchy"
@@ -76,11 +76,6 @@ def digest(parts: PartMap, config: PipelineConfig) -> str:
     return digest_of((parts.labels, choices, repr(config_heights(config))))
 
 
-def config_heights(config: PipelineConfig) -> HeightChoice:
-    """Return the document's recipe for a relief of parts; without one, the editor's."""
-    return config.heights or HeightChoice(by="given")
-
-
 def part_entries(parts: PartMap, choices: Mapping[int, PartChoice]) -> list[dict[str, Any]]:
     """Return every part with its entry, its number of pixels, and a pixel well inside it."""
     places = _places(parts)
@@ -110,7 +105,8 @@ def _parts(pipeline: Pipeline) -> PartMap:
     scene = pipeline.scene
     if scene.segments is not None:
         return parts_of(scene.segments)
-    if pipeline.config.by_parts and is_there(pipeline, "parts") and (found := pipeline.make("parts")) is not None:
+    is_made = pipeline.config.by_parts and is_at_hand(pipeline.engine, "parts")
+    if is_made and (found := pipeline.make("parts")) is not None:
         return found
     return find_parts(SegmentMap(np.zeros(scene.shape, np.int32)))
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from jaxtyping import Float32, Int32
@@ -13,6 +13,7 @@ from tangible_core.data.records import digest_of
 from tangible_core.metrics import absolute_error
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.config.part_checks import names_of
+from tangible_core.pipeline.engine.preview import is_at_hand, product_at_hand
 from tangible_core.pipeline.engine.stages.touch import fit_to_device
 from tangible_core.pipeline.engine.working_grid import parts_on_grid
 from tangible_core.pipeline.pipeline import Pipeline
@@ -100,7 +101,7 @@ def _of(seen: SurfaceView, surface: HapticSurface, config: PipelineConfig) -> Su
 
 def _view_segments(pipeline: Pipeline) -> SurfaceView:
     """Return the view of segments over the relief, or over a flat picture without one."""
-    if is_there(pipeline, "relief"):
+    if is_at_hand(pipeline.engine, "relief"):
         relief = pipeline.relief
     else:
         felt = pipeline.engine.make_on_grid("segments")
@@ -109,18 +110,9 @@ def _view_segments(pipeline: Pipeline) -> SurfaceView:
     return _view(pipeline, "segments", relief)
 
 
-def is_there(pipeline: Pipeline, product: Product) -> bool:
-    """Return True if a product is available without making it: given, made, or cached."""
-    done = {each.product: each.outcome for each in pipeline.outcomes}
-    if done.get(product) in ("given", "ran", "cached"):
-        return True
-    steps = {each.product: each.outcome for each in pipeline.plan(product).steps}
-    return steps.get(product) in ("given", "cached")
-
-
 def _view(pipeline: Pipeline, shows: Shows, relief: Relief) -> SurfaceView:
     labels = _labels(pipeline, relief.height_m.shape)
-    chosen = at_hand(pipeline, "materials")
+    chosen = product_at_hand(pipeline.engine, "materials")
     materials = chosen.materials if chosen is not None and labels is not None else ()
     picture = None if pipeline.scene.views is None else pipeline.scene.views.left
     names = _names(pipeline) if labels is not None else None
@@ -130,7 +122,7 @@ def _view(pipeline: Pipeline, shows: Shows, relief: Relief) -> SurfaceView:
 def _names(pipeline: Pipeline) -> tuple[str, ...] | None:
     """Return the names of the parts; None if nothing is by parts."""
     config = pipeline.config
-    parts: PartMap | None = at_hand(pipeline, config.felt_parts) if config.by_parts else None
+    parts: PartMap | None = product_at_hand(pipeline.engine, config.felt_parts) if config.by_parts else None
     return None if parts is None else names_of(config.parts or {}, parts.count)
 
 
@@ -138,26 +130,21 @@ def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h 
     """Return labels of the parts if anything is by parts, else of the segments; None if they are not made."""
     parts = pipeline.config.felt_parts
     product: Product = parts if pipeline.config.by_parts else "segments"
-    found = at_hand(pipeline, product)
+    found = product_at_hand(pipeline.engine, product)
     if found is None:
         return None
     return (reduced_segments(found, shape) if product == "segments" else parts_on_grid(found, shape, parts)).labels
 
 
-def at_hand(pipeline: Pipeline, product: Product) -> Any:
-    """Return a product on the working grid; None if it would have to be made."""
-    return pipeline.engine.make_on_grid(product) if is_there(pipeline, product) else None
-
-
 def _layers(pipeline: Pipeline) -> dict[str, Layer]:
     found: dict[str, Layer] = {}
-    disparity: DisparityMap | None = at_hand(pipeline, "disparity")
+    disparity: DisparityMap | None = product_at_hand(pipeline.engine, "disparity")
     if disparity is not None:
         unit = "px" if disparity.unit == "px" else ""
         found["disparity"] = Layer.of(disparity.disparity_px, unit)
         found["confidence"] = Layer.of(disparity.confidence, "", (0.0, 1.0))
         found |= _error(pipeline, disparity)
-    segments: SegmentMap | None = at_hand(pipeline, "segments")
+    segments: SegmentMap | None = product_at_hand(pipeline.engine, "segments")
     if segments is not None and float(segments.confidence.min()) < 1:
         found["certainty"] = Layer.of(segments.confidence, "", (0.0, 1.0))
     return found

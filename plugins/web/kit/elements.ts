@@ -1,5 +1,10 @@
 /** Native elements, created in one line. */
 
+/** Return a new element with these properties. */
+export function make<K extends keyof HTMLElementTagNameMap>(tag: K, properties: Partial<HTMLElementTagNameMap[K]>): HTMLElementTagNameMap[K] {
+  return Object.assign(document.createElement(tag), properties);
+}
+
 export function button(text: string, press: () => unknown): HTMLButtonElement {
   const toggle = document.createElement("button");
   toggle.type = "button";

@@ -1,4 +1,5 @@
 /** A panel of the page: an independent section under a heading. */
+import { make } from "kit/elements";
 import type { Page } from "kit/page";
 import { bring, holder, type Place } from "../frame/tasks";
 import { recall, remember } from "kit/preferences";
@@ -46,10 +47,7 @@ export function reveal(id: string): void {
 }
 
 function place(panel: Panel): HTMLElement {
-  const box = document.createElement("details");
-  box.id = panel.id;
-  box.className = "panel";
-  box.open = recall(`panel.${panel.id}`, panel.open);
+  const box = make("details", { id: panel.id, className: "panel", open: recall(`panel.${panel.id}`, panel.open) });
   box.addEventListener("toggle", () => remember(`panel.${panel.id}`, box.open));
   const heading = document.createElement("summary");
   const title = document.createElement("h2");
@@ -57,8 +55,7 @@ function place(panel: Panel): HTMLElement {
   heading.append(title);
   heading.addEventListener("keydown", walk);
   heading.addEventListener("click", () => remember(`panel.${panel.id}`, !box.open)); // "toggle" may come after a reload
-  const root = document.createElement("div");
-  root.className = "inside";
+  const root = make("div", { className: "inside" });
   box.append(heading, root);
   holder(panel.task).append(box);
   return root;

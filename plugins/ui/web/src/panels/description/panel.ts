@@ -1,5 +1,5 @@
 /** The long description in a chosen language: to read, hear, copy and download. */
-import { button, field, hint, paragraph } from "kit/elements";
+import { button, field, hint, make, paragraph } from "kit/elements";
 import { copy, download } from "../../files";
 import type { Page } from "kit/page";
 import { t } from "./words";
@@ -54,9 +54,7 @@ export function build(page: Page, root: HTMLElement): void {
     spoken();
   });
   const spoken = (): void => void (read.textContent = t(page.speech.reading ? "quiet" : "read"));
-  const buttons = document.createElement("div");
-  buttons.className = "buttons";
-  buttons.hidden = true;
+  const buttons = make("div", { className: "buttons", hidden: true });
   buttons.append(
     read,
     button(t("copy"), async () => {
@@ -84,24 +82,20 @@ function languageOf({ document }: Page): Language {
 }
 
 function choice(): HTMLSelectElement {
-  const select = document.createElement("select");
-  select.id = "description-language";
+  const select = make("select", { id: "description-language" });
   for (const each of LANGUAGES) select.add(new Option(t(each), each));
   return select;
 }
 
 function inElements({ title, overview, heading, parts, left_out }: Description): HTMLElement[] {
-  const head = document.createElement("h3");
-  head.textContent = title;
+  const head = make("h3", { textContent: title });
   const elements = [head, paragraph(overview)];
   if (!parts.length) return elements;
-  const second = document.createElement("h4");
-  second.textContent = heading;
+  const second = make("h4", { textContent: heading });
   const list = document.createElement("ul");
   for (const { label, says } of parts) {
     const item = document.createElement("li");
-    const name = document.createElement("strong");
-    name.textContent = label;
+    const name = make("strong", { textContent: label });
     item.append(name, `. ${says}`);
     list.append(item);
   }
@@ -110,9 +104,7 @@ function inElements({ title, overview, heading, parts, left_out }: Description):
 
 /** Return a scrolling region, focusable; not a live region: a new text is announced, not read out. */
 function region(): HTMLElement {
-  const results = document.createElement("div");
-  results.className = "description";
-  results.tabIndex = 0;
+  const results = make("div", { className: "description", tabIndex: 0 });
   results.setAttribute("role", "region");
   results.setAttribute("aria-label", t("text"));
   return results;

@@ -1,5 +1,5 @@
 /** Dialog that asks before a device with a motor is started, and says what will happen. */
-import { button } from "kit/elements";
+import { button, make } from "kit/elements";
 import { t } from "./words";
 
 export interface About {
@@ -11,18 +11,16 @@ export interface About {
 
 /** Return whether the person agreed; "no" has the focus first, and anything else means no. */
 export function confirmStart(about: About): Promise<boolean> {
-  const dialog = document.createElement("dialog");
-  dialog.className = "sure";
-  const heading = Object.assign(document.createElement("h2"), { id: "sure-title", textContent: t("sureTitle", { name: about.name }) });
+  const dialog = make("dialog", { className: "sure" });
+  const heading = make("h2", { id: "sure-title", textContent: t("sureTitle", { name: about.name }) });
   dialog.setAttribute("aria-labelledby", heading.id);
   const value = [
     t("sure"),
     t("sureForce", { force: about.most_force_n.toFixed(1) }),
     t("sureRelief", { relief: (1000 * about.relief_m).toFixed(0) }),
   ].join(" ");
-  const texts = [value, t("sureHands")].map((text) => Object.assign(document.createElement("p"), { textContent: text }));
-  const buttons = document.createElement("div");
-  buttons.className = "buttons";
+  const texts = [value, t("sureHands")].map((text) => make("p", { textContent: text }));
+  const buttons = make("div", { className: "buttons" });
   const no = button(t("no"), () => dialog.close());
   no.autofocus = true;
   const yes = button(t("yes"), () => dialog.close("yes"));

@@ -1,4 +1,5 @@
 /** Figures of the force loop, four times a second while visible. */
+import { make } from "kit/elements";
 import type { Page } from "kit/page";
 import { LIMITS } from "kit/contact/limits";
 import { t } from "./words";
@@ -32,14 +33,10 @@ interface Figures {
 /** Return the figures. open: whether the panel is visible. */
 export function loopFigures(page: Page, open: () => boolean): HTMLElement {
   const box = document.createElement("section");
-  const heading = document.createElement("h3");
-  heading.textContent = t("doctor");
-  const none = document.createElement("p");
-  none.className = "hint";
-  none.textContent = t("noLoop");
-  const list = document.createElement("dl");
-  list.className = "figures";
-  const how = Object.assign(document.createElement("p"), { className: "hint" });
+  const heading = make("h3", { textContent: t("doctor") });
+  const none = make("p", { className: "hint", textContent: t("noLoop") });
+  const list = make("dl", { className: "figures" });
+  const how = make("p", { className: "hint" });
   const late = new Spark(t("worstLine"), 0);
   const force = new Spark(t("forceLine"), 2);
   box.append(heading, none, list, how, figureWithCaption(t("worstLine"), late), figureWithCaption(t("forceLine"), force));

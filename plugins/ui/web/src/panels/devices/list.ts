@@ -1,5 +1,5 @@
 /** List items of installed devices: kind, presence, problems. */
-import { button } from "kit/elements";
+import { button, make } from "kit/elements";
 import type { Page } from "kit/page";
 import { t } from "./words";
 
@@ -38,8 +38,7 @@ export function deviceItem(page: Page, about: Device, use: () => void): HTMLLIEl
   uses.setAttribute("aria-label", t("useNamed", { name: about.name }));
   const examines = button(t("examine"), () => examine(page, about.name, findings));
   examines.setAttribute("aria-label", t("examineNamed", { name: about.name }));
-  const buttons = document.createElement("div");
-  buttons.className = "buttons";
+  const buttons = make("div", { className: "buttons" });
   buttons.append(uses, examines);
   line.append(name, element("p", about.summary), ...problemTexts(about), buttons, findings);
   return line;

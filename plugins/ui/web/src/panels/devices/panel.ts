@@ -1,5 +1,5 @@
 /** The devices panel: installed devices, the choice of one, and figures of its loop. */
-import { button } from "kit/elements";
+import { button, make } from "kit/elements";
 import type { Page } from "kit/page";
 import { type Panel, reveal } from "../panel";
 import { t } from "./words";
@@ -12,8 +12,8 @@ type Kind = "hand" | "document" | "other";
 
 function build(page: Page, root: HTMLElement): void {
   const { hub, net } = page;
-  const status = Object.assign(document.createElement("p"), { id: "device-felt" });
-  const list = Object.assign(document.createElement("ul"), { className: "devices" });
+  const status = make("p", { id: "device-felt" });
+  const list = make("ul", { className: "devices" });
   const panel = root.closest("details")!;
 
   async function attempt(work: () => Promise<unknown>): Promise<void> {
@@ -38,7 +38,7 @@ function build(page: Page, root: HTMLElement): void {
     });
 
   async function look(): Promise<void> {
-    list.replaceChildren(Object.assign(document.createElement("li"), { textContent: t("looking") }));
+    list.replaceChildren(make("li", { textContent: t("looking") }));
     const devices = await net.ask<Device[]>("devices");
     list.replaceChildren(...devices.map((each) => deviceItem(page, each, () => void choose("other", each.name))));
   }
@@ -66,13 +66,12 @@ function build(page: Page, root: HTMLElement): void {
     if (panel.open && !list.children.length) void attempt(look);
   });
   hub.on("hello", () => panel.open && void attempt(look));
-  const heading = Object.assign(document.createElement("h3"), { textContent: t("installed") });
+  const heading = make("h3", { textContent: t("installed") });
   root.append(status, row(wait, again), row(hand, ofDocument, preflight), loopFigures(page, () => panel.open), heading, list, row(refresh));
 }
 
 function row(...buttons: HTMLElement[]): HTMLElement {
-  const results = document.createElement("div");
-  results.className = "buttons";
+  const results = make("div", { className: "buttons" });
   results.append(...buttons);
   return results;
 }

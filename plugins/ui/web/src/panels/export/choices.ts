@@ -1,5 +1,5 @@
 /** Selection of exporters with options, local to the panel until written into the file. */
-import { button, paragraph } from "kit/elements";
+import { button, make, paragraph } from "kit/elements";
 import type { Option } from "../../forms/kinds";
 import { FIELD, rows } from "../../forms/rows";
 import type { Plain } from "kit/server/messages";
@@ -53,10 +53,7 @@ export class Choices {
 
   private line(entry: Entry, at: number): HTMLElement {
     const box = document.createElement("li");
-    const input = document.createElement("input");
-    input.type = "checkbox";
-    input.checked = entry.on;
-    input.id = `export-${at}-${entry.use}`;
+    const input = make("input", { type: "checkbox", checked: entry.on, id: `export-${at}-${entry.use}` });
     input.onchange = () => {
       entry.on = input.checked;
       this.onChange();
@@ -70,11 +67,9 @@ export class Choices {
   }
 
   private options(entry: Entry, at: number, known: Exporter, on: HTMLInputElement): HTMLElement {
-    const box = document.createElement("details");
-    box.className = "more";
+    const box = make("details", { className: "more" });
     const heading = document.createElement("summary");
-    const name = document.createElement("span");
-    name.className = "visually-hidden";
+    const name = make("span", { className: "visually-hidden" });
     name.textContent = t("optionsOf", { name: exporterName(entry.use) });
     const about = paragraph(known.about.split("\n")[0], "hint");
     const count = (): void => {
@@ -102,8 +97,7 @@ export class Choices {
 
   /** Return buttons to add or remove a variant: two pin displays need two files. */
   private more(entry: Entry, at: number): HTMLElement {
-    const box = document.createElement("div");
-    box.className = "buttons";
+    const box = make("div", { className: "buttons" });
     const again = button(t("another"), () => {
       this.build([...this.entries.slice(0, at + 1), { ...entry, on: true }, ...this.entries.slice(at + 1)]);
       this.open(at + 1);

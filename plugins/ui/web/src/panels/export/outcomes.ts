@@ -1,5 +1,5 @@
 /** Outcome of each exporter: files, decisions, and tactile legibility. */
-import { paragraph } from "kit/elements";
+import { make, paragraph } from "kit/elements";
 import { token } from "kit/server/token";
 import type { Exported, Outcome } from "kit/server/messages";
 import { t } from "./words";
@@ -20,12 +20,9 @@ export function address(folder: string, name: string): string {
 }
 
 function outcome(folder: string, exported: Exported["exports"][number], cure: Cure): HTMLElement {
-  const box = document.createElement("section");
-  box.className = `outcome ${exported.outcome}`;
-  const heading = document.createElement("h3");
-  heading.textContent = exporterName(exported.name);
-  const became = document.createElement("span");
-  became.className = "became";
+  const box = make("section", { className: `outcome ${exported.outcome}` });
+  const heading = make("h3", { textContent: exporterName(exported.name) });
+  const became = make("span", { className: "became" });
   const known = exported.outcome === "refused" || exported.outcome === "failed" ? exported.outcome : "ran";
   const seconds = known === "ran" ? t("seconds", { seconds: decimal(exported.seconds, 1) }) : "";
   became.append(symbolOf(known), [t(known), seconds].filter(Boolean).join(", "));
@@ -38,17 +35,11 @@ function outcome(folder: string, exported: Exported["exports"][number], cure: Cu
 }
 
 function files(folder: string, all: Exported["exports"][number]["files"]): HTMLElement {
-  const list = document.createElement("ul");
-  list.className = "files";
+  const list = make("ul", { className: "files" });
   for (const { name, bytes } of all) {
-    const link = document.createElement("a");
-    link.href = address(folder, name);
-    link.download = name;
-    link.textContent = name;
+    const link = make("a", { href: address(folder, name), download: name, textContent: name });
     const item = document.createElement("li");
-    const size = document.createElement("span");
-    size.className = "size";
-    size.textContent = formatBytes(bytes);
+    const size = make("span", { className: "size", textContent: formatBytes(bytes) });
     item.append(link, " ", size);
     list.append(item);
   }
@@ -69,8 +60,7 @@ function notes(all: Outcome["notes"]): HTMLElement {
 
 function foldable(title: string, inside: HTMLElement[]): HTMLElement {
   const box = document.createElement("details");
-  const heading = document.createElement("summary");
-  heading.textContent = title;
+  const heading = make("summary", { textContent: title });
   box.append(heading, ...inside);
   return box;
 }

@@ -1,5 +1,5 @@
 /** The export panel: choose exporters, run them, stop, and download the files. */
-import { button, hint, paragraph } from "kit/elements";
+import { button, hint, make, paragraph } from "kit/elements";
 import { DocumentEditor } from "../../forms/editor";
 import { options } from "../../forms/kinds";
 import { alternatives, type FileSchema } from "../../forms/schema";
@@ -23,8 +23,7 @@ export function build(page: Page, root: HTMLElement): Promise<void> {
   status.tabIndex = -1;
   const tell = (text: string, className = ""): void => void Object.assign(status, { textContent: text, className });
   editor.onRefused = (why) => tell(why, "bad");
-  const list = document.createElement("div");
-  list.textContent = t("waiting");
+  const list = make("div", { textContent: t("waiting") });
   const results = document.createElement("div");
   const previews = new Previews(page);
   let choices: Choices | null = null;
@@ -80,8 +79,7 @@ export function build(page: Page, root: HTMLElement): Promise<void> {
   const start = button(t("run"), () => run());
   start.id = "export-run";
   start.className = "primary";
-  const buttons = document.createElement("div");
-  buttons.className = "buttons";
+  const buttons = make("div", { className: "buttons" });
   buttons.append(start, stopButton(page), button(t("add"), add));
   const names = (): string[] => (choices?.blocks ?? []).map((each) => String(isMap(each) ? each.use : each));
   root.append(send, hint(t("sendAbout")), hint(t("about")), list, previews.root, buttons, progress(page, names), status, results);

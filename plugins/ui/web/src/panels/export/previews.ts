@@ -1,5 +1,5 @@
 /** Pictures of the files before they are written: the page that will be swollen, the print, the pins. */
-import { paragraph } from "kit/elements";
+import { make, paragraph } from "kit/elements";
 import type { Page } from "kit/page";
 import { token } from "kit/server/token";
 import { isMap } from "../../forms/values";
@@ -72,8 +72,7 @@ function picture(name: string, { file, waits, columns, rows, width_m }: Preview)
   const image = new Image(columns, rows);
   image.src = `/scene/${file}?token=${encodeURIComponent(token)}`;
   image.alt = t("previewOf", { name });
-  const caption = document.createElement("figcaption");
-  caption.textContent = t("previewSize", { name, width: decimal(100 * width_m, 1) });
+  const caption = make("figcaption", { textContent: t("previewSize", { name, width: decimal(100 * width_m, 1) }) });
   box.append(image, caption);
   return box;
 }
@@ -81,8 +80,7 @@ function picture(name: string, { file, waits, columns, rows, width_m }: Preview)
 function refusal(name: string, why: string): HTMLElement {
   const box = document.createElement("figure");
   const text = paragraph(why, "hint warn");
-  const caption = document.createElement("figcaption");
-  caption.textContent = name;
+  const caption = make("figcaption", { textContent: name });
   box.append(text, caption);
   return box;
 }

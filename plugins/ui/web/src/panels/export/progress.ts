@@ -1,4 +1,5 @@
 /** The progress of an export: file by file, with the product that is made for it. */
+import { make } from "kit/elements";
 import type { Page } from "kit/page";
 import { productName } from "../../words/product_words";
 import { exporterName } from "./choices";
@@ -37,9 +38,7 @@ export class Steps {
 
 /** Return the progress. It is not spoken: the status line says start and end. names: of the exporters that run. */
 export function progress(page: Page, names: () => string[]): HTMLElement {
-  const box = document.createElement("p");
-  box.className = "hint progress";
-  box.hidden = true;
+  const box = make("p", { className: "hint progress", hidden: true });
   const bar = document.createElement("progress");
   bar.setAttribute("aria-label", t("running"));
   const text = document.createElement("span");

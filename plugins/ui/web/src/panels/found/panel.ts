@@ -1,4 +1,5 @@
 /** What was found about the picture: what it was read as, what the relief is made of, sizes, parts, and what is doubtful. */
+import { make } from "kit/elements";
 import type { Note } from "kit/server/messages";
 import type { Page } from "kit/page";
 import { decimal } from "kit/words/words";
@@ -9,9 +10,9 @@ import { t } from "./words";
 const MM = 1000;
 
 function build(page: Page, root: HTMLElement): void {
-  const none = Object.assign(document.createElement("p"), { className: "hint", textContent: t("none") });
-  const figures = Object.assign(document.createElement("dl"), { className: "figures" });
-  const notes = Object.assign(document.createElement("ul"), { className: "notes" });
+  const none = make("p", { className: "hint", textContent: t("none") });
+  const figures = make("dl", { className: "figures" });
+  const notes = make("ul", { className: "notes" });
   root.append(none, figures, notes);
   const noted = new Map<string, Note[]>();
   const show = (): void => {
@@ -19,7 +20,7 @@ function build(page: Page, root: HTMLElement): void {
     none.hidden = rows.length > 0;
     figures.replaceChildren(...rows.flatMap(([name, value]) => [term("dt", name), term("dd", value)]));
     const texts = [...noted.values()].flat().filter(({ kind }) => kind !== "decision").map(({ text }) => text);
-    notes.replaceChildren(...[...new Set(texts)].map((text) => Object.assign(document.createElement("li"), { textContent: text })));
+    notes.replaceChildren(...[...new Set(texts)].map((text) => make("li", { textContent: text })));
   };
   page.hub.on("document", show);
   page.hub.on("shown", show);

@@ -1,12 +1,12 @@
 /** Settings of this page's hand: whether it is active, its mover, and its penetration. */
-import { button, field, hint } from "kit/elements";
+import { button, field, hint, make } from "kit/elements";
 import { type HandState, PRESS_M } from "kit/hand/state";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { t } from "kit/hand/words";
 
 function build(page: Page, root: HTMLElement): void {
-  const status = Object.assign(document.createElement("p"), { id: "hand-held" });
+  const status = make("p", { id: "hand-held" });
   const take = Object.assign(button(t("take"), () => page.hand?.take()), { hidden: true });
   const moved = document.createElement("p");
   const press = slider();
@@ -16,7 +16,7 @@ function build(page: Page, root: HTMLElement): void {
     show();
   };
   const ways = document.createElement("fieldset");
-  const legend = Object.assign(document.createElement("legend"), { textContent: t("moves") });
+  const legend = make("legend", { textContent: t("moves") });
   ways.append(legend, way("surface", false), way("space", true));
   const depth = field(t("press"), press);
   depth.append(value);
@@ -26,7 +26,7 @@ function build(page: Page, root: HTMLElement): void {
 
   function way(name: "surface" | "space", free: boolean): HTMLLabelElement {
     const label = document.createElement("label");
-    const input = Object.assign(document.createElement("input"), { type: "radio", name: "hand-way", value: name, checked: !free });
+    const input = make("input", { type: "radio", name: "hand-way", value: name, checked: !free });
     input.onchange = () => page.hand?.free(free);
     label.append(input, t(name));
     return label;

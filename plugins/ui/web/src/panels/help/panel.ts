@@ -1,4 +1,5 @@
 /** Help: all keys, from the table of shortcuts, and the ten main tasks. */
+import { make } from "kit/elements";
 import type { Page } from "kit/page";
 import { reveal, type Panel } from "../panel";
 import { on, SHORTCUTS, type Name } from "kit/shortcuts";
@@ -9,10 +10,9 @@ import { t as does } from "./shortcut_words";
 export const TASKS = ["open", "methods", "make", "feel", "hear", "compare", "devices", "record", "check", "save"] as const;
 
 function build(_: Page, root: HTMLElement): void {
-  const heading = (text: string): HTMLElement => Object.assign(document.createElement("h3"), { textContent: text });
-  const tasks = document.createElement("ol");
-  tasks.className = "tasks";
-  tasks.append(...TASKS.map((task) => Object.assign(document.createElement("li"), { textContent: t(task) })));
+  const heading = (text: string): HTMLElement => make("h3", { textContent: text });
+  const tasks = make("ol", { className: "tasks" });
+  tasks.append(...TASKS.map((task) => make("li", { textContent: t(task) })));
   root.append(heading(t("keys")), table(), heading(t("tasks")), tasks);
   on("help", () => reveal(help.id));
 }
@@ -23,9 +23,7 @@ function table(): HTMLTableElement {
   tableElement.caption!.className = "visually-hidden";
   const head = tableElement.createTHead().insertRow();
   for (const text of [t("key"), t("does")]) {
-    const cell = document.createElement("th");
-    cell.scope = "col";
-    cell.textContent = text;
+    const cell = make("th", { scope: "col", textContent: text });
     head.append(cell);
   }
   const body = tableElement.createTBody();

@@ -1,5 +1,5 @@
 /** Two laws on one hand, side by side; and a blind study of both. */
-import { button, field, hint } from "kit/elements";
+import { button, field, hint, make } from "kit/elements";
 import type { Events } from "kit/server/messages";
 import type { Page } from "kit/page";
 import { language } from "kit/words/words";
@@ -34,8 +34,7 @@ function build(page: Page, root: HTMLElement): void {
   const choice = setup((use, options) => attempt(() => net.ask("compare_laws", { use, options })));
   const two = group(t("felt"));
   const letters = LETTERS.map((to) => button(to, () => attempt(() => net.ask("switch_law", { to }))));
-  const question = document.createElement("select");
-  question.id = "laws-question";
+  const question = make("select", { id: "laws-question" });
   question.append(...(["same", "rougher", "higher"] as const).map((each) => new Option(t(each), each)));
   const study = async (): Promise<void> => {
     const asked = { question: question.value, language: language === "de" ? "de" : "en" };
@@ -79,8 +78,7 @@ function build(page: Page, root: HTMLElement): void {
 
 function setup(begin: (use: string, options: string) => Promise<void>): HTMLElement {
   const box = document.createElement("div");
-  const law = document.createElement("select");
-  law.id = "laws-other";
+  const law = make("select", { id: "laws-other" });
   const options = input("laws-options");
   options.spellcheck = false;
   const help = hint(t("optionsHelp"));
@@ -93,19 +91,17 @@ function setup(begin: (use: string, options: string) => Promise<void>): HTMLElem
 
 function group(title: string): HTMLFieldSetElement {
   const box = document.createElement("fieldset");
-  const legend = document.createElement("legend");
-  legend.textContent = title;
+  const legend = make("legend", { textContent: title });
   box.append(legend);
   return box;
 }
 
 function command(text: string): HTMLPreElement {
-  return Object.assign(document.createElement("pre"), { textContent: text });
+  return make("pre", { textContent: text });
 }
 
 function input(id: string): HTMLInputElement {
-  const control = document.createElement("input");
-  control.id = id;
+  const control = make("input", { id });
   return control;
 }
 

@@ -1,5 +1,5 @@
 /** List of the places at which a verdict fails, each with a button that leads there. */
-import { button, paragraph } from "kit/elements";
+import { button, make, paragraph } from "kit/elements";
 import type { Verdict } from "kit/server/messages";
 import type { Page } from "kit/page";
 import { t } from "./words";
@@ -17,8 +17,7 @@ export function numberFaults(verdicts: Verdict[]): Map<Verdict, Fault[]> {
 }
 
 export function faultList(page: Page, verdict: Verdict, all: Fault[], marks: FaultMarks): HTMLElement {
-  const box = document.createElement("div");
-  box.className = "places";
+  const box = make("div", { className: "places" });
   const list = document.createElement("ol");
   list.setAttribute("aria-label", t("places"));
   list.append(...all.map((each) => line(page, each, marks)));

@@ -1,4 +1,5 @@
 /** Numbered marks over the surface, hidden from screen readers: the panel lists them in words. */
+import { make } from "kit/elements";
 import type { Page } from "kit/page";
 import type { Vec } from "kit/server/protocol";
 
@@ -31,8 +32,7 @@ export class FaultMarks {
     for (const each of this.away) each();
     this.elements.clear();
     this.away = faults.map(({ number, at }) => {
-      const element = document.createElement("div");
-      element.className = "fault";
+      const element = make("div", { className: "fault" });
       element.setAttribute("aria-hidden", "true");
       element.append(`${number}`);
       this.elements.set(number, element);

@@ -1,5 +1,5 @@
 /** Verdicts of tactile legibility by medium, with places and cures. */
-import { button, field, hint, paragraph } from "kit/elements";
+import { button, field, hint, make, paragraph } from "kit/elements";
 import { DocumentEditor } from "../../forms/editor";
 import { onComingOrGoing } from "../../frame/tasks";
 import type { Legible, Medium } from "kit/server/messages";
@@ -50,8 +50,7 @@ export function build(page: Page, root: HTMLElement): void {
   };
   const check = button(t("check"), work);
   check.id = "legible-check";
-  const buttons = document.createElement("div");
-  buttons.className = "buttons";
+  const buttons = make("div", { className: "buttons" });
   buttons.append(check);
   const widthBox = field(t("width"), width);
   widthBox.append(Object.assign(hint(t("widthHint")), { id: "legible-width-hint" }));
@@ -102,8 +101,7 @@ function simplifyButton({ verdicts: all }: Legible, editor: DocumentEditor, chec
 }
 
 function choice(): HTMLSelectElement {
-  const select = document.createElement("select");
-  select.id = "legible-medium";
+  const select = make("select", { id: "legible-medium" });
   for (const each of MEDIA) select.add(new Option(t(each), each));
   return select;
 }
@@ -117,8 +115,7 @@ function widthField(): HTMLInputElement {
 
 function checkbox(text: string, change: (on: boolean) => void): { root: HTMLLabelElement; input: HTMLInputElement } {
   const root = document.createElement("label");
-  const input = document.createElement("input");
-  input.type = "checkbox";
+  const input = make("input", { type: "checkbox" });
   input.onchange = () => change(input.checked);
   root.append(input, text);
   return { root, input };

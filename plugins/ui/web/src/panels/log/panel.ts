@@ -1,5 +1,5 @@
 /** The log panel, with filters and search. */
-import { button } from "kit/elements";
+import { button, make } from "kit/elements";
 import { download } from "../../files";
 import type { Events } from "kit/server/messages";
 import type { Page } from "kit/page";
@@ -26,9 +26,7 @@ class Log {
     private page: Page,
     private root: HTMLElement,
   ) {
-    const box = document.createElement("div");
-    box.id = "log";
-    box.tabIndex = 0;
+    const box = make("div", { id: "log", tabIndex: 0 });
     box.setAttribute("role", "log");
     box.setAttribute("aria-live", "off"); // the announcer reads what matters; a person can choose to hear every line
     this.page.hub.on("read log", ({ on }) => box.setAttribute("aria-live", on ? "polite" : "off"));
@@ -40,23 +38,19 @@ class Log {
   }
 
   private tools(): HTMLElement {
-    const tools = document.createElement("div");
-    tools.className = "log-tools";
+    const tools = make("div", { className: "log-tools" });
     const filters = document.createElement("div");
     filters.setAttribute("role", "group");
     filters.setAttribute("aria-label", t("levels"));
     filters.append(...LEVELS.map((level) => this.filter(level)));
-    const search = document.createElement("input");
-    search.type = "search";
-    search.placeholder = t("search");
+    const search = make("input", { type: "search", placeholder: t("search") });
     search.setAttribute("aria-label", t("search"));
     search.oninput = () => {
       this.wanted = search.value.trim();
       this.show();
       this.page.say(this.count.value, { topic: "log" });
     };
-    const acts = document.createElement("div");
-    acts.className = "log-acts";
+    const acts = make("div", { className: "log-acts" });
     acts.append(
       button(t("copy"), () => this.copy()),
       button(t("save"), () => this.save()),
@@ -175,11 +169,8 @@ function fill(item: HTMLElement, { level, text, foreign, at_s, times }: Line): H
   const date = new Date(1000 * at_s);
   at.dateTime = date.toISOString();
   at.textContent = date.toLocaleTimeString(language);
-  const mark = document.createElement("span");
-  mark.className = "level";
-  mark.textContent = t(`one ${level}`);
-  const span = document.createElement("span");
-  span.textContent = foreign;
+  const mark = make("span", { className: "level", textContent: t(`one ${level}`) });
+  const span = make("span", { textContent: foreign });
   item.replaceChildren(at, " ", mark, " ", text.slice(0, text.length - foreign.length), span);
   if (times > 1) item.append(" ", t("times", { times }));
   return item;
@@ -187,9 +178,7 @@ function fill(item: HTMLElement, { level, text, foreign, at_s, times }: Line): H
 
 function check(text: string, on: boolean, change: (on: boolean) => void): HTMLElement {
   const label = document.createElement("label");
-  const input = document.createElement("input");
-  input.type = "checkbox";
-  input.checked = on;
+  const input = make("input", { type: "checkbox", checked: on });
   input.onchange = () => change(input.checked);
   label.append(input, text);
   return label;

@@ -1,6 +1,6 @@
 /** Mapping of the picture to the hand: a frame to drag, and a region to enlarge. */
 import "../overlay/overlay.css";
-import { button } from "kit/elements";
+import { button, make } from "kit/elements";
 import { MappingFrame } from "kit/overlay/tools/mapping_frame";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
@@ -8,16 +8,13 @@ import { t } from "kit/overlay/words";
 
 function build(page: Page, root: HTMLElement): void {
   const frame = new MappingFrame(page);
-  const show = document.createElement("input");
-  show.type = "checkbox";
+  const show = make("input", { type: "checkbox" });
   show.onchange = () => frame.show(show.checked);
   const label = document.createElement("label");
   label.append(show, t("frameShow"));
   const says = document.createElement("p");
-  const help = document.createElement("small");
-  help.textContent = t("frameHelp");
-  const buttons = document.createElement("div");
-  buttons.className = "buttons";
+  const help = make("small", { textContent: t("frameHelp") });
+  const buttons = make("div", { className: "buttons" });
   const region = button(t("zoomRegion"), () => frame.toggleRegion());
   buttons.append(region, button(t("zoomHere"), () => frame.zoomHere()), button(t("whole"), () => frame.whole()));
   root.append(label, says, help, buttons);

@@ -1,5 +1,5 @@
 /** Materials of the segments with reasons and areas; and the library with figures and sources. */
-import { tableWithHeads } from "kit/elements";
+import { make, tableWithHeads } from "kit/elements";
 import { DocumentEditor } from "../../forms/editor";
 import { LIBRARY } from "../../forms/rows";
 import type { Material, Segment } from "kit/server/messages";
@@ -16,21 +16,17 @@ type Listed = Material & { source: string };
 
 function build(page: Page, root: HTMLElement): void {
   const editor = new DocumentEditor(page);
-  const none = document.createElement("p");
-  none.className = "hint";
+  const none = make("p", { className: "hint" });
   none.textContent = t("none");
-  const refused = document.createElement("p");
-  refused.className = "bad";
+  const refused = make("p", { className: "bad" });
   refused.setAttribute("role", "status");
   editor.onRefused = (why) => (refused.textContent = why);
   const table = tableWithHeads(t("segments"), [t("segment"), t("material"), t("share")], "materials");
   const body = table.createTBody();
   const library = document.createElement("details");
-  const heading = document.createElement("summary");
-  heading.textContent = t("libraryAlone");
+  const heading = make("summary", { textContent: t("libraryAlone") });
   library.append(heading);
-  const list = document.createElement("datalist");
-  list.id = LIBRARY;
+  const list = make("datalist", { id: LIBRARY });
   root.append(none, refused, table, library, list);
   let names: string[] = [];
   let segments: Segment[] = [];
@@ -69,11 +65,9 @@ function build(page: Page, root: HTMLElement): void {
 }
 
 function line(row: HTMLTableRowElement): HTMLTableRowElement {
-  const label = document.createElement("th");
-  label.scope = "row";
+  const label = make("th", { scope: "row" });
   const select = document.createElement("select");
-  const why = document.createElement("p");
-  why.className = "hint";
+  const why = make("p", { className: "hint" });
   row.append(label);
   row.insertCell().append(select, why);
   row.insertCell().className = "number";
@@ -98,9 +92,7 @@ function fill(row: HTMLTableRowElement, { label, material, why, share }: Segment
 }
 
 function figures(library: Listed[]): HTMLElement {
-  const box = document.createElement("div");
-  box.className = "wide";
-  box.tabIndex = 0;
+  const box = make("div", { className: "wide", tabIndex: 0 });
   box.setAttribute("role", "region");
   box.setAttribute("aria-label", t("libraryAlone"));
   const columns = ["name", "stiffness", "damping", "friction", "roughness", "grain", "texture", "source"] as const;
@@ -108,8 +100,7 @@ function figures(library: Listed[]): HTMLElement {
   const body = table.createTBody();
   for (const each of library) {
     const row = body.insertRow();
-    const name = document.createElement("th");
-    name.scope = "row";
+    const name = make("th", { scope: "row" });
     name.textContent = materialWord(each.name);
     row.append(name);
     for (const text of [

@@ -1,5 +1,5 @@
 /** The methods panel: forms of the document; run and stop; undo and redo. */
-import { button } from "kit/elements";
+import { button, make } from "kit/elements";
 import { showComplaints } from "../../forms/complaints";
 import { DocumentEditor } from "../../forms/editor";
 import { SectionForm } from "../../forms/section";
@@ -13,16 +13,11 @@ import "./methods.css";
 
 function build(page: Page, root: HTMLElement): void {
   const editor = new DocumentEditor(page);
-  const complaints = document.createElement("div");
-  complaints.className = "complaints";
-  complaints.tabIndex = -1;
-  complaints.hidden = true;
-  const forms = document.createElement("div");
-  forms.textContent = t("waiting");
+  const complaints = make("div", { className: "complaints", tabIndex: -1, hidden: true });
+  const forms = make("div", { textContent: t("waiting") });
   let shown: SectionForm[] = [];
   let loading = false;
-  const refused = document.createElement("p");
-  refused.className = "bad";
+  const refused = make("p", { className: "bad" });
   refused.setAttribute("role", "status");
   editor.onRefused = (why) => (refused.textContent = why);
 
@@ -41,8 +36,7 @@ function build(page: Page, root: HTMLElement): void {
     show();
   };
 
-  const compare = document.createElement("p");
-  compare.className = "hint";
+  const compare = make("p", { className: "hint" });
   compare.textContent = t("compare");
   root.append(runControls(page, editor), refused, complaints, steps(page, editor), forms, compare);
   page.hub.on("document", () => {
@@ -52,8 +46,7 @@ function build(page: Page, root: HTMLElement): void {
 }
 
 function steps(page: Page, editor: DocumentEditor): HTMLElement {
-  const box = document.createElement("div");
-  box.className = "buttons";
+  const box = make("div", { className: "buttons" });
   const undo = button(t("undo"), () => editor.step("undo"));
   const redo = button(t("redo"), () => editor.step("redo"));
   undo.id = "undo";

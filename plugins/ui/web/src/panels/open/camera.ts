@@ -1,13 +1,10 @@
 /** A picture from the camera, which is on only between the person's start and the picture. */
-import { button } from "kit/elements";
+import { button, make } from "kit/elements";
 import { t } from "./words";
 
 export function camera(take: (files: File[]) => void, say: (text: string) => void): HTMLElement {
   const box = document.createElement("div");
-  const video = document.createElement("video");
-  video.muted = true;
-  video.playsInline = true;
-  video.hidden = true;
+  const video = make("video", { muted: true, playsInline: true, hidden: true });
   video.setAttribute("aria-label", t("cameraPicture"));
   let stream: MediaStream | null = null;
 
@@ -35,9 +32,7 @@ export function camera(take: (files: File[]) => void, say: (text: string) => voi
     }
   });
   const shoot = button(t("cameraTake"), () => {
-    const canvas = document.createElement("canvas");
-    canvas.width = video.videoWidth;
-    canvas.height = video.videoHeight;
+    const canvas = make("canvas", { width: video.videoWidth, height: video.videoHeight });
     canvas.getContext("2d")!.drawImage(video, 0, 0);
     const name = `camera-${new Date().toISOString().slice(0, 19).replaceAll(":", "-")}.png`;
     canvas.toBlob((blob) => blob && take([new File([blob], name, { type: "image/png" })]), "image/png");

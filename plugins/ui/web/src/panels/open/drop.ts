@@ -1,11 +1,9 @@
 /** Files dropped anywhere on the page. */
+import { make } from "kit/elements";
 import { t } from "./words";
 
 export function onDrop(take: (files: File[]) => void): void {
-  const shade = document.createElement("div");
-  shade.className = "drop";
-  shade.textContent = t("drop");
-  shade.hidden = true;
+  const shade = make("div", { className: "drop", textContent: t("drop"), hidden: true });
   document.body.append(shade);
   const hasFiles = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") ?? false;
   document.addEventListener("dragover", (event) => {

@@ -1,5 +1,5 @@
 /** Browser of folders on this computer: one file or a pair is chosen from a list. */
-import { button, field } from "kit/elements";
+import { button, field, make } from "kit/elements";
 import type { Server } from "kit/page";
 import { t } from "./words";
 
@@ -15,14 +15,9 @@ interface Listed {
 /** Return the browser of folders in a box that opens and closes; when it is opened first, the current folder is listed. */
 export function folder(net: Server, open: (paths: string[]) => void, say: (text: string) => void): HTMLElement {
   const box = document.createElement("details");
-  const heading = Object.assign(document.createElement("summary"), { textContent: t("folder") });
-  const path = document.createElement("input");
-  path.id = "open-folder";
-  path.spellcheck = false;
-  const list = document.createElement("select");
-  list.id = "open-entries";
-  list.multiple = true;
-  list.size = 8;
+  const heading = make("summary", { textContent: t("folder") });
+  const path = make("input", { id: "open-folder", spellcheck: false });
+  const list = make("select", { id: "open-entries", multiple: true, size: 8 });
   const status = document.createElement("p");
   let shown: Listed | null = null;
   let round = 0;

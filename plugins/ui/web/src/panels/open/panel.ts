@@ -1,5 +1,5 @@
 /** Open pictures, pairs, height maps, recordings, pipeline files and examples. */
-import { button, field } from "kit/elements";
+import { button, field, make } from "kit/elements";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { t } from "./words";
@@ -11,8 +11,7 @@ import { uploadAndOpen, type Opened } from "./upload";
 import "./open.css";
 
 function build(page: Page, root: HTMLElement): void {
-  const status = document.createElement("p");
-  status.className = "told";
+  const status = make("p", { className: "told" });
   const say = (text: string): void => {
     status.textContent = text;
     page.say(text);
@@ -49,13 +48,8 @@ function build(page: Page, root: HTMLElement): void {
 }
 
 function chooser(take: (files: File[]) => void): HTMLElement[] {
-  const input = document.createElement("input");
-  input.type = "file";
-  input.id = "open-files";
-  input.multiple = true;
-  const help = document.createElement("small");
-  help.id = "open-files-help";
-  help.textContent = t("chooseHelp");
+  const input = make("input", { type: "file", id: "open-files", multiple: true });
+  const help = make("small", { id: "open-files-help", textContent: t("chooseHelp") });
   input.setAttribute("aria-describedby", help.id);
   input.onchange = () => {
     take([...(input.files ?? [])]);
@@ -65,8 +59,7 @@ function chooser(take: (files: File[]) => void): HTMLElement[] {
 }
 
 function examples(page: Page, open: (paths: string[]) => void): HTMLElement {
-  const list = document.createElement("div");
-  list.className = "examples";
+  const list = make("div", { className: "examples" });
   list.setAttribute("role", "group");
   list.setAttribute("aria-label", t("examples"));
   let asked = false;
@@ -77,8 +70,7 @@ function examples(page: Page, open: (paths: string[]) => void): HTMLElement {
     asked = names.length > 0;
     list.replaceChildren(...names.map((name) => button(name.replace("builtin/", ""), () => open([name]))));
   });
-  const title = document.createElement("h3");
-  title.textContent = t("examples");
+  const title = make("h3", { textContent: t("examples") });
   const box = document.createElement("div");
   box.append(title, list);
   return box;
@@ -97,8 +89,7 @@ function exchange(page: Page): HTMLElement {
 
 function foldable(title: string, inside: HTMLElement): HTMLElement {
   const box = document.createElement("details");
-  const heading = document.createElement("summary");
-  heading.textContent = title;
+  const heading = make("summary", { textContent: title });
   box.append(heading, inside);
   return box;
 }

@@ -1,4 +1,5 @@
 /** Settings of the overlay, and what limits the force. */
+import { make } from "kit/elements";
 import "./overlay.css";
 import { LIMITS, perSecond, type Counts } from "kit/contact/limits";
 import { MM_PER_N, SECONDS, SWITCHES } from "kit/overlay/settings";
@@ -10,15 +11,11 @@ const ASK_MS = 1000;
 
 function build(page: Page, root: HTMLElement): void {
   const { overlay } = page;
-  const box = document.createElement("fieldset");
-  box.className = "switches";
-  const legend = document.createElement("legend");
-  legend.textContent = t("show");
+  const box = make("fieldset", { className: "switches" });
+  const legend = make("legend", { textContent: t("show") });
   box.append(legend);
   for (const each of SWITCHES) {
-    const input = document.createElement("input");
-    input.type = "checkbox";
-    input.checked = overlay.settings.show[each];
+    const input = make("input", { type: "checkbox", checked: overlay.settings.show[each] });
     input.onchange = () => {
       overlay.settings.show[each] = input.checked;
       overlay.changed = true;
@@ -60,17 +57,12 @@ function number(text: string, least: number, most: number, step: number, first: 
 /** Return a list of how often each limit acted in the last second, polled while it is seen. */
 function limits(page: Page): HTMLElement {
   const box = document.createElement("section");
-  const heading = document.createElement("h3");
-  heading.textContent = `${t("limitsTitle")}: ${t("perSecond")}`;
-  const list = document.createElement("ul");
-  list.className = "limits-list";
+  const heading = make("h3", { textContent: `${t("limitsTitle")}: ${t("perSecond")}` });
+  const list = make("ul", { className: "limits-list" });
   const counts = LIMITS.map(({ word }) => {
-    const line = document.createElement("li");
-    line.title = t(`${word}Help`);
-    const count = document.createElement("span");
-    count.className = "count";
-    const name = document.createElement("span");
-    name.textContent = t(word);
+    const line = make("li", { title: t(`${word}Help`) });
+    const count = make("span", { className: "count" });
+    const name = make("span", { textContent: t(word) });
     line.append(count, name);
     list.append(line);
     return count;

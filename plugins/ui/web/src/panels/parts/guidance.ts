@@ -1,5 +1,5 @@
 /** List of named parts, and guidance of the hand to one of them by a device. */
-import { button } from "kit/elements";
+import { button, make } from "kit/elements";
 import type { Events } from "kit/server/messages";
 import type { Page } from "kit/page";
 import { t } from "./words";
@@ -11,12 +11,9 @@ interface Named {
 
 export function namedParts(page: Page): HTMLElement {
   const box = document.createElement("section");
-  const heading = document.createElement("h3");
-  heading.textContent = t("named");
-  const list = document.createElement("ul");
-  list.className = "named";
-  const hint = document.createElement("p");
-  hint.className = "hint";
+  const heading = make("h3", { textContent: t("named") });
+  const list = make("ul", { className: "named" });
+  const hint = make("p", { className: "hint" });
   box.append(heading, hint, list);
   let parts: Named[] = [];
   let guided: number | null = null;

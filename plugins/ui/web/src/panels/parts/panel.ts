@@ -1,5 +1,5 @@
 /** The parts panel: opens the editor, whose module is loaded then. */
-import { button, hint } from "kit/elements";
+import { button, hint, make } from "kit/elements";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { t } from "./words";
@@ -7,8 +7,7 @@ import { namedParts } from "./guidance";
 import "./parts.css";
 
 function build(page: Page, root: HTMLElement): void {
-  const status = document.createElement("p");
-  status.className = "bad";
+  const status = make("p", { className: "bad" });
   status.setAttribute("role", "status");
   const edit = button(t("edit"), async () => {
     edit.disabled = true;

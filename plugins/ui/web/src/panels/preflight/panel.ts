@@ -1,5 +1,5 @@
 /** Preflight: verdicts on safety and perceptibility, with cures that change the document. */
-import { button, paragraph } from "kit/elements";
+import { button, make, paragraph } from "kit/elements";
 import { DocumentEditor } from "../../forms/editor";
 import type { Judged } from "kit/server/messages";
 import type { Page } from "kit/page";
@@ -35,8 +35,7 @@ function build(page: Page, root: HTMLElement): void {
   const fix = button(t("fix"), () => work("fix"));
   fix.id = "preflight-fix";
   fix.hidden = true;
-  const buttons = document.createElement("div");
-  buttons.className = "buttons";
+  const buttons = make("div", { className: "buttons" });
   buttons.append(check, fix);
   root.append(about, buttons, status, stale, results);
 

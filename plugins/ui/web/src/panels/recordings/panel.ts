@@ -1,5 +1,5 @@
 /** Recordings: record touch, list recordings, play them, replay them with another law, compare two. */
-import { button, field } from "kit/elements";
+import { button, field, make } from "kit/elements";
 import { bulk } from "kit/server/connection";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
@@ -44,10 +44,7 @@ function build(page: Page, root: HTMLElement): void {
     }
   };
 
-  const list = document.createElement("select");
-  list.id = "records-list";
-  list.multiple = true;
-  list.size = 6;
+  const list = make("select", { id: "records-list", multiple: true, size: 6 });
   const figures = document.createElement("div");
   const view = playback(page);
 
@@ -127,16 +124,13 @@ function line({ name, trouble, law, figures }: Listed): string {
 
 /** Return the player's controls, hidden while nothing is loaded. */
 function playback(page: Page): { box: HTMLElement; load: (ticks: Ticks, name: string) => void } {
-  const box = document.createElement("fieldset");
-  box.hidden = true;
+  const box = make("fieldset", { hidden: true });
   const legend = document.createElement("legend");
-  const place = document.createElement("input");
-  place.type = "range";
+  const place = make("input", { type: "range" });
   place.id = "records-place";
   place.min = "0";
   place.step = "0.001";
-  const speed = document.createElement("select");
-  speed.id = "records-speed";
+  const speed = make("select", { id: "records-speed" });
   for (const times of SPEEDS) speed.add(new Option(t("times", { times }), String(times), times === 1, times === 1));
   const says = document.createElement("output");
   const plot = document.createElement("div");

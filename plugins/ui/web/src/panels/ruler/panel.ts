@@ -1,6 +1,6 @@
 /** The ruler and the markers: figures, a profile, and the keyboard's way to both. */
 import "../overlay/overlay.css";
-import { button } from "kit/elements";
+import { button, make } from "kit/elements";
 import { Markers } from "kit/overlay/tools/markers";
 import type { Measurement } from "kit/overlay/tools/measurement";
 import { profile } from "kit/overlay/tools/profile";
@@ -15,10 +15,8 @@ function build(page: Page, root: HTMLElement): void {
   const mouse = button(t("rulerMouse"), () => ruler.toggle());
   const here = button(t("rulerHere"), () => ruler.addHere());
   const remove = button(t("rulerRemove"), () => ruler.remove());
-  const help = document.createElement("small");
-  help.textContent = t("rulerHelp");
-  const buttons = document.createElement("div");
-  buttons.className = "buttons";
+  const help = make("small", { textContent: t("rulerHelp") });
+  const buttons = make("div", { className: "buttons" });
   buttons.append(mouse, here, remove);
   const results = document.createElement("div");
   root.append(buttons, help, results, markers(page));
@@ -31,8 +29,7 @@ function build(page: Page, root: HTMLElement): void {
 }
 
 function figures(measured: Measurement): HTMLElement {
-  const list = document.createElement("dl");
-  list.className = "ruler-figures";
+  const list = make("dl", { className: "ruler-figures" });
   const mm = (metres: number): string => `${formatFixed(1000 * metres, 2)} mm`;
   const degrees = (measured.slope * 180) / Math.PI;
   const steep = Math.abs(degrees) > 89.99 ? "" : ` (${formatFixed(100 * Math.tan(measured.slope), 0)} %)`;
@@ -55,10 +52,8 @@ function figures(measured: Measurement): HTMLElement {
 function markers(page: Page): HTMLElement {
   const all = new Markers(page);
   const box = document.createElement("section");
-  const heading = document.createElement("h3");
-  heading.textContent = t("markersTitle");
-  const list = document.createElement("ul");
-  list.className = "marker-list";
+  const heading = make("h3", { textContent: t("markersTitle") });
+  const list = make("ul", { className: "marker-list" });
   box.append(heading, button(t("markHere"), () => all.addHere()), list);
   all.onChange = () => {
     const lines = all.list.map((marker) => {

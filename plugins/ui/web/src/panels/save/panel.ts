@@ -1,23 +1,18 @@
 /** Save the pipeline file on this computer, or download it. */
-import { button, field } from "kit/elements";
+import { button, field, make } from "kit/elements";
 import { download } from "../../files";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { t } from "./words";
 
 function build(page: Page, root: HTMLElement): void {
-  const status = document.createElement("p");
-  status.className = "told";
+  const status = make("p", { className: "told" });
   const say = (text: string): void => {
     status.textContent = text;
     page.say(text);
   };
-  const path = document.createElement("input");
-  path.id = "save-path";
-  path.spellcheck = false;
-  const instead = document.createElement("input");
-  instead.type = "checkbox";
-  instead.id = "save-replace";
+  const path = make("input", { id: "save-path", spellcheck: false });
+  const instead = make("input", { type: "checkbox", id: "save-replace" });
   const replace = document.createElement("label");
   replace.append(instead, t("replace"));
   const save = async (): Promise<void> => {
@@ -29,8 +24,7 @@ function build(page: Page, root: HTMLElement): void {
     }
   };
   const name = (): string => path.value.split(/[/\\]/).at(-1) || "pipeline.yaml";
-  const buttons = document.createElement("div");
-  buttons.className = "buttons";
+  const buttons = make("div", { className: "buttons" });
   const first = button(t("save"), save);
   first.className = "primary";
   buttons.append(first, button(t("download"), () => download(page.document?.text ?? "", name(), "application/yaml")));

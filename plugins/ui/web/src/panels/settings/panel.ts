@@ -1,5 +1,5 @@
 /** Settings of the person: colours, language, sizes, keys. Kept in this browser, not in the pipeline file. */
-import { button } from "kit/elements";
+import { button, make } from "kit/elements";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { recall, remember } from "kit/preferences";
@@ -31,10 +31,8 @@ function languages(): HTMLElement {
 /** Return buttons for the sizes of the regions, as an alternative to dragging. */
 function sizes(): HTMLElement {
   const box = document.createElement("fieldset");
-  const legend = document.createElement("legend");
-  legend.textContent = t("sizes");
-  const buttons = document.createElement("div");
-  buttons.className = "buttons";
+  const legend = make("legend", { textContent: t("sizes") });
+  const buttons = make("div", { className: "buttons" });
   buttons.append(
     button(t("wider"), () => resize(1)),
     button(t("narrower"), () => resize(-1)),
@@ -45,16 +43,11 @@ function sizes(): HTMLElement {
 }
 
 function keys(): HTMLElement {
-  const input = document.createElement("input");
-  input.type = "checkbox";
-  input.checked = letters.everywhere;
+  const input = make("input", { type: "checkbox", checked: letters.everywhere });
   input.onchange = () => (letters.everywhere = input.checked);
   const label = document.createElement("label");
   label.append(input, t("letters"));
-  const hint = document.createElement("p");
-  hint.className = "hint";
-  hint.id = "letters-hint";
-  hint.textContent = t("lettersHint");
+  const hint = make("p", { className: "hint", id: "letters-hint", textContent: t("lettersHint") });
   input.setAttribute("aria-describedby", hint.id);
   const box = document.createElement("div");
   box.append(label, hint);
@@ -62,9 +55,7 @@ function keys(): HTMLElement {
 }
 
 function readLogSwitch(page: Page): HTMLElement {
-  const input = document.createElement("input");
-  input.type = "checkbox";
-  input.checked = recall("read", false);
+  const input = make("input", { type: "checkbox", checked: recall("read", false) });
   const tell = (): void => page.hub.tell("read log", { on: input.checked });
   input.onchange = () => {
     remember("read", input.checked);

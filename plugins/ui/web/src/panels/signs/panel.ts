@@ -1,4 +1,5 @@
 /** What the signs on the surface and the words at the contact mean. */
+import { make } from "kit/elements";
 import { GLYPHS } from "kit/overlay/pieces/contact_label";
 import { t as overlay } from "kit/overlay/words";
 import type { Page } from "kit/page";
@@ -13,19 +14,19 @@ const STATES = ["rests", "sticks", "slips", "glides"] as const;
 function build(_: Page, root: HTMLElement): void {
   const signs = (Object.keys(SIGNS) as (keyof typeof SIGNS)[]).map((each) => line(SIGNS[each], each, t(each)));
   const states = STATES.map((each) => line(GLYPHS[each], "", `${overlay(each)}: ${overlay(`${each}Help`)}`));
-  root.append(listOf(signs), Object.assign(document.createElement("h3"), { textContent: overlay("gripTitle") }), listOf(states));
+  root.append(listOf(signs), make("h3", { textContent: overlay("gripTitle") }), listOf(states));
 }
 
 function listOf(lines: HTMLElement[]): HTMLElement {
-  const list = Object.assign(document.createElement("ul"), { className: "signs" });
+  const list = make("ul", { className: "signs" });
   list.append(...lines);
   return list;
 }
 
 function line(sign: string, name: string, text: string): HTMLElement {
-  const mark = Object.assign(document.createElement("span"), { className: `sign ${name}`, ariaHidden: "true", textContent: sign });
+  const mark = make("span", { className: `sign ${name}`, ariaHidden: "true", textContent: sign });
   const item = document.createElement("li");
-  item.append(mark, Object.assign(document.createElement("span"), { textContent: text }));
+  item.append(mark, make("span", { textContent: text }));
   return item;
 }
 

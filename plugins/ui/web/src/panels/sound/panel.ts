@@ -1,5 +1,5 @@
 /** Settings of sound and speech. */
-import { button } from "kit/elements";
+import { button, make } from "kit/elements";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { on } from "kit/shortcuts";
@@ -9,7 +9,7 @@ import { t } from "./words";
 import "./sound.css";
 
 function build(page: Page, root: HTMLElement): void {
-  const heading = (text: string): HTMLElement => Object.assign(document.createElement("h3"), { textContent: text });
+  const heading = (text: string): HTMLElement => make("h3", { textContent: text });
   root.append(soundButton(page), meter(page), volume(page), voices(page), heights(page));
   root.append(heading(t("speech")), ...speechControls(page));
 }
@@ -47,15 +47,12 @@ function volume(page: Page): HTMLElement {
 
 function voices(page: Page): HTMLElement {
   const box = document.createElement("fieldset");
-  const legend = document.createElement("legend");
-  legend.textContent = t("heard");
+  const legend = make("legend", { textContent: t("heard") });
   box.append(legend, ...(Object.keys(VOICES) as VoiceName[]).map(voice));
   return box;
 
   function voice(name: VoiceName): HTMLElement {
-    const input = document.createElement("input");
-    input.type = "checkbox";
-    input.checked = page.sound.has(name);
+    const input = make("input", { type: "checkbox", checked: page.sound.has(name) });
     input.onchange = () => page.sound.let(name, input.checked);
     const label = document.createElement("label");
     label.append(input, t(name));
@@ -90,8 +87,7 @@ function speechControls(page: Page): HTMLElement[] {
   const rate = range(RATES, speech.rate);
   rate.onchange = () => (speech.rate = rate.valueAsNumber);
   const rated = labelAround(t("rate"), rate);
-  const hint = document.createElement("p");
-  hint.className = "hint";
+  const hint = make("p", { className: "hint" });
   const show = (): void => {
     element.hidden = rated.hidden = !speech.voice;
     element.setAttribute("aria-pressed", String(speech.aloud));
@@ -115,15 +111,12 @@ function narrationControls(page: Page): HTMLElement[] {
   page.hub.on("describing", show);
   page.hub.on("tour", show);
   show();
-  const about = document.createElement("p");
-  about.className = "hint";
-  about.textContent = t("narration");
+  const about = make("p", { className: "hint", textContent: t("narration") });
   return [moves, tour, about];
 }
 
 function range({ least, most, step }: { least: number; most: number; step: number }, value: number): HTMLInputElement {
-  const input = document.createElement("input");
-  input.type = "range";
+  const input = make("input", { type: "range" });
   Object.assign(input, { min: String(least), max: String(most), step: String(step), value: String(value) });
   return input;
 }

@@ -1,4 +1,5 @@
 /** Products of the pipeline: method, outcome, reason and time of each. */
+import { make } from "kit/elements";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { productName } from "../../words/product_words";
@@ -15,10 +16,8 @@ const PRODUCTS = ["views", "disparity", "relief", "segments", "parts", "simplifi
 
 function build(page: Page, root: HTMLElement): void {
   const table = new StageTable();
-  const list = document.createElement("ol");
-  list.className = "stages";
-  const empty = document.createElement("p");
-  empty.textContent = t("none");
+  const list = make("ol", { className: "stages" });
+  const empty = make("p", { textContent: t("none") });
   const ended = document.createElement("p");
   ended.setAttribute("role", "status");
   root.append(empty, ended, list);
@@ -60,8 +59,7 @@ function line(row: Row): HTMLElement {
   const box = document.createElement("li");
   box.dataset.product = row.product;
   box.dataset.state = row.state;
-  const head = document.createElement("div");
-  head.className = "head";
+  const head = make("div", { className: "head" });
   head.append(
     part("shape", SHAPES[row.state], true),
     part("product", stageName(row.product)),
@@ -117,17 +115,13 @@ function stageName(product: string): string {
 }
 
 function part(name: string, text: string, hidden = false): HTMLElement {
-  const span = document.createElement("span");
-  span.className = name;
-  span.textContent = text;
+  const span = make("span", { className: name, textContent: text });
   if (hidden) span.setAttribute("aria-hidden", "true");
   return span;
 }
 
 function text(value: string): HTMLElement {
-  const status = document.createElement("p");
-  status.className = "hint";
-  status.textContent = value;
+  const status = make("p", { className: "hint", textContent: value });
   return status;
 }
 

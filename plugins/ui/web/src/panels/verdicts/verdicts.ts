@@ -1,5 +1,5 @@
 /** Verdicts as tables, with source, cure in words, and buttons that change the document. */
-import { button, tableWithHeads, paragraph } from "kit/elements";
+import { button, make, paragraph, tableWithHeads } from "kit/elements";
 import type { Grade, Verdict } from "kit/server/messages";
 import { distinct, restOf, sentenceOf } from "./cures";
 import { t } from "./words";
@@ -45,9 +45,7 @@ function row(body: HTMLTableSectionElement, said: Verdict, cure: Cure, more: Mor
   const verdict = element.insertCell();
   verdict.className = said.verdict;
   verdict.append(mark(said.verdict), t(said.verdict));
-  const what = document.createElement("th");
-  what.scope = "row";
-  what.textContent = `${said.check}: ${said.of}`;
+  const what = make("th", { scope: "row", textContent: `${said.check}: ${said.of}` });
   element.append(what);
   element.insertCell().append(withUnits(said.stands));
   const texts = [said.note, said.source, said.verdict === "ok" ? "" : restOf(said)].filter((text) => text && fresh(`${said.check} ${text}`)).map(withUnits);
@@ -67,16 +65,14 @@ const withUnits = (text: string): string => text.replace(/(\d) um\b/g, "$1 µm")
 
 function foldable(title: string, inside: HTMLElement): HTMLElement {
   const box = document.createElement("details");
-  const heading = document.createElement("summary");
-  heading.textContent = title;
+  const heading = make("summary", { textContent: title });
   box.append(heading, inside);
   return box;
 }
 
 /** Return the verdict's symbol; its word is next to it, or in the sentence. */
 function mark(verdict: Grade): HTMLElement {
-  const span = document.createElement("span");
-  span.className = "shape";
+  const span = make("span", { className: "shape" });
   span.setAttribute("aria-hidden", "true");
   span.textContent = `${SHAPES[verdict]} `;
   return span;

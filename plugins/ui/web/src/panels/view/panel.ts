@@ -1,6 +1,6 @@
 /** Settings of the view: light, steep walls, magnifier and camera. The strip below the surface has what it shows. */
 import "./view.css";
-import { slider } from "kit/elements";
+import { make, slider } from "kit/elements";
 import { CAMERA_KEYS, type CameraAct } from "kit/view/camera_input";
 import { Magnifier } from "kit/view/magnifier";
 import type { Page } from "kit/page";
@@ -62,8 +62,7 @@ function controlsOf(settings: Settings, set: (changes: Partial<Settings>) => voi
     return slider(t(word), input, value);
   };
   const light = fieldset("light");
-  const hint = document.createElement("small");
-  hint.textContent = t("eyeDomeSays");
+  const hint = make("small", { textContent: t("eyeDomeSays") });
   light.append(
     control("raking", "raking", 0.05, percent),
     control("azimuthDeg", "azimuth", 5, degrees),
@@ -86,8 +85,7 @@ function density(value: number): string {
 
 function magnifier(settings: Settings, set: (changes: Partial<Settings>) => void): HTMLElement {
   const label = document.createElement("label");
-  const choice = document.createElement("select");
-  choice.id = "lens-choice";
+  const choice = make("select", { id: "lens-choice" });
   for (const mm of LENSES_MM) choice.append(new Option(mm ? `${mm} mm` : t("off"), String(mm), false, mm === settings.lensMm));
   choice.onchange = () => set({ lensMm: Number(choice.value) });
   label.append(t("lens"), choice);
@@ -97,8 +95,7 @@ function magnifier(settings: Settings, set: (changes: Partial<Settings>) => void
 /** Return buttons and keys of the camera. */
 function camera(page: Page): HTMLElement {
   const box = fieldset("camera");
-  const buttons = document.createElement("div");
-  buttons.className = "buttons";
+  const buttons = make("div", { className: "buttons" });
   const { eye } = page.view;
   const does: [Word, CameraAct, () => void][] = [
     ["home", "home", () => eye.home()],
@@ -107,9 +104,7 @@ function camera(page: Page): HTMLElement {
     ["farther", "zoom", () => eye.zoom(1 / 0.7)],
   ];
   for (const [word, act, move] of does) {
-    const button = document.createElement("button");
-    button.type = "button";
-    button.textContent = t(word);
+    const button = make("button", { type: "button", textContent: t(word) });
     button.onclick = () => {
       move();
       page.view.acted(act);
@@ -122,14 +117,11 @@ function camera(page: Page): HTMLElement {
 
 function keys(): HTMLElement {
   const box = document.createElement("details");
-  const heading = document.createElement("summary");
-  heading.textContent = t("keys");
+  const heading = make("summary", { textContent: t("keys") });
   const table = document.createElement("table");
   const first = table.createTHead().insertRow();
   for (const word of ["todo", "keyboard", "mouse"] as const) {
-    const cell = document.createElement("th");
-    cell.scope = "col";
-    cell.textContent = t(word);
+    const cell = make("th", { scope: "col", textContent: t(word) });
     first.append(cell);
   }
   const body = table.createTBody();
@@ -138,22 +130,19 @@ function keys(): HTMLElement {
     row.insertCell().textContent = t(does);
     const cell = row.insertCell();
     for (const each of keys) {
-      const key = document.createElement("kbd");
-      key.textContent = each;
+      const key = make("kbd", { textContent: each });
       cell.append(key, " ");
     }
     row.insertCell().textContent = t(`${does}Mouse`);
   }
-  const hint = document.createElement("small");
-  hint.textContent = t("keysSay");
+  const hint = make("small", { textContent: t("keysSay") });
   box.append(heading, table, hint);
   return box;
 }
 
 function fieldset(word: Word): HTMLFieldSetElement {
   const box = document.createElement("fieldset");
-  const legend = document.createElement("legend");
-  legend.textContent = t(word);
+  const legend = make("legend", { textContent: t(word) });
   box.append(legend);
   return box;
 }

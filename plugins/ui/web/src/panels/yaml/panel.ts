@@ -1,5 +1,5 @@
 /** The pipeline file as text: to read, edit and copy. */
-import { button, field } from "kit/elements";
+import { button, field, make } from "kit/elements";
 import { copy } from "../../files";
 import { DocumentEditor } from "../../forms/editor";
 import type { Complaint } from "kit/server/messages";
@@ -12,13 +12,8 @@ import "./yaml.css";
 const PAUSE_MS = 600;
 
 function build(page: Page, root: HTMLElement): void {
-  const text = document.createElement("textarea");
-  text.id = "yaml-text";
-  text.spellcheck = false;
-  text.rows = 18;
-  text.wrap = "off";
-  const state = document.createElement("div");
-  state.id = "yaml-state";
+  const text = make("textarea", { id: "yaml-text", spellcheck: false, rows: 18, wrap: "off" });
+  const state = make("div", { id: "yaml-state" });
   text.setAttribute("aria-describedby", state.id);
   const status = document.createElement("p");
   const say = (words: string): void => {
@@ -73,8 +68,7 @@ function complaints(found: Complaint[]): HTMLElement[] {
   heading.textContent = found.length === 1 ? t("wrongOne") : t("wrong", { count: found.length });
   const list = document.createElement("ul");
   for (const { text } of found) {
-    const line = document.createElement("li");
-    line.textContent = text;
+    const line = make("li", { textContent: text });
     list.append(line);
   }
   return [heading, list];

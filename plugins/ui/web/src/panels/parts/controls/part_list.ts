@@ -1,5 +1,5 @@
 /** List of the parts from front to back, and fields of the selected one. */
-import { button, field, hint } from "kit/elements";
+import { button, field, hint, make } from "kit/elements";
 import { materialWord } from "kit/words/material_words";
 import { shownNumber } from "kit/words/part_words";
 import { t } from "../editor/words";
@@ -65,8 +65,7 @@ export class PartList {
   }
 
   private build(): void {
-    const legend = document.createElement("legend");
-    legend.textContent = t("selected");
+    const legend = make("legend", { textContent: t("selected") });
     const top = String(Math.round(1e5 * this.drawing.top_m) / 100);
     for (const each of [this.height, this.exact]) Object.assign(each, { min: "0", max: top, step: "0.05" });
     this.name.autocomplete = "off";
@@ -76,11 +75,9 @@ export class PartList {
     this.exact.addEventListener("input", () => this.raise(this.exact.valueAsNumber / MM, true));
     for (const each of [this.name, this.height, this.exact]) each.addEventListener("change", () => this.endDrag());
     this.material.addEventListener("change", () => this.set({ material: this.material.value || null }));
-    const order = document.createElement("div");
-    order.className = "buttons";
+    const order = make("div", { className: "buttons" });
     order.append(button(t("forward"), () => this.order(1)), button(t("backward"), () => this.order(-1)));
-    const join = document.createElement("div");
-    join.className = "with-button";
+    const join = make("div", { className: "with-button" });
     join.append(field(t("joinWith"), this.other), this.join);
     this.said.append(
       legend, field(t("name"), this.name), this.complaint(this.name), field(t("height"), this.height),
@@ -89,7 +86,7 @@ export class PartList {
   }
 
   private complaint(control: HTMLElement): HTMLElement {
-    const box = Object.assign(document.createElement("p"), { className: "bad", id: `${control.id}-complaint`, hidden: true });
+    const box = make("p", { className: "bad", id: `${control.id}-complaint`, hidden: true });
     box.setAttribute("role", "alert");
     this.complaints.set(control, box);
     return box;
@@ -126,10 +123,9 @@ export class PartList {
     row.setAttribute("role", "option");
     row.id = `parts-option-${label}`;
     row.dataset.label = String(label);
-    const bar = document.createElement("meter");
-    bar.max = this.drawing.top_m || 1;
+    const bar = make("meter", { max: this.drawing.top_m || 1 });
     bar.setAttribute("aria-hidden", "true");
-    row.append(...["number", "name", "height"].map((className) => Object.assign(document.createElement("span"), { className })), bar);
+    row.append(...["number", "name", "height"].map((className) => make("span", { className })), bar);
     this.rows.set(label, row);
     return row;
   }
@@ -230,9 +226,9 @@ export class PartList {
 }
 
 export function input(id: string, type: string): HTMLInputElement {
-  return Object.assign(document.createElement("input"), { id, type });
+  return make("input", { id, type });
 }
 
 export function select(id: string): HTMLSelectElement {
-  return Object.assign(document.createElement("select"), { id });
+  return make("select", { id });
 }

@@ -1,5 +1,5 @@
 /** Fields for the picture's title and language, and for the shape of all parts. */
-import { field } from "kit/elements";
+import { field, make } from "kit/elements";
 import { SHAPES } from "../drawing/picture_details";
 import type { EditorState } from "../editor/state";
 import { t } from "../editor/words";
@@ -53,8 +53,7 @@ export class PictureFields {
 
 export function foldable(title: string, inside: HTMLElement[]): HTMLElement {
   const box = document.createElement("details");
-  const heading = document.createElement("summary");
-  heading.textContent = title;
+  const heading = make("summary", { textContent: title });
   box.append(heading, ...inside);
   return box;
 }

@@ -1,14 +1,12 @@
 /** A dialog with a question, answered by a button; Escape is the first answer, which changes nothing. */
-import { button } from "kit/elements";
+import { button, make } from "kit/elements";
 
 export function question<T extends string>(title: string, texts: string[], answers: readonly (readonly [T, string])[]): Promise<T> {
-  const dialog = document.createElement("dialog");
-  dialog.className = "sure";
-  const heading = Object.assign(document.createElement("h2"), { id: "parts-question", textContent: title });
+  const dialog = make("dialog", { className: "sure" });
+  const heading = make("h2", { id: "parts-question", textContent: title });
   dialog.setAttribute("aria-labelledby", heading.id);
-  const status = texts.map((text) => Object.assign(document.createElement("p"), { textContent: text }));
-  const buttons = document.createElement("div");
-  buttons.className = "buttons";
+  const status = texts.map((text) => make("p", { textContent: text }));
+  const buttons = make("div", { className: "buttons" });
   buttons.append(...answers.map(([answer, text]) => button(text, () => dialog.close(answer))));
   (buttons.firstElementChild as HTMLElement).autofocus = true;
   dialog.append(heading, ...status, buttons);

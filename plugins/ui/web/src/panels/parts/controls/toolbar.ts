@@ -1,5 +1,5 @@
 /** Toolbar of the tools, their options, and undo, redo and zoom. */
-import { button, field } from "kit/elements";
+import { button, field, make } from "kit/elements";
 import { t } from "../editor/words";
 import { caps } from "kit/key_caps";
 import { KINDS } from "../editor/requests";
@@ -138,12 +138,11 @@ export class Toolbar {
 }
 
 function gap(): HTMLElement {
-  return Object.assign(document.createElement("span"), { className: "gap" });
+  return make("span", { className: "gap" });
 }
 
 export function group(name: string): HTMLElement {
-  const box = document.createElement("div");
-  box.className = "bar";
+  const box = make("div", { className: "bar" });
   box.setAttribute("role", "group");
   box.setAttribute("aria-label", name);
   return box;

@@ -1,5 +1,5 @@
 /** The elements of the parts editor: they show its state and change with it. */
-import { button, tableWithHeads } from "kit/elements";
+import { button, make, tableWithHeads } from "kit/elements";
 import { t as frame } from "../../../frame/words";
 import { caps } from "kit/key_caps";
 import { Board } from "../board/board";
@@ -74,18 +74,18 @@ export class EditorView {
     board.canvas.tabIndex = 0;
     board.canvas.setAttribute("role", "application");
     board.canvas.setAttribute("aria-label", t("picture"));
-    const keys = Object.assign(document.createElement("p"), { id: "parts-keys", className: "visually-hidden", textContent: t("pictureKeys") });
+    const keys = make("p", { id: "parts-keys", className: "visually-hidden", textContent: t("pictureKeys") });
     board.canvas.setAttribute("aria-describedby", keys.id);
     this.status.className = "told";
     this.status.id = "parts-told";
-    const stage = Object.assign(document.createElement("div"), { className: "stage" });
+    const stage = make("div", { className: "stage" });
     stage.append(this.toolbar.tools, this.toolbar.options, board.element, this.status, keys);
-    const buttons = Object.assign(document.createElement("div"), { className: "buttons" });
+    const buttons = make("div", { className: "buttons" });
     const save = button(t("save"), () => ends.save());
     save.id = "parts-save";
     save.className = "primary";
     buttons.append(save, button(t("close"), () => ends.close()));
-    const column = Object.assign(document.createElement("div"), { className: "side" });
+    const column = make("div", { className: "side" });
     column.append(buttons, list.list, list.said, ...this.fields.elements, this.keys);
     root.append(stage, column);
     document.getElementById("main")!.before(root);

@@ -24,6 +24,20 @@ export function field(name: string, control: HTMLElement): HTMLDivElement {
   return box;
 }
 
+/** Return a box that opens and closes, with a heading. */
+export function foldable(title: string, ...inside: HTMLElement[]): HTMLDetailsElement {
+  const box = document.createElement("details");
+  box.append(make("summary", { textContent: title }), ...inside);
+  return box;
+}
+
+/** Return a group of controls under a name. */
+export function fieldset(title: string, ...inside: HTMLElement[]): HTMLFieldSetElement {
+  const box = document.createElement("fieldset");
+  box.append(make("legend", { textContent: title }), ...inside);
+  return box;
+}
+
 export function paragraph(text: string, className = ""): HTMLParagraphElement {
   return Object.assign(document.createElement("p"), { className, textContent: text });
 }

@@ -1,5 +1,5 @@
 /** Outcome of each exporter: files, decisions, and tactile legibility. */
-import { make, paragraph } from "kit/elements";
+import { foldable, make, paragraph } from "kit/elements";
 import { token } from "kit/server/token";
 import type { Exported, Outcome } from "kit/server/messages";
 import { t } from "./words";
@@ -50,19 +50,12 @@ function legible(judgement: NonNullable<Exported["exports"][number]["legible"]>,
   const box = document.createElement("div");
   box.append(gradeSentence(judgement.grade, judgement.sentence));
   const wrong = judgement.verdicts.filter(({ verdict }) => verdict !== "ok");
-  if (wrong.length) box.append(foldable(t("verdicts", { count: wrong.length }), verdictTables(wrong, cure)));
+  if (wrong.length) box.append(foldable(t("verdicts", { count: wrong.length }), ...verdictTables(wrong, cure)));
   return box;
 }
 
 function notes(all: Outcome["notes"]): HTMLElement {
-  return foldable(t("notes", { count: all.length }), all.map(({ kind, text }) => paragraph(text, kind === "decision" ? "hint" : "hint warn")));
-}
-
-function foldable(title: string, inside: HTMLElement[]): HTMLElement {
-  const box = document.createElement("details");
-  const heading = make("summary", { textContent: title });
-  box.append(heading, ...inside);
-  return box;
+  return foldable(t("notes", { count: all.length }), ...all.map(({ kind, text }) => paragraph(text, kind === "decision" ? "hint" : "hint warn")));
 }
 
 function symbolOf(known: Outcome["outcome"]): HTMLElement {

@@ -1,5 +1,5 @@
 /** Settings of this page's hand: whether it is active, its mover, and its penetration. */
-import { button, field, hint, make } from "kit/elements";
+import { button, field, fieldset, hint, make } from "kit/elements";
 import { type HandState, PRESS_M } from "kit/hand/state";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
@@ -15,9 +15,7 @@ function build(page: Page, root: HTMLElement): void {
     if (page.hand) page.hand.pressM = Number(press.value) / 1000;
     show();
   };
-  const ways = document.createElement("fieldset");
-  const legend = make("legend", { textContent: t("moves") });
-  ways.append(legend, way("surface", false), way("space", true));
+  const ways = fieldset(t("moves"), way("surface", false), way("space", true));
   const depth = field(t("press"), press);
   depth.append(value);
   const hints = (["howMouse", "howFinger", "howKeys"] as const).map((each) => hint(t(each)));

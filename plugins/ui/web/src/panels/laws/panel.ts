@@ -1,5 +1,5 @@
 /** Two laws on one hand, side by side; and a blind study of both. */
-import { button, field, hint, make } from "kit/elements";
+import { button, field, fieldset, hint, make } from "kit/elements";
 import type { Events } from "kit/server/messages";
 import type { Page } from "kit/page";
 import { language } from "kit/words/words";
@@ -32,7 +32,7 @@ function build(page: Page, root: HTMLElement): void {
   };
 
   const choice = setup((use, options) => attempt(() => net.ask("compare_laws", { use, options })));
-  const two = group(t("felt"));
+  const two = fieldset(t("felt"));
   const letters = LETTERS.map((to) => button(to, () => attempt(() => net.ask("switch_law", { to }))));
   const question = make("select", { id: "laws-question" });
   question.append(...(["same", "rougher", "higher"] as const).map((each) => new Option(t(each), each)));
@@ -86,13 +86,6 @@ function setup(begin: (use: string, options: string) => Promise<void>): HTMLElem
   options.setAttribute("aria-describedby", help.id);
   box.append(field(t("other"), law), field(t("options"), options), help);
   box.append(button(t("begin"), () => begin(law.value, options.value)));
-  return box;
-}
-
-function group(title: string): HTMLFieldSetElement {
-  const box = document.createElement("fieldset");
-  const legend = make("legend", { textContent: title });
-  box.append(legend);
   return box;
 }
 

@@ -1,5 +1,5 @@
 /** Materials of the segments with reasons and areas; and the library with figures and sources. */
-import { make, tableWithHeads } from "kit/elements";
+import { foldable, make, tableWithHeads } from "kit/elements";
 import { DocumentEditor } from "../../forms/editor";
 import { LIBRARY } from "../../forms/rows";
 import type { Material, Segment } from "kit/server/messages";
@@ -16,16 +16,14 @@ type Listed = Material & { source: string };
 
 function build(page: Page, root: HTMLElement): void {
   const editor = new DocumentEditor(page);
-  const none = make("p", { className: "hint" });
-  none.textContent = t("none");
+  const none = make("p", { className: "hint", textContent: t("none") });
   const refused = make("p", { className: "bad" });
   refused.setAttribute("role", "status");
   editor.onRefused = (why) => (refused.textContent = why);
   const table = tableWithHeads(t("segments"), [t("segment"), t("material"), t("share")], "materials");
   const body = table.createTBody();
-  const library = document.createElement("details");
-  const heading = make("summary", { textContent: t("libraryAlone") });
-  library.append(heading);
+  const library = foldable(t("libraryAlone"));
+  const heading = library.querySelector("summary")!;
   const list = make("datalist", { id: LIBRARY });
   root.append(none, refused, table, library, list);
   let names: string[] = [];

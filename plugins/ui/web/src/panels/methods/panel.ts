@@ -36,8 +36,7 @@ function build(page: Page, root: HTMLElement): void {
     show();
   };
 
-  const compare = make("p", { className: "hint" });
-  compare.textContent = t("compare");
+  const compare = make("p", { className: "hint", textContent: t("compare") });
   root.append(runControls(page, editor), refused, complaints, steps(page, editor), forms, compare);
   page.hub.on("document", () => {
     show();

@@ -1,5 +1,5 @@
 /** Open pictures, pairs, height maps, recordings, pipeline files and examples. */
-import { button, field, make } from "kit/elements";
+import { button, field, foldable, make } from "kit/elements";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { t } from "./words";
@@ -85,13 +85,6 @@ function exchange(page: Page): HTMLElement {
     toggle.hidden = !(scene && typeof scene === "object" && "left" in scene && "right" in scene);
   });
   return toggle;
-}
-
-function foldable(title: string, inside: HTMLElement): HTMLElement {
-  const box = document.createElement("details");
-  const heading = make("summary", { textContent: title });
-  box.append(heading, inside);
-  return box;
 }
 
 export const open: Panel = { id: "open", title: t("title"), task: "picture", open: true, build };

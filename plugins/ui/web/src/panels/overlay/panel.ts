@@ -1,5 +1,5 @@
 /** Settings of the overlay, and what limits the force. */
-import { make } from "kit/elements";
+import { fieldset, make } from "kit/elements";
 import "./overlay.css";
 import { LIMITS, perSecond, type Counts } from "kit/contact/limits";
 import { MM_PER_N, SECONDS, SWITCHES } from "kit/overlay/settings";
@@ -11,9 +11,8 @@ const ASK_MS = 1000;
 
 function build(page: Page, root: HTMLElement): void {
   const { overlay } = page;
-  const box = make("fieldset", { className: "switches" });
-  const legend = make("legend", { textContent: t("show") });
-  box.append(legend);
+  const box = fieldset(t("show"));
+  box.className = "switches";
   for (const each of SWITCHES) {
     const input = make("input", { type: "checkbox", checked: overlay.settings.show[each] });
     input.onchange = () => {

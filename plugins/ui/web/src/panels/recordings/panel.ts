@@ -126,10 +126,7 @@ function line({ name, trouble, law, figures }: Listed): string {
 function playback(page: Page): { box: HTMLElement; load: (ticks: Ticks, name: string) => void } {
   const box = make("fieldset", { hidden: true });
   const legend = document.createElement("legend");
-  const place = make("input", { type: "range" });
-  place.id = "records-place";
-  place.min = "0";
-  place.step = "0.001";
+  const place = make("input", { type: "range", id: "records-place", min: "0", step: "0.001" });
   const speed = make("select", { id: "records-speed" });
   for (const times of SPEEDS) speed.add(new Option(t("times", { times }), String(times), times === 1, times === 1));
   const says = document.createElement("output");

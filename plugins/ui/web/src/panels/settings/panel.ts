@@ -1,5 +1,5 @@
 /** Settings of the person: colours, language, sizes, keys. Kept in this browser, not in the pipeline file. */
-import { button, make } from "kit/elements";
+import { button, fieldset, make } from "kit/elements";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { recall, remember } from "kit/preferences";
@@ -30,16 +30,13 @@ function languages(): HTMLElement {
 
 /** Return buttons for the sizes of the regions, as an alternative to dragging. */
 function sizes(): HTMLElement {
-  const box = document.createElement("fieldset");
-  const legend = make("legend", { textContent: t("sizes") });
   const buttons = make("div", { className: "buttons" });
   buttons.append(
     button(t("wider"), () => resize(1)),
     button(t("narrower"), () => resize(-1)),
     button(t("reset"), () => resetSizes()),
   );
-  box.append(legend, buttons);
-  return box;
+  return fieldset(t("sizes"), buttons);
 }
 
 function keys(): HTMLElement {

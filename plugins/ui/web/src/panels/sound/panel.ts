@@ -1,5 +1,5 @@
 /** Settings of sound and speech. */
-import { button, make } from "kit/elements";
+import { button, fieldset, make } from "kit/elements";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { on } from "kit/shortcuts";
@@ -46,10 +46,7 @@ function volume(page: Page): HTMLElement {
 }
 
 function voices(page: Page): HTMLElement {
-  const box = document.createElement("fieldset");
-  const legend = make("legend", { textContent: t("heard") });
-  box.append(legend, ...(Object.keys(VOICES) as VoiceName[]).map(voice));
-  return box;
+  return fieldset(t("heard"), ...(Object.keys(VOICES) as VoiceName[]).map(voice));
 
   function voice(name: VoiceName): HTMLElement {
     const input = make("input", { type: "checkbox", checked: page.sound.has(name) });

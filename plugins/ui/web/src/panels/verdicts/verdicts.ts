@@ -1,5 +1,5 @@
 /** Verdicts as tables, with source, cure in words, and buttons that change the document. */
-import { button, make, paragraph, tableWithHeads } from "kit/elements";
+import { button, foldable, make, paragraph, tableWithHeads } from "kit/elements";
 import type { Grade, Verdict } from "kit/server/messages";
 import { distinct, restOf, sentenceOf } from "./cures";
 import { t } from "./words";
@@ -62,13 +62,6 @@ function row(body: HTMLTableSectionElement, said: Verdict, cure: Cure, more: Mor
 
 /** Return a text of the program, which writes micrometres as a terminal can. */
 const withUnits = (text: string): string => text.replace(/(\d) um\b/g, "$1 µm");
-
-function foldable(title: string, inside: HTMLElement): HTMLElement {
-  const box = document.createElement("details");
-  const heading = make("summary", { textContent: title });
-  box.append(heading, inside);
-  return box;
-}
 
 /** Return the verdict's symbol; its word is next to it, or in the sentence. */
 function mark(verdict: Grade): HTMLElement {

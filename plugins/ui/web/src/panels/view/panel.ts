@@ -1,6 +1,6 @@
 /** Settings of the view: light, steep walls, magnifier and camera. The strip below the surface has what it shows. */
 import "./view.css";
-import { make, slider } from "kit/elements";
+import { fieldset, make, slider } from "kit/elements";
 import { CAMERA_KEYS, type CameraAct } from "kit/view/camera_input";
 import { Magnifier } from "kit/view/magnifier";
 import type { Page } from "kit/page";
@@ -61,7 +61,7 @@ function controlsOf(settings: Settings, set: (changes: Partial<Settings>) => voi
     said();
     return slider(t(word), input, value);
   };
-  const light = fieldset("light");
+  const light = fieldset(t("light"));
   const hint = make("small", { textContent: t("eyeDomeSays") });
   light.append(
     control("raking", "raking", 0.05, percent),
@@ -70,7 +70,7 @@ function controlsOf(settings: Settings, set: (changes: Partial<Settings>) => voi
     control("eyeDome", "eyeDome", 0.05, percent),
     hint,
   );
-  const curtains = fieldset("curtains");
+  const curtains = fieldset(t("curtains"));
   for (const steep of Object.keys(STEEPS) as (keyof typeof STEEPS)[])
     curtains.append(radio("steep", steep, steep, () => set({ steep }), settings.steep === steep));
   curtains.append(control("steepDeg", "steeper", 1, degrees));
@@ -94,7 +94,7 @@ function magnifier(settings: Settings, set: (changes: Partial<Settings>) => void
 
 /** Return buttons and keys of the camera. */
 function camera(page: Page): HTMLElement {
-  const box = fieldset("camera");
+  const box = fieldset(t("camera"));
   const buttons = make("div", { className: "buttons" });
   const { eye } = page.view;
   const does: [Word, CameraAct, () => void][] = [
@@ -140,12 +140,6 @@ function keys(): HTMLElement {
   return box;
 }
 
-function fieldset(word: Word): HTMLFieldSetElement {
-  const box = document.createElement("fieldset");
-  const legend = make("legend", { textContent: t(word) });
-  box.append(legend);
-  return box;
-}
 
 function radio(name: string, value: string, word: Word, chosen: () => void, checked = false): HTMLElement {
   const label = document.createElement("label");

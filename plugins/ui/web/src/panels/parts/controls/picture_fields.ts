@@ -1,5 +1,5 @@
 /** Fields for the picture's title and language, and for the shape of all parts. */
-import { field, make } from "kit/elements";
+import { field, foldable } from "kit/elements";
 import { SHAPES } from "../drawing/picture_details";
 import type { EditorState } from "../editor/state";
 import { t } from "../editor/words";
@@ -20,8 +20,8 @@ export class PictureFields {
     const texts = [field(t("pictureTitle"), this.text("title", title)), field(t("language"), this.text("language", language))];
     (texts[1]!.lastElementChild as HTMLInputElement).size = 5;
     this.elements = [
-      foldable(t("picturesWords"), texts),
-      foldable(t("shapes"), SHAPES.map((name, i) => field(t(name), this.shapes[i]!))),
+      foldable(t("picturesWords"), ...texts),
+      foldable(t("shapes"), ...SHAPES.map((name, i) => field(t(name), this.shapes[i]!))),
     ];
   }
 
@@ -49,11 +49,4 @@ export class PictureFields {
     });
     return box;
   }
-}
-
-export function foldable(title: string, inside: HTMLElement[]): HTMLElement {
-  const box = document.createElement("details");
-  const heading = make("summary", { textContent: title });
-  box.append(heading, ...inside);
-  return box;
 }

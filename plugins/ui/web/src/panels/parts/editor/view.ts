@@ -1,11 +1,11 @@
 /** The elements of the parts editor: they show its state and change with it. */
-import { button, make, tableWithHeads } from "kit/elements";
+import { button, foldable, make, tableWithHeads } from "kit/elements";
 import { t as frame } from "../../../frame/words";
 import { caps } from "kit/key_caps";
 import { Board } from "../board/board";
 import { attachPointers } from "../board/pointers";
 import { PartList } from "../controls/part_list";
-import { foldable, PictureFields } from "../controls/picture_fields";
+import { PictureFields } from "../controls/picture_fields";
 import { Toolbar } from "../controls/toolbar";
 import type { Point } from "../pixels/labels";
 import { KEYS } from "./keys";
@@ -23,7 +23,7 @@ export class EditorView {
   readonly fields: PictureFields;
   private status = document.createElement("p");
   private toolbar: Toolbar;
-  private keys = foldable(t("keys"), [keyTable()]) as HTMLDetailsElement;
+  private keys = foldable(t("keys"), keyTable());
   private resting = 0;
 
   constructor(

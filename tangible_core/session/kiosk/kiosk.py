@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from threading import Event
 from typing import final
@@ -59,23 +59,18 @@ def run_kiosk(
 
 
 @final
+@dataclass
 class _Kiosk:
     """A kiosk session: its loops one after the other, each with a newly opened device."""
 
-    def __init__(
-        self,
-        rotation: Rotation,
-        totals: SessionTotals,
-        wait: DeviceWait | None,
-        device: HapticDevice,
-        seconds: float | None,
-        on_report: Callable[[ServoReport], None],
-        on_start: Callable[[Servo], None],
-    ) -> None:
-        self._rotation, self._totals, self._wait = rotation, totals, wait
-        self._device, self._seconds = device, seconds
-        self._on_report, self._on_start = on_report, on_start
-        self._last = brief_report(np.empty((0, len(TICK_COLUMNS))), 0, 0.0, 0.0, "")
+    rotation: Rotation
+    totals: SessionTotals
+    wait: DeviceWait | None
+    device: HapticDevice
+    seconds: float | None
+    on_report: Callable[[ServoReport], None]
+    on_start: Callable[[Servo], None]
+    last: ServoReport = brief_report(np.empty((0, len(TICK_COLUMNS))), 0, 0.0, 0.0, "")  # noqa: RUF009
 
     def run(self) -> ServoReport:
         """Run until the session ends for another reason than its device."""
@@ -83,63 +78,63 @@ class _Kiosk:
         while not ended:
             try:
                 lost = self._run_loop()
-                if lost is None or self._wait is None:
-                    return self._last
-                ended = self._wait.pause(lost, self._end_reason)
+                if lost is None or self.wait is None:
+                    return self.last
+                ended = self.wait.pause(lost, self._end_reason)
             except KeyboardInterrupt:
-                if not self._totals.begun:
+                if not self.totals.begun:
                     raise
                 ended = INTERRUPTED
-        self._last = replace(self._last, stopped=ended)
-        self._on_report(self._last)
-        return self._last
+        self.last = replace(self.last, stopped=ended)
+        self.on_report(self.last)
+        return self.last
 
     def _run_loop(self) -> str | None:
         """Run one loop; if its device ended it, return why the session waits for the device."""
-        slot = self._rotation.current
-        servo = Servo(slot.touch, self._device, slot.limits, self._left_s())
+        slot = self.rotation.current
+        servo = Servo(slot.touch, self.device, slot.limits, self._left_s())
         with ThreadPoolExecutor(1) as background:
             look = partial(self._look, servo, background)
             try:
-                watch_loop(servo, partial(self._report, servo), self._totals.keep, self._begin, look)
+                watch_loop(servo, partial(self._report, servo), self.totals.keep, self._begin, look)
             except DeviceError as error:
-                if self._wait is None or not servo.device_lost:
+                if self.wait is None or not servo.device_lost:
                     raise
                 return str(error)
             finally:
-                self._rotation.stop_film()
-        if self._wait is None or not servo.device_lost:
+                self.rotation.stop_film()
+        if self.wait is None or not servo.device_lost:
             return None
-        self._rotation.note_release(servo)
-        self._totals.close(servo)
-        return self._last.stopped
+        self.rotation.note_release(servo)
+        self.totals.close(servo)
+        return self.last.stopped
 
     def _begin(self, servo: Servo) -> None:
-        if self._wait is not None:
-            self._wait.end()
-        self._totals.begin(servo.ring.start_ns)
-        self._rotation.begin(servo)
-        self._on_start(servo)
+        if self.wait is not None:
+            self.wait.end()
+        self.totals.begin(servo.ring.start_ns)
+        self.rotation.begin(servo)
+        self.on_start(servo)
 
     def _look(self, servo: Servo, background: ThreadPoolExecutor) -> str:
         """Rotate the scenes.
 
         Returns: OVER at the end of the time, in loops after the first, which counts its own ticks; else "".
         """
-        self._rotation.look(servo, background)
-        return self._end_reason() if self._totals.since_s else ""
+        self.rotation.look(servo, background)
+        return self._end_reason() if self.totals.since_s else ""
 
     def _report(self, servo: Servo, of_loop: ServoReport) -> None:
-        whole = with_part(self._totals.report(servo, of_loop.stopped), self._rotation.current.parts)
-        self._last = replace(whole, film=self._rotation.frames)
-        self._on_report(self._last)
+        whole = with_part(self.totals.report(servo, of_loop.stopped), self.rotation.current.parts)
+        self.last = replace(whole, film=self.rotation.frames)
+        self.on_report(self.last)
 
     def _end_reason(self) -> str:
         if stop_asked():
             return STOPPED
         left_s = self._left_s()
-        return OVER if self._totals.begun and left_s is not None and left_s <= SHORTEST_S else ""
+        return OVER if self.totals.begun and left_s is not None and left_s <= SHORTEST_S else ""
 
     def _left_s(self) -> float | None:
         """Return the remaining time of the session; None if it has no end."""
-        return None if self._seconds is None else self._seconds - self._totals.passed_s
+        return None if self.seconds is None else self.seconds - self.totals.passed_s

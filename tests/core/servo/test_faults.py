@@ -238,7 +238,6 @@ class TestStandstill:
         ("name", "stopped"),
         [
             ("SIGKILL", "died"),
-            ("SIGSTOP", watchdog.STOOD_STILL),
             ("SIGTERM", "the process received a signal to end"),
             ("SIGHUP", "the process received a signal to end"),
             pytest.param("SIGQUIT", "the process received a signal to end", marks=pytest.mark.whole),
@@ -248,7 +247,7 @@ class TestStandstill:
     def test_signal_to_the_loop_leaves_no_force(self, tmp_path: Path, name: str, stopped: str) -> None:
         """Whether it cleans up, or is killed and the host opens the device once more to release it."""
         record, number = tmp_path / "force", getattr(signal, name)
-        catchable = name not in ("SIGKILL", "SIGSTOP")
+        catchable = name != "SIGKILL"
         with (
             handle_signal(number, signal.SIG_DFL) if catchable else nullcontext(),
             self.feel(record, FaultyTouch()) as servo,

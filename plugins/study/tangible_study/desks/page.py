@@ -181,7 +181,7 @@ class Page(Desk):
         return servo is not None and servo.running
 
     def greeting(self) -> dict[str, Any]:
-        """Return all that was said so far."""
+        """Return all events so far."""
         return {"history": list(self._events)}
 
     def enter(self, tab: LiveTab) -> None:

@@ -11,6 +11,7 @@ from tangible_core.servo import Packed, Safety, Servo, null_touch
 from tangible_core.servo.limits import PAGE_SERVER_SILENCE_S
 from tangible_devices.pointer import PointerClient
 from tangible_devices.pointer.pointer import Pointer
+from tangible_web.hand import STALE_AFTER_S
 
 from .feeling import end_loop
 

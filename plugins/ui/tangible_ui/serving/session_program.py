@@ -1,4 +1,4 @@
-"""The session as its tabs use it: what they are told, ask for and move."""
+"""The session as its tabs use it: their events, requests, and the hand."""
 
 from collections.abc import Coroutine
 from typing import Any, final

@@ -1,5 +1,6 @@
 """The structure of the source: sizes, rooms, floors and arrows, and the words, with the bounds that the house keeps."""
 
+import re
 import subprocess
 from collections import Counter
 from functools import cache
@@ -12,6 +13,9 @@ from tangible_core import Pipeline
 from .house_words import ROOT, count_words, share, shipped
 
 CORE = "tangible_core"
+IMPORT_OF_CORE = re.compile(rf"^\s*(?:from|import) ({CORE}[\w.]*)", re.MULTILINE)
+PLUGINS_IMPORT = 40
+"""Modules of the core that plugins import from, at most: its rooms, whose stubs list the names."""
 LARGEST_FOLDER = 10
 """Files next to `__init__.py` that a folder holds at most, as a stranger looks through them at a glance."""
 
@@ -38,6 +42,7 @@ def structure_rows() -> list[str]:
                 ("core: rooms", rooms, 22),
                 ("core: floors", floors, 9),
                 ("core: arrows", arrows, 105),
+                ("modules of the core that plugins import", len(modules_for_plugins()), PLUGINS_IMPORT),
                 (f"folders with more than {LARGEST_FOLDER} files", full, 10),
                 ("longest file: lines", longest, 300),
                 ("public members of Pipeline", len(members), 18),
@@ -62,6 +67,12 @@ def source_folders() -> Counter[Path]:
     ).stdout.split()
     paths = [Path(each) for each in listed if each.startswith((CORE, "plugins")) and "/test/" not in each]
     return Counter(path.parent for path in paths if path.name != "__init__.py")
+
+
+def modules_for_plugins() -> list[str]:
+    """Return the modules of the core that plugins import from."""
+    texts = [path.read_text(encoding="utf-8") for path in ROOT.glob("plugins/*/tangible_*/**/*.py")]
+    return sorted({module for text in texts for module in IMPORT_OF_CORE.findall(text)})
 
 
 def core_graph() -> tuple[int, int, int]:

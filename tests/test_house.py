@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import tangible_core
+from benchmarks.house_structure import PLUGINS_IMPORT, modules_for_plugins
 from benchmarks.house_words import count_words, share, shipped, turns_of_phrase
 from tangible_core.plugins import hooks
 from tangible_core.plugins.interfaces import (
@@ -70,6 +71,13 @@ def test_files_import_only_from_the_floors_below():
         "-c", "from importlinter.cli import lint_imports; raise SystemExit(lint_imports(no_cache=True, no_logo=True))"
     )
     assert ran.returncode == 0, ran.stdout + ran.stderr
+
+
+def test_plugins_import_from_the_rooms_that_the_contributing_page_names():
+    page = (ROOT / "CONTRIBUTING.md").read_text("utf-8").partition("A plugin imports from")[2].partition("\n\n")[0]
+    rooms = {f"tangible_core.{name}" for name in re.findall(r"`([a-z._]+)`", page.partition(":\n")[2])}
+    assert {"tangible_core", *rooms} == set(modules_for_plugins())
+    assert len(rooms) < PLUGINS_IMPORT
 
 
 @pytest.mark.parametrize("words", [None, [], ["--help"], ["plugins"], ["plugins", "--json"], ["run", "--help"]])

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from tangible_core import HapticSurface
-from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.compiled import CompiledTouch
 from tangible_core.plugins import ForceRenderer, Touch
 
 

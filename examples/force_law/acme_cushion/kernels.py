@@ -5,7 +5,7 @@
 import numpy as np
 from numba import float64, njit, types
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled import KERNEL
 
 HEIGHTS = types.Array(types.float32, 2, "C")
 NEWTONS = types.UniTuple(float64, 3)

@@ -3,7 +3,7 @@ from acme_cushion.compiled import CompiledCushion
 from acme_cushion.cushion import Cushion
 
 from tangible_core.testing import conforms
-from tangible_core.testing.synthetic.scenes import sphere_cap
+from tangible_core.testing.synthetic import sphere_cap
 
 test_plain = conforms("render", "acme-cushion")
 test_compiled = conforms("render", "acme-cushion-compiled")

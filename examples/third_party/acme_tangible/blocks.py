@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from tangible_core import DisparityMap, Views
-from tangible_core.data.pictures import to_grey
+from tangible_core.data import to_grey
 from tangible_core.errors import PictureError
 from tangible_core.plugins import DepthEstimator
 

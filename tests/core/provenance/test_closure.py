@@ -91,6 +91,10 @@ def test_closure_reads_only_the_used_modules_of_tangible_images(write: Write):
     modules = closure("acme.method").modules
     assert {"acme.kernel", "tangible_core", "tangible_core.data"} <= set(modules)
     assert "tangible_core.pipeline.engine.engine" not in modules
+    write(INSTALLED, **{"acme/fast.py": "from tangible_core.compiled import njit"})
+    modules = closure("acme.fast").modules
+    assert {"tangible_core.compiled", "tangible_core.compiled.compiling"} <= set(modules)
+    assert "tangible_core.compiled.threads" not in modules
 
 
 def test_closure_reads_an_installed_tangible_images(write: Write, monkeypatch: pytest.MonkeyPatch):

@@ -10,6 +10,7 @@ import grimp
 
 from tangible_core import Pipeline
 
+from .house_things import THINGS
 from .house_words import ROOT, count_words, share, shipped
 
 CORE = "tangible_core"
@@ -39,6 +40,11 @@ def structure_rows() -> list[str]:
                 ("tests: lines", tracked_lines("tests/*.py"), 52_000),
                 ("lists of faults: lines", tracked_lines("benchmarks/mutations/*.yaml"), 3_500),
                 ("benchmarks: lines", tracked_lines("benchmarks/*.py"), 8_500),
+                ("TypeScript that is shipped: lines", shipped_typescript(), 23_000),
+                *((f"files that a new {thing} touches", len(files), 3) for thing, files in THINGS.items()),
+                ("houses: floors", house_floors(), 6),
+                ("houses that stand on the page", len(houses_on("tangible_ui")), 0),
+                ("mechanisms of translation", len(translation_mechanisms()), 2),
                 ("core: rooms", rooms, 22),
                 ("core: floors", floors, 9),
                 ("core: arrows", arrows, 105),
@@ -75,16 +81,57 @@ def modules_for_plugins() -> list[str]:
     return sorted({module for text in texts for module in IMPORT_OF_CORE.findall(text)})
 
 
+def shipped_typescript() -> int:
+    """Return the lines of TypeScript that is shipped, without its tests."""
+    return tracked_lines("plugins/*.ts") - tracked_lines("plugins/*/test/*.ts")
+
+
+def house_floors() -> int:
+    """Return the floors on which the houses stand by their imports: the core and the packages of `plugins`."""
+    houses = [CORE, *(path.name for path in ROOT.glob("plugins/*/tangible_*"))]
+    return tallest(grimp.build_graph(*houses), houses)
+
+
+def houses_on(house: str) -> list[str]:
+    """Return the other packages of `plugins` that import a house."""
+    imported = re.compile(rf"^\s*(?:from|import) {house}\b", re.MULTILINE)
+    packages = [path for path in ROOT.glob("plugins/*/tangible_*") if path.name != house]
+    return [
+        path.name
+        for path in packages
+        if any(imported.search(each.read_text(encoding="utf-8")) for each in path.rglob("*.py"))
+    ]
+
+
+def translation_mechanisms() -> list[str]:
+    """Return what texts are translated by: catalogues, the page's tables, and each table of words in Python."""
+    files = [each for folder in shipped() for name in ("words.py", "words/de.py") for each in folder.rglob(name)]
+    tables = [each for each in files if each.stem == "de" or '"de"' in each.read_text(encoding="utf-8")]
+    kinds = {"catalogues": "tangible_core/translation/*.po", "tables of the page": "plugins/**/src/words/words.ts"}
+    return [*(kind for kind, pattern in kinds.items() if any(ROOT.glob(pattern))), *map(str, tables)]
+
+
 def core_graph() -> tuple[int, int, int]:
     """Return the rooms of the core (its folders and top files), the floors that they stand on, and the arrows."""
     graph = grimp.build_graph(CORE)
     rooms = sorted(graph.find_children(CORE))
+    floors = tallest(graph, rooms)
+    return len(rooms) + 1, floors, sum(len(below) for below in arrows(graph, rooms).values())
+
+
+def arrows(graph: grimp.ImportGraph, rooms: list[str]) -> dict[str, set[str]]:
+    """Return the rooms that each room of a graph imports; the graph's rooms are squashed."""
+    return {room: graph.find_modules_directly_imported_by(room) & set(rooms) - {room} for room in rooms}
+
+
+def tallest(graph: grimp.ImportGraph, rooms: list[str]) -> int:
+    """Squash the rooms of a graph; return the number of floors on which they stand."""
     for room in rooms:
         graph.squash_module(room)
-    below = {room: graph.find_modules_directly_imported_by(room) & set(rooms) - {room} for room in rooms}
+    below = arrows(graph, rooms)
 
     @cache
     def floor(room: str) -> int:
         return 1 + max((floor(each) for each in below[room]), default=0)
 
-    return len(rooms) + 1, max(map(floor, rooms)), sum(map(len, below.values()))
+    return max(map(floor, rooms))

@@ -14,6 +14,7 @@ import pytest
 
 import tangible_core
 from benchmarks.house_structure import PLUGINS_IMPORT, modules_for_plugins
+from benchmarks.house_things import THINGS, fault
 from benchmarks.house_words import count_words, share, shipped, turns_of_phrase
 from tangible_core.plugins import hooks
 from tangible_core.plugins.interfaces import (
@@ -210,10 +211,25 @@ def test_fixed_names_resolve():
         tangible_core.Nothing  # noqa: B018
 
 
-@pytest.mark.parametrize("kind", ["depth", "texture", "render", "device"])
-def test_methods_are_exported_by_their_family(kind):
-    targets = PROJECT["project"]["entry-points"][f"tangible.{kind}"].values()
-    assert all(getattr(import_module(each.split(".")[0]), each.split(":")[1]) for each in targets)
+@pytest.mark.whole
+@pytest.mark.parametrize(
+    ("thing", "command"),
+    [
+        ("device", "check device handle"),
+        ("exporter", "check export contours"),
+        ("option of a force law", f"plan {ROOT / 'configs/demo.yaml'} --set render.use=penalty --set render.share=0.5"),
+    ],
+)
+def test_thing_of_the_house_touches_three_files(thing: str, command: str, tmp_path: Path):
+    assert len(THINGS[thing]) <= 3
+    assert fault(thing, command.split(), tmp_path) == ""
+
+
+@pytest.mark.parametrize("package", PACKAGES.values(), ids=PACKAGES)
+def test_names_of_a_family_are_its_methods(package: Path):
+    module = import_module(package.name)
+    ours = {target for _, target in registered()}
+    assert {f"{getattr(module, name).__module__}:{name}" for name in module.__all__} <= ours
 
 
 def test_blocks_of_files_and_options_cannot_be_changed():

@@ -9,8 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from tangible_core.errors import GeometryError
-from tangible_core.plugins import Exporter, Work
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import Exporter, Work, note
 
 log = logging.getLogger(__name__)
 

@@ -11,6 +11,7 @@ from tangible_legibility import legibility, sizes
 from tangible_legibility.pins import PIN_PITCH_M
 
 PITCH_M = 1e-4
+ROUND_TABLE = "Round Table on Information Access for People with Print Disabilities"
 
 
 def two_parts(left: int = 300, right: int = 300, rows: int = 400) -> PartMap:
@@ -99,6 +100,17 @@ def test_pins_part_of_one_pin_and_hidden_borders_fail():
     assert (few.value, few.of) == (1, "part 3 (star), at the upper left")
     labels[:, 10 * pin : 10 * pin + pin // 5] = 2
     assert grades("pins", PartMap(labels, (0, 1, 2)))["kept borders"] == "illegible"
+
+
+def test_source_of_a_bound_says_when_it_is_a_convention_of_ours():
+    finger = "a convention of ours, as on swell paper"
+    for medium, part, gap in (
+        ("swell", "tactilegraphics.org", "tactilegraphics.org, which advises 6.4 mm on capsule paper"),
+        ("print", finger, f"{finger}; {ROUND_TABLE}: 2 mm in a double line, 5 mm between lines"),
+        ("force", *[finger + ", though a tip is finer than a finger"] * 2),
+    ):
+        found = verdicts(medium, two_parts())
+        assert (found["part"][0].source, found["gap"][0].source) == (part, gap)
 
 
 def test_sizes_of_an_exporter_are_checked_by_the_same_rules():

@@ -6,7 +6,7 @@ import shapely
 from exported_pictures import labels_work
 from tangible_core.data import PartMap, Work
 from tangible_export.paper import page
-from tangible_export.paper.marks.svg import Area, Braille, Drawing
+from tangible_export.paper.marks.svg import BLACK, Area, Braille, Drawing, svg
 from tangible_export.paper.named_parts import NamedParts, group_by_name
 from tangible_export.paper.page import Symbols
 from tangible_export.paper.sheet import Sheet
@@ -42,6 +42,15 @@ def test_key_has_the_letters_and_fills_that_are_on_the_page():
     drawing = Drawing(SHEET, "", "", "en", "", areas, ())
     entries = page._entries([symbols("sea", 0, kind="dots"), symbols("land", 1)], drawing)
     assert [(each.name, each.letter, each.fill) for each in entries] == [("sea", "s", "blank"), ("land", "", "blank")]
+
+
+def test_page_names_the_colour_of_its_marks_unless_it_is_black():
+    drawing = Drawing(SHEET, "", "", "en", "", (), ())
+    assert [svg(drawing, *colour).partition(" xmlns")[0] for colour in ((), (BLACK,), ("#123",))] == [
+        "<svg",
+        "<svg",
+        '<svg fill="#123"',
+    ]
 
 
 def test_page_has_the_sides_of_the_picture_though_parts_have_others():

@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.video_stress import stress
 from tangible_core.compiled.touch import FRAME, RISE_M, CompiledTouch
-from tangible_core.data import HapticState, HapticSurface, Relief
+from tangible_core.data import HapticState, HapticSurface, Material, Relief
 from tangible_core.errors import ConfigError, GeometryError
 from tangible_core.plugins.interfaces import Film
 from tangible_render.film import playing
@@ -57,6 +57,18 @@ class TestBounds:
         up_n = hold(film, TICKS, z=0.0065)[:, 2]
         there_m = 0.008 - 0.003 * np.arange(1, TICKS + 1) / TICKS
         assert up_n == pytest.approx(800 * np.maximum(there_m - 0.0065, 0), abs=1e-3)
+
+    def test_texture_lies_on_the_moving_surface(self):
+        """A fine texture is felt on top of a frame that has arrived, as it is on a surface that does not move."""
+        ice = Material("ice", 800.0, 0.0, 0.0, 0.0, roughness_m=3e-4, grain_m=1e-3)
+        labels = np.zeros(level(0.008).height_m.shape, np.int32)
+        path = np.column_stack([np.linspace(0, 0.003, 300), np.full(300, 0.002), np.full(300, 0.0075)])
+        film = Proxy().film(HapticSurface(level(0.005), labels, (ice,)))
+        film.show(level(0.008), 1)
+        hold(film, 2 * TICKS, z=0.02)
+        still = Proxy().touch(HapticSurface(level(0.008), labels, (ice,))).path(path)
+        assert np.ptp(still[:, 2]) > 0.05
+        assert film.touch.path(path)[1:] == pytest.approx(still[1:], abs=1e-3)
 
     def test_rising_level_surface_pushes_at_its_height(self):
         film = start(first=level(0.005))

@@ -29,6 +29,10 @@ def test_closed_line_ends_where_it_begins():
     assert mark.stroke_mm == 1
 
 
+def test_title_of_a_page_is_read_and_may_be_missing():
+    assert [page(shapes).title for shapes in ("<title>Map</title>", "")] == ["Map", ""]
+
+
 def test_pixel_is_black_that_ink_covers_by_half():
     ink = black(page('<path data-mark="fill" d="M1 2L2.03 2L2.03 2.97L1 2.97Z"/>'), 10)
     assert ink.shape == (60, 80)

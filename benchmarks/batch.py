@@ -1,8 +1,7 @@
-"""Many scenes: what it takes to hand them out, in time and memory, and what a second worker brings."""
+"""Many scenes: what it takes to hand them out, in time and memory."""
 
 import csv
 import json
-import os
 import subprocess
 import sys
 import tempfile
@@ -17,19 +16,9 @@ from PIL import Image
 from .figures import Figure, judged, part
 
 TINY, COUNT, PICTURES = (48, 64), 10_000, 50
-LARGER, FEW, ROUNDS = (360, 480), 48, 3
 FIRST = 100
 """Scenes after which memory is looked at first, and from which on speed is measured."""
-GAIN = 1.7
-COUNTS = """
-import time
-end, count = time.monotonic() + 3, 0
-while time.monotonic() < end:
-    count += 1
-print(count)
-"""
 ONE_PHOTO = "scene: builtin/brick\nwant: relief\ndepth: luminance\nworkspace: {width_m: 0.04}\n"
-ONE_PAIR = "scene: builtin/motorcycle\nwant: relief\ndepth: semi-global\nworkspace: {width_m: 0.04}\n"
 
 
 def section() -> str:
@@ -42,11 +31,10 @@ def section() -> str:
 
 
 def figures() -> Iterator[Figure]:
-    """Time, memory, failures; two workers against one."""
+    """Yield time, memory and failures."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         yield from _handing_out(part(f"{COUNT:,} scenes", partial(_tiny, folder)))
-        yield part("one worker and two", partial(_scaling, folder))
 
 
 def _tiny(folder: Path) -> dict[str, Any]:
@@ -70,45 +58,6 @@ def _handing_out(found: dict[str, Any]) -> Iterator[Figure]:
     told = " -> ".join(f"{size:.0f}" for size in sizes)
     what = f"largest worker, after {', '.join(f'{mark:,}' for mark in found['marks'])}"
     yield Figure(what, "<= 1.1 x from the second to the last", f"{told} MB", sizes[-1] <= 1.1 * sizes[1])
-
-
-def _scaling(folder: Path) -> Figure:
-    """Run rounds of both in turns, so that other work of the machine meets both."""
-    left = _picture(0, LARGER)
-    Image.fromarray(left).save(folder / "left.png")
-    Image.fromarray(np.roll(left, -9, axis=1)).save(folder / "right.png")
-    rows = [{"id": f"p{number}", "scene.left": "left.png", "scene.right": "right.png"} for number in range(FEW)]
-    ratios = []
-    costs: dict[int, list[float]] = {1: [], 2: []}
-    for turn in range(ROUNDS):
-        found = {each: _run(folder, f"pairs{each}{turn}", ONE_PAIR, rows, each) for each in (1, 2)}
-        ratios.append(found[1]["steady_s"] / found[2]["steady_s"])
-        for each, took in found.items():
-            costs[each].append(1e3 * took["workers_s"] / FEW)
-    ratio, machine, load = float(np.median(ratios)), _machine_ratio(), os.getloadavg()[0]
-    told = (
-        f"{ratio:.2f} x ({min(ratios):.2f} to {max(ratios):.2f}), where bare arithmetic gains {machine:.2f} x; "
-        f"worker {np.median(costs[1]):.0f} ms a scene alone, {np.median(costs[2]):.0f} ms beside another; "
-        f"load {load:.1f} of {os.cpu_count()}"
-    )
-    what = f"two workers against one, pairs of {LARGER[1]} x {LARGER[0]}"
-    bound = f">= {GAIN} x on idle cores, or {GAIN / 2:.0%} of what arithmetic gains"
-    return Figure(what, bound, told, ratio >= min(GAIN, GAIN / 2 * machine))
-
-
-def _machine_ratio() -> float:
-    """Measure the gain of a second process that only counts: 2 on two idle cores, less where two share one."""
-    gains = []
-    for _ in range(ROUNDS):
-        alone, both = _counted(1), _counted(2)
-        gains.append(both / alone)
-    return float(np.median(gains))
-
-
-def _counted(processes: int) -> int:
-    words = [sys.executable, "-S", "-c", COUNTS]
-    started = [subprocess.Popen(words, stdout=subprocess.PIPE, text=True) for _ in range(processes)]
-    return sum(int(each.communicate()[0]) for each in started)
 
 
 def _picture(seed: int, shape: tuple[int, int]) -> np.ndarray:

@@ -16,7 +16,6 @@ from . import (
     depth_range,
     depth_raw,
     depth_robustness,
-    depth_skips,
 )
 from .figures import judged, part
 
@@ -35,7 +34,6 @@ def section() -> str:
     accuracy = part("errors and times", depth_accuracy.figures)
     robustness, by_damage = part("damaged pairs", depth_robustness.measured)
     growth, sizes = part("growth", depth_growth.measured)
-    skipped = part("what is left out", depth_skips.rows)
     single = (
         depth_confidence,
         depth_pandora,
@@ -44,10 +42,9 @@ def section() -> str:
     )
     others = [part(each.__name__.removeprefix("benchmarks."), each.figures) for each in single]
     figures = [*accuracy, *robustness, *chain.from_iterable(others), *growth]
-    wrapper = part("wrapper", depth_accuracy.share_of_wrapper)
     return "\n".join(
         [
-            *_conditions(wrapper),
+            *_conditions(),
             "",
             *judged(figures),
             "",
@@ -72,16 +69,11 @@ def section() -> str:
             f"The builtin pair in tiles, {depth_growth.DISPARITIES} disparities told to both.",
             "",
             *sizes,
-            "",
-            "What is left out, on the builtin pair: with all of it, against with it left out. By default: what is "
-            "outside the range found, identical views, blank strips, rectification, colour, and the strict check.",
-            "",
-            *skipped,
         ]
     )
 
 
-def _conditions(wrapper: float) -> list[str]:
+def _conditions() -> list[str]:
     scenes = ", ".join(depth_pairs.real_specs())
     given = (
         ""
@@ -91,5 +83,5 @@ def _conditions(wrapper: float) -> list[str]:
     return [
         f"Photographs: {scenes}; synthetic: planes, steps, spheres, bars of 480 x 360.{given}",
         "",
-        f"{PROTOCOL} Our wrapper `opencv-sgbm` takes {wrapper:.2f} x the bare call, filling left out of both.",
+        PROTOCOL,
     ]

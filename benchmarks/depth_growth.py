@@ -1,21 +1,18 @@
-"""Time and memory as pictures grow, and what is seen of the strips they are swept in."""
+"""Time and memory as pictures grow."""
 
-from collections.abc import Generator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from functools import partial
 from typing import Literal
 
 import numpy as np
 
-from tangible_bench.memory import start_peak
-from tangible_depth.matching.adaptive import PROBE_ROWS
 from tangible_depth.semi_global import SemiGlobal
 from tangible_depth.sgm import strips
 
 from .depth_opencv import filled
 from .depth_pairs import KnownScene, real
 from .figures import Figure, table
-from .turns import Call, seconds
+from .turns import peak_bytes, seconds
 
 DISPARITIES = 128
 TILES = (1, 2, 3, 5, 7)
@@ -27,16 +24,12 @@ MEMORY_BYTES_PX: Mapping[Effort, int] = {"balanced": 25, "best": 32}
 OF: Mapping[Effort, str] = {"balanced": "", "best": ", `effort: best`"}
 Size = tuple[float, float, float, float]
 ROUNDS = 5
-USUAL_COST: Literal["levels"] = "levels"
-"""The cost that clean pairs are matched at."""
-NEAR_ROWS = 8
-"""Rows to either side of a border."""
 
 
 def measured() -> tuple[list[Figure], list[str]]:
     """Return the promises about growth, and a row a size, of the default."""
     default = _sizes("balanced")
-    figures = [*_promises("balanced", default), *_promises("best", _sizes("best")), _seams()]
+    figures = [*_promises("balanced", default), *_promises("best", _sizes("best"))]
     lines = [(f"{mpx:.1f}", f"{cost:.2f}", f"{used / 2**20:.0f}", f"{share:.2f}") for mpx, cost, used, share in default]
     return figures, table(("Mpx", "ns / px / disparity", "peak MiB", "time / 3WAY"), lines)
 
@@ -71,7 +64,7 @@ def _sizes(effort: Effort) -> list[Size]:
     scenes = [_tiled(count) for count in TILES]
     method = SemiGlobal(max_disparity_px=DISPARITIES, effort=effort)
     calls = [partial(method.estimate, each.views) for each in scenes]
-    memory = [_peak(call) for call in calls]
+    memory = [peak_bytes(call) for call in calls]
     times = [
         [(seconds(partial(filled, each)), seconds(call)) for each, call in zip(scenes, calls, strict=True)]
         for _ in range(ROUNDS)
@@ -84,51 +77,9 @@ def _sizes(effort: Effort) -> list[Size]:
     return found
 
 
-def _peak(call: Call) -> float:
-    call()
-    growth = start_peak()
-    call()
-    return growth() or 0
-
-
 def _tiled(count: int) -> KnownScene:
     scene = real()["motorcycle"]
     grey = scene.grey._replace(
         left=np.tile(scene.grey.left, (count, count)), right=np.tile(scene.grey.right, (count, count))
     )
     return KnownScene(scene.pair, grey, DISPARITIES)
-
-
-def _seams() -> Figure:
-    scenes = {**real(), "motorcycle x 4": _tiled(2)}
-    shares = {f"{name}, {effort}": _seam(each, effort) for name, each in scenes.items() for effort in OF}
-    worst = max(shares, key=shares.__getitem__)
-    return Figure(
-        f"seams: rows within {NEAR_ROWS} of a border, against one strip, {len(scenes)} scenes, either effort",
-        "difference over 1 px at <= 0.5 % of the pixels",
-        f"{shares[worst]:.2f} % at most ({worst}), {np.mean(list(shares.values())):.2f} % mean",
-        shares[worst] <= 0.5,
-    )
-
-
-def _seam(scene: KnownScene, effort: Effort) -> float:
-    """Percent of the pixels near borders, those of the trial among them, that one strip decides otherwise."""
-    method = SemiGlobal(max_disparity_px=scene.disparities, cost=USUAL_COST, effort=effort)
-    with_borders = method.estimate(scene.views).disparity_px
-    with _one_strip():
-        without = method.model_copy(update={"realign_rows": False}).estimate(scene.views).disparity_px
-    h = len(without)
-    borders = np.arange(PROBE_ROWS, h, PROBE_ROWS)
-    near = np.abs(np.arange(h)[:, None] - borders + 0.5).min(axis=1) < NEAR_ROWS
-    return 100 * float(np.mean(np.abs(with_borders - without)[near] > 1))
-
-
-@contextmanager
-def _one_strip() -> Generator[None]:
-    """Everything at once, whatever memory it takes."""
-    before = strips.ROWS, strips.VOLUME_BYTES
-    strips.ROWS, strips.VOLUME_BYTES = 1 << 20, 1 << 40
-    try:
-        yield
-    finally:
-        strips.ROWS, strips.VOLUME_BYTES = before

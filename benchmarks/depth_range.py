@@ -1,4 +1,4 @@
-"""The range found in a few bands: how much of the truth is tried, what finding it costs, and what its size does."""
+"""The range found in a few bands: how much of the truth is tried, and what finding it costs."""
 
 from functools import partial
 
@@ -13,8 +13,6 @@ from .turns import in_turns
 
 MOST_SHARE = 0.09
 """Of the time of the match."""
-BETWEEN, ENDS = (70, 82, 96), (64, 128)
-"""Disparities, and the powers of two round them."""
 
 
 def figures() -> list[Figure]:
@@ -30,32 +28,8 @@ def figures() -> list[Figure]:
         f"{100 * shares['motorcycle']:.1f} % on motorcycle, {100 * shares[dearest]:.1f} % at most "
         f"({dearest}; {over} over {100 * MOST_SHARE:.0f})"
     )
-    return [
-        Figure(
-            "automatic range",
-            f">= 99.9 % of the truth at <= {100 * MOST_SHARE:.0f} % of the match time",
-            measured,
-            covered[least] >= 99.9 and shares[dearest] <= MOST_SHARE,
-        ),
-        _between(),
-    ]
-
-
-def _between() -> Figure:
-    """Time of ranges between two powers of two over what these two say of them: their share."""
-    views = real()["motorcycle"].views
-    calls = {
-        str(most): partial(SemiGlobal(max_disparity_px=most, cost="sharp", realign_rows=False).estimate, views)
-        for most in (*ENDS, *BETWEEN)
-    }
-    times = {int(name): timed.ratio for name, timed in in_turns(calls, 15).items()}
-    over = {most: times[most] / np.interp(most, ENDS, [times[end] for end in ENDS]) - 1 for most in BETWEEN}
-    return Figure(
-        f"ranges of {', '.join(map(str, BETWEEN))} disparities, motorcycle",
-        f"within 10 % of their share of the way from {ENDS[0]} to {ENDS[1]}",
-        "; ".join(f"{most}: {100 * more:+.0f} %" for most, more in over.items()),
-        bool(max(over.values()) <= 0.1),
-    )
+    bound = f">= 99.9 % of the truth at <= {100 * MOST_SHARE:.0f} % of the match time"
+    return [Figure("automatic range", bound, measured, covered[least] >= 99.9 and shares[dearest] <= MOST_SHARE)]
 
 
 def coverage(scene: KnownScene) -> float:

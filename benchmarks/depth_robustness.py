@@ -27,16 +27,14 @@ def measured() -> tuple[list[Figure], list[str]]:
         (kind, value): {name: _errors(_damaged(each, kind, value)) for name, each in scenes.items()}
         for kind, value in DAMAGES
     }
-    margins = {
-        (f"{kind} {value:g}", name): ours - min(peers)
-        for (kind, value), by_scene in cells.items()
-        for name, (ours, _, *peers) in by_scene.items()
-    }
-    best = {
-        (f"{kind} {value:g}", name): ours - min(peers)
-        for (kind, value), by_scene in cells.items()
-        for name, (_, ours, *peers) in by_scene.items()
-    }
+    margins, best = (
+        {
+            (f"{kind} {value:g}", name): errors[effort] - min(errors[2:])
+            for (kind, value), by_scene in cells.items()
+            for name, errors in by_scene.items()
+        }
+        for effort in (0, 1)
+    )
     best_worst = max(best, key=best.__getitem__)
     worst = max(margins, key=margins.__getitem__)
     above = sum(margin > 0 for margin in margins.values())

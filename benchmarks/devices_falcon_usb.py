@@ -1,4 +1,4 @@
-"""The Novint Falcon's USB: a bad line, what an exchange costs, and the rate."""
+"""The Novint Falcon's USB: what an exchange costs, and the rate."""
 
 import sys
 from array import array
@@ -14,48 +14,18 @@ from tangible_core.data import NO_FORCE, Force
 from tangible_devices.falcon.calibration import Calibration
 from tangible_devices.falcon.link import FalconLink
 from tangible_devices.falcon.simulator import bus as simulated
-from tangible_devices.falcon.simulator.falcons import synthetic_image
-from tangible_devices.falcon.usb import firmware
 from tangible_devices.falcon.usb.port import IN, OUT, Port
 
 from .figures import Figure, part
-from .tests_path import falcon_bus, falcon_streams
+from .tests_path import falcon_bus
 
-CYCLES, STREAMS = 1_000_000, 1_000_000
+CYCLES = 1_000_000
 
 
 def figures() -> Iterator[Figure]:
     """Yield the figures that go over USB."""
-    yield part("firmware", _firmware)
-    yield from part("protocol", lambda: list(_protocol()))
     yield from part("exchange", lambda: list(_exchange()))
     yield part("rate", _rate)
-
-
-def _firmware() -> Figure:
-    image = synthetic_image()
-    told = []
-    for name, line in (
-        ("flipped", falcon_bus.Line("flip", 2000)),
-        ("dropped", falcon_bus.Line("drop", 2000)),
-        ("late", falcon_bus.Line(late_reply=30)),
-    ):
-        firmware.open_running(falcon_bus.opener_of(falcon_bus.bus_of(line)), image).close()
-        told.append(f"{name}: {line.resets}")
-    return Figure("firmware with a byte of the echo spoilt: attempts", "loads", ", ".join(told), True)
-
-
-def _protocol() -> Iterator[Figure]:
-    fixed = tuple(falcon_streams.buffers())
-    lost, gained, others = falcon_streams.LOST, falcon_streams.GAINED, falcon_streams.SWAPPED
-    results = [falcon_streams.fuzz(STREAMS // 3, kind, 0.02, 3, fixed) for kind in (lost, gained, falcon_streams.NOISE)]
-    wrong, late = (sum(each[k] for each in results) for k in (1, 3))
-    told = f"{wrong} wrong, {late} late"
-    yield Figure("1e6 streams with bytes lost, gained or of noise", "0 wrong, 0 late", told, wrong + late == 0)
-    taken, wrong, worst, late = falcon_streams.fuzz(STREAMS, lost | gained | others, 0.02, 4, fixed)
-    told = f"{100 * wrong / taken:.2f} %, {worst:.0f} counts, {late} late"
-    what = "1e6 streams with 2 % of bytes lost, gained or others; digits for digits cannot be told: wrong positions"
-    yield Figure(what, "<= 0.1 %, 256 counts", told, wrong <= 1e-3 * taken and worst <= 256)
 
 
 @final

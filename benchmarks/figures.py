@@ -15,10 +15,6 @@ class Figure(NamedTuple):
     met: bool
 
 
-class MissedError(Exception):
-    """A section, as Markdown, that is written all the same; the command ends with 1."""
-
-
 def judged(figures: Iterable[Figure]) -> list[str]:
     """Return a Markdown table; what is not within its bound says `missed`."""
     rows = [(each.what, each.bound, each.measured, "" if each.met else "missed") for each in figures]

@@ -3,8 +3,7 @@
 from collections.abc import Callable
 from functools import cache
 from math import ceil
-from statistics import fmean, median
-from time import process_time
+from statistics import fmean
 from typing import Any
 
 import cv2
@@ -30,6 +29,7 @@ from tangible_texture import Hierarchy
 
 from .figures import Figure, judged, mean_and_error, part, table
 from .tests_path import drawn_parts
+from .turns import processor_s
 
 PICTURES = ("astronaut", "coffee", "motorcycle", "chelsea", "rocket", "camera")
 WIDTH_M, TALL_M = 0.16, 0.006
@@ -126,7 +126,7 @@ def _times() -> tuple[list[str], list[Figure]]:
     rows: list[tuple[str, ...]] = []
     figures: list[Figure] = []
     for size, shape in SIZES.items():
-        took = {name: _milliseconds(work) for name, work in _works(shape).items()}
+        took = {name: 1000 * processor_s(work, RUNS) for name, work in _works(shape).items()}
         rows.append((f"{size} ({shape[1]} x {shape[0]})", *(f"{each:.3g}" for each in took.values())))
         if size == min(SIZES):
             what, relief_ms = f"a relief of new heights, {shape[1]} x {shape[0]}", took["Layering.relief"]
@@ -155,15 +155,6 @@ def _works(shape: tuple[int, int]) -> dict[str, Callable[[], Any]]:
         "depth_heights": lambda: depth_heights(parts, disparity, TOP_M),
         "shared_borders": lambda: shared_borders(parts, WIDTH_M, 0.0005),
     }
-
-
-def _milliseconds(work: Callable[[], Any]) -> float:
-    taken = []
-    for _ in range(RUNS):
-        start = process_time()
-        work()
-        taken.append(1000 * (process_time() - start))
-    return median(taken)
 
 
 @cache

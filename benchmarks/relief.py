@@ -5,10 +5,9 @@ TANGIBLE_REGIONS one of photographs, *.jpg, each with the regions that people dr
 """
 
 from collections.abc import Callable, Iterator
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
-from statistics import fmean, median
-from time import process_time
+from statistics import fmean
 from typing import Any
 
 import cv2
@@ -26,9 +25,10 @@ from tangible_depth import Luminance, SemiGlobal
 from tangible_render import Proxy
 from tangible_texture import Hierarchy
 
-from . import depth_pairs, relief_photographs
+from . import depth_pairs
 from .figures import Figure, judged, mean_and_error, part, table
 from .relief_figures import Truth, felt, loop_work_mj, truth_of
+from .turns import processor_s
 
 WIDTH_M = 0.08
 SIZE, CHOICE = Workspace().size("depth"), ReliefChoice()
@@ -67,11 +67,9 @@ def section() -> str:
     )
     rows, figures = part("borders", _borders)
     safe = part("hands", lambda: list(_hands()))
-    narrow = part("bars", _bars)
     more = part("size and time", lambda: [*_sizes(), *_times(), *_flicker()])
-    photographs = part("photographs", relief_photographs.lines)
     part("pictures", _draw)
-    return "\n".join([head, "", *rows, "", *narrow, "", *photographs, "", *judged([*figures, *safe, *more])])
+    return "\n".join([head, "", *rows, "", *judged([*figures, *safe, *more])])
 
 
 def before(disparity: DisparityMap, calibration: Calibration | None) -> Relief:
@@ -175,27 +173,6 @@ def _hands() -> Iterator[Figure]:
     yield Figure("work around closed loops", "<= 0.001 mJ", f"{max(loops):.4f} mJ", max(loops) <= 0.001)
 
 
-def _bars() -> list[str]:
-    rows: list[tuple[str, ...]] = []
-    for width_mm in (0.5, 1.0, 1.5, 2.0, 3.0):
-        shares: list[str] = []
-        for make, high_m in ((before, BEFORE_M[0]), (shaped, SIZE.relief_m)):
-            kept_m = float(np.ptp(make(_bar(width_mm / 1000), None).height_m[200, 300:500]))
-            shares.append(f"{kept_m / high_m:.2f} ({1000 * kept_m:.1f} mm)")
-        rows.append((f"{width_mm:g}", *shares))
-    said = "A bar that stands before ground, at 80 mm: the share of its height that is left, before and now."
-    return [said, "", *table(("bar, mm", "before", "now"), rows)]
-
-
-def _bar(width_m: float) -> DisparityMap:
-    """Return a bar in the middle of ground, and a block at the rim that keeps the range."""
-    values = np.full((400, 800), 10, np.float32)
-    half = round(width_m / WIDTH_M * 400)
-    values[:, 400 - half : 400 + max(half, 1)] = 20
-    values[:, :40] = 20
-    return DisparityMap(values)
-
-
 def _sizes() -> Iterator[Figure]:
     matched = _scenes()["motorcycle"][0]
     twice = DisparityMap(np.kron(matched.disparity_px, np.ones((2, 2), np.float32)))
@@ -210,19 +187,9 @@ def _times() -> Iterator[Figure]:
     for (columns, rows), bound_ms in SIZES.items():
         large = cv2.resize(matched.disparity_px, (columns, rows)) * np.float32(columns / matched.disparity_px.shape[1])
         disparity = DisparityMap(large)
-        now_ms, before_ms = (_milliseconds(make, disparity) for make in (shaped, before))
+        now_ms, before_ms = (1000 * processor_s(partial(make, disparity, None), RUNS) for make in (shaped, before))
         said = f"{now_ms:.0f} ms (before: {before_ms:.0f} ms)"
         yield Figure(f"a relief of {columns} x {rows}, of a processor", f"<= {bound_ms:g} ms", said, now_ms <= bound_ms)
-
-
-def _milliseconds(make: Make, disparity: DisparityMap) -> float:
-    make(disparity, None)
-    taken = []
-    for _ in range(RUNS):
-        start = process_time()
-        make(disparity, None)
-        taken.append(1000 * (process_time() - start))
-    return median(taken)
 
 
 def _flicker() -> Iterator[Figure]:

@@ -1,6 +1,6 @@
 """Touch: every promise about the force laws with its bound, and what stands behind the figures."""
 
-from . import render_beacon, render_guard, render_stiffness, render_ticks, render_waves
+from . import render_beacon, render_guard, render_ticks, render_waves
 from .figures import judged
 from .render_waves import AMPLITUDE_M, DEPTH_M
 
@@ -15,23 +15,10 @@ def section() -> str:
             *judged(
                 [
                     *render_waves.figures(),
-                    *render_stiffness.figures(),
                     *render_ticks.figures(),
                     *render_guard.figures(),
                     *render_beacon.figures(),
                 ]
             ),
-            "",
-            "What is left out, in ns a tick and as a share of all of it.",
-            "",
-            *render_ticks.skips(),
-            "",
-            "Every law on the same path over 256 x 256 cells.",
-            "",
-            *render_ticks.laws(),
-            "",
-            "The guard between a law and a device, in ns a tick, the loop around it left out.",
-            "",
-            *render_guard.parts(),
         ]
     )

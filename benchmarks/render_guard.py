@@ -14,7 +14,7 @@ from tangible_core.servo.guard.guard import guard
 from tangible_core.servo.guard.safety import Safety
 from tangible_render.proxy import Proxy
 
-from .figures import Figure, table
+from .figures import Figure
 from .render_waves import FAST, HAND, path, surface
 from .tests_path import rough_surfaces
 from .turns import in_turns
@@ -77,20 +77,3 @@ def _times(chosen: dict[str, tuple[Safety, float]]) -> dict[str, float]:
         calls[name] = partial(_guarded, settings, memory, hands, law, left)
     times = in_turns(calls, 25, thread_time)
     return {name: 1e9 * (times[name].seconds - times["loop"].seconds) / len(hands) for name in chosen}
-
-
-ALL = Safety(coupling="auto", delay_ticks=2)
-
-
-def parts() -> list[str]:
-    """Return a row for each part that can be left out."""
-    rows = {
-        "all of them: coupling, softening, passivity, delay": (ALL, 3000.0),
-        "without the coupling": (ALL.model_copy(update={"coupling": None}), 3000.0),
-        "without passivity": (ALL.model_copy(update={"passivity": "off"}), 3000.0),
-        "without the delay": (ALL.model_copy(update={"delay_ticks": 0}), 3000.0),
-        "without softening, as the law is soft enough": (ALL, 100.0),
-        "the defaults, and a law of 800 N/m": (Safety(), 800.0),
-        "the same without passivity": (Safety(passivity="off"), 800.0),
-    }
-    return table(("guard", "ns a tick"), [(name, f"{ns:.0f}") for name, ns in _times(rows).items()])

@@ -44,6 +44,11 @@ def keep(name: str, title: str, markdown: str) -> Path:
     return path
 
 
+def load(path: Path) -> dict[str, Any]:
+    """Read a section."""
+    return json.loads(path.read_text("utf-8"))
+
+
 def as_text(result: dict[str, Any]) -> str:
     """Write a result as JSON with a line for each row of a table.
 
@@ -86,7 +91,7 @@ def blocks(markdown: str) -> Iterator[dict[str, Any]]:
 
 def newest() -> dict[str, dict[str, Any]]:
     """Return the newest result of each section, by its name."""
-    results = [(path.stem, json.loads(path.read_text("utf-8"))) for path in RESULTS.glob("*/*.json")]
+    results = [(path.stem, load(path)) for path in RESULTS.glob("*/*.json")]
     return dict(sorted(results, key=lambda named: named[1]["measured"]))
 
 
@@ -117,7 +122,7 @@ def diff(revision: str = "HEAD") -> Iterator[str]:
         place = path.relative_to(ROOT).as_posix()
         shown = subprocess.run(["git", "show", f"{revision}:{place}"], cwd=ROOT, capture_output=True, check=False)
         before = promises(json.loads(shown.stdout)) if shown.returncode == 0 else {}
-        for what, (bound, measured, met) in promises(json.loads(path.read_text("utf-8"))).items():
+        for what, (bound, measured, met) in promises(load(path)).items():
             _, was, was_met = before.get(what, (bound, measured, met))
             if met != was_met:
                 lines.append(

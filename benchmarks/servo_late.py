@@ -18,7 +18,19 @@ from tangible_core.session import Recording, Writer, live
 from .figures import Figure, judged, part, table
 from .rights import give_up
 from .servo_loops import LOOPS, compiled_c, in_c, ours, touch
-from .servo_rounds import BY_CHANCE, LATE_US, POINTS, TIMES, Round, no_later, no_more_overruns, rows, together
+from .servo_rounds import (
+    BY_CHANCE,
+    HEADINGS,
+    LATE_US,
+    POINTS,
+    TIMES,
+    Round,
+    late_percent,
+    no_later,
+    no_more_overruns,
+    rows,
+    together,
+)
 from .tests_path import Circling
 
 ROUNDS = 8
@@ -27,7 +39,6 @@ RECORDED_S, PLAIN_S = 3.5, 3.0
 SHARE = f"<= {TIMES:g} x {{}}, or {POINTS:g} points more"
 RECORDED, UNRECORDED = "with a recorder", "without one"
 IN_C = "a loop in C"
-HEADINGS = "loop", f"later than {LATE_US} us", "p50", "p99", "p99.9", "latest", "periods without a tick"
 Rounds = dict[str, list[Round]]
 
 
@@ -42,7 +53,7 @@ def section() -> str:
         "together; more of them are no difference where the two of a round, exchanged at random, differ as much in "
         f"over {100 * BY_CHANCE:g} % of all cases."
     )
-    tables = [*table(HEADINGS, [*rows(recorded), *rows(plain)])]
+    tables = [*table(("loop", *HEADINGS), [*rows(recorded), *rows(plain)])]
     return "\n".join([head, "", *judged([*of_recorder, *of_rights]), "", *tables])
 
 
@@ -112,13 +123,13 @@ def _ours(name: str) -> str:
 def _beside_c(name: str, found: Rounds) -> Figure:
     if IN_C in found:
         return _share(name, "a loop in C without them", found[name], found[IN_C])
-    share = median(each.late_percent for each in found[name])
+    share = late_percent(found[name])
     told = f"{share:.3f} %; no C compiler (`cc`) was found, so there is nothing to compare with"
     return Figure(f"{name} later than {LATE_US} us", SHARE.format("a loop in C without them"), told, False)
 
 
 def _share(what: str, other: str, mine: list[Round], theirs: list[Round]) -> Figure:
-    shares = [median(each.late_percent for each in rounds) for rounds in (mine, theirs)]
+    shares = [late_percent(mine), late_percent(theirs)]
     told = f"{shares[0]:.3f} %, {other} {shares[1]:.3f} %"
     return Figure(f"{what} later than {LATE_US} us", SHARE.format(other), told, no_later(mine, theirs))
 

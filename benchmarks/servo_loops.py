@@ -1,16 +1,11 @@
-"""How late a tick is: our loop beside a loop in C, and beside a busy web server."""
+"""How late a tick is: our loop beside a loop in C."""
 
 import shutil
 import statistics
 import subprocess
-import sys
 import tempfile
-import threading
 import time
-import urllib.request
 from collections.abc import Iterator
-from contextlib import contextmanager
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import numpy as np
@@ -86,70 +81,6 @@ def beside_c() -> Iterator[Figure]:
             said,
             ratio <= (1.0 if real_time else 1.5),
         )
-
-
-def beside_a_server() -> Iterator[Figure]:
-    """p99.9 of the lateness with a busy web server in another process over that without."""
-    for name, device in LOOPS.items():
-        alone, beside = [], []
-        for _ in range(SLICES):
-            alone.append(ours(device, SLICE_S)[0].late_us)
-            with busy_server() as served:
-                beside.append(ours(device, SLICE_S)[0].late_us)
-        ratio = statistics.median(a.p999 / b.p999 for a, b in zip(beside, alone, strict=True))
-        yield Figure(
-            f"the same beside a busy web server, {name}",
-            "p99.9 of lateness <= 1.2 x alone",
-            f"{ratio:.2f} x; {_said(beside)} against {_said(alone)} us; {served() / SLICE_S:.0f} requests a second",
-            ratio <= 1.2,
-        )
-
-
-@contextmanager
-def busy_server() -> Iterator:
-    """Provide a web server in a process of its own, asked without pause; what it gives counts the answers."""
-    words = [sys.executable, "-c", "from benchmarks.servo_loops import serve; serve()"]
-    server = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
-    assert server.stdout is not None
-    address = f"http://127.0.0.1:{server.stdout.readline().strip()}/"
-    done, answers = threading.Event(), [0]
-
-    def ask() -> None:
-        while not done.is_set():
-            with urllib.request.urlopen(address) as answer:
-                answer.read()
-            answers[0] += 1
-
-    client = threading.Thread(target=ask)
-    client.start()
-    try:
-        yield lambda: answers[0]
-    finally:
-        done.set()
-        client.join()
-        server.terminate()
-        server.wait()
-        server.stdout.close()
-
-
-class _Page(BaseHTTPRequestHandler):
-    def do_GET(self) -> None:
-        """Return some work, and 100 kB."""
-        body = "".join(f"<p>{number}</p>" for number in range(8000)).encode()
-        self.send_response(200)
-        self.send_header("Content-Length", str(len(body)))
-        self.end_headers()
-        self.wfile.write(body)
-
-    def log_message(self, format: str, *args: object) -> None:
-        pass
-
-
-def serve() -> None:
-    """Say the port, and serve until the process is ended."""
-    server = ThreadingHTTPServer(("127.0.0.1", 0), _Page)
-    print(server.server_port, flush=True)
-    server.serve_forever()
 
 
 def _said(spreads: list[Spread]) -> str:

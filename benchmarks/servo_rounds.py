@@ -12,8 +12,12 @@ from tangible_core.servo import Ring
 from tangible_core.servo.reports import spread
 from tangible_core.servo.ring import MOST_LATE_S
 
-from .ui_late import LATE_US, POINTS, TIMES
+from .figures import Figure
 
+LATE_US = 200
+TIMES, POINTS = 1.2, 0.1
+"""A loop is no later than another if its share of late ticks is at most so many times the other's, or points more."""
+HEADINGS = f"later than {LATE_US} us", "p50", "p99", "p99.9", "latest", "periods without a tick"
 BY_CHANCE = 0.05
 """What happens by chance in a larger share of cases is no difference."""
 
@@ -49,9 +53,21 @@ def together(rounds: Iterable[Round]) -> Round:
     return Round(np.sum(late, axis=0), sum(overruns), max(most))
 
 
+def late_percent(rounds: Iterable[Round]) -> float:
+    """Return the share of late ticks, the median of the rounds."""
+    return median(each.late_percent for each in rounds)
+
+
+def no_later_figure(what: str, mine: Sequence[Round], alone: Sequence[Round]) -> Figure:
+    """Return the promise that a loop is no later than it is alone."""
+    told = f"{late_percent(mine):.3f} %, alone {late_percent(alone):.3f} %"
+    bound = f"<= {TIMES:g} x alone, or {POINTS:g} points more"
+    return Figure(f"ticks later than {LATE_US} us, {what}", bound, told, no_later(mine, alone))
+
+
 def no_later(mine: Sequence[Round], other: Sequence[Round]) -> bool:
     """Whether the share of late ticks, the median of the rounds, is TIMES the other's at most, or POINTS more."""
-    one, two = (median(each.late_percent for each in rounds) for rounds in (mine, other))
+    one, two = late_percent(mine), late_percent(other)
     return one <= max(TIMES * two, two + POINTS)
 
 
@@ -80,7 +96,7 @@ def rows(kinds: Mapping[str, Sequence[Round]]) -> list[tuple[str, ...]]:
 
 
 def _row(name: str, rounds: Sequence[Round]) -> tuple[str, ...]:
-    share, every = median(each.late_percent for each in rounds), together(rounds)
+    share, every = late_percent(rounds), together(rounds)
     late = every.late_us
     quantiles = (f"{us:.0f} us" for us in (late.p50, late.p99, late.p999, late.most))
     return name, f"{share:.3f} %", *quantiles, str(every.overruns)

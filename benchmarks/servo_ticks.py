@@ -33,7 +33,7 @@ MATERIAL = "sand"
 
 
 def figures() -> Iterator[Figure]:
-    """ns of processor time a whole tick, from compiled code and from Python."""
+    """Yield the processor time of a whole tick, ns."""
     ring = Ring.create()
     try:
         arguments = _arguments(ring)
@@ -41,7 +41,6 @@ def figures() -> Iterator[Figure]:
         now = np.zeros(2, np.int64)
         _batch(packets[:100], now, *arguments)
         compiled = [_ns(lambda: _batch(packets, now, *arguments)) for _ in range(RUNS)]
-        python = list(_from_python(packets, arguments))
         touching = float((ring.since(0)[0][:, cycle.FLAGS].astype(int) & 1).mean())
     finally:
         ring.remove()
@@ -49,8 +48,6 @@ def figures() -> Iterator[Figure]:
     ns = statistics.median(compiled)
     what = f"whole tick: Falcon's packet to packet, proxy on {MATERIAL}, guard, ring"
     yield Figure(what, "<= 0.9 us nogil", f"{ns:.0f} ns{said}", ns <= 900)
-    ns = statistics.median(python)
-    yield Figure("the same, called from Python", "<= 1.5 us", f"{ns:.0f} ns", ns <= 1500)
 
 
 def _arguments(ring: Ring) -> tuple[Any, ...]:
@@ -116,35 +113,6 @@ def _batch(packets, now, link, law, limits, shared, state, row):
     for i in range(packets.shape[0]):
         _fill(packets, i, link, now)
         step(link, law, limits, shared, state, row, now[0], 0)
-
-
-@njit
-def _filled(packets, link, now):
-    """`_fill` at each `next`."""
-    while True:
-        for i in range(packets.shape[0]):
-            _fill(packets, i, link, now)
-            yield True
-
-
-def _from_python(packets: np.ndarray, arguments: tuple[Any, ...]) -> Iterator[float]:
-    """ns a tick of a loop of Python's, less those of the same loop that only fills."""
-    now = np.zeros(2, np.int64)
-    filled, ticks = _filled(packets, arguments[0], now), cycle.ticks(*arguments, now)
-    next(filled), next(ticks)
-
-    def fill() -> None:
-        for _ in range(TICKS):
-            next(filled)
-
-    def both() -> None:
-        for _ in range(TICKS):
-            next(filled)
-            next(ticks)
-
-    for _ in range(RUNS):
-        without = _ns(fill)
-        yield _ns(both) - without
 
 
 def _ns(work: Any) -> float:

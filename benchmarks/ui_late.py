@@ -5,8 +5,6 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from statistics import median
-from typing import NamedTuple
 
 import numpy as np
 
@@ -16,42 +14,23 @@ from tangible_core.servo.ring import Ring, shared_folder
 from tangible_core.session.recording.tick_arrays import ARRAYS
 
 from .figures import Figure, part
+from .servo_rounds import Round, no_later_figure, rows
 from .ui_drive import browser, drag, end, felt, opened, scene_640, served, tangible
 
 ROUNDS, ROUND_S = 8, 7.0
-LATE_US = 200
-TIMES, POINTS = 1.2, 0.1
 MINUTE_S = 60.0
-
-
-class Late(NamedTuple):
-    """Ticks of one round."""
-
-    late_percent: float
-    p999_us: float
-    latest_us: float
-    overruns: int
 
 
 def lateness() -> tuple[Figure, list[tuple[str, ...]]]:
     """Both kinds in turn, the order changed from round to round."""
-    kinds: dict[str, Callable[[Path], Late]] = {"`tangible feel` and `tangible pointer`": _alone, "the page": _paged}
-    found: dict[str, list[Late]] = {name: [] for name in kinds}
+    kinds: dict[str, Callable[[Path], Round]] = {"`tangible feel` and `tangible pointer`": _alone, "the page": _paged}
+    found: dict[str, list[Round]] = {name: [] for name in kinds}
     with scene_640() as config:
         for number in range(ROUNDS):
-            order = list(kinds) if number % 2 == 0 else list(reversed(kinds))
-            for name in order:
+            for name in list(kinds)[:: -1 if number % 2 else 1]:
                 found[name].append(part(f"late {number + 1}: {name}", lambda name=name: kinds[name](config)))
-    medians = {name: Late(*(median(column) for column in zip(*each, strict=True))) for name, each in found.items()}
-    alone, paged = (each.late_percent for each in medians.values())
-    met = paged <= max(TIMES * alone, alone + POINTS)
-    said = f"{paged:.3f} %, alone {alone:.3f} %"
-    bound = f"<= {TIMES:g} x alone, or {POINTS:g} points more"
-    rows = [
-        (name, f"{each.late_percent:.3f} %", f"{each.p999_us:.0f} us", f"{each.latest_us:.0f} us", f"{each.overruns:g}")
-        for name, each in medians.items()
-    ]
-    return Figure(f"ticks later than {LATE_US} us, page open and dragged", bound, said, met), rows
+    alone, paged = found.values()
+    return no_later_figure("page open and dragged", paged, alone), rows(found)
 
 
 def ring_of(process: int) -> Ring:
@@ -66,21 +45,15 @@ def ring_of(process: int) -> Ring:
     raise TimeoutError("no force loop began")
 
 
-def _window(ring: Ring, during: Callable[[], object]) -> Late:
+def _window(ring: Ring, during: Callable[[], object]) -> Round:
     before, overruns, first = ring.late.copy(), ring.overruns, ring.count
     during()
-    late = ring.late - before
-    shares = np.cumsum(late) / max(1, late.sum())
-    rows, _ = ring.since(first)
-    return Late(
-        float(100 * late[LATE_US:].sum() / max(1, late.sum())),
-        float(np.searchsorted(shares, 0.999)),
-        float(1e6 * rows[:, ARRAYS["late_s"]].max(initial=0.0)),
-        ring.overruns - overruns,
-    )
+    ticks, _ = ring.since(first)
+    latest_s = float(ticks[:, ARRAYS["late_s"]].max(initial=0.0))
+    return Round(ring.late - before, ring.overruns - overruns, latest_s)
 
 
-def _alone(config: Path) -> Late:
+def _alone(config: Path) -> Round:
     words = [tangible(), "feel", str(config), "--seconds", "60"]
     loop = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True)
     hand = None
@@ -95,7 +68,7 @@ def _alone(config: Path) -> Late:
             end(process)
 
 
-def _paged(config: Path) -> Late:
+def _paged(config: Path) -> Round:
     with served(config) as server, browser() as chromium:
         page = opened(chromium, server.url)
         felt(page)
@@ -117,7 +90,7 @@ def stale_ticks() -> tuple[int, float, int]:
         begun_s = time.monotonic()
         while time.monotonic() - begun_s < MINUTE_S:
             drag(page, 3.0)
-            rows, following = ring.since(following)
-            stale += int(np.count_nonzero(rows[:, ARRAYS["flags"]].astype(np.int64) & TickFlag.STALE))
+            ticks, following = ring.since(following)
+            stale += int(np.count_nonzero(ticks[:, ARRAYS["flags"]].astype(np.int64) & TickFlag.STALE))
     here = ("http://127.0.0.1", "ws://127.0.0.1", "data:", "blob:")
     return stale, time.monotonic() - begun_s, sum(not url.startswith(here) for url in asked)

@@ -7,6 +7,11 @@ from .framing import send as send
 from .framing import sendable as sendable
 from .guard.safety import Safety as Safety
 from .host import Servo as Servo
+from .limits import PAGE_FOLLOW_S as PAGE_FOLLOW_S
+from .limits import PAGE_SERVER_SILENCE_S as PAGE_SERVER_SILENCE_S
+from .limits import PAGE_SILENCE_S as PAGE_SILENCE_S
+from .limits import POINTER_DEVICE_SILENCE_S as POINTER_DEVICE_SILENCE_S
+from .limits import POINTER_SILENCE_S as POINTER_SILENCE_S
 from .packed_touch import Packed as Packed
 from .packed_touch import pack_touch as pack_touch
 from .ring import PERIOD_NS as PERIOD_NS

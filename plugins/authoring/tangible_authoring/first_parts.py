@@ -12,18 +12,16 @@ import numpy as np
 from tangible_authoring.label_picture import label_picture
 from tangible_core.data import Outcome, PartMap, SegmentMap
 from tangible_core.errors import ConfigError, OutputError, check_positive
-from tangible_core.files.writing import atomic_write, sole_writer
-from tangible_core.files.yaml.editing import on_one_line
+from tangible_core.files import atomic_write, sole_writer
+from tangible_core.files.yaml import on_one_line
 from tangible_core.parts import HeightChoice, PartHeights
-from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.pipeline.engine.cache import Cache
-from tangible_core.pipeline.engine.part_heights import heights_of
-from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.pipeline.starter import SIDE_MM, starter
+from tangible_core.pipeline import SIDE_MM, Pipeline, starter
+from tangible_core.pipeline.config import parse_config
+from tangible_core.pipeline.engine import Cache, heights_of
 from tangible_core.plugins import hooks
 from tangible_core.plugins.registry import Registry, default_registry
-from tangible_core.scene.formats.kinds import file_kind
-from tangible_core.scene.scene import Scene
+from tangible_core.scene import Scene
+from tangible_core.scene.formats import file_kind
 from tangible_legibility.simplifying.large import large_parts
 from tangible_report.numbered_parts import numbered_parts
 

@@ -5,14 +5,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from tangible_core.files.yaml.source import read_text
-from tangible_core.pipeline.config.editing import edit_text, relocate_text, with_overrides
-from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.pipeline.feeling import Feeling
-from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.preflight import Flight, Hand, Loop, Preflight, judge
-from tangible_core.preflight.timing import Lateness
-from tangible_core.preflight.verdict import Change
+from tangible_core.files.yaml import read_text
+from tangible_core.pipeline import Feeling, Pipeline
+from tangible_core.pipeline.config import edit_text, parse_config, relocate_text, with_overrides
+from tangible_core.preflight import Change, Flight, Hand, Lateness, Loop, Preflight, judge
 
 from .losses import losses
 

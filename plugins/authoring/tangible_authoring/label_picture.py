@@ -5,7 +5,7 @@ from io import BytesIO
 import numpy as np
 from jaxtyping import Int32
 
-from tangible_core.scene.formats.label_colours import MOST_IN_PALETTE, SPARE, distinct_colours
+from tangible_core.scene.formats import MOST_IN_PALETTE, SPARE, distinct_colours
 
 
 def label_picture(labels: Int32[np.ndarray, "h w"]) -> bytes:

@@ -6,11 +6,9 @@ from typing import NamedTuple
 from tangible_core.data import PartMap
 from tangible_core.errors import ConfigError
 from tangible_core.parts import PartChoice, PartHeights, part_sizes
-from tangible_core.pipeline.config.material_choice import MaterialChoice
-from tangible_core.pipeline.config.model import PipelineConfig
-from tangible_core.pipeline.engine.part_heights import heights_of
-from tangible_core.pipeline.engine.part_validation import check_parts, parts_of
-from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.pipeline import Pipeline
+from tangible_core.pipeline.config import MaterialChoice, PipelineConfig
+from tangible_core.pipeline.engine import check_parts, heights_of, parts_of
 from tangible_legibility.words.places import place_in_words
 from tangible_report.numbered_parts import numbered_parts
 

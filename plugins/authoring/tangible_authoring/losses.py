@@ -3,10 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from tangible_core.data.quantities import unit_of
-from tangible_core.pipeline.config.model import PipelineConfig
-from tangible_core.preflight.verdict import Change
-from tangible_core.preflight.wording import quantity
+from tangible_core.data import unit_of
+from tangible_core.pipeline.config import PipelineConfig
+from tangible_core.preflight import Change, quantity
 
 LOSSES: Mapping[str, tuple[str, str]] = {
     "workspace.smooth_m": ("blurs {times} as much", "blurs less"),

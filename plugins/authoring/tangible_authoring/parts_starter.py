@@ -7,15 +7,12 @@ from importlib.resources import files
 from pathlib import Path
 from string import Template
 
-from tangible_core.data.part_words import name_part
-from tangible_core.files.paths import plain_line
-from tangible_core.files.yaml.editing import on_one_line
-from tangible_core.files.yaml.parts_block import part_lines
+from tangible_core.data import name_part
+from tangible_core.files import plain_line
+from tangible_core.files.yaml import on_one_line, part_lines
 from tangible_core.parts import HeightChoice
-from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.pipeline.starter import SIDE_MM
-from tangible_core.scene.scene import Scene
-from tangible_core.scene.scene_files import SceneFiles, builtin_files
+from tangible_core.pipeline import SIDE_MM, Pipeline
+from tangible_core.scene import Scene, SceneFiles, builtin_files
 
 from .listed_parts import ListedPart
 

@@ -5,14 +5,13 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
-from tangible_core.data.part_words import name_part, shown_number
+from tangible_core.data import name_part, shown_number
 from tangible_core.errors import ConfigError
-from tangible_core.files.writing import atomic_write
-from tangible_core.files.yaml.parts_block import with_parts
-from tangible_core.files.yaml.source import parse_source, plain, read_text
-from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.pipeline.engine.cache import Cache
-from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.files import atomic_write
+from tangible_core.files.yaml import parse_source, plain, read_text, with_parts
+from tangible_core.pipeline import Pipeline
+from tangible_core.pipeline.config import parse_config
+from tangible_core.pipeline.engine import Cache
 from tangible_core.plugins.registry import default_registry
 from tangible_report.numbered_parts import Before, as_drawn
 

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import UInt8
 
-from tangible_core.data.pictures import to_rgb8
-from tangible_core.files.writing import atomic_write
-from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.data import to_rgb8
+from tangible_core.files import atomic_write
+from tangible_core.pipeline import Pipeline
+from tangible_core.runtime import plain_opencv
 
 CARD = "card.jpg"
 SIDE_PX = 160

@@ -14,11 +14,11 @@ from typing import Any, cast
 from tangible_core.data import Record
 from tangible_core.errors import OutputError, TangibleError, shown
 from tangible_core.metrics import disparity_errors
-from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.pipeline.engine.cache import Cache, write_record
-from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.pipeline import Pipeline
+from tangible_core.pipeline.config import parse_config
+from tangible_core.pipeline.engine import Cache, write_record
 from tangible_core.plugins.registry import default_registry
-from tangible_core.runtime.threads import limited_threads
+from tangible_core.runtime import limited_threads
 
 from .card import write_card
 

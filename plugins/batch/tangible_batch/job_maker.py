@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import Any, cast
 
 from tangible_core.errors import ConfigError, TangibleError
-from tangible_core.pipeline.config.editing import REMOVE, edit_text, read_values
-from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.pipeline.engine.keys import method_identities
+from tangible_core.pipeline.config import REMOVE, edit_text, parse_config, read_values
+from tangible_core.pipeline.engine import method_identities
 from tangible_core.plugins.registry import default_registry
 
 from .farm import LONGEST_S

@@ -10,12 +10,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from tangible_core.errors import BatchError, quoted, shown, what_is
-from tangible_core.files.paths import as_path
-from tangible_core.files.tables import read_table
-from tangible_core.files.yaml.editing import json_in_yaml
-from tangible_core.pipeline.starter import scene_key
-from tangible_core.scene.formats.kinds import MAPS, file_kind
-from tangible_core.scene.scene_files import SceneFiles
+from tangible_core.files import as_path, read_table
+from tangible_core.files.yaml import json_in_yaml
+from tangible_core.pipeline import scene_key
+from tangible_core.scene import SceneFiles
+from tangible_core.scene.formats import MAPS, file_kind
 
 log: logging.Logger = logging.getLogger(__name__)
 MANIFESTS = (".csv", ".parquet")

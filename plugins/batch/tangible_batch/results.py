@@ -12,9 +12,7 @@ from urllib.parse import quote
 from pydantic import BaseModel, ConfigDict, Field, InstanceOf, ValidationError
 
 from tangible_core.errors import ResultsError, shown
-from tangible_core.files.json_lines import read_rows
-from tangible_core.files.paths import without_folders
-from tangible_core.files.writing import atomic_write, write_text
+from tangible_core.files import atomic_write, read_rows, without_folders, write_text
 from tangible_core.translation import language, localise
 
 from .extra import need

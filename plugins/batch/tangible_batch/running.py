@@ -7,12 +7,10 @@ from threading import Event
 from typing import Any
 
 from tangible_core.errors import OutputError, check_positive, wrong_argument
-from tangible_core.files.json_lines import JsonLines
-from tangible_core.files.paths import as_path
-from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.runtime.stopping import check_stopped, stoppable
-from tangible_core.runtime.system.processes import processors
-from tangible_core.runtime.threads import check_threads
+from tangible_core.files import JsonLines, as_path
+from tangible_core.pipeline import Pipeline
+from tangible_core.runtime import check_stopped, check_threads, stoppable
+from tangible_core.runtime.system import processors
 
 from .extra import need_all
 from .farm import LONGEST_S, Farm

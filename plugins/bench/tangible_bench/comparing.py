@@ -7,7 +7,7 @@ from threading import Event
 from typing import NamedTuple
 
 from tangible_core.errors import ResultsError
-from tangible_core.runtime.system.files import folder_lock
+from tangible_core.runtime.system import folder_lock
 
 from .config.reading import Comparison
 from .measuring.plan import measurements

@@ -7,9 +7,8 @@ from pathlib import Path
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.errors import TangibleError
-from tangible_core.files.paths import as_path
-from tangible_core.plugins.interfaces import DepthEstimator, Following
-from tangible_core.plugins.notes import note
+from tangible_core.files import as_path
+from tangible_core.plugins import DepthEstimator, Following, note
 
 from .luminance import Luminance
 from .onnx import Onnx

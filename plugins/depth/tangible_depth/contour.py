@@ -6,10 +6,9 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32
 from pydantic import Field
 
-from tangible_core.data import DisparityMap, Views
-from tangible_core.data.pictures import to_grey
-from tangible_core.plugins.interfaces import DepthEstimator
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.data import DisparityMap, Views, to_grey
+from tangible_core.plugins import DepthEstimator
+from tangible_core.runtime import plain_opencv
 
 
 def gradient(

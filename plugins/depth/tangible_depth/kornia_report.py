@@ -7,8 +7,8 @@ from jaxtyping import Float64, Int64
 from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.plugins.interfaces import DepthEstimator
-from tangible_core.runtime.torch_extra import TorchDevice, need, pick_device
+from tangible_core.plugins import DepthEstimator
+from tangible_core.runtime import TorchDevice, need, pick_device
 
 from .matching.feature_chain import Grey, Parts, Row, disparity_by_features
 from .rectify.fundamental import check_matches

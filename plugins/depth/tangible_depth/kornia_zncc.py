@@ -5,11 +5,10 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
-from tangible_core.data import DisparityMap, Views
-from tangible_core.data.pictures import to_grey
+from tangible_core.data import DisparityMap, Views, to_grey
 from tangible_core.errors import PictureError
-from tangible_core.plugins.interfaces import DepthEstimator
-from tangible_core.runtime.torch_extra import TorchDevice, need
+from tangible_core.plugins import DepthEstimator
+from tangible_core.runtime import TorchDevice, need
 
 from .rectify.rectification import estimate_rectified
 from .sparse.assembling import assemble, erase_speckles

@@ -7,11 +7,9 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from tangible_core.data import DisparityMap, Views
-from tangible_core.data.pictures import to_rgb
+from tangible_core.data import DisparityMap, Views, to_rgb
 from tangible_core.errors import ConfigError, ModelAbsent, PictureError, TangibleError
-from tangible_core.plugins.interfaces import DepthEstimator, Skippable
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import DepthEstimator, Skippable, note
 
 from .network.card import PRESETS, Card, check_file, read_card
 from .network.fitting import Colours, Map, fit_size, map_in_strips, restore_size, tensor, to_disparity

@@ -7,11 +7,10 @@ import numpy as np
 from jaxtyping import Bool, Float32, UInt8
 from pydantic import Field, model_validator
 
-from tangible_core.data import DisparityMap, Views
-from tangible_core.data.pictures import to_grey
+from tangible_core.data import DisparityMap, Views, to_grey
 from tangible_core.errors import PictureError
-from tangible_core.plugins.interfaces import DepthEstimator, Skippable
-from tangible_core.scene.geometry import fill_rows
+from tangible_core.plugins import DepthEstimator, Skippable
+from tangible_core.scene import fill_rows
 
 
 def left_right_confidence(

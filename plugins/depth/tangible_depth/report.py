@@ -7,7 +7,7 @@ from jaxtyping import Int64
 from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.plugins.interfaces import DepthEstimator
+from tangible_core.plugins import DepthEstimator
 
 from .matching.feature_chain import Grey, Parts, Row, disparity_by_features
 from .rectify.fundamental import eight_point

@@ -8,9 +8,7 @@ from urllib.parse import quote
 from pydantic import BaseModel, ValidationError
 
 from tangible_core.errors import DeviceError
-from tangible_core.files.paths import as_path
-from tangible_core.files.reading import MOST_TEXT_BYTES, read_bytes
-from tangible_core.files.writing import write_text
+from tangible_core.files import MOST_TEXT_BYTES, as_path, read_bytes, write_text
 
 M = TypeVar("M", bound=BaseModel)
 

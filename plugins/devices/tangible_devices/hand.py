@@ -6,8 +6,7 @@ from typing import Annotated, ClassVar, final
 
 from pydantic import ConfigDict, Field
 
-from tangible_core.data import Force, Vector
-from tangible_core.data.quantities import Quantities
+from tangible_core.data import Force, Quantities, Vector
 
 
 class VirtualHand(Quantities):

@@ -9,9 +9,9 @@ from typing import Any, cast
 
 from tangible_core.data import NO_FORCE, Finding, Unit
 from tangible_core.errors import TangibleError
-from tangible_core.files.yaml.source import parse_source
+from tangible_core.files.yaml import parse_source
+from tangible_core.plugins import HapticDevice, Serviceable
 from tangible_core.plugins.failures import sentence
-from tangible_core.plugins.interfaces import HapticDevice, Serviceable
 from tangible_core.plugins.registry import Listing, Registry
 
 WARM_UP = 100

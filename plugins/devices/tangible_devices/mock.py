@@ -9,7 +9,7 @@ from jaxtyping import Float64, Int64
 from pydantic import Field, model_validator
 
 from tangible_core.data import DeviceSpec, Force, HapticState, Vector
-from tangible_core.plugins.interfaces import HapticDevice, Link, Scripted
+from tangible_core.plugins import HapticDevice, Link, Scripted
 
 from .hand import MovingHand, VirtualHand
 from .paths import DRAWN, Stroke, path_size, read_csv, walk

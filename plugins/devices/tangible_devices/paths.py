@@ -13,7 +13,7 @@ from jaxtyping import Float64
 
 from tangible_core.data import Vector
 from tangible_core.errors import DeviceError, did_you_mean, quoted
-from tangible_core.files.tables import read_table
+from tangible_core.files import read_table
 
 Points = Float64[np.ndarray, "n 3"]
 COLUMNS = ("time_s", "x_m", "y_m", "z_m")

@@ -8,7 +8,7 @@ import numpy as np
 
 from tangible_core.data import DeviceSpec, Force, HapticState
 from tangible_core.errors import DeviceError, OutputError
-from tangible_core.plugins.interfaces import HapticDevice, Link
+from tangible_core.plugins import HapticDevice, Link
 from tangible_core.session import Recording
 
 from .simulated import LIKE_A_FALCON, SimulatedLink

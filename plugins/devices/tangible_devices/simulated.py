@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import final
 
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
-from tangible_core.plugins.interfaces import Link
+from tangible_core.plugins import Link
 
 LIKE_A_FALCON = DeviceSpec(
     max_force_n=8.0,

@@ -104,7 +104,7 @@ def _texture(
     """Return the picture in a grey rim, and the texture coordinates of each vertex, 0..1 from the upper left."""
     import cv2
 
-    from tangible_core.data.pictures import to_rgb8
+    from tangible_core.data import to_rgb8
 
     colours = _shrink(to_rgb8(picture), layout)
     across, down = (px / side_m for px, side_m in zip(colours.shape[1::-1], layout.picture_m, strict=True))

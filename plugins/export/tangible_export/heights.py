@@ -10,10 +10,9 @@ import numpy as np
 from pydantic import Field
 
 from tangible_core.data import Relief, Work
-from tangible_core.files.writing import atomic_write, write_text
-from tangible_core.plugins.interfaces import Exporter
-from tangible_core.plugins.notes import note
-from tangible_core.scene.formats.height_maps import MM, HeightsMetadata, levels
+from tangible_core.files import atomic_write, write_text
+from tangible_core.plugins import Exporter, note
+from tangible_core.scene.formats import MM, HeightsMetadata, levels
 
 log: logging.Logger = logging.getLogger(__name__)
 

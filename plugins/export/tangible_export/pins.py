@@ -9,8 +9,7 @@ from jaxtyping import Int32, UInt8
 
 from tangible_core.data import PartMap, Work
 from tangible_core.errors import PictureError, shown
-from tangible_core.plugins.interfaces import Exporter, Medium, Previewing
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import Exporter, Medium, Previewing, note
 
 from .paper.named_parts import first_labels, label_of
 from .pin_display.displays import DISPLAYS, HEXADECIMAL, PITCH_M, Display, Named

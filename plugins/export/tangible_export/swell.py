@@ -10,8 +10,8 @@ from pydantic import Field
 
 from tangible_core.data import PartMap, Work
 from tangible_core.errors import BrokenMethod, PictureError
+from tangible_core.plugins import Exporter, Medium, Previewing
 from tangible_core.plugins.failures import missing_package
-from tangible_core.plugins.interfaces import Exporter, Medium, Previewing
 
 from .paper.sheet import Page, check_readable, sheet_for
 

@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Integer
 
-from tangible_core.data import Relief
-from tangible_core.data.views import border_pixels
+from tangible_core.data import Relief, border_pixels
 from tangible_core.errors import PictureError
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.runtime import plain_opencv
 
 SKIN_M = 0.0005
 """The standard deviation of the Gaussian by which a fingertip blurs a relief, m."""

@@ -7,7 +7,7 @@ from math import ceil
 import numpy as np
 
 from tangible_core.data import Material
-from tangible_core.preflight.verdict import Change, Cure, Verdict, over
+from tangible_core.preflight import Change, Cure, Verdict, over
 
 from .border_steps import border_steps
 from .cells import boxes

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Int64
 
 from tangible_core.data import Material, MaterialMap, PartMap, Relief
-from tangible_core.preflight.verdict import Cure, Verdict, check_bound
+from tangible_core.preflight import Cure, Verdict, check_bound
 
 from .neighbours import Steps, sample_relief, steps_between
 from .rules import Profile

@@ -4,9 +4,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from tangible_core.data import MaterialMap, PartMap, Relief
 from tangible_core.errors import GeometryError
-from tangible_core.plugins.interfaces import Medium
-from tangible_core.preflight import Legibility
-from tangible_core.preflight.verdict import Grade, Verdict, check_bound
+from tangible_core.plugins import Medium
+from tangible_core.preflight import Grade, Legibility, Verdict, check_bound
 
 from .checks import CHECKS, height
 from .grid import on_grid

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tangible_core.data import PartMap
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.runtime import plain_opencv
 
 PIN_PITCH_M = 0.0025
 """Distance from pin to pin; all braille displays have about this pitch."""

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from tangible_core.plugins.interfaces import Medium
-from tangible_core.preflight.verdict import Grade, Unit
+from tangible_core.plugins import Medium
+from tangible_core.preflight import Grade, Unit
 
 DOT_DIAMETER_M = 0.00144
 """The diameter of a dot at its base."""

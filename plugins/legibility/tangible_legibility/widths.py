@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int, Int32, UInt8
 
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.runtime import plain_opencv
 
 from .cells import nearest
 

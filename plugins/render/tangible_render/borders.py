@@ -63,7 +63,7 @@ def _near(labels: Int32[np.ndarray, "h w"], pitch_m: tuple[float, float], most_m
     """Return a mask of cells that may be within most_m: those near cells at borders, half a cell from the line."""
     from scipy import ndimage
 
-    from tangible_core.data.views import border_pixels
+    from tangible_core.data import border_pixels
 
     bordering = border_pixels(labels)
     if not bordering.any():

@@ -8,8 +8,7 @@ from jaxtyping import Float32
 from pydantic import AfterValidator, Field
 
 from tangible_core.data import HapticSurface, Relief
-from tangible_core.plugins.interfaces import ForceRenderer, Reshaping, Touch
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import ForceRenderer, Reshaping, Touch, note
 
 from .borders import border_distance
 from .effects.inner_law import Law, build_law, complete_options

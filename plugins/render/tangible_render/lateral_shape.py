@@ -4,9 +4,9 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.compiled import CompiledTouch
 from tangible_core.data import HapticSurface
-from tangible_core.plugins.interfaces import ForceRenderer, Touch
+from tangible_core.plugins import ForceRenderer, Touch
 
 from .surface.coefficients import spline_surface
 from .surface.dequantise import Filter

@@ -5,9 +5,9 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.compiled import CompiledTouch
 from tangible_core.data import HapticSurface
-from tangible_core.plugins.interfaces import ForceRenderer, Touch
+from tangible_core.plugins import ForceRenderer, Touch
 
 from .effects.material_table import stiffness_table
 

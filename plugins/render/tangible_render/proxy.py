@@ -6,10 +6,10 @@ import numpy as np
 from jaxtyping import Float64
 from pydantic import Field, model_validator
 
-from tangible_core.compiled.touch import CompiledTouch, Tick
+from tangible_core.compiled import CompiledTouch, Tick
 from tangible_core.data import HapticSurface
 from tangible_core.errors import ConfigError, check_positive
-from tangible_core.plugins.interfaces import Film, Filming, ForceRenderer, Touch
+from tangible_core.plugins import Film, Filming, ForceRenderer, Touch
 from tangible_render.haptic_textures.table import bristle_stiffness
 
 from .effects.effects_table import split_textures

@@ -5,9 +5,9 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import AfterValidator, Field
 
-from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.compiled import CompiledTouch
 from tangible_core.data import HapticSurface
-from tangible_core.plugins.interfaces import ForceRenderer, Touch
+from tangible_core.plugins import ForceRenderer, Touch
 
 from .surface.dequantise import grey_levels
 

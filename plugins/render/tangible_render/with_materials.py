@@ -5,11 +5,11 @@ from typing import Annotated, Any, ClassVar, final
 import numpy as np
 from pydantic import AfterValidator, Field
 
-from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.compiled import CompiledTouch
 from tangible_core.data import Force, HapticState, HapticSurface
 from tangible_core.errors import TangibleError
-from tangible_core.materials.assignment import find, library
-from tangible_core.plugins.interfaces import ForceRenderer, PlainTouch, Touch
+from tangible_core.materials import find, library
+from tangible_core.plugins import ForceRenderer, PlainTouch, Touch
 from tangible_render.haptic_textures.table import bristle_stiffness
 
 from .effects.effects_table import EFFECT_COLUMNS, effects_table, initial_memory

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float, Float32, Float64, Int64
 
 from tangible_core.data import Relief
-from tangible_core.scene.geometry import picture_to_workspace, resample, workspace_to_picture
+from tangible_core.scene import picture_to_workspace, resample, workspace_to_picture
 
 ELEVATION_DEG, AZIMUTH_DEG = 42.0, -68.0
 """The direction of the view: from the user's side and a little from the right, so that two walls are visible."""

@@ -13,11 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from jaxtyping import Int32, UInt8
 
-from tangible_core.data.part_words import shown_number
-from tangible_core.data.pictures import to_rgb8
-from tangible_core.data.records import digest_of
-from tangible_core.data.views import PartMap
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.data import PartMap, digest_of, shown_number, to_rgb8
+from tangible_core.runtime import plain_opencv
 from tangible_legibility.cells import Disc, largest_disc, resampled
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, final
 
 from tangible_core.data import Record, Work
-from tangible_core.plugins.interfaces import Drawing, Exporter
+from tangible_core.plugins import Drawing, Exporter
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,9 +10,8 @@ from typing import Annotated, ClassVar, final
 from pydantic import Field
 
 from tangible_core.data import Work
-from tangible_core.files.writing import write_text
-from tangible_core.plugins.interfaces import Exporter
-from tangible_core.plugins.notes import note
+from tangible_core.files import write_text
+from tangible_core.plugins import Exporter, note
 from tangible_export.braille import as_ascii, width_m, wrapped, written_by
 from tangible_legibility.words.languages import Language, spoken_language
 

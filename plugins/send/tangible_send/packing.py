@@ -12,9 +12,7 @@ import numpy as np
 from jaxtyping import Shaped
 from PIL import Image
 
-from tangible_core.data import HapticSurface, Material, Relief, Work
-from tangible_core.data.pictures import to_rgb8
-from tangible_core.data.records import digest_of
+from tangible_core.data import HapticSurface, Material, Relief, Work, digest_of, to_rgb8
 from tangible_legibility.words.languages import LANGUAGES, Language, one_line
 from tangible_report.description import describe, facts
 from tangible_report.description.at_length import tell

@@ -9,9 +9,8 @@ from pydantic import Field
 
 from tangible_core.data import Work
 from tangible_core.errors import OutputError
-from tangible_core.files.writing import write_text
-from tangible_core.plugins.interfaces import Exporter
-from tangible_core.plugins.notes import note
+from tangible_core.files import write_text
+from tangible_core.plugins import Exporter, note
 from tangible_legibility.words.languages import spoken_language
 from tangible_web.address import page_file
 

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float32, Int32, UInt16
 
 from tangible_core.data import HapticSurface, Relief, Work
-from tangible_core.scene.scaling import middle_pixels, reduced_map, reduced_shape
+from tangible_core.scene import middle_pixels, reduced_map, reduced_shape
 from tangible_render.surface.coefficients import spline_coefficients
 from tangible_render.surface.dequantise import dequantise
 

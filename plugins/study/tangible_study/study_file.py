@@ -7,10 +7,8 @@ from pathlib import Path
 from typing import Any, NamedTuple, cast
 
 from tangible_core.errors import Complaint, ConfigError, TangibleError, did_you_mean, quoted
-from tangible_core.files.yaml.editing import json_in_yaml
-from tangible_core.files.yaml.source import Location, Source, parse_source, plain, read_text
-from tangible_core.pipeline.config.model import PipelineConfig
-from tangible_core.pipeline.config.parsing import load_config
+from tangible_core.files.yaml import Location, Source, json_in_yaml, parse_source, plain, read_text
+from tangible_core.pipeline.config import PipelineConfig, load_config
 from tangible_core.plugins.registry import Registry, default_registry
 
 from .design.study import Comparison, Study

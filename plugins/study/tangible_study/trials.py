@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Any, Self, final, get_args
 
 from tangible_core.errors import ResultsError
-from tangible_core.files.line_file import LineFile
-from tangible_core.files.tables import read_table
+from tangible_core.files import LineFile, read_table
 
 MISSING = "n/a"
 """The text of a missing value, as BIDS has it."""

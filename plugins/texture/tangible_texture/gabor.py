@@ -5,8 +5,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from tangible_core.data import SegmentMap
-from tangible_core.data.pictures import check_picture
+from tangible_core.data import SegmentMap, check_picture
 
 from .signal.skipping import Dividing, one_segment
 

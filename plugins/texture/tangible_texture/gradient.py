@@ -8,7 +8,7 @@ from jaxtyping import Float32, Int32
 from pydantic import Field, model_validator
 
 from tangible_core.data import SegmentMap
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import note
 
 from .signal.skipping import Dividing, one_segment
 

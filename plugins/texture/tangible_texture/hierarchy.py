@@ -6,10 +6,8 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from tangible_core.data import SegmentMap, SegmentTree
-from tangible_core.data.pictures import check_picture
-from tangible_core.plugins.interfaces import Hierarchical
-from tangible_core.plugins.notes import note
+from tangible_core.data import SegmentMap, SegmentTree, check_picture
+from tangible_core.plugins import Hierarchical, note
 
 from .signal.skipping import Dividing, one_segment
 
@@ -65,7 +63,7 @@ class Hierarchy(Dividing, Hierarchical):
 
     def tree(self, picture: np.ndarray) -> SegmentTree:
         """Divide the picture into its smallest regions, and join them down to one. Raises: PictureError."""
-        from tangible_core.compiled.elementary import exponentials
+        from tangible_core.compiled import exponentials
 
         from .features.channels import channels
         from .regions.refining import refine_regions

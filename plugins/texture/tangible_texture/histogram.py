@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float32, Int32
 from pydantic import Field
 
 from tangible_core.data import SegmentMap
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import note
 
 from .signal.skipping import Dividing, one_segment
 

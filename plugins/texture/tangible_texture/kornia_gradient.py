@@ -7,9 +7,8 @@ import numpy as np
 from jaxtyping import Float32, Int32
 from pydantic import Field, model_validator
 
-from tangible_core.data import SegmentMap
-from tangible_core.data.pictures import to_grey
-from tangible_core.runtime.torch_extra import TorchDevice, need, pick_device
+from tangible_core.data import SegmentMap, to_grey
+from tangible_core.runtime import TorchDevice, need, pick_device
 
 from .signal.skipping import Dividing, one_segment
 

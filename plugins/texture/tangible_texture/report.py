@@ -8,9 +8,8 @@ import numpy as np
 from jaxtyping import Float32
 from pydantic import Field
 
-from tangible_core.data import SegmentMap
-from tangible_core.data.pictures import to_grey
-from tangible_core.plugins.notes import note
+from tangible_core.data import SegmentMap, to_grey
+from tangible_core.plugins import note
 
 from .signal.skipping import Dividing, one_segment
 
@@ -91,7 +90,7 @@ class Report(Dividing):
         self, grey: Float32[np.ndarray, "h w"], filters: "list[Gabor]", step_px: int
     ) -> Float32[np.ndarray, "rows columns filters"]:
         """Compute mean |tanh(alpha r)| every step_px pixels, over its maximum: k-means ignores a common scale."""
-        from tangible_core.compiled.elementary import hyperbolic_tangents
+        from tangible_core.compiled import hyperbolic_tangents
 
         from .energies.local_energy import even_responses
         from .signal.smoothing import gaussian

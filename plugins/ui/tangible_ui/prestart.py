@@ -4,7 +4,7 @@ import subprocess
 from collections.abc import Generator
 from contextlib import contextmanager
 
-from tangible_core.runtime.child_process import command
+from tangible_core.runtime import command
 
 _prestarted: list[subprocess.Popen[bytes]] = []
 

@@ -9,8 +9,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from tangible_core.errors import OutputError
-from tangible_core.runtime.system.files import is_mine
-from tangible_core.runtime.system.processes import is_alive
+from tangible_core.runtime.system import is_alive, is_mine
 from tangible_devices.pointer.channel import channel_path
 
 PREFIX = "tangible-ui-"

@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from tangible_core.files.paths import as_path
+from tangible_core.files import as_path
 
 RECORDINGS = "recordings"
 """Name of the folder of recordings."""

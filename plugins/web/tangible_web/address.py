@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Self
 
 from tangible_core.errors import ConfigError
-from tangible_core.runtime.standard_output import stream
+from tangible_core.runtime import stream
 
 HOST = "127.0.0.1"
 HTTP_PORT = 80

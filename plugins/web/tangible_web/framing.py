@@ -2,7 +2,7 @@
 
 import struct
 
-from tangible_core.data.ticks import BEACON_SHIFT
+from tangible_core.data import BEACON_SHIFT
 
 VERSION = 1
 """Version of frames and messages; a page of another version must be reloaded."""

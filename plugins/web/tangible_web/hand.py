@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, final
 from tangible_core.data import Vector
 from tangible_core.errors import DeviceError
 from tangible_core.mapping import Placement
-from tangible_core.servo.limits import PAGE_FOLLOW_S, PAGE_SERVER_SILENCE_S, PAGE_SILENCE_S
+from tangible_core.servo import PAGE_FOLLOW_S, PAGE_SERVER_SILENCE_S, PAGE_SILENCE_S
 from tangible_devices.pointer import PointerClient
 
 from .framing import BUTTON_BITS, TAGS

@@ -5,7 +5,7 @@ import time
 from typing import NamedTuple
 
 from tangible_core.data import Vector
-from tangible_core.runtime.system.timers import now_ns
+from tangible_core.runtime.system import now_ns
 from tangible_core.servo import Servo
 
 from .framing import BUTTON_BITS, FLAG_BITS, STATE, STATE_FRAME

@@ -4,6 +4,12 @@ from .keys import method_identities as method_identities
 from .part_heights import heights_of as heights_of
 from .part_validation import check_parts as check_parts
 from .part_validation import parts_of as parts_of
+from .preview import PartHeightPreview as PartHeightPreview
+from .preview import config_heights as config_heights
+from .preview import is_at_hand as is_at_hand
+from .preview import preview_config as preview_config
+from .preview import product_at_hand as product_at_hand
+from .preview import without_entries as without_entries
 from .stage import Context as Context
 from .stage import Progress as Progress
 from .stage import StageEvent as StageEvent

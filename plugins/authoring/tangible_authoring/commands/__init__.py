@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 @hookimpl
 def tangible_commands(app: Typer) -> None:
     """Add the commands that write, check and describe a pipeline file."""
-    from tangible_core.cli.command_table import add
+    from tangible_core.cli import add
 
     room = __package__
     add("new", f"{room}.new:new", "Write a pipeline file for your pictures.")

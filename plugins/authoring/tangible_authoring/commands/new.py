@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from tangible_core.cli.verbosity import is_quiet
+from tangible_core.cli import is_quiet
 
 from .schema import LINE
 
@@ -25,8 +25,8 @@ def new(
     """
     from tangible_core.cli import show
     from tangible_core.errors import OutputError
-    from tangible_core.files.writing import write_text
-    from tangible_core.pipeline.starter import are_pictures, not_pictures, starter
+    from tangible_core.files import write_text
+    from tangible_core.pipeline import are_pictures, not_pictures, starter
 
     if not are_pictures(pictures):
         raise not_pictures(pictures)

@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangible_core.cli import completing
-from tangible_core.cli.options import Json, NoCache, Sets
-from tangible_core.cli.verbosity import is_quiet
+from tangible_core.cli import Json, NoCache, Sets, completing, is_quiet
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -49,7 +47,7 @@ def parts(
     Writes a label picture to paint on, a picture with the parts' numbers, and a pipeline file that runs as it stands.
     For a pipeline file, it lists the parts and draws their numbers and names.
     """
-    from tangible_core.pipeline.starter import are_pictures
+    from tangible_core.pipeline import are_pictures
 
     if are_pictures(pictures):
         _divide(pictures, out or Path(), method, count, smallest, sets or [], force, as_json, no_cache)
@@ -69,7 +67,7 @@ def _divide(
     no_cache: bool,
 ) -> None:
     from tangible_core.cli import show
-    from tangible_core.pipeline.engine.cache import Cache
+    from tangible_core.pipeline.engine import Cache
 
     from ..first_parts import check_free, files_beside, first_parts
 
@@ -154,7 +152,7 @@ def _print(found: Sequence[ListedPart], before: Sequence[Before] | None = None) 
     from rich.markup import escape
 
     from tangible_core.cli import show
-    from tangible_core.data.part_words import shown_number
+    from tangible_core.data import shown_number
 
     rows = [
         (

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tangible_core.cli.commands.run import device_of, open_pipeline
-from tangible_core.cli.options import FAILED, Config, Json, NoCache, Sets, Verbose
+from tangible_core.cli import FAILED, Config, Json, NoCache, Sets, Verbose, device_of, open_pipeline
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -44,8 +43,8 @@ def preflight(
     and the exit is 1.
     """
     from tangible_core.errors import OutputError
-    from tangible_core.files.paths import without_folders
-    from tangible_core.pipeline.feeling import Feeling
+    from tangible_core.files import without_folders
+    from tangible_core.pipeline import Feeling
     from tangible_core.preflight import Hand, Loop, judge
 
     hand, loop = Hand(speed, press), Loop(rate, seconds)
@@ -71,7 +70,7 @@ def _fix(
 ) -> tuple[Flight, Preflight, dict[str, Any]]:
     """Try the cures and write the file if they are enough; return the state after them, and the file and changes."""
     from tangible_core.cli import show
-    from tangible_core.files.writing import write_text
+    from tangible_core.files import write_text
 
     from ..fixing import fix
 

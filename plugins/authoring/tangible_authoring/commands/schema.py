@@ -21,9 +21,9 @@ def schema(
 
     Editors complete and check files by it. A file gets the line by which they find it.
     """
-    from tangible_core.cli.show import plain, print_json
-    from tangible_core.pipeline.config.schema import json_schema, materials_schema
-    from tangible_core.runtime.standard_output import stream
+    from tangible_core.cli import plain, print_json
+    from tangible_core.pipeline.config import json_schema, materials_schema
+    from tangible_core.runtime import stream
 
     from ..schema_page import schema_page
 
@@ -38,9 +38,8 @@ def schema(
 
 def _write_beside(file: Path, schema: object, name: str) -> Path:
     """Write the schema into the folder of a file, and name it in the file's first line unless it is named there."""
-    from tangible_core.files.json_text import as_json
-    from tangible_core.files.writing import write_text
-    from tangible_core.files.yaml.source import read_text
+    from tangible_core.files import as_json, write_text
+    from tangible_core.files.yaml import read_text
 
     text = read_text(file)
     path = file.with_name(f"{name}.schema.json")

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 @hookimpl
 def tangible_commands(app: Typer) -> None:
     """Add `tangible batch`."""
-    from tangible_core.cli.command_table import add
+    from tangible_core.cli import add
 
     add(
         "batch",

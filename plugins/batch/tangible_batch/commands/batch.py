@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangible_core.cli import completing
-from tangible_core.cli.options import FAILED, Json, Sets
-from tangible_core.cli.verbosity import is_quiet
+from tangible_core.cli import FAILED, Json, Sets, completing, is_quiet
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -65,9 +63,9 @@ def batch(
     """
     from tangible_core.cli import show
     from tangible_core.errors import check_positive
-    from tangible_core.files.yaml.source import read_text
-    from tangible_core.pipeline.config.editing import with_overrides
-    from tangible_core.pipeline.output.run_folder import default_name
+    from tangible_core.files.yaml import read_text
+    from tangible_core.pipeline.config import with_overrides
+    from tangible_core.pipeline.output import default_name
 
     from ..farm import LONGEST_S
     from ..job_maker import BatchOptions
@@ -107,7 +105,7 @@ def _divide(files: Sequence[Path], over: Sequence[str]) -> tuple[Path, list[str]
 
 def _show_progress(rows: Iterator[Row], tally: Tally, name: str) -> Iterator[Row]:
     """Yield the rows; meanwhile, show how many are done and how long the rest will take."""
-    from tangible_core.cli.sentences import approximately
+    from tangible_core.cli import approximately
     from tangible_core.data import Outcome
     from tangible_core.plugins import hooks
     from tangible_core.plugins.registry import default_registry

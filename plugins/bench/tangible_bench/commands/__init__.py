@@ -13,6 +13,6 @@ if TYPE_CHECKING:
 @hookimpl
 def tangible_commands(app: Typer) -> None:
     """Add `tangible compare`."""
-    from tangible_core.cli.command_table import add
+    from tangible_core.cli import add
 
     add("compare", "tangible_bench.commands.compare:compare", "Compare methods by time, memory and error.")

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from tangible_core.cli.options import FAILED, Json, Sets
-from tangible_core.cli.verbosity import is_quiet
+from tangible_core.cli import FAILED, Json, Sets, is_quiet
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

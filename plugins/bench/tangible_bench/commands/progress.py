@@ -3,9 +3,7 @@
 from pathlib import Path
 from time import monotonic
 
-from tangible_core.cli import show
-from tangible_core.cli.sentences import approximately
-from tangible_core.cli.verbosity import is_quiet
+from tangible_core.cli import approximately, is_quiet, show
 from tangible_core.data import Outcome
 from tangible_core.plugins import hooks
 from tangible_core.plugins.registry import default_registry

@@ -5,9 +5,7 @@ from pathlib import Path
 
 import typer
 
-from tangible_core.cli import show
-from tangible_core.cli.options import FAILED
-from tangible_core.cli.verbosity import is_quiet
+from tangible_core.cli import FAILED, is_quiet, show
 from tangible_core.data import Outcome
 from tangible_core.plugins import hooks
 from tangible_core.plugins.registry import default_registry

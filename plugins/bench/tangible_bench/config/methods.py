@@ -8,9 +8,9 @@ from typing import Any, cast
 from pydantic import ValidationError
 
 from tangible_core.errors import ConfigError, did_you_mean, quoted
-from tangible_core.files.yaml.source import Location, Source
-from tangible_core.pipeline.config.methods import NamedMethod, choose
-from tangible_core.plugins.interfaces import Method
+from tangible_core.files.yaml import Location, Source
+from tangible_core.pipeline.config import NamedMethod, choose
+from tangible_core.plugins import Method
 from tangible_core.plugins.registry import Registry
 
 from ..tasks.task import Task

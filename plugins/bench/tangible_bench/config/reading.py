@@ -10,9 +10,9 @@ from typing import Annotated, Any, cast
 from pydantic import Field
 
 from tangible_core.errors import ConfigError, TangibleError, did_you_mean, quoted
-from tangible_core.files.yaml.source import Source, parse_source, read_text
+from tangible_core.files.yaml import Source, parse_source, read_text
 from tangible_core.plugins.registry import Registry
-from tangible_core.scene.workspace import Section
+from tangible_core.scene import Section
 
 from ..datasets import pairs
 from ..tasks.depth_scenes import named_set

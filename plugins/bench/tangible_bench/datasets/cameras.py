@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from tangible_core.data import Calibration
 from tangible_core.errors import GeometryError, PictureError, shown
-from tangible_core.files.reading import MOST_TEXT_BYTES, read_bytes
+from tangible_core.files import MOST_TEXT_BYTES, read_bytes
 
 
 class Cameras(NamedTuple):

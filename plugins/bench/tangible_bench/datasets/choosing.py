@@ -8,8 +8,8 @@ from typing import Any, Literal, cast, get_args
 from pydantic import model_validator
 
 from tangible_core.errors import ConfigError, PictureError, TangibleError, did_you_mean, quoted, shown
-from tangible_core.files.paths import as_path
-from tangible_core.scene.scene_files import SceneFiles, SceneReader
+from tangible_core.files import as_path
+from tangible_core.scene import SceneFiles, SceneReader
 
 from .sets import SETS, StandardSet
 from .standard_pair import FULL_PX, Resolution, StandardPair

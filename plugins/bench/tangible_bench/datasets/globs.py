@@ -6,7 +6,7 @@ from fnmatch import translate
 from pathlib import Path, PurePosixPath
 
 from tangible_core.errors import ConfigError, PictureError, quoted
-from tangible_core.files.paths import as_path
+from tangible_core.files import as_path
 
 from .folders import folders
 

@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Float32
 
 from tangible_core.data import Calibration, Views
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.runtime import plain_opencv
 
 
 def shrink_views(views: Views, by: int) -> Views:

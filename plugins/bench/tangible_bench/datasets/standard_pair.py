@@ -7,12 +7,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float32
 
-from tangible_core.data import Record, Views
-from tangible_core.data.pictures import size_in_words
+from tangible_core.data import Record, Views, size_in_words
 from tangible_core.errors import ConfigError, PictureError
-from tangible_core.scene.formats.pictures import TruthScale, read_map
-from tangible_core.scene.scene import Scene
-from tangible_core.scene.scene_files import SceneFiles
+from tangible_core.scene import Scene, SceneFiles
+from tangible_core.scene.formats import TruthScale, read_map
 
 from ..metrics.standard_sets import visible_pixels
 from .cameras import Cameras, ReadCameras

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from tangible_core.errors import ConfigError
-from tangible_core.files.writing import atomic_write, write_text
+from tangible_core.files import atomic_write, write_text
 
 from .standard_pair import StandardPair
 

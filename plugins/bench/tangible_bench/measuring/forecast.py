@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import median
 
-from tangible_core.metrics.measured import load_measured
+from tangible_core.metrics import load_measured
 
 from .plan import Measurement
 

@@ -10,11 +10,11 @@ from typing import Any
 
 from tangible_core.data import digest_of
 from tangible_core.errors import ConfigError, TangibleError
-from tangible_core.pipeline.config.methods import NamedMethod
-from tangible_core.plugins.interfaces import Method
+from tangible_core.pipeline.config import NamedMethod
+from tangible_core.plugins import Method
 from tangible_core.provenance.closure import closure
 from tangible_core.provenance.versions import versions
-from tangible_core.runtime.child_process import Place, place
+from tangible_core.runtime import Place, place
 
 from ..config.reading import Comparison, Damage, Entry
 from .rows import Row
@@ -104,7 +104,7 @@ def _code(chosen: NamedMethod[Method]) -> str:
 @cache
 def machine() -> dict[str, str | int]:
     """Return the processor, the number of cores that this process may use, and the system."""
-    from tangible_core.compiled.threads import thread_count
+    from tangible_core.compiled import thread_count
 
     return {"processor": _processor(), "cores": thread_count(), "system": f"{platform.system()} {platform.machine()}"}
 

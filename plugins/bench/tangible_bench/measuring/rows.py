@@ -9,8 +9,7 @@ from typing import Any, ClassVar
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from tangible_core.errors import ResultsError, shown
-from tangible_core.files.json_lines import JsonLines
-from tangible_core.files.line_file import read_lines
+from tangible_core.files import JsonLines, read_lines
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,7 @@ from signal import Signals
 from threading import Event
 from typing import IO, Any
 
-from tangible_core.runtime.child_process import command
-from tangible_core.runtime.stopping import check_stopped, stoppable
+from tangible_core.runtime import check_stopped, command, stoppable
 
 from .plan import Measurement
 from .rows import Row, append, mend, read_rows

@@ -8,8 +8,8 @@ from typing import Any
 
 from tangible_batch.farm import LONGEST_S, Farm
 from tangible_batch.running import Workforce
-from tangible_core.files.json_lines import JsonLines
-from tangible_core.runtime.stopping import check_stopped, stoppable
+from tangible_core.files import JsonLines
+from tangible_core.runtime import check_stopped, stoppable
 
 from .plan import Measurement
 from .rows import Row

@@ -19,9 +19,8 @@ from typing import Any, NamedTuple
 from tangible_core.data import Kind
 from tangible_core.errors import TangibleError
 from tangible_core.plugins.registry import load_method
-from tangible_core.runtime.child_process import Place, import_from
-from tangible_core.runtime.failure_log import where_kept
-from tangible_core.runtime.system.processes import exit_with_parent
+from tangible_core.runtime import Place, import_from, where_kept
+from tangible_core.runtime.system import exit_with_parent
 
 from ..memory import start_peak
 from ..tasks.task import Task, load_task

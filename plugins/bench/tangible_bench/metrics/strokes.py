@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Bool, Float64
 
-from tangible_core.metrics.forces import Vectors
+from tangible_core.metrics import Vectors
 
 
 def force_steps(force_n: Vectors) -> dict[str, float]:

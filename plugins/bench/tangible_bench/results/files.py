@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from tangible_core.files.writing import write_text
+from tangible_core.files import write_text
 
 from .summary import Cell, median
 from .table import Results, tables

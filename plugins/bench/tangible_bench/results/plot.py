@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tangible_core.files.writing import atomic_write
+from tangible_core.files import atomic_write
 
 from .labels import place_labels
 from .table import Results

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from tangible_core.files.writing import write_text
+from tangible_core.files import write_text
 
 from ..config.reading import NONE
 from ..datasets import SETS

@@ -9,9 +9,8 @@ import numpy as np
 from jaxtyping import Float64
 
 from tangible_core.data import HapticSurface, Record, Relief
-from tangible_core.scene.geometry import smooth, workspace_to_picture
-from tangible_core.testing.synthetic.reliefs import cliff, cone, ridge, waves
-from tangible_core.testing.synthetic.scenes import KnownSurface, plane, ramp, sphere_cap
+from tangible_core.scene import smooth, workspace_to_picture
+from tangible_core.testing.synthetic import KnownSurface, cliff, cone, plane, ramp, ridge, sphere_cap, waves
 
 from . import nearest
 

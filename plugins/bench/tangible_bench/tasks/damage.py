@@ -3,8 +3,8 @@
 import numpy as np
 from jaxtyping import UInt8
 
-from tangible_core.data.pictures import full_scale
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.data import full_scale
+from tangible_core.runtime import plain_opencv
 
 Bytes = UInt8[np.ndarray, "..."]
 

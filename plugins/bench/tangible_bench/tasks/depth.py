@@ -9,9 +9,9 @@ import numpy as np
 from tangible_core.data import DisparityMap, Views
 from tangible_core.errors import PictureError
 from tangible_core.metrics import disparity_errors
-from tangible_core.plugins.interfaces import DepthEstimator
-from tangible_core.scene.geometry import fill_rows
-from tangible_core.testing.synthetic.stereo_scenes import KnownPair
+from tangible_core.plugins import DepthEstimator
+from tangible_core.scene import fill_rows
+from tangible_core.testing.synthetic import KnownPair
 
 from ..datasets import MarkedPair
 from ..metrics.sparsification import LEFT, LEFT_BY_ORACLE, sparsification_errors

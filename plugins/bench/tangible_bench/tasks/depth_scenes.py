@@ -8,11 +8,9 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tangible_core.errors import PictureError, quoted
-from tangible_core.scene.formats.pictures import TruthScale
-from tangible_core.scene.scene import Scene
-from tangible_core.scene.scene_files import SceneFiles
-from tangible_core.scene.workspace import Section
-from tangible_core.testing.synthetic.stereo_scenes import KnownPair, synthetic_pair
+from tangible_core.scene import Scene, SceneFiles, Section
+from tangible_core.scene.formats import TruthScale
+from tangible_core.testing.synthetic import KnownPair, synthetic_pair
 
 from ..datasets import SETS, MarkedPair, StandardPair, matched, pairs
 from ..datasets.choosing import SetName, Split, with_folder_of_set

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from tangible_core.data import HapticSurface
 from tangible_core.metrics import force_errors
-from tangible_core.plugins.interfaces import ForceRenderer, Touch
+from tangible_core.plugins import ForceRenderer, Touch
 
 from ..memory import held_bytes
 from ..metrics.stability import Law, stiffness_limit

@@ -8,13 +8,11 @@ import numpy as np
 from jaxtyping import Float64
 from pydantic import Field, model_validator
 
-from tangible_core.data import HapticSurface, Relief
-from tangible_core.data.pictures import to_grey
+from tangible_core.data import HapticSurface, Relief, to_grey
 from tangible_core.errors import OutputError, quoted
-from tangible_core.scene.formats.pictures import read_map
-from tangible_core.scene.geometry import scale_heights
-from tangible_core.scene.scene import Scene
-from tangible_core.session.recording import Recording
+from tangible_core.scene import Scene, scale_heights
+from tangible_core.scene.formats import read_map
+from tangible_core.session import Recording
 
 from ..strokes.strokes import PERIOD_S, KnownStroke, analytic_stroke, relief_stroke
 from .task import SceneSpec, check_one_kind

@@ -13,8 +13,7 @@ from typing import Any, Literal, TypeVar, cast
 
 from pydantic import ConfigDict
 
-from tangible_core.data import Kind, Record
-from tangible_core.data.quantities import Quantities
+from tangible_core.data import Kind, Quantities, Record
 from tangible_core.errors import PictureError, quoted
 
 Apply = Callable[[Any, float], Any]

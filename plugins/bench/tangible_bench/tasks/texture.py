@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from tangible_core.data import SegmentMap
-from tangible_core.plugins.interfaces import Segmenter
-from tangible_core.testing.synthetic.texture_scenes import KnownSegments
+from tangible_core.plugins import Segmenter
+from tangible_core.testing.synthetic import KnownSegments
 
 from ..metrics.segments import segment_errors
 from . import damage, transforms

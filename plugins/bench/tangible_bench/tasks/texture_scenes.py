@@ -6,16 +6,11 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
-from tangible_core.data.pictures import size_in_words
+from tangible_core.data import size_in_words
 from tangible_core.errors import PictureError, quoted
-from tangible_core.scene.formats.pictures import read_labels, read_picture
-from tangible_core.scene.workspace import Section
-from tangible_core.testing.synthetic.texture_scenes import (
-    KnownSegments,
-    folder_textures,
-    smooth_scene,
-    texture_mosaic,
-)
+from tangible_core.scene import Section
+from tangible_core.scene.formats import read_labels, read_picture
+from tangible_core.testing.synthetic import KnownSegments, folder_textures, smooth_scene, texture_mosaic
 
 from ..datasets import matched
 from .task import SceneSpec, check_one_kind, expand_folder, pick_pairs, with_folder_of_file

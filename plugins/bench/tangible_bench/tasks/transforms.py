@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float64
 
-from tangible_core.runtime.opencv import plain_opencv
-from tangible_core.testing.synthetic.texture_scenes import KnownSegments, in_order
+from tangible_core.runtime import plain_opencv
+from tangible_core.testing.synthetic import KnownSegments, in_order
 
 from .damage import grey_levels, round_levels
 

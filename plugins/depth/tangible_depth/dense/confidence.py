@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, Int16, UInt8
 from numba import int32
 
-from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.compiled import KERNEL, njit
 from tangible_core.data import DisparityMap
 
 from .span import UNKNOWN

@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int32, uint16
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
+from tangible_core.compiled import KERNEL, inner, njit
 
 from ..simd.lane_reductions import total
 from ..simd.lanes import Lanes, add, load, maximum, minimum, multiply, splat, subtract

@@ -12,8 +12,7 @@ import numpy as np
 from jaxtyping import Float, Float32, Int16, UInt8
 from numba import int32
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
-from tangible_core.compiled.threads import in_blocks
+from tangible_core.compiled import KERNEL, in_blocks, inner, njit
 from tangible_core.data import DisparityMap
 
 from .confidence import FILLED, FLAT_REACH, GAP_REACH, STEP_REACH, confidence, flat_pixels

@@ -11,8 +11,7 @@ import numpy as np
 from jaxtyping import Int16, Int32, UInt8
 from numba import int64
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
-from tangible_core.compiled.threads import in_blocks
+from tangible_core.compiled import KERNEL, in_blocks, inner, njit
 
 from .span import UNKNOWN
 

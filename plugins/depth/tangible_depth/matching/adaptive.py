@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import UInt8
 
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import note
 
 from ..dense.filling.gaps import Effort
 from ..dense.span import UNKNOWN, Span

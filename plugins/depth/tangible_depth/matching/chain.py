@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import note
 
 from ..dense.confidence import zero_disparity
 from ..dense.refinement import DenseMatches, to_disparity_map

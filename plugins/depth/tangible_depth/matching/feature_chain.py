@@ -11,8 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float32, Int64
 
-from tangible_core.data import DisparityMap, Views
-from tangible_core.data.pictures import to_grey
+from tangible_core.data import DisparityMap, Views, to_grey
 from tangible_core.errors import PictureError
 
 from ..dense.span import Span

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic import AfterValidator, Field
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.plugins.interfaces import DepthEstimator, Following
+from tangible_core.plugins import DepthEstimator, Following
 
 if TYPE_CHECKING:
     from ..dense.refinement import DenseMatches

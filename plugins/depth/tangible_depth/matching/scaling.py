@@ -6,7 +6,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from jaxtyping import Float, Int16, UInt8
 
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import note
 
 from ..dense.confidence import FILLED, FLAT_REACH, LEAST_MATCHED
 from ..dense.filling.gaps import Effort

@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from tangible_core.errors import ConfigError, ModelAbsent, did_you_mean
-from tangible_core.files.yaml.source import parse_source, read_text
+from tangible_core.files.yaml import parse_source, read_text
 
 Three = tuple[float, float, float]
 """A number for each colour."""

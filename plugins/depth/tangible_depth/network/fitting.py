@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.runtime import plain_opencv
 
 from .card import Means, NetworkInput
 

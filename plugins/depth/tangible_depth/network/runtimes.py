@@ -25,11 +25,11 @@ from jaxtyping import Float32
 
 from tangible_core.data import Calibration
 from tangible_core.errors import BrokenMethod, ConfigError, shown
-from tangible_core.files.reading import content_digest
-from tangible_core.pipeline.engine.cache import Cache
+from tangible_core.files import content_digest
+from tangible_core.pipeline.engine import Cache
 from tangible_core.provenance.versions import of_imported
-from tangible_core.runtime.child_process import command, pipe_of
-from tangible_core.runtime.system.processes import exit_with_parent
+from tangible_core.runtime import command, pipe_of
+from tangible_core.runtime.system import exit_with_parent
 
 from .onnx_file import Shape, read_inputs
 
@@ -169,7 +169,7 @@ class _OpenCV:
 
 class _OnnxRuntime:
     def __init__(self, model: Path) -> None:
-        from tangible_core.compiled.threads import thread_count  # imports numba
+        from tangible_core.compiled import thread_count  # imports numba
 
         try:
             library: Any = import_module("onnxruntime")

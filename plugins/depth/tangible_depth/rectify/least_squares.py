@@ -34,7 +34,7 @@ def least_squares(cost: Callable[[np.ndarray], np.ndarray], start: np.ndarray, s
     by processor and from run to run, and these bits decide when this fit stops.
     Source: Nocedal & Wright, Numerical Optimization, 2nd ed., sec. 10.3.
     """
-    from tangible_core.compiled.small_matrices import solve
+    from tangible_core.compiled import solve
 
     values, found, damping = start, cost(start), 1e-2
     for _ in range(_ROUNDS):

@@ -9,21 +9,15 @@ from collections.abc import Callable
 import numpy as np
 from jaxtyping import Float64
 
-from tangible_core.data import DisparityMap, Views
-from tangible_core.data.pictures import to_grey
+from tangible_core.data import DisparityMap, Views, to_grey
 from tangible_core.errors import PictureError
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import note
 
 from ..sparse.matches import NO_MATCHES, Matches, flow_matches, match_off_plane, sift_matches
 from .fundamental import Fit, best_plane, eight_point
 from .projective import homogeneous, inverse, is_pure_rotation, product, transform
 from .rectified_pair import RectifiedPair, unchanged_pair, warp_pair
-from .rectifying_rotation import (
-    LEAST_TRUSTED,
-    RectificationError,
-    find_rotation,
-    threshold_px,
-)
+from .rectifying_rotation import LEAST_TRUSTED, RectificationError, find_rotation, threshold_px
 
 logger: logging.Logger = logging.getLogger(__name__)
 

@@ -7,7 +7,7 @@ from jaxtyping import Float32, Float64
 
 from tangible_core.data import DisparityMap, Record, Views
 from tangible_core.errors import PictureError
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.runtime import plain_opencv
 
 from .projective import distort, inverse, product, transform, undistort
 

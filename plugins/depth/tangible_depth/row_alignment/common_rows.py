@@ -10,8 +10,8 @@ import logging
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Float64, UInt8
 
-from tangible_core.plugins.notes import note
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.plugins import note
+from tangible_core.runtime import plain_opencv
 
 from ..dense.span import UNKNOWN
 from ..search.bands import Bands

@@ -8,8 +8,7 @@ Half a pixel of vertical offset already costs a matcher along rows a good part o
 import numpy as np
 from jaxtyping import Float32, Int16, Int64
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
-from tangible_core.compiled.threads import in_blocks
+from tangible_core.compiled import KERNEL, in_blocks, inner, njit
 
 from ..dense.span import UNKNOWN
 from ..search.pairs import Pair

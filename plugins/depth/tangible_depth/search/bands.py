@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Int16, Int64
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
+from tangible_core.compiled import KERNEL, inner, njit
 
 from ..dense.confidence import FLAT_REACH
 from ..dense.span import UNKNOWN, Span

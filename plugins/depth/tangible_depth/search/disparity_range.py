@@ -8,9 +8,9 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.compiled import KERNEL, njit
 from tangible_core.errors import PictureError
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import note
 
 from ..dense.span import UNKNOWN, Span
 from .bands import FINE_WIDTH, Bands, match_bands

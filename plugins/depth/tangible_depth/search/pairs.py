@@ -6,8 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import UInt8
 
-from tangible_core.data import Views
-from tangible_core.data.pictures import to_grey
+from tangible_core.data import Views, to_grey
 from tangible_core.errors import PictureError
 
 

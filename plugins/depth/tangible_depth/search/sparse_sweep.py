@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import uint8
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
+from tangible_core.compiled import KERNEL, inner, njit
 
 from ..dense.span import UNKNOWN, Span
 from ..sgm.aggregation import WORST, begin_path, equiangular, shift_codes

@@ -19,7 +19,7 @@ import numpy as np
 from jaxtyping import Int32, UInt8
 from numba import uint8, uint64
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
+from tangible_core.compiled import KERNEL, inner, njit
 
 from ..dense.span import UNKNOWN
 from ..simd.lane_reductions import first_equal, first_lane, lowest

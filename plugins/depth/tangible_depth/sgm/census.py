@@ -11,8 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import UInt8
 
-from tangible_core.compiled.compiling import KERNEL, njit
-from tangible_core.compiled.threads import in_blocks
+from tangible_core.compiled import KERNEL, in_blocks, njit
 
 RADIUS = 2
 """Radius of the window, in pixels."""

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import int64, uint8, uint64
 
-from tangible_core.compiled.compiling import inner
+from tangible_core.compiled import inner
 
 from ..dense.span import Span
 from ..simd.lane_reductions import differences, lowest

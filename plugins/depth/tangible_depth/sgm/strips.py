@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Int16, UInt8
 
-from tangible_core.compiled.threads import in_turns
+from tangible_core.compiled import in_turns
 
 from ..dense.span import UNKNOWN, Span
 from ..simd.lanes import Lanes

@@ -3,9 +3,8 @@
 import numpy as np
 from jaxtyping import Float32
 
-from tangible_core.data import DisparityMap
-from tangible_core.data.pictures import to_rgb8
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.data import DisparityMap, to_rgb8
+from tangible_core.runtime import plain_opencv
 
 STRAY_PX = 2.0
 """Distance of a match from its neighbours' mean, in pixels, above which it is dropped."""

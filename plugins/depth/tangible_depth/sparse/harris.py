@@ -10,7 +10,7 @@ from math import exp
 import numpy as np
 from jaxtyping import Float, Float64, Int64
 
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.runtime import plain_opencv
 
 
 def gaussian_window(sigma_px: float) -> Float64[np.ndarray, "n"]:

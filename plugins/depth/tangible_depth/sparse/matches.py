@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int64, UInt8
 
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.runtime import plain_opencv
 
 from .harris import corners, harris_response, least_response
 

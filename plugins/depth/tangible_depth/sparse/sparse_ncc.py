@@ -6,7 +6,7 @@ sum (I_p - mean)(I_q - mean) / sqrt(sum (I_p - mean)^2 sum (I_q - mean)^2), in -
 
 import numpy as np
 
-from tangible_core.compiled.compiling import njit
+from tangible_core.compiled import njit
 
 
 @njit(cache=True, nogil=True)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import float32, int32
 
-from tangible_core.compiled.compiling import inner, njit
+from tangible_core.compiled import inner, njit
 
 from ..dense.span import UNKNOWN
 from ..simd.lane_reductions import first_equal, first_lane, highest

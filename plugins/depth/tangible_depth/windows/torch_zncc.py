@@ -14,7 +14,7 @@ from jaxtyping import Float32
 from torch import Tensor
 from torch.nn.functional import pad
 
-from tangible_core.runtime.torch_extra import TorchDevice, pick_device
+from tangible_core.runtime import TorchDevice, pick_device
 
 FLAT_VARIANCE = 1e-7
 """Smallest variance of a window, white being 1: a smaller one is rounding error of float32."""

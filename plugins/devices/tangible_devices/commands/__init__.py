@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 @hookimpl
 def tangible_commands(app: Typer) -> None:
     """Add `tangible devices` and `tangible pointer`."""
-    from tangible_core.cli.command_table import add
+    from tangible_core.cli import add
 
     add("devices", f"{__package__}.devices:app", "List devices; examine, home or calibrate one.")
     add("pointer", f"{__package__}.pointer:pointer", "Move a `pointer` device by hand and see the forces.")

@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tangible_core.cli import completing
-from tangible_core.cli.options import FAILED, Json, is_listing
+from tangible_core.cli import FAILED, Json, completing, is_listing
 from tangible_core.errors import ConfigError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from tangible_core.data import Finding
-    from tangible_core.plugins.interfaces import Adjustable
+    from tangible_core.plugins import Adjustable
 
 COLOURS = {"fine": "green", "failed": "red", "not asked": "dim"}
 Device = Annotated[
@@ -137,7 +136,7 @@ def stress(
 
 def _adjustable(name: str, sets: Sequence[str]) -> Adjustable:
     from tangible_core.errors import DeviceError
-    from tangible_core.plugins.interfaces import Adjustable
+    from tangible_core.plugins import Adjustable
     from tangible_core.plugins.registry import default_registry
 
     from ..installed import make_device
@@ -204,7 +203,7 @@ def _ask(text: str) -> str:
 
 def _devices_summary(rows: Sequence[Mapping[str, Any]]) -> str:
     """Return which devices can be felt now."""
-    from tangible_core.cli.sentences import listing
+    from tangible_core.cli import listing
 
     real = [row["name"] for row in rows if row["units"]]
     simulated = [row["name"] for row in rows if row["simulated"]]

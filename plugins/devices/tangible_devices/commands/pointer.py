@@ -22,7 +22,7 @@ def pointer(
     Typed positions are lines of `x y z` in millimetres, with the buttons as an optional fourth number. A
     line that is not a position gives a message, and the next one may be typed.
     """
-    from tangible_core.runtime.standard_output import stream
+    from tangible_core.runtime import stream
 
     from ..pointer.following import follow
 

@@ -8,7 +8,7 @@ from typing import Annotated
 from pydantic import BaseModel, Field
 
 from tangible_core.data import DeviceSpec, Finding, Unit
-from tangible_core.plugins.interfaces import Adjustable, HapticDevice, Link, Serviceable
+from tangible_core.plugins import Adjustable, HapticDevice, Link, Serviceable
 
 from .calibration import Calibration, Settings
 from .usb.image import read_image

@@ -7,7 +7,7 @@ from jaxtyping import Int64
 from pydantic import Field
 
 from tangible_core.data import DeviceSpec
-from tangible_core.plugins.interfaces import HapticDevice, Link, Scripted
+from tangible_core.plugins import HapticDevice, Link, Scripted
 
 from ..hand import VirtualHand
 from ..paths import DRAWN, path_size, walk

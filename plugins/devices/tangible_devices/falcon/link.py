@@ -8,7 +8,7 @@ from typing import NamedTuple, final
 
 import numpy as np
 
-from tangible_core.compiled.touch import CompiledLink, LinkKernels
+from tangible_core.compiled import CompiledLink, LinkKernels
 from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.errors import DeviceError
 

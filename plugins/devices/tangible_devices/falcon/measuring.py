@@ -9,7 +9,7 @@ from typing import get_args
 
 from tangible_core.data import NO_FORCE, Force, Vector
 from tangible_core.errors import DeviceError
-from tangible_core.plugins.interfaces import Link
+from tangible_core.plugins import Link
 
 from .calibration import Axis, Calibration
 from .kernels import kinematics

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from tangible_core.data import DeviceSpec, Finding, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
-from tangible_core.plugins.interfaces import HapticDevice, Link, Serviceable
+from tangible_core.plugins import HapticDevice, Link, Serviceable
 
 Model = Literal["omega", "delta", "sigma", "falcon"]
 SPECS: dict[Model, tuple[float, float, float, float]] = {

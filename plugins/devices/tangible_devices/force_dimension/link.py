@@ -10,7 +10,7 @@ from typing import Any, final
 
 from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.errors import DeviceAbsent, DeviceError
-from tangible_core.plugins.interfaces import Link
+from tangible_core.plugins import Link
 
 INSTALL = (
     "install the Force Dimension SDK 3.16 or newer (forcedimension.com), then pip install "

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from tangible_core.data import DeviceSpec, Finding, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
-from tangible_core.plugins.interfaces import HapticDevice, Link, Serviceable
+from tangible_core.plugins import HapticDevice, Link, Serviceable
 
 Metres = Annotated[float, Field(ge=-1, le=1)]
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, final
 
 from tangible_core.data import NO_FORCE, Force, HapticState, Unit, Vector
 from tangible_core.errors import DeviceAbsent, DeviceError
-from tangible_core.plugins.interfaces import Link
+from tangible_core.plugins import Link
 
 if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection

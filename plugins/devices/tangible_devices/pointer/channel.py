@@ -34,7 +34,7 @@ from pathlib import Path
 from typing import final
 
 from tangible_core.errors import DeviceError
-from tangible_core.runtime.system.files import is_mine, take_lock
+from tangible_core.runtime.system import is_mine, take_lock
 
 MAGIC, DEVICE_OPEN, CLIENT_OPEN = 0, 1, 2
 SAMPLE, SAMPLE_WORDS = 16, 8

@@ -8,7 +8,7 @@ from typing import Self, final
 
 from tangible_core.data import NO_FORCE, Force, Vector
 from tangible_core.errors import DeviceAbsent, DeviceError
-from tangible_core.servo.limits import POINTER_DEVICE_SILENCE_S
+from tangible_core.servo import POINTER_DEVICE_SILENCE_S
 
 from .channel import (
     CLIENT_OPEN,

@@ -6,7 +6,7 @@
 import numpy as np
 from numba import float64, int64, uint64, void
 
-from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.compiled import KERNEL, njit
 
 from .channel import CLIENT_OPEN, FACTOR, FORCE, FORCE_WORDS, SAMPLE, SAMPLE_WORDS, START, TRIES
 

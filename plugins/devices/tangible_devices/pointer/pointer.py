@@ -9,10 +9,10 @@ from typing import Annotated, Any, final
 import numpy as np
 from pydantic import Field
 
-from tangible_core.compiled.touch import CompiledLink, LinkKernels
+from tangible_core.compiled import CompiledLink, LinkKernels
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState, Vector
-from tangible_core.plugins.interfaces import Attended, HapticDevice, Link
-from tangible_core.servo.limits import POINTER_SILENCE_S
+from tangible_core.plugins import Attended, HapticDevice, Link
+from tangible_core.servo import POINTER_SILENCE_S
 
 from ..simulated import LIKE_A_FALCON
 from .channel import DEVICE_OPEN, FORCE, FORCE_WORDS, MAGIC, MARK, SAMPLE, SAMPLE_WORDS, Channel, client_is_there

@@ -9,7 +9,7 @@ from threading import Lock
 from typing import Any, NamedTuple
 
 from tangible_core.errors import BrailleError, quoted
-from tangible_core.runtime.system.resources import library_names
+from tangible_core.runtime.system import library_names
 
 from .cells import Cells
 

@@ -5,7 +5,7 @@ import re
 import unicodedata
 
 from tangible_core.errors import BrailleError, check_positive, quoted
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import note
 
 from .cells import Cells
 from .cells import width_m as width_of_m

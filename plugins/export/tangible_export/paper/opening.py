@@ -9,7 +9,7 @@ from scipy.ndimage import find_objects
 
 from tangible_core.data import PartMap, SegmentMap, Work
 from tangible_core.parts import find_parts, reduced_parts
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import note
 from tangible_legibility.cells import vote
 from tangible_legibility.widths import measure
 

@@ -14,7 +14,7 @@ from jaxtyping import Float64
 from tangible_core.data import PartMap, Work
 from tangible_core.errors import PictureError
 from tangible_core.errors import shown as shown_text
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import note
 
 from ..braille import Cells, height_m, title_in_braille, translate, written_by
 from .colouring import choose_fills

@@ -4,7 +4,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import ConfigDict, Field
 
-from tangible_core.data.quantities import Quantities
+from tangible_core.data import Quantities
 
 PITCH_M = 0.0025
 """Distance from pin to pin of the displays below, about. Parts are simplified for pictures of this pitch."""

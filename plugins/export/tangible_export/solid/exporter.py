@@ -10,8 +10,8 @@ from jaxtyping import UInt8
 from pydantic import Field
 
 from tangible_core.data import Work
-from tangible_core.plugins.interfaces import Exporter, Medium, Previewing
-from tangible_core.preflight.verdict import over
+from tangible_core.plugins import Exporter, Medium, Previewing
+from tangible_core.preflight import over
 
 if TYPE_CHECKING:
     from .closed import Solid

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from tangible_core.data import Relief, Work
 from tangible_core.errors import GeometryError, OutputError, quoted
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import note
 
 from ..braille import Cells, title_in_braille, width_m, wrapped, written_by
 from .closed import Solid, close_solid

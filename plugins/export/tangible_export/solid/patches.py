@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float64, Int64
 
-from tangible_core.data.records import Record
+from tangible_core.data import Record
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,10 +11,9 @@ import cv2
 import numpy as np
 from jaxtyping import Float32, Float64, Int32
 
-from tangible_core.data import Relief
-from tangible_core.data.records import Record
-from tangible_core.plugins.notes import note
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.data import Record, Relief
+from tangible_core.plugins import note
+from tangible_core.runtime import plain_opencv
 
 log: logging.Logger = logging.getLogger(__name__)
 

@@ -24,7 +24,7 @@ def tangible_legibility() -> Mapping[str, str]:
 @hookimpl
 def tangible_commands(app: Typer) -> None:
     """Add `tangible legible`."""
-    from tangible_core.cli.command_table import add
+    from tangible_core.cli import add
 
     add(
         "legible", f"{__package__}.legible:legible",

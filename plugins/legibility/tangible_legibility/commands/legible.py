@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
-from tangible_core.cli.commands.run import open_pipeline
-from tangible_core.cli.options import FAILED, Config, Json, NoCache, Sets, Verbose
+from tangible_core.cli import FAILED, Config, Json, NoCache, Sets, Verbose, open_pipeline
 
 if TYPE_CHECKING:
-    from tangible_core.plugins.interfaces import Medium
+    from tangible_core.plugins import Medium
     from tangible_core.preflight import Legibility
 
 COLOURS = {"ok": "green", "warn": "yellow", "illegible": "bold red"}
@@ -50,8 +49,8 @@ def legible(
     Writes nothing. Exit 1 if something is illegible.
     """
     from tangible_core.cli import show
-    from tangible_core.files.paths import without_folders
-    from tangible_core.pipeline.feeling import Feeling
+    from tangible_core.files import without_folders
+    from tangible_core.pipeline import Feeling
 
     pipeline = open_pipeline(config, sets or [], not no_cache)
     feeling, scene = Feeling(pipeline), pipeline.scene.name
@@ -96,7 +95,7 @@ class Found(NamedTuple):
 def _heading(scene: str, found: Found) -> str:
     from rich.markup import escape
 
-    from tangible_core.preflight.wording import quantity
+    from tangible_core.preflight import quantity
 
     from ..rules import PROFILES
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from tangible_core.data import PartMap
 from tangible_core.parts import SimplifyChoice
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import note
 
 from ..grid import Grid
 from ..widths import ROUND_OFF, Widths, measure

@@ -5,9 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float64, Int32, Int64
 
-from tangible_core.data import PartMap
-from tangible_core.data.pictures import to_rgb8
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.data import PartMap, to_rgb8
+from tangible_core.runtime import plain_opencv
 
 MOST_COMPARED = 256
 """Textures that are compared pairwise; the smallest of more go to the most similar of these."""

@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from typing import Literal, NamedTuple, get_args
 from unicodedata import category
 
-from tangible_core.data.part_words import shown_number
+from tangible_core.data import shown_number
 from tangible_core.errors import quoted, shown
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import note
 
 from . import de, en, fr
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tangible_core.data.part_words import name_part
+from tangible_core.data import name_part
 
 from .places import place_in_words
 

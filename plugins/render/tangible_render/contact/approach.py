@@ -9,7 +9,7 @@ Imports numba: a method imports this module inside its verb.
 
 import numpy as np
 
-from tangible_core.compiled.compiling import inner
+from tangible_core.compiled import inner
 
 from ..surface.bilinear import cell, over
 from ..surface.spline import height

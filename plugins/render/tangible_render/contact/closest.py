@@ -9,7 +9,7 @@ its verb.
 
 import math
 
-from tangible_core.compiled.compiling import inner
+from tangible_core.compiled import inner
 
 from ..surface.spline import bend
 

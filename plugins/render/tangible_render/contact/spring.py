@@ -8,7 +8,7 @@ Imports numba: a method imports this module inside its verb.
 import numpy as np
 from numba import float32, float64, types
 
-from tangible_core.compiled.compiling import inner
+from tangible_core.compiled import inner
 
 from ..surface.bilinear import HEIGHTS, cell
 from ..surface.spline import prefetch

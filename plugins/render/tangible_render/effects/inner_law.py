@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from tangible_core.errors import TangibleError
-from tangible_core.plugins.interfaces import ForceRenderer
+from tangible_core.plugins import ForceRenderer
 
 Law = str | dict[str, Any]
 Refusal = Callable[[type[ForceRenderer]], str]

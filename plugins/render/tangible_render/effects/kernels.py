@@ -16,7 +16,7 @@ import math
 
 import numpy as np
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
+from tangible_core.compiled import KERNEL, inner, njit
 from tangible_render.haptic_textures.forces import STATE, texture_force
 from tangible_render.haptic_textures.heights import texture_height
 from tangible_render.haptic_textures.table import COUNT, DRAG, HEAD

@@ -9,7 +9,7 @@ Imports numba: a method imports this module inside its verb.
 
 from numba import float64
 
-from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.compiled import KERNEL, njit
 
 from ..surface.bilinear import NEWTONS
 

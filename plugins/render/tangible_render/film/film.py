@@ -5,10 +5,10 @@ from typing import Any, final
 import numpy as np
 from jaxtyping import Float64
 
-from tangible_core.compiled.touch import CompiledTouch, Tick
+from tangible_core.compiled import CompiledTouch, Tick
 from tangible_core.data import HapticSurface, Relief
 from tangible_core.errors import GeometryError
-from tangible_core.plugins.interfaces import Film
+from tangible_core.plugins import Film
 
 from ..surface.coefficients import BORDER
 from .coefficients import quick_coefficients

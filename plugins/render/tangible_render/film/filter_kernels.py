@@ -9,7 +9,7 @@ vector instructions. No sum has an order that the compiler might change. Imports
 import numpy as np
 from numba import float32, types, uint8, void
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
+from tangible_core.compiled import KERNEL, inner, njit
 
 from ..surface.bilinear import HEIGHTS
 from ..surface.coefficients import BORDER

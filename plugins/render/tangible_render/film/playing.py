@@ -15,8 +15,7 @@ import numpy as np
 from numba import float32, float64, int64, types
 from numba.extending import intrinsic
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
-from tangible_core.compiled.touch import FRAME, RISE_M
+from tangible_core.compiled import FRAME, KERNEL, RISE_M, inner, njit
 
 from ..contact.approach import TOUCHING
 from ..surface.spline import height

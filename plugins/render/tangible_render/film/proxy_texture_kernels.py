@@ -7,7 +7,7 @@
 
 from numba import float64
 
-from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.compiled import KERNEL, njit
 
 from ..contact.spring import MATERIALS, MEMORY, spring_and_damper
 from ..effects.kernels import effects, texture

@@ -16,8 +16,7 @@ import numpy as np
 from jaxtyping import Float64
 from numba import float64
 
-from tangible_core.compiled.compiling import inner
-from tangible_core.compiled.touch import RISE_M
+from tangible_core.compiled import RISE_M, inner
 
 from ..contact.approach import LEAP_M
 from .slots import STEP_N

@@ -8,7 +8,7 @@ import math
 import numpy as np
 from numba import float64, int64, types
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
+from tangible_core.compiled import KERNEL, inner, njit
 
 from .heights import COSINE, SINE, TEXTURES, remaining, series, texture_height
 from .table import DRAG, DYNAMIC, PER_M, STIFFNESS, SWING

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import float32, float64, types
 
-from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.compiled import KERNEL, njit
 
 from ..surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
 

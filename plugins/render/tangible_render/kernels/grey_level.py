@@ -5,7 +5,7 @@
 import numpy as np
 from numba import float64
 
-from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.compiled import KERNEL, njit
 
 from ..surface.bilinear import GREYS, HEIGHTS, NEWTONS, cell, over
 

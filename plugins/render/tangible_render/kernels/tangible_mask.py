@@ -5,7 +5,7 @@
 import numpy as np
 from numba import float64, int64, types
 
-from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.compiled import KERNEL, njit
 
 from ..surface.bilinear import HEIGHTS, NEWTONS, cell, over
 

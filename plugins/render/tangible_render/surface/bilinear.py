@@ -9,7 +9,7 @@ centre. Imports numba: a method imports this module inside its verb.
 import numpy as np
 from numba import float64, int32, types, uint8
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
+from tangible_core.compiled import KERNEL, inner, njit
 
 HEIGHTS = types.Array(types.float32, 2, "C", readonly=True)
 LABELS = types.Array(int32, 2, "C", readonly=True)

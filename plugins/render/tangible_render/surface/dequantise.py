@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float32, UInt8
 from pydantic import Field
 
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.runtime import plain_opencv
 
 Filter = Literal["auto", "never"] | Annotated[float, Field(gt=0, le=64)]
 """The type of a force law's option `dequantise`."""

@@ -11,7 +11,7 @@ Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal P
 
 from numba import types
 
-from tangible_core.compiled.compiling import KERNEL, inner, inner_by_type, njit
+from tangible_core.compiled import KERNEL, inner, inner_by_type, njit
 
 from .prefetch import prefetch_line
 

@@ -13,6 +13,6 @@ if TYPE_CHECKING:
 @hookimpl
 def tangible_commands(app: Typer) -> None:
     """Add `tangible materials`."""
-    from tangible_core.cli.command_table import add
+    from tangible_core.cli import add
 
     add("materials", "tangible_report.commands.materials:app", "List the materials; show or draw some.")

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tangible_core.cli import completing
-from tangible_core.cli.options import Json
+from tangible_core.cli import Json, completing
 from tangible_core.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -40,7 +39,7 @@ def materials(context: typer.Context, library: Library = None, as_json: Json = F
     from dataclasses import asdict
 
     from tangible_core.cli import show
-    from tangible_core.materials.assignment import load_library
+    from tangible_core.materials import load_library
 
     known = load_library(library)
     if as_json:
@@ -87,8 +86,7 @@ def show_one(
     from dataclasses import asdict
 
     from tangible_core.cli import show
-    from tangible_core.materials.assignment import find, load_library
-    from tangible_core.materials.files import VALUES, sources_of
+    from tangible_core.materials import VALUES, find, load_library, sources_of
 
     material = find(name, load_library(library))
     sources = sources_of(material)
@@ -117,7 +115,7 @@ def draw(
     The surface, its spectrum, and the force of a stroke.
     """
     from tangible_core.cli import show
-    from tangible_core.materials.assignment import find, load_library
+    from tangible_core.materials import find, load_library
 
     from ..material_sheet import draw_material
 

@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tangible_core.data import HapticSurface
-from tangible_core.data.part_words import shown_number
-from tangible_core.scene.workspace import SceneKind
+from tangible_core.data import HapticSurface, shown_number
+from tangible_core.scene import SceneKind
 from tangible_legibility.words.languages import Language, Words, one_line
 from tangible_legibility.words.places import NOWHERE
 

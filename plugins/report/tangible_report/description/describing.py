@@ -5,7 +5,7 @@ from jaxtyping import Bool
 
 from tangible_core.data import HapticSurface
 from tangible_core.errors import shown, wrong_argument
-from tangible_core.scene.workspace import SceneKind
+from tangible_core.scene import SceneKind
 from tangible_legibility.words.languages import LANGUAGES, Language, Words
 from tangible_legibility.words.places import NOWHERE, place_of
 

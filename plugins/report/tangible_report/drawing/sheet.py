@@ -14,12 +14,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tangible_core.data import DisparityMap, HapticSurface, MaterialMap, PartMap, Record, Relief, SegmentMap, Views
-from tangible_core.data.products import PRODUCTS
+from tangible_core.data import (
+    PRODUCTS,
+    DisparityMap,
+    HapticSurface,
+    MaterialMap,
+    PartMap,
+    Record,
+    Relief,
+    SegmentMap,
+    Views,
+)
 from tangible_core.errors import OutputError, shown
-from tangible_core.files.writing import atomic_write
-from tangible_core.plugins import hooks
-from tangible_core.plugins.hooks import Panel
+from tangible_core.files import atomic_write
+from tangible_core.plugins import Panel, hooks
 from tangible_core.plugins.registry import default_registry
 from tangible_core.session import Recording
 from tangible_core.translation import LANGUAGES, translate

@@ -1,6 +1,6 @@
 """The panels of the sheet: a function each, which draws into its axes and returns its headline."""
 
-from tangible_core.plugins.hooks import Panel as Panel
+from tangible_core.plugins import Panel as Panel
 
 from .disparity import draw_disparity, draw_disparity_error
 from .force import draw_force_map

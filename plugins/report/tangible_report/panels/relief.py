@@ -14,7 +14,7 @@ from matplotlib.patches import Polygon
 from matplotlib.ticker import MaxNLocator
 
 from tangible_core.data import Relief
-from tangible_core.scene.geometry import normals
+from tangible_core.scene import normals
 
 from ..block import add_border, drawn_size, facets, on_paper, points_of
 from ..style import INK, VIRIDIS, bare, colour_bar, inches

@@ -8,10 +8,17 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
-from tangible_core.data import HapticSurface, MaterialMap, PartMap, SegmentMap, Views
-from tangible_core.data.part_words import name_part, shown_number
-from tangible_core.data.pictures import to_grey
-from tangible_core.data.views import border_pixels
+from tangible_core.data import (
+    HapticSurface,
+    MaterialMap,
+    PartMap,
+    SegmentMap,
+    Views,
+    border_pixels,
+    name_part,
+    shown_number,
+    to_grey,
+)
 from tangible_legibility.cells import largest_disc
 
 from ..style import INK, bare, colours, inches, thin_out

@@ -4,8 +4,7 @@
 
 from matplotlib.axes import Axes
 
-from tangible_core.data import Views
-from tangible_core.data.pictures import to_rgb8
+from tangible_core.data import Views, to_rgb8
 
 from ..style import bare, thin_out
 

@@ -5,7 +5,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from tangible_core.files.writing import sole_writer, write_text
+from tangible_core.files import sole_writer, write_text
 
 from ..trials import MISSING
 from .analysing import Analysis

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tangible_core.files.writing import atomic_write
+from tangible_core.files import atomic_write
 
 from .rows import ALL, Result, Row
 from .sentences import sentences

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 @hookimpl
 def tangible_commands(app: Typer) -> None:
     """Add `tangible study`."""
-    from tangible_core.cli.command_table import add
+    from tangible_core.cli import add
 
     add("study", "tangible_study.commands.study:app", "Run an experiment with people from a file; check it first.")
 

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangible_core.cli.options import Json
-from tangible_core.cli.verbosity import is_quiet
+from tangible_core.cli import Json, is_quiet
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangible_core.cli.options import Json
-from tangible_core.cli.verbosity import is_quiet
+from tangible_core.cli import Json, is_quiet
 from tangible_core.errors import ConfigError
 
 from .results import analyse, simulate
@@ -170,7 +169,7 @@ def _progress(stimuli: Stimuli) -> Callable[[int], None]:
 
 def _print(text: str) -> None:
     """Print a line at once, in the language of the participant and not in that of the terminal."""
-    from tangible_core.runtime.standard_output import stream
+    from tangible_core.runtime import stream
 
     print(text, file=stream(), flush=True)
 

@@ -5,8 +5,8 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import ConfigDict, Field
 
-from tangible_core.data.quantities import Quantities
-from tangible_core.scene.workspace import Section
+from tangible_core.data import Quantities
+from tangible_core.scene import Section
 
 Question = Literal["rougher", "higher", "same", "different", "equal", "name", "rating"]
 """The question of a comparison."""

@@ -6,8 +6,8 @@ from contextlib import AbstractContextManager, nullcontext
 from threading import Event
 from typing import IO, final
 
-from tangible_core.pipeline.feeling import Feeling
-from tangible_core.runtime.system.streams import forget_typed
+from tangible_core.pipeline import Feeling
+from tangible_core.runtime.system import forget_typed
 from tangible_core.servo import Servo
 
 LEAVE = "q"

@@ -17,9 +17,8 @@ from starlette.websockets import WebSocket
 
 from tangible_core.errors import DeviceError
 from tangible_core.mapping import placement_of
-from tangible_core.pipeline.feeling import Feeling
-from tangible_core.servo import Servo
-from tangible_core.servo.beacon import part_number
+from tangible_core.pipeline import Feeling
+from tangible_core.servo import Servo, part_number
 from tangible_web.address import HOST, Address, static
 from tangible_web.connection import show_key
 from tangible_web.hand import Hand

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from tangible_core.data import HapticSurface
-from tangible_core.scene.scaling import middle_pixels, reduced_map, reduced_shape
+from tangible_core.scene import middle_pixels, reduced_map, reduced_shape
 
 MOST_CELLS = 200_000
 """The most cells: the page draws nothing, and needs heights only to hold the hand over the surface."""

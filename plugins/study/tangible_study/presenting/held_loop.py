@@ -8,8 +8,8 @@ from typing import Self, final
 import numpy as np
 
 from tangible_core.errors import DeviceError
-from tangible_core.pipeline.feeling import Feeling
-from tangible_core.plugins.interfaces import HapticDevice
+from tangible_core.pipeline import Feeling
+from tangible_core.plugins import HapticDevice
 from tangible_core.servo import Servo, beacon_to, null_touch
 from tangible_core.session import STOPPED, RingDrain
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import DeviceError
-from tangible_core.pipeline.output.runs import about, join_descriptions
+from tangible_core.pipeline.output import about, join_descriptions
 from tangible_core.servo import Servo
 from tangible_core.session import INTERRUPTED, About, Writer
 

@@ -3,8 +3,7 @@
 from collections.abc import Callable, Mapping
 
 from tangible_core.errors import ConfigError, TangibleError
-from tangible_core.pipeline.feeling import Feeling
-from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.pipeline import Feeling, Pipeline
 from tangible_core.plugins.registry import default_registry
 from tangible_core.preflight import Loop, Preflight
 

@@ -7,7 +7,7 @@ from typing import NamedTuple, final
 
 import numpy as np
 
-from tangible_core.scene.workspace import Section
+from tangible_core.scene import Section
 
 from ..design.study import Comparison
 

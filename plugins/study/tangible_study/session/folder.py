@@ -11,11 +11,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from tangible_core.errors import ConfigError, OutputError, ResultsError, quoted
-from tangible_core.files.json_text import write_figures
-from tangible_core.files.reading import read_bytes
-from tangible_core.files.tables import read_table
-from tangible_core.files.writing import folder_lock, write_text
-from tangible_core.pipeline.output.run_folder import make_writable
+from tangible_core.files import folder_lock, read_bytes, read_table, write_figures, write_text
+from tangible_core.pipeline.output import make_writable
 from tangible_core.provenance.versions import versions
 
 from ..design.study import Study

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from tangible_core.errors import DeviceError, OutputError
-from tangible_core.files.writing import write_text
+from tangible_core.files import write_text
 from tangible_core.session import Writer
 
 from ..desks.desk import Desk

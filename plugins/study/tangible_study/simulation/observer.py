@@ -7,7 +7,7 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field
 
-from tangible_core.scene.workspace import Section
+from tangible_core.scene import Section
 
 from ..design.study import Comparison
 from ..procedures.procedure import DIFFERENT, SAME, Stimulus, Trial

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from tangible_core.errors import ConfigError, did_you_mean, quoted
-from tangible_core.files.yaml.source import parse_override
+from tangible_core.files.yaml import parse_override
 
 from ..study_file import StudyFile
 from .detection import Detection

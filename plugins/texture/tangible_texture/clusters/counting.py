@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Int32
 
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import note
 
 from .joining import Step
 

@@ -41,7 +41,7 @@ def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k
 
 def evidence(planes: Float32[np.ndarray, "d n"], fit: Scatters) -> Float32[np.ndarray, "k n"]:
     """Compute each cell's log likelihood of each class, Gaussians of one width, up to a common term."""
-    from tangible_core.compiled.small_matrices import solve
+    from tangible_core.compiled import solve
 
     from .planes import combine_planes
 
@@ -52,7 +52,7 @@ def evidence(planes: Float32[np.ndarray, "d n"], fit: Scatters) -> Float32[np.nd
 
 def discriminant_axes(fit: Scatters, most: int) -> Float64[np.ndarray, "m d"]:
     """Return the directions in which classes differ most, at most `most`, scaled to unit scatter within classes."""
-    from tangible_core.compiled.small_matrices import eigen, solve
+    from tangible_core.compiled import eigen, solve
 
     centre = np.einsum("k,kd->d", fit.shares, fit.means)
     apart = np.sqrt(fit.shares)[:, None] * (fit.means - centre)
@@ -64,7 +64,7 @@ def discriminant_axes(fit: Scatters, most: int) -> Float64[np.ndarray, "m d"]:
 
 def principal_axes(planes: Float32[np.ndarray, "d n"], most: int, power: float = 0.0) -> Float64[np.ndarray, "m d"]:
     """Return leading principal axes of centred planes, divided by variance ** power; none for constant planes."""
-    from tangible_core.compiled.small_matrices import eigen
+    from tangible_core.compiled import eigen
 
     from .planes import scatter_matrix
 

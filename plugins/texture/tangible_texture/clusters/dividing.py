@@ -31,7 +31,7 @@ def divide(planes: Float32[np.ndarray, "d n"], most: int) -> Int32[np.ndarray, "
 
 def _halve_cluster(planes: Float32[np.ndarray, "d n"]) -> tuple[float, np.ndarray]:
     """Return the sum of squared distances from the mean, and a mask of the columns above it on the longest axis."""
-    from tangible_core.compiled.small_matrices import eigen
+    from tangible_core.compiled import eigen
 
     from .planes import combine_planes, scatter_matrix
 

@@ -5,7 +5,7 @@ from math import pi, sqrt
 import numpy as np
 from jaxtyping import Int32
 
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.runtime import plain_opencv
 
 from ..features.channels import channels
 from ..signal.smoothing import gaussian

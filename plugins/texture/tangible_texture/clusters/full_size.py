@@ -5,10 +5,8 @@
 import numpy as np
 from jaxtyping import Float32, Int32
 
-from tangible_core.compiled.compiling import njit
-from tangible_core.compiled.elementary import exponential, logarithms
-from tangible_core.compiled.threads import in_blocks
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.compiled import exponential, in_blocks, logarithms, njit
+from tangible_core.runtime import plain_opencv
 
 from ..features.features import Window
 from .discriminants import evidence, scatters

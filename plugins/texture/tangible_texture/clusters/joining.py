@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int32, Int64
 
-from tangible_core.compiled.compiling import njit
-from tangible_core.compiled.small_matrices import cholesky, whiten
+from tangible_core.compiled import cholesky, njit, whiten
 
 from .discriminants import discriminant_axes, scatters
 from .dividing import one_hot

@@ -7,9 +7,8 @@ from functools import cache
 import numpy as np
 from jaxtyping import Float32, Int32
 
-from tangible_core.compiled.compiling import njit
-from tangible_core.compiled.elementary import exponential
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.compiled import exponential, njit
+from tangible_core.runtime import plain_opencv
 
 from .discriminants import Scatters, evidence, scatters
 from .dividing import one_hot

@@ -10,8 +10,7 @@ from collections.abc import Iterable
 import numpy as np
 from jaxtyping import Float32, Float64
 
-from tangible_core.compiled.compiling import njit
-from tangible_core.compiled.threads import in_turns, thread_count
+from tangible_core.compiled import in_turns, njit, thread_count
 
 BLOCK = 1024
 """The number of columns processed while they are in the cache."""

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Bool, Float32, Float64
 
-from tangible_core.compiled.threads import thread_count
-from tangible_core.plugins.notes import note
+from tangible_core.compiled import thread_count
+from tangible_core.plugins import note
 
 from .gabor_bank import Gabor
 from .local_energy import fft, mean_energies, spectrum_of, standardise

@@ -15,9 +15,8 @@ import numpy as np
 import scipy.fft
 from jaxtyping import Complex64, Float32, Float64, Int64
 
-from tangible_core.compiled.compiling import njit
-from tangible_core.compiled.threads import in_turns, thread_count
-from tangible_core.data.pictures import check_finite
+from tangible_core.compiled import in_turns, njit, thread_count
+from tangible_core.data import check_finite
 from tangible_core.errors import PictureError
 
 from .gabor_bank import Gabor, bank, kernel

@@ -7,9 +7,8 @@ from collections.abc import Iterable
 import numpy as np
 from jaxtyping import Float32
 
-from tangible_core.compiled.compiling import njit
-from tangible_core.compiled.threads import in_turns
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.compiled import in_turns, njit
+from tangible_core.runtime import plain_opencv
 
 CELL_PX = 4
 """The side of a cell, px."""

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float32
 
-from tangible_core.data.pictures import check_picture, full_scale, luma
+from tangible_core.data import check_picture, full_scale, luma
 
 
 def channels(picture: np.ndarray, colour: bool) -> Float32[np.ndarray, "h w c"]:

@@ -6,9 +6,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 from jaxtyping import Float32
 
-from tangible_core.data.pictures import to_grey
-from tangible_core.plugins.notes import note
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.data import to_grey
+from tangible_core.plugins import note
+from tangible_core.runtime import plain_opencv
 
 log: logging.Logger = logging.getLogger(__name__)
 

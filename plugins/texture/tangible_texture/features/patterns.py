@@ -14,9 +14,8 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 from jaxtyping import Float32, UInt64
 
-from tangible_core.compiled.compiling import njit
-from tangible_core.compiled.threads import in_blocks
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.compiled import in_blocks, njit
+from tangible_core.runtime import plain_opencv
 
 CELL_PX = 4
 """The side of a cell, px."""

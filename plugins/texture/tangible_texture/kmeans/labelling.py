@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float32, Int32
 
 from tangible_core.data import SegmentMap
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import note
 
 from .lloyd import kmeans
 

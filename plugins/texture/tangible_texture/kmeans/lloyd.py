@@ -8,8 +8,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from jaxtyping import Float32, Int32
 
-from tangible_core.compiled.compiling import njit
-from tangible_core.compiled.threads import in_turns
+from tangible_core.compiled import in_turns, njit
 
 SAME = 1e-5
 """The largest distance of equal rows, as a share of the longest row: the rounding of sums in single precision."""

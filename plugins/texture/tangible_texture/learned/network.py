@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float32, Float64
 
-from tangible_core.compiled.threads import in_turns
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.compiled import in_turns
+from tangible_core.runtime import plain_opencv
 
 from ..clusters.planes import add_planes, combine_planes
 from ..features.cells import window_means

@@ -7,7 +7,7 @@ import heapq
 import numpy as np
 from jaxtyping import Int32
 
-from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.compiled import KERNEL, njit
 
 from .borders import Border
 

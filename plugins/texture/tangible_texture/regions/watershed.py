@@ -5,7 +5,7 @@
 import numpy as np
 from jaxtyping import Float32, Int32
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
+from tangible_core.compiled import KERNEL, inner, njit
 
 LEVELS = 1024
 """The number of levels of height; low ones, where most waters meet, are finer than high ones."""

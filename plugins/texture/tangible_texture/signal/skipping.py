@@ -4,9 +4,8 @@ from typing import Literal
 
 import numpy as np
 
-from tangible_core.data import SegmentMap, Views
-from tangible_core.data.pictures import is_one_colour
-from tangible_core.plugins.interfaces import Segmenter, Skippable
+from tangible_core.data import SegmentMap, Views, is_one_colour
+from tangible_core.plugins import Segmenter, Skippable
 
 
 class Dividing(Segmenter, Skippable):

@@ -7,8 +7,8 @@ from math import log, sqrt
 import numpy as np
 from jaxtyping import Float32
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.compiled import KERNEL, inner, njit
+from tangible_core.runtime import plain_opencv
 
 TILE_PX = 128
 """The side of the tiles in which noise is measured, px."""

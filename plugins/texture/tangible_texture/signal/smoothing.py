@@ -5,8 +5,8 @@
 import numpy as np
 from jaxtyping import Float32
 
-from tangible_core.compiled.compiling import KERNEL, njit
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.compiled import KERNEL, njit
+from tangible_core.runtime import plain_opencv
 
 WIDER = 1.75
 """The sigma of region detection as a multiple of that of their boundaries.

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 from jaxtyping import Float32
 
-from tangible_core.data.pictures import luma
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.data import luma
+from tangible_core.runtime import plain_opencv
 
 from ..signal.smoothing import gaussian
 

@@ -14,9 +14,8 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from jaxtyping import Float32
 
-from tangible_core.compiled.compiling import KERNEL, njit
-from tangible_core.compiled.threads import in_turns
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.compiled import KERNEL, in_turns, njit
+from tangible_core.runtime import plain_opencv
 
 from ..signal.smoothing import gaussian
 

@@ -5,8 +5,7 @@
 import numpy as np
 from jaxtyping import Float64, Int32
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
-from tangible_core.compiled.elementary import logarithm
+from tangible_core.compiled import KERNEL, inner, logarithm, njit
 
 from .regions import Regions
 

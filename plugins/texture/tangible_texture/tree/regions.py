@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float32, Float64, Int32, Int64
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
+from tangible_core.compiled import KERNEL, inner, njit
 
 from ..regions.borders import ACROSS, DOWN
 from ..regions.refining import inner_cells

@@ -13,6 +13,6 @@ if TYPE_CHECKING:
 @hookimpl
 def tangible_commands(app: Typer) -> None:
     """Add `tangible ui`."""
-    from tangible_core.cli.command_table import add
+    from tangible_core.cli import add
 
     add("ui", f"{__package__}.ui:ui", "See, hear and feel a surface in the browser.")

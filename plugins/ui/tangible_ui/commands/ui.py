@@ -34,6 +34,6 @@ def _check_files(files: list[Path]) -> None:
     """Refuse a file that does not exist before a page is opened for it. Raises: PictureError, with a similar name."""
     for file in files:
         if not file.exists() and file.parts[:1] != ("builtin",):
-            from tangible_core.scene.formats.decoding import absent
+            from tangible_core.scene.formats import absent
 
             raise absent(file, "file")

@@ -7,11 +7,9 @@ from typing import final
 
 from tangible_core.data import Vector
 from tangible_core.errors import DeviceError
-from tangible_core.servo import Packed, Safety, Servo, null_touch
-from tangible_core.servo.limits import PAGE_SERVER_SILENCE_S
+from tangible_core.servo import PAGE_SERVER_SILENCE_S, Packed, Safety, Servo, null_touch
 from tangible_devices.pointer import PointerClient
 from tangible_devices.pointer.pointer import Pointer
-from tangible_web.hand import STALE_AFTER_S
 
 from .feeling import end_loop
 

@@ -10,10 +10,9 @@ from typing import Any, NamedTuple, final
 
 from tangible_core.errors import DeviceError, TangibleError
 from tangible_core.mapping import MappedDevice, WorkspaceMapping, placement_of
+from tangible_core.plugins import HapticDevice
 from tangible_core.plugins.failures import sentence
-from tangible_core.plugins.interfaces import HapticDevice
-from tangible_core.servo import Beacon, Packed, Safety, Servo, null_touch
-from tangible_core.servo.ring import STOP
+from tangible_core.servo import STOP, Beacon, Packed, Safety, Servo, null_touch
 from tangible_web.framing import BUTTON_BITS
 from tangible_web.hand import Hand
 from tangible_web.state_frame import ALONE, OtherLaw, frame_of, frame_without_loop

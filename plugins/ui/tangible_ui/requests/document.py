@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from tangible_core.errors import ConfigError
-from tangible_core.files.paths import as_path
+from tangible_core.files import as_path
 
 from ..state.session import Session, Tab
 from ..state.texts import Text

@@ -3,9 +3,9 @@
 from typing import Any
 
 from tangible_core.data import TICK_COLUMNS
-from tangible_core.files.yaml.editing import json_in_yaml
-from tangible_core.plugins.interfaces import Medium
-from tangible_core.servo.ring import PERIOD_NS, SPINS
+from tangible_core.files.yaml import json_in_yaml
+from tangible_core.plugins import Medium
+from tangible_core.servo import PERIOD_NS, SPINS
 
 from ..state.session import Session, Tab
 from ..worker.messages import Late

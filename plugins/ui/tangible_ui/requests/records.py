@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from tangible_core.errors import ConfigError, DeviceError
-from tangible_core.files.paths import as_path
+from tangible_core.files import as_path
 from tangible_core.session import About, names_in
 
 from ..feeling.recorder import Recorder

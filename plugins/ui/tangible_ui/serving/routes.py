@@ -14,7 +14,7 @@ from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from tangible_core.errors import TangibleError
-from tangible_core.files.reading import MOST_BYTES, in_words
+from tangible_core.files import MOST_BYTES, in_words
 from tangible_core.translation import translate
 from tangible_web.access import Guarded
 from tangible_web.address import static

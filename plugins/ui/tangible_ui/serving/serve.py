@@ -16,7 +16,7 @@ from typing import Any, final
 
 import uvicorn
 
-from tangible_core.runtime.signals import ENDING
+from tangible_core.runtime import ENDING
 from tangible_web.address import Address
 from tangible_web.hand import KEEP_S
 from tangible_web.server import settings

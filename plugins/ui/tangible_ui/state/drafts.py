@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, final
 
 from tangible_core.errors import OutputError
-from tangible_core.files.writing import write_text
+from tangible_core.files import write_text
 
 from ..stale_files import left_in
 from .texts import Text

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import final
 
 from tangible_core.errors import ConfigError, quoted
-from tangible_core.files.reading import MOST_BYTES, in_words
+from tangible_core.files import MOST_BYTES, in_words
 
 MOST_FILES = 16
 """Maximum number of files of one drop: two pictures with their maps, or a pipeline file and its pictures."""

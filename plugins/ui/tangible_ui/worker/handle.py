@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, final
 
 from tangible_core.errors import TangibleError, shown
-from tangible_core.servo.framing import receive, send
+from tangible_core.servo import receive, send
 
 from ..prestart import take_worker_process
 from .messages import Event, JobFailure, JobRequest, JobResult

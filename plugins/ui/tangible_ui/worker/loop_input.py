@@ -5,11 +5,11 @@ from typing import Any
 
 from tangible_core.data import HapticSurface
 from tangible_core.mapping import over
-from tangible_core.pipeline.config.model import PipelineConfig
-from tangible_core.pipeline.engine.stage import Progress
-from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.plugins.interfaces import Touch
-from tangible_core.runtime.child_process import dumps
+from tangible_core.pipeline import Pipeline
+from tangible_core.pipeline.config import PipelineConfig
+from tangible_core.pipeline.engine import Progress
+from tangible_core.plugins import Touch
+from tangible_core.runtime import dumps
 from tangible_core.servo import pack_touch
 from tangible_core.session import materials_text
 

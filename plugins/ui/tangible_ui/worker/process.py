@@ -13,9 +13,8 @@ from pathlib import Path
 from typing import IO, Any, final
 
 from tangible_core.errors import OutputError
-from tangible_core.runtime.system.processes import all_threads, lower_priority
-from tangible_core.runtime.system.streams import take_input
-from tangible_core.servo.framing import receive, send, sendable
+from tangible_core.runtime.system import all_threads, lower_priority, take_input
+from tangible_core.servo import receive, send, sendable
 
 from .messages import Event, JobFailure, JobRequest, JobResult
 

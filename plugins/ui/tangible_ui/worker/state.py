@@ -8,13 +8,11 @@ from typing import Any, final
 from weakref import WeakKeyDictionary
 
 from tangible_core.errors import Stopped
-from tangible_core.pipeline.config.model import PipelineConfig
-from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.pipeline.engine.cache import Cache
-from tangible_core.pipeline.engine.stage import StageEvent
-from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.pipeline import Pipeline
+from tangible_core.pipeline.config import PipelineConfig, parse_config
+from tangible_core.pipeline.engine import Cache, StageEvent
 from tangible_core.plugins.registry import Registry, default_registry
-from tangible_core.scene.scene_files import SceneFiles
+from tangible_core.scene import SceneFiles
 
 NEVER = -1
 

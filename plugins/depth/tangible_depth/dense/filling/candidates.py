@@ -27,7 +27,7 @@ import numpy as np
 from jaxtyping import Int16, Int32, Int64, UInt8
 from numba import int32, uint32
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
+from tangible_core.compiled import KERNEL, inner, njit
 
 from ..span import UNKNOWN
 

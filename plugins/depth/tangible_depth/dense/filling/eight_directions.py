@@ -8,8 +8,7 @@ import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int32, uint16
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
-from tangible_core.compiled.threads import in_blocks, in_turns
+from tangible_core.compiled import KERNEL, in_blocks, in_turns, inner, njit
 
 from ..span import UNKNOWN
 from .candidates import GEODESIC_SCORE, geodesic_candidates, known_or_nearest, project_to_right, score_candidate

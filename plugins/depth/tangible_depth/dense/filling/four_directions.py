@@ -12,8 +12,7 @@ import numpy as np
 from jaxtyping import Bool, Int16, Int32, Int64, UInt8
 from numba import int32
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
-from tangible_core.compiled.threads import in_blocks
+from tangible_core.compiled import KERNEL, in_blocks, inner, njit
 
 from ..span import UNKNOWN
 from .candidates import (

@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Int16, UInt8
 
-from tangible_core.compiled.background import LATE_STEPS, wait_for
+from tangible_core.compiled import LATE_STEPS, wait_for
 
 from ..span import UNKNOWN
 from .eight_directions import fill_from_eight_directions

@@ -11,8 +11,7 @@ import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int16, int32, uint16
 
-from tangible_core.compiled.compiling import KERNEL, inner, njit
-from tangible_core.compiled.threads import in_blocks
+from tangible_core.compiled import KERNEL, in_blocks, inner, njit
 
 from ...simd.lane_reductions import total
 from ...simd.lanes import Lanes, add, load, minimum, multiply, splat, subtract

@@ -7,7 +7,7 @@ Imports numba: a method imports this module inside its verb.
 
 from numba import int64, void
 
-from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.compiled import KERNEL, njit
 
 from .packet import BYTES, SIZE, START, is_packet
 

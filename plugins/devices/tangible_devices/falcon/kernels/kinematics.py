@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numba import boolean, float64, types
 
-from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.compiled import KERNEL, njit
 
 THIGH_M, SHIN_M, HINGE_M, ENDS_M = 0.060, 0.1025, 0.01443, 0.01125 + 0.01125
 """Stamper's a, b, c and d + e: thigh, shin parallelogram, offset of the tip's hinge, the two ends of the shin."""

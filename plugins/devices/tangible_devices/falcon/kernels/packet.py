@@ -9,7 +9,7 @@ Source: libnifalcon, FalconFirmwareNovintSDK.cpp. Imports numba: a method import
 
 from numba import boolean, float64, int64, types, uint8, void
 
-from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.compiled import KERNEL, njit
 
 SIZE = 16
 START, END, ZERO = 0x3C, 0x3E, 0x41

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import boolean, float64, int64, void
 
-from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.compiled import KERNEL, njit
 
 from . import framing
 from .framing import DOUBTFUL, FRESH

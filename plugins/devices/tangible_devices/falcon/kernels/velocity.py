@@ -8,7 +8,7 @@ Imports numba: a method imports this module inside its verb.
 import numpy as np
 from numba import float64, int64, types
 
-from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.compiled import KERNEL, njit
 
 BAND_COUNTS = 1.0
 """Largest distance of a sample from the line, as an encoder rounds to whole counts."""

@@ -11,7 +11,7 @@ from typing import Protocol, final
 import numpy as np
 from numba import float64, int64, void
 
-from tangible_core.compiled.compiling import KERNEL, njit
+from tangible_core.compiled import KERNEL, njit
 
 from ..kernels.kinematics import CENTRE_M, force, inverse, jacobian
 

@@ -9,7 +9,7 @@ import struct
 from pathlib import Path
 
 from tangible_core.errors import DeviceError
-from tangible_core.files.reading import check_file
+from tangible_core.files import check_file
 
 KEY = 0x08AA
 RESERVED_WORDS = 8

@@ -4,7 +4,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from tangible_core.pipeline.config.parsing import parse_config
+from tangible_core.pipeline.config import parse_config
 from tangible_devices.installed import examine_device, installed_devices
 
 from ..state import WorkerState

@@ -8,18 +8,22 @@ from typing import Any, cast
 from ruamel.yaml.error import YAMLError
 
 from tangible_core.errors import Complaint, ConfigError, quoted
-from tangible_core.files.paths import as_path
-from tangible_core.files.writing import write_text
-from tangible_core.files.yaml.source import parse_value, plain, read_text
-from tangible_core.materials.assignment import load_library
-from tangible_core.pipeline.config.editing import REMOVE, edit_text, read_values, relocate_text, with_overrides
-from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.pipeline.config.schema import json_schema
-from tangible_core.pipeline.starter import are_pictures, starter
-from tangible_core.scene.formats.kinds import MAPS, PICTURES, VIDEOS
-from tangible_core.scene.scene_files import BUILTINS
-from tangible_core.scene.workspace import kind_of
-from tangible_core.session.recording.files import SUFFIXES
+from tangible_core.files import as_path, write_text
+from tangible_core.files.yaml import parse_value, plain, read_text
+from tangible_core.materials import load_library
+from tangible_core.pipeline import are_pictures, starter
+from tangible_core.pipeline.config import (
+    REMOVE,
+    edit_text,
+    json_schema,
+    parse_config,
+    read_values,
+    relocate_text,
+    with_overrides,
+)
+from tangible_core.scene import BUILTINS, kind_of
+from tangible_core.scene.formats import MAPS, PICTURES, VIDEOS
+from tangible_core.session import SUFFIXES
 
 from ..state import WorkerState
 from .table import job

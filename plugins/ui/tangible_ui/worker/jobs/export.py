@@ -9,15 +9,11 @@ from pathlib import Path
 from typing import Any
 from zipfile import ZIP_DEFLATED, ZipFile
 
-from tangible_core.data.records import digest_of as digest_of_records
+from tangible_core.data import digest_of as digest_of_records
 from tangible_core.errors import ConfigError
-from tangible_core.files.yaml.editing import json_in_yaml
-from tangible_core.pipeline.output.export_folder import read_list
-from tangible_core.pipeline.output.export_result import Exported
-from tangible_core.pipeline.output.exporting import work_for
-from tangible_core.pipeline.output.legible import drawn_width_m, with_width
-from tangible_core.plugins.interfaces import Previewing
-from tangible_core.plugins.notes import silently
+from tangible_core.files.yaml import json_in_yaml
+from tangible_core.pipeline.output import Exported, drawn_width_m, read_list, with_width, work_for
+from tangible_core.plugins import Previewing, silently
 
 from ..state import WorkerState
 from ..view.files import leave, write_whole

@@ -7,13 +7,11 @@ from typing import Any, cast
 
 from tangible_core.data import HapticSurface
 from tangible_core.errors import ConfigError, quoted
-from tangible_core.files.writing import write_text
-from tangible_core.files.yaml.editing import json_in_yaml
-from tangible_core.files.yaml.source import parse_value, plain
-from tangible_core.pipeline.config.editing import relocate_text
-from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.pipeline.engine.preview import product_at_hand
-from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.files import write_text
+from tangible_core.files.yaml import json_in_yaml, parse_value, plain
+from tangible_core.pipeline import Pipeline
+from tangible_core.pipeline.config import parse_config, relocate_text
+from tangible_core.pipeline.engine import product_at_hand
 from tangible_core.servo import beacon_to, parcel
 
 from ...user_data import user_folder

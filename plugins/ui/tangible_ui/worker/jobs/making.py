@@ -9,11 +9,10 @@ from typing import Any, cast
 
 import numpy as np
 
-from tangible_core.data import Outcome, Plan
-from tangible_core.data.products import PRODUCTS
+from tangible_core.data import PRODUCTS, Outcome, Plan
 from tangible_core.errors import TangibleError
-from tangible_core.pipeline.engine.stage import Progress, StageEvent
-from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.pipeline import Pipeline
+from tangible_core.pipeline.engine import Progress, StageEvent
 
 from ..loop_input import loop_input_of
 from ..state import Work, WorkerState

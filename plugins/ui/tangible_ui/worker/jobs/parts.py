@@ -7,20 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from tangible_core.data import HapticSurface, SegmentMap
-from tangible_core.data.records import digest_of
+from tangible_core.data import HapticSurface, SegmentMap, digest_of
 from tangible_core.errors import ConfigError
 from tangible_core.parts import find_parts
-from tangible_core.pipeline.config.editing import edit_text, relocate_text
-from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.pipeline.engine.part_validation import check_parts
-from tangible_core.pipeline.engine.preview import (
+from tangible_core.pipeline import Pipeline
+from tangible_core.pipeline.config import edit_text, parse_config, relocate_text
+from tangible_core.pipeline.engine import (
     PartHeightPreview,
+    check_parts,
     config_heights,
     preview_config,
     without_entries,
 )
-from tangible_core.pipeline.pipeline import Pipeline
 
 from ..loop_input import parcel_of
 from ..parts import opening, saving

@@ -5,12 +5,10 @@ from pathlib import Path
 from typing import Any
 
 from tangible_authoring.fixing import AT_ONCE, cure
-from tangible_core.pipeline.feeling import Feeling
-from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.plugins.interfaces import Medium
-from tangible_core.preflight import Hand, Loop, Preflight, judge
-from tangible_core.preflight.timing import Lateness
-from tangible_core.runtime.stopping import stoppable
+from tangible_core.pipeline import Feeling, Pipeline
+from tangible_core.plugins import Medium
+from tangible_core.preflight import Hand, Lateness, Loop, Preflight, judge
+from tangible_core.runtime import stoppable
 
 from ..messages import Late
 from ..state import WorkerState

@@ -5,13 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from tangible_core.data import TICK_COLUMNS
-from tangible_core.data.records import digest_of
+from tangible_core.data import TICK_COLUMNS, digest_of
 from tangible_core.errors import OutputError
-from tangible_core.files.paths import as_path
-from tangible_core.pipeline.feeling import Feeling
-from tangible_core.session import Recording, compare_recordings, compare_replay
-from tangible_core.session.recording.files import SUFFIXES
+from tangible_core.files import as_path
+from tangible_core.pipeline import Feeling
+from tangible_core.session import SUFFIXES, Recording, compare_recordings, compare_replay
 from tangible_web.framing import FLAG_BITS
 
 from ...user_data import RECORDINGS, user_folder

@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float32, Float64, Shaped
 
-from tangible_core.data import Material
-from tangible_core.data.records import digest_of
+from tangible_core.data import Material, digest_of
 from tangible_core.errors import GeometryError
-from tangible_core.pipeline.output.exporting import title_of
-from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.scene.workspace import kind_of
+from tangible_core.pipeline import Pipeline
+from tangible_core.pipeline.output import title_of
+from tangible_core.scene import kind_of
 from tangible_legibility.words.languages import LANGUAGES, Language
 from tangible_render.haptic_textures.waves import waves
 from tangible_report.description import describe, describe_at_length, facts, page_of

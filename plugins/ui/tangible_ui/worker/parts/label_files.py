@@ -11,8 +11,8 @@ from jaxtyping import Int32, UInt16
 
 from tangible_authoring.label_picture import label_picture
 from tangible_core.errors import ConfigError
-from tangible_core.files.reading import MOST_PIXELS
-from tangible_core.scene.formats.pictures import MAX_LABELS
+from tangible_core.files import MOST_PIXELS
+from tangible_core.scene.formats import MAX_LABELS
 
 NAME = "parts.png"
 GZIP = 31

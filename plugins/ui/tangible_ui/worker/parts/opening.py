@@ -8,17 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import UInt8
 
-from tangible_core.data import SegmentMap, SegmentTree
-from tangible_core.data.pictures import to_rgb8
-from tangible_core.data.records import digest_of
-from tangible_core.data.views import PartMap, border_pixels
+from tangible_core.data import PartMap, SegmentMap, SegmentTree, border_pixels, digest_of, to_rgb8
 from tangible_core.parts import PartChoice, find_parts, part_sizes
-from tangible_core.pipeline.config.model import PipelineConfig
-from tangible_core.pipeline.engine.part_validation import parts_of
-from tangible_core.pipeline.engine.preview import config_heights, is_at_hand
-from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.plugins.interfaces import Hierarchical
-from tangible_core.scene.scene import Scene
+from tangible_core.pipeline import Pipeline
+from tangible_core.pipeline.config import PipelineConfig
+from tangible_core.pipeline.engine import config_heights, is_at_hand, parts_of
+from tangible_core.plugins import Hierarchical
+from tangible_core.scene import Scene
 
 from ..state import WorkerState
 from ..view.files import leave, write_whole

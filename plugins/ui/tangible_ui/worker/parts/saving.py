@@ -13,13 +13,10 @@ from jaxtyping import Int32, Shaped, UInt16
 
 from tangible_core.data import PartMap
 from tangible_core.errors import ConfigError, quoted
-from tangible_core.files.writing import atomic_write, sole_writer, write_text
-from tangible_core.files.yaml.parts_block import with_parts
-from tangible_core.files.yaml.source import read_text
-from tangible_core.pipeline.config.editing import REMOVE, edit_text, read_values
-from tangible_core.pipeline.config.model import PipelineConfig
-from tangible_core.scene.scene import Scene
-from tangible_core.scene.scene_files import BUILTINS, SceneFiles, builtin_files
+from tangible_core.files import atomic_write, sole_writer, write_text
+from tangible_core.files.yaml import read_text, with_parts
+from tangible_core.pipeline.config import REMOVE, PipelineConfig, edit_text, read_values
+from tangible_core.scene import BUILTINS, Scene, SceneFiles, builtin_files
 
 from .label_files import NAME, is_ours
 from .opening import Opened

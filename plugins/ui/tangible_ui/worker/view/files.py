@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Float32, Shaped
 from PIL import Image
 
-from tangible_core.data.pictures import to_grey
+from tangible_core.data import to_grey
 from tangible_core.errors import OutputError
 from tangible_web.materials import distinct_materials
 

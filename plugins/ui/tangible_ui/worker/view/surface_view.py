@@ -7,18 +7,12 @@ from typing import Literal, NamedTuple
 import numpy as np
 from jaxtyping import Float32, Int32
 
-from tangible_core.data import DisparityMap, HapticSurface, Material, PartMap, Relief, SegmentMap
-from tangible_core.data.products import Product
-from tangible_core.data.records import digest_of
+from tangible_core.data import DisparityMap, HapticSurface, Material, PartMap, Product, Relief, SegmentMap, digest_of
 from tangible_core.metrics import absolute_error
-from tangible_core.pipeline.config.model import PipelineConfig
-from tangible_core.pipeline.config.part_checks import names_of
-from tangible_core.pipeline.engine.preview import is_at_hand, product_at_hand
-from tangible_core.pipeline.engine.stages.touch import fit_to_device
-from tangible_core.pipeline.engine.working_grid import parts_on_grid
-from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.scene.geometry import RANGE_PERCENT, flat_relief
-from tangible_core.scene.scaling import reduced_map, reduced_segments, reduced_shape
+from tangible_core.pipeline import Pipeline
+from tangible_core.pipeline.config import PipelineConfig, names_of
+from tangible_core.pipeline.engine import fit_to_device, is_at_hand, parts_on_grid, product_at_hand
+from tangible_core.scene import RANGE_PERCENT, flat_relief, reduced_map, reduced_segments, reduced_shape
 
 Shows = Literal["surface", "relief", "segments"]
 MOST_LAYER_CELLS = 1_000_000

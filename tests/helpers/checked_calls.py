@@ -26,7 +26,7 @@ from beartype import BeartypeConf, FrozenDict, beartype
 OURS = (
     "tangible_core", "tangible_depth", "tangible_texture", "tangible_render", "tangible_devices",
     "tangible_export", "tangible_authoring", "tangible_batch", "tangible_bench", "tangible_report",
-    "tangible_legibility", "tangible_send", "tangible_study", "tangible_ui", "tangible_web",
+    "tangible_legibility", "tangible_networks", "tangible_send", "tangible_study", "tangible_ui", "tangible_web",
 )  # fmt: skip
 UNCHECKED = {
     "tangible_devices.commands.devices": "typer's Context, as its documentation has it, is given another class's",

@@ -508,7 +508,7 @@ def _network(path: Path) -> object:
     """Check a network, and run in this process what passes the checks: what ends it is a finding."""
     from tangible_core.data import Views
     from tangible_depth import Onnx
-    from tangible_depth.network import runtimes
+    from tangible_networks import runtimes
 
     ran = {"_key": lambda *_: "ran", "Cache": lambda: {"ran"}}
     with patch.multiple(runtimes, **ran):
@@ -516,7 +516,7 @@ def _network(path: Path) -> object:
 
 
 def _network_inputs(path: Path) -> object:
-    from tangible_depth.network.onnx_file import read_inputs
+    from tangible_networks.onnx_file import read_inputs
 
     return read_inputs(path)
 
@@ -532,7 +532,7 @@ output: {name: disparity, means: disparity-px, confidence: sure}
 
 
 def _card(path: Path) -> object:
-    from tangible_depth.network.card import read_card
+    from tangible_networks.card import read_card
 
     return read_card(path)
 

@@ -10,10 +10,9 @@ from pydantic import Field
 from tangible_core.data import DisparityMap, Views, to_rgb
 from tangible_core.errors import ConfigError, ModelAbsent, PictureError, TangibleError
 from tangible_core.plugins import DepthEstimator, Skippable, note
-
-from .network.card import PRESETS, Card, check_file, read_card
-from .network.fitting import Colours, Map, fit_size, map_in_strips, restore_size, tensor, to_disparity
-from .network.runtimes import Runtime, run
+from tangible_networks.card import PRESETS, Card, check_file, read_card
+from tangible_networks.fitting import Colours, Map, fit_size, map_in_strips, restore_size, tensor, to_disparity
+from tangible_networks.runtimes import Runtime, run
 
 log: logging.Logger = logging.getLogger(__name__)
 

@@ -28,8 +28,8 @@ from tangible_core.testing import run_checks
 from tangible_core.testing.synthetic.scenes import wall
 from tangible_depth import Auto, Luminance, Onnx, SemiGlobal
 from tangible_depth import onnx as method
-from tangible_depth.network import runtimes
-from tangible_depth.network.onnx_file import read_inputs
+from tangible_networks import runtimes
+from tangible_networks.onnx_file import read_inputs
 
 RUNTIMES = ("opencv", "onnxruntime")
 STEREO = "input: {left: left, right: right}\noutput: {means: disparity-px}\n"

@@ -8,7 +8,7 @@ import pytest
 
 import onnx_models
 from tangible_core.errors import BrokenMethod, ConfigError
-from tangible_depth.network import runtimes
+from tangible_networks import runtimes
 
 PICTURE = {"": np.random.default_rng(0).random((1, 3, 8, 9), np.float32)}
 RUNTIMES = ("opencv", "onnxruntime")

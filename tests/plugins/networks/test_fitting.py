@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tangible_core.data import Views
-from tangible_depth.network.card import NetworkInput
-from tangible_depth.network.fitting import Fit, fit_size, map_in_strips, restore_size, tensor, to_disparity
+from tangible_networks.card import NetworkInput
+from tangible_networks.fitting import Fit, fit_size, map_in_strips, restore_size, tensor, to_disparity
 
 PAD, RESIZE = NetworkInput(multiple=32), NetworkInput(multiple=14, fit="resize")
 

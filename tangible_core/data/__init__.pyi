@@ -6,6 +6,7 @@ from .device import HapticState as HapticState
 from .device import Unit as Unit
 from .device import Vector as Vector
 from .device import limited as limited
+from .figure import Figure as Figure
 from .outcome import Kind as Kind
 from .outcome import Note as Note
 from .outcome import NoteKind as NoteKind

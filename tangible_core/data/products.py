@@ -7,11 +7,12 @@ from typing import Any, Literal, NamedTuple, cast
 import numpy as np
 
 from ..errors import BrokenMethod
+from .figure import Figure
 from .records import Record
 from .surface import HapticSurface, MaterialMap, Relief
 from .views import DisparityMap, PartMap, SegmentMap
 
-Product = Literal["disparity", "relief", "segments", "parts", "simplified", "materials", "surface", "touch"]
+Product = Literal["disparity", "figure", "relief", "segments", "parts", "simplified", "materials", "surface", "touch"]
 
 
 class ProductRow(NamedTuple):
@@ -27,6 +28,7 @@ class ProductRow(NamedTuple):
 
 PRODUCTS: Mapping[Product, ProductRow] = {
     "disparity": ProductRow(DisparityMap, "disparity", in_report=True),
+    "figure": ProductRow(Figure),
     "relief": ProductRow(Relief, "relief"),
     "segments": ProductRow(SegmentMap, "segments", in_report=True),
     "parts": ProductRow(PartMap, "parts", in_report=True),

@@ -86,6 +86,11 @@ class Specs:
         imported, and the first answer counts."""
 
     @hookspec
+    def tangible_networks(self) -> Mapping[str, str]:  # pyright: ignore[reportReturnType]
+        """Return the functions that `look` at a photograph with networks, and tell the `identity` of those that are
+        here, as 'package.module:function'; nothing is imported, and the first answer counts."""
+
+    @hookspec
     def tangible_commands(self, app: Typer) -> None:
         """Add commands to `tangible`."""
 

@@ -1,22 +1,19 @@
 """Method `auto`: the method that suits the scene and the installed networks."""
 
 import logging
-import os
 from collections.abc import Callable
 from pathlib import Path
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.errors import TangibleError
-from tangible_core.files import as_path
-from tangible_core.plugins import DepthEstimator, Following, note
+from tangible_core.plugins.interfaces import DepthEstimator, Following
+from tangible_core.plugins.notes import note
+from tangible_networks.store import networks_here
 
 from .luminance import Luminance
 from .onnx import Onnx
 from .semi_global import SemiGlobal
 
 log: logging.Logger = logging.getLogger(__name__)
-VARIABLE = "TANGIBLE_MODELS_DIR"
-"""Environment variable of the folder of networks."""
 
 
 class Auto(DepthEstimator, Following):
@@ -68,19 +65,7 @@ class Auto(DepthEstimator, Following):
 
 def _network() -> Onnx | None:
     """Return the first network for one picture."""
-    try:
-        for model in sorted(_folder().glob("*.onnx")):
-            network = Onnx(model=model)
-            if model.with_suffix(".yaml").is_file() and not network.needs_pair:
-                return network
-    except (TangibleError, OSError) as error:
-        log.warning("networks cannot be listed: %s", error)
+    for network in networks_here("depth"):
+        if not network.card.is_stereo:
+            return Onnx(model=network.path, card=network.name)
     return None
-
-
-def _folder() -> Path:
-    if folder := os.environ.get(VARIABLE):
-        return as_path(folder, VARIABLE)
-    from platformdirs import user_data_path
-
-    return user_data_path("tangible-images") / "models"

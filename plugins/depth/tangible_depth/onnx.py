@@ -9,8 +9,9 @@ from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views, to_rgb
 from tangible_core.errors import ConfigError, ModelAbsent, PictureError, TangibleError
-from tangible_core.plugins import DepthEstimator, Skippable, note
-from tangible_networks.card import PRESETS, Card, check_file, read_card
+from tangible_core.plugins.interfaces import DepthEstimator, Skippable
+from tangible_core.plugins.notes import note
+from tangible_networks.card import Card, check_file, read_card, shipped_cards
 from tangible_networks.fitting import Colours, Map, fit_size, map_in_strips, restore_size, tensor, to_disparity
 from tangible_networks.runtimes import Runtime, run
 
@@ -64,7 +65,7 @@ class Onnx(DepthEstimator, Skippable):
         if self.model is None:
             raise ModelAbsent(
                 "onnx needs a network from you: depth: {use: onnx, model: FILE.onnx, card: NAME or FILE.yaml}; "
-                f"nothing is downloaded; cards are shipped for {', '.join(PRESETS)} (docs/learned-depth.md)"
+                "nothing is downloaded in a run; `tangible networks` lists those with a card (docs/learned-depth.md)"
             )
         card = self._card(self.model)
         check_file(self.model, card)
@@ -120,7 +121,7 @@ class Onnx(DepthEstimator, Skippable):
 
     def _card_file(self, model: Path) -> Path | None:
         """Return the card's file; None for a shipped card. A relative file may also lie next to the network."""
-        if self.card in PRESETS:
+        if self.card in shipped_cards():
             return None
         path = Path(self.card) if self.card else model.with_suffix(".yaml")
         next_to_model = model.parent / path

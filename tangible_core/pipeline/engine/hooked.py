@@ -1,0 +1,31 @@
+"""Functions that other packages name by a hook, imported when they are called for."""
+
+from importlib.metadata import EntryPoint
+from typing import Any
+
+from ...errors import BrokenMethod, shown
+from ...plugins import hooks
+from ...plugins.registry import Registry
+from ...runtime.failure_log import where_kept
+
+
+def hooked_point(registry: Registry, hook: str, name: str, purpose: str) -> EntryPoint:
+    """Find the function that a hook names, without importing it; the first of several. Raises: BrokenMethod for none.
+
+    purpose: what the function does, a verb with its object, for the message.
+    """
+    for answer in hooks.tell(registry.plugins, hook):
+        if isinstance(answer, dict) and isinstance(value := answer.get(name), str):  # pyright: ignore[reportUnknownMemberType, reportUnknownVariableType]
+            return EntryPoint(name, value, hook)
+    raise BrokenMethod(f"no hook {hook} names a function to {purpose}; reinstall tangible-images")
+
+
+def load_hooked(point: EntryPoint, purpose: str) -> Any:
+    """Import a function that a hook names. Raises: BrokenMethod."""
+    try:
+        return point.load()
+    except (Exception, SystemExit) as error:
+        raise BrokenMethod(
+            f"{point.value}, which {point.group} names to {purpose}, cannot be loaded: {type(error).__name__}: "
+            f"{shown(str(error), 500)}; {where_kept(error)}"
+        ) from error

@@ -1,0 +1,29 @@
+"""What networks see in the picture: a figure, borders, faces."""
+
+from functools import cached_property
+
+from ....data import Figure
+from ..networks import look_function, networks_identity
+from ..stage import Inputs, Stage
+
+
+class FigureStage(Stage):
+    """Look at the left view with the networks that are here."""
+
+    product = "figure"
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        return ("views",)
+
+    @cached_property
+    def key(self) -> str:
+        look = look_function(self.context.registry)
+        return f"{self.code(look.__module__)} {networks_identity(self.context.registry)}{self.reduction}"
+
+    def make(self, inputs: Inputs) -> Figure:
+        return look_function(self.context.registry)(self.views.left)
+
+    @property
+    def in_outcomes(self) -> bool:
+        return self.config.relief_kind == "figure"

@@ -25,6 +25,7 @@ from ..scene.scene import Scene
 from ..scene.scene_files import SceneFiles
 from .config.parsing import parse_config
 from .engine.cache import Cache
+from .engine.networks import networks_identity
 from .pipeline import Pipeline
 
 SIDE_MM = 80
@@ -34,11 +35,13 @@ SMOOTH_MM: Mapping[str, float] = {"photo": 1.5, "heights": 0.0}
 PHOTOS: Mapping[str, str] = {
     "edges": "relief: edges                      # edges: raised lines, on low steps from dark to light; disparity: "
     "lighter is higher",
+    "figure": "relief: figure                     # figure: what networks see stands out; edges: raised lines alone",
     "depth": "relief: {slope: 1.1}               # slope: nowhere steeper; less is gentler, 0 keeps cliffs",
     "brightness": "  relief_m: $relief_mm mm            # from the lowest point to the highest; more is steeper\n"
     "  smooth_m: $smooth_mm mm            # less keeps finer detail, and makes steeper edges",
 }
-"""Lines for one picture: felt by its edges, its depth or its brightness; each comment stays true when values change."""
+"""Lines for one picture: felt by its edges, what networks see, its depth or its brightness; each comment stays true
+when values change."""
 STEEPEST = 0.6
 """The slope that at most a twentieth of the relief exceeds: from 1 on, 45 degrees, the sideways force is larger than
 the force down."""
@@ -162,10 +165,13 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
 
 
 def _felt_of(scene: Scene) -> str:
-    """Return the key of PHOTOS for one picture: depth if a network finds it, else edges; brightness if it moves."""
-    method = default_registry().load("depth", "auto")()
+    """Return the key of PHOTOS for one picture: what networks find, depth first, else edges; brightness if it moves."""
+    registry = default_registry()
+    method = registry.load("depth", "auto")()
     if isinstance(method, DepthEstimator) and method.finds_depth:
         return "depth"
+    if scene.frames is None and networks_identity(registry):
+        return "figure"
     return "edges" if scene.frames is None else "brightness"
 
 

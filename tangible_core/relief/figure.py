@@ -3,7 +3,7 @@
 Networks see the figure, the borders and the faces (`tangible_core.data.Figure`); what they do not see stays ground.
 """
 # scipy has no types.
-# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
 
 import numpy as np
 from jaxtyping import Bool, Float32
@@ -37,7 +37,7 @@ FEATURES = 0.01
 of the brightness, over the face's width."""
 FINE, COARSE = 0.012, 0.12
 """Standard deviations of the Gaussians whose difference has these features, over the face's width."""
-LEAST_FACE_CELLS = 30
+MIN_FACE_CELLS = 30
 """Fewest cells of a face that has a shape."""
 
 
@@ -62,7 +62,11 @@ def figure_relief(views: Views, seen: Figure, size: FeltSize, choice: ReliefChoi
         light = _lightness(small)
         for face in seen.faces:
             _add_face(
-                height_m, (face + np.float32([0.5, 0.5, 0])) * np.float32(shape[1] / columns), light, pitch_m, size
+                height_m,
+                (face + np.array([0.5, 0.5, 0], np.float32)) * np.float32(shape[1] / columns),
+                light,
+                pitch_m,
+                size,
             )
         height_m = np.ascontiguousarray(height_m - height_m.min(), np.float32)
         limited = limit_slopes(height_m, pitch_m, choice.slope)
@@ -103,14 +107,14 @@ def _add_face(
     scale = min(FACE_SCALE, FACE * size.relief_m / max(float(np.ptp(depth_m)), 1e-9))
     own_m = np.asarray(LinearNDInterpolator(face[:, :2].astype(np.float64), scale * depth_m)(column, row))
     inside = np.isfinite(own_m)
-    if int(inside.sum()) < LEAST_FACE_CELLS:
+    from_rim_m = np.asarray(distance_transform_edt(np.pad(inside, 1)))[1:-1, 1:-1] * pitch_m
+    rim = inside & (from_rim_m < RIM_M)
+    if int(inside.sum()) < MIN_FACE_CELLS or not rim.any():
         return
     width = float(np.ptp(face[:, 0]))
     features = (_blurred(light, FINE * width) - _blurred(light, COARSE * width))[box]
     spread = max(float(features[inside].std()), 1e-6)
     own_m = np.where(inside, own_m, 0) + FEATURES * width * pitch_m * np.clip(features / spread, -2, 2)
-    from_rim_m = np.asarray(distance_transform_edt(np.pad(inside, 1)))[1:-1, 1:-1] * pitch_m
-    rim = inside & (from_rim_m < RIM_M)
     own_m += float(np.median(height_m[box][rim] - own_m[rim]))
     share = np.clip(from_rim_m / RIM_M, 0, 1)
     share = share * share * (3 - 2 * share)

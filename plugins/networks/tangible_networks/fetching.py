@@ -164,6 +164,8 @@ def _download_address(address: str, partial: Path, size: int, progress: Progress
                     if have > MAX_BYTES:
                         raise FetchError(f"{address}: is larger than {MAX_BYTES / 1e9:g} GB; is it the right address?")
                     progress(have, whole)
+        if have < whole:  # the connection broke off, which is no error by itself
+            raise OSError(f"{have} of {whole} bytes came")
     except HTTPError as error:
         if error.code != 416:  # nothing is left to download
             raise FetchError(f"{address}: the server answers {error.code} {error.reason}") from error

@@ -9,9 +9,10 @@ from tangible_core.data import Figure
 from tangible_core.data.pictures import to_rgb
 from tangible_core.plugins.notes import note
 
+from .card import Task
 from .fitting import Colours, fit_size, resize, restore_size, tensor
 from .runtimes import run
-from .store import KnownNetwork, networks_here
+from .store import networks_here
 
 log: logging.Logger = logging.getLogger(__name__)
 MAX_PX = {"figure": 102_400, "borders": 154_401, "faces": 4_000_000}
@@ -27,12 +28,18 @@ def look(picture: np.ndarray) -> Figure:
     picture: uint8, uint16 or float (h, w), (h, w, 3) or (h, w, 4). Raises: ConfigError for a network that cannot run.
     """
     colours = to_rgb(picture)
-    shape = colours.shape[:2]
-    maps = {task: _map(colours, networks) for task in ("figure", "borders") if (networks := networks_here(task))}
-    figure, borders = maps.get("figure"), maps.get("borders")
-    if figure is not None:
-        figure = restore_map(figure, shape) if float(figure.max()) > SURE else np.zeros(shape, np.float32)
-    return Figure(figure, None if borders is None else restore_map(borders, shape), _faces(colours))
+    borders = _map(colours, "borders")
+    return Figure(
+        look_for_figure(colours), None if borders is None else restore_map(borders, colours.shape[:2]), _faces(colours)
+    )
+
+
+def look_for_figure(colours: Colours) -> Float32[np.ndarray, "h w"] | None:
+    """Return how surely each pixel belongs to the figure; 0 in a picture without one, None without a network."""
+    figure = _map(colours, "figure")
+    if figure is None:
+        return None
+    return restore_map(figure if float(figure.max()) > SURE else np.zeros_like(figure), colours.shape[:2])
 
 
 def restore_map(values: Float32[np.ndarray, "r c"], shape: tuple[int, int]) -> Float32[np.ndarray, "h w"]:
@@ -40,8 +47,11 @@ def restore_map(values: Float32[np.ndarray, "r c"], shape: tuple[int, int]) -> F
     return np.clip(resize(values, shape), 0, 1)
 
 
-def _map(colours: Colours, networks: list[KnownNetwork]) -> Float32[np.ndarray, "r c"]:
-    """Return the map of the first network of a task, in the size in which it sees the picture."""
+def _map(colours: Colours, task: Task) -> Float32[np.ndarray, "r c"] | None:
+    """Return the map of the first network of a task, in the size in which it sees the picture; None without one."""
+    networks = networks_here(task)
+    if not networks:
+        return None
     network = networks[0]
     card = network.card
     fit = fit_size(colours.shape[:2], card.input, MAX_PX[card.task])

@@ -7,7 +7,6 @@ from typing import Literal, NamedTuple, get_args
 
 from tangible_core.errors import ConfigError, TangibleError, did_you_mean
 from tangible_core.files.paths import as_path
-from tangible_core.files.reading import content_digest
 
 from .card import Card, Task, check_file, read_card, shipped_cards
 
@@ -25,6 +24,12 @@ class KnownNetwork(NamedTuple):
     card: Card
     path: Path
     """Where its file is, or would be."""
+
+    @property
+    def is_here(self) -> bool:
+        """True for a file of the right size, which is not read."""
+        size = self.card.size_bytes
+        return self.path.is_file() and (not size or self.path.stat().st_size == size)
 
     @property
     def state(self) -> State:
@@ -82,16 +87,17 @@ def chosen_networks(names: list[str]) -> list[KnownNetwork]:
 
 
 def networks_here(task: Task) -> list[KnownNetwork]:
-    """Return the networks for a task whose files are here and right; none for a folder that cannot be read."""
+    """Return the networks for a task whose files are here; none for a folder that cannot be read."""
     try:
-        return [
-            network for network in known_networks().values() if network.card.task == task and network.state == "here"
-        ]
+        return [network for network in known_networks().values() if network.card.task == task and network.is_here]
     except (TangibleError, OSError):
         return []
 
 
 def identity_here() -> str:
-    """Return a text with the digests of all networks here that see figures, borders or faces; "" without one."""
+    """Return a text that differs for other networks that see figures, borders or faces; "" without one.
+
+    Their files are not read: a file that was changed by hand has another time.
+    """
     present = (network for task in TASKS if task != "depth" for network in networks_here(task))
-    return " ".join(f"{network.name}:{network.card.sha256 or content_digest(network.path)}" for network in present)
+    return " ".join(f"{network.name}:{network.card.sha256}:{network.path.stat().st_mtime_ns}" for network in present)

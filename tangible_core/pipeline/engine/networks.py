@@ -20,8 +20,3 @@ def networks_identity(registry: Registry) -> str:
     """Return a text that differs wherever networks may see something else. Raises: BrokenMethod."""
     purpose = "tell which networks are here"
     return load_hooked(hooked_point(registry, HOOK, "identity", purpose), purpose)()
-
-
-def has_networks(registry: Registry) -> bool:
-    """Return True if there is a network that sees figures. Raises: BrokenMethod."""
-    return bool(networks_identity(registry))

@@ -3,6 +3,7 @@
 from functools import cached_property
 
 from ....data import Figure
+from ....errors import ModelAbsent, TangibleError
 from ..networks import look_function, networks_identity
 from ..stage import Inputs, Stage
 
@@ -23,6 +24,15 @@ class FigureStage(Stage):
 
     def make(self, inputs: Inputs) -> Figure:
         return look_function(self.context.registry)(self.views.left)
+
+    @cached_property
+    def refusal(self) -> TangibleError | None:
+        if networks_identity(self.context.registry):
+            return None
+        return ModelAbsent(
+            "relief: figure needs networks, and none is here; `tangible networks add figure borders faces` fetches "
+            "them, and `relief: edges` needs none"
+        )
 
     @property
     def in_outcomes(self) -> bool:

@@ -1,0 +1,194 @@
+"""Whether a photograph is recognised by touch: a machine hand strokes the surface, and networks look at what it felt.
+
+The hand knows its positions and the forces on it at 1 kHz, nothing else. What it felt becomes a map of heights, which
+is lit from twelve sides; networks then look for the face and the figure that they see in the photograph.
+"""
+# OpenCV and scipy have no types.
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+# pyright: reportUnknownMemberType=false
+
+import math
+from collections.abc import Mapping
+from statistics import fmean
+from typing import Any, NamedTuple
+
+import cv2
+import numpy as np
+from scipy.interpolate import LinearNDInterpolator
+
+from tangible_core import Pipeline, Scene
+from tangible_core.data import Figure as Seen
+from tangible_core.data import HapticState, HapticSurface
+from tangible_depth import Luminance
+from tangible_networks import faces as face_finding
+from tangible_networks.seeing import look, look_for_figure
+from tangible_networks.store import known_networks, networks_here
+from tangible_render import Proxy
+from tangible_texture import Hierarchy
+
+from .figures import Figure, MissedError, judged, table
+from .regions_drawn import photographs
+from .tests_path import drawn_parts
+
+NAMED = "astronaut", "chelsea", "coffee"
+"""Photographs that scikit-image ships."""
+SECONDS = 60, 600
+MIN_LIGHTS, MAX_MEAN_OFF, MIN_OVERLAP = 9, 0.04, 0.8
+TICK_S, PRESS_N, SPEED_M_PER_S = 1e-3, 1.0, 0.15
+GIVES_M_PER_N_S = 0.2
+"""How fast the hand gives way to a force that is not its press: 0.2 mm a tick and newton, below 2 / stiffness."""
+LANDING = 100
+"""Ticks at the start in which the hand comes down on one place."""
+LIGHTS = tuple(range(0, 360, 30))
+"""Directions of the light, degrees."""
+ELEVATION = 35
+MAX_OFF = 0.3
+"""Largest mean distance of the points of a face from those in the photograph, of its width: farther, it is another."""
+FOUND_SCORE = 0.5
+"""Least score of a face on a lit surface: the threshold that the finder was published with."""
+
+
+class Felt(NamedTuple):
+    """What networks see of a relief."""
+
+    lights: int
+    """Number of lights under which the photograph's face is found."""
+    off: float
+    """Mean distance of the face's points from the photograph's, of the face's width."""
+    overlap: float
+    """Intersection over union of the figure with the photograph's, the best of all lights."""
+    has_face: bool
+    """True if the photograph shows a face."""
+
+
+WAYS: Mapping[str, Mapping[str, Any]] = {
+    "brightness": {"depth": Luminance()},
+    "edges": {"relief": "edges", "texture": Hierarchy()},
+    "figure": {"relief": "figure"},
+    "figure, no slope bound": {"relief": {"by": "figure", "slope": 0}},
+}
+"""The ways to make a relief of a photograph, as options of a pipeline."""
+
+
+def section() -> str:
+    """Return the section as Markdown. Raises: MissedError."""
+    if not all(networks_here(task) for task in ("figure", "borders", "faces")):
+        raise MissedError("The networks are not here: `tangible networks add figure borders faces`.")
+    rows: list[tuple[str, ...]] = []
+    felt: dict[tuple[str, int], list[Felt]] = {}
+    for name, picture in _pictures().items():
+        seen = look(picture)
+        for way, options in WAYS.items():
+            relief = Pipeline(Scene.photo(picture), cached=False, **options).relief
+            for seconds in SECONDS:
+                heights_m = stroke_surface(HapticSurface(relief), seconds)
+                result = recognise(heights_m, relief.pitch_m[0], seen, picture.shape[:2])
+                felt.setdefault((way, seconds), []).append(result)
+                off = "-" if math.isnan(result.off) else f"{100 * result.off:.1f} %"
+                rows.append((name, way, f"{seconds} s", f"{result.lights}", off, f"{result.overlap:.2f}"))
+    best = [result for result in felt["figure", SECONDS[-1]] if not math.isnan(result.overlap)]
+    faces = [result for result in best if result.has_face]
+    lights, off, overlap = (
+        min(each.lights for each in faces),
+        fmean(each.off for each in faces),
+        fmean(each.overlap for each in best),
+    )
+    figures = [
+        Figure("lights of 12 under which each face is found", f">= {MIN_LIGHTS}", f"{lights}", lights >= MIN_LIGHTS),
+        Figure("points of a face off, of its width", f"<= {MAX_MEAN_OFF}", f"{off:.3f}", off <= MAX_MEAN_OFF),
+        Figure("overlap of the figure", f">= {MIN_OVERLAP}", f"{overlap:.2f}", overlap >= MIN_OVERLAP),
+    ]
+    text = "\n".join(
+        [
+            "What a machine hand feels in a minute and in ten, lit from twelve sides: under how many lights the face "
+            "of the photograph is found, how far its points are off, and how far both figures overlap.",
+            "",
+            *table(("photograph", "relief", "stroked", "lights", "points off", "overlap"), rows),
+            "",
+            *judged(figures),
+        ]
+    )
+    if not all(figure.met for figure in figures):
+        raise MissedError(text)
+    return text
+
+
+def _pictures() -> dict[str, np.ndarray]:
+    """Return the photographs of scikit-image, and every other one of those that people drew regions in."""
+    named = {name: np.asarray(drawn_parts.drawn(name).picture) for name in NAMED}
+    return named | {name: each.picture for name, each in list(photographs().items())[1::6]}
+
+
+def stroke_surface(surface: HapticSurface, seconds: float) -> np.ndarray:
+    """Stroke a surface in rows from top to bottom; return the heights that were felt, (h, w) as the surface has, m."""
+    touch = Proxy().touch(surface)
+    rows, columns = surface.height_m.shape
+    width_m, length_m = surface.extent_m
+    ticks = round(seconds / TICK_S)
+    lines = max(2, round((ticks * TICK_S * SPEED_M_PER_S) / width_m))
+    along = np.linspace(-0.5, 0.5, max(2, ticks // lines))
+    path = [
+        (width_m * (x if line % 2 == 0 else -x), length_m * (0.5 - (line + 0.5) / lines))
+        for line in range(lines)
+        for x in along
+    ]
+    path = [path[0]] * LANDING + path
+    z = float(surface.height_m.max()) + 0.001
+    positions, forces = np.empty((len(path), 3)), np.empty((len(path), 3))
+    before = (*path[0], z)
+    for tick, (x, y) in enumerate(path):
+        speed = ((x - before[0]) / TICK_S, (y - before[1]) / TICK_S, (z - before[2]) / TICK_S)
+        force = touch.force(HapticState((x, y, z), speed, tick * TICK_S))
+        positions[tick], forces[tick], before = (x, y, z), force, (x, y, z)
+        z += GIVES_M_PER_N_S * TICK_S * (force[2] - PRESS_N)
+    pressed = forces[:, 2] > PRESS_N / 4
+    points = positions + forces / _stiffness(positions, forces)
+    places = np.column_stack([points[pressed, 0] / width_m + 0.5, 0.5 - points[pressed, 1] / length_m]) * [
+        columns,
+        rows,
+    ]
+    row, column = np.mgrid[:rows, :columns] + 0.5
+    felt = LinearNDInterpolator(places, points[pressed, 2])(column, row)
+    return np.where(np.isfinite(felt), felt, np.nanmin(felt)).astype(np.float32)
+
+
+def _stiffness(positions: np.ndarray, forces: np.ndarray) -> float:
+    """Return the stiffness that the hand feels while it comes down on one place, N/m."""
+    pressed = forces[:LANDING, 2] > 0
+    deeper, more = np.ptp(positions[:LANDING, 2][pressed]), np.ptp(forces[:LANDING, 2][pressed])
+    return float(more / deeper)
+
+
+def light_surface(heights_m: np.ndarray, pitch_m: float, azimuth: float) -> np.ndarray:
+    """Return a surface of heights (h, w) lit from one side, 0..1."""
+    down, right = np.gradient(heights_m, pitch_m)
+    normal = np.dstack([-right, down, np.ones_like(heights_m)])
+    normal /= np.linalg.norm(normal, axis=2, keepdims=True)
+    along, up = math.radians(azimuth), math.radians(ELEVATION)
+    light = [math.cos(along) * math.cos(up), math.sin(along) * math.cos(up), math.sin(up)]
+    return np.clip(normal @ np.array(light), 0, 1).astype(np.float32)
+
+
+def recognise(heights_m: np.ndarray, pitch_m: float, seen: Seen, shape: tuple[int, ...]) -> Felt:
+    """Compare what networks see on lit heights with what they see in the photograph."""
+    known, offs, overlaps = known_networks(), list[float](), list[float]()
+    wanted = seen.figure > 0.5 if seen.figure is not None and (seen.figure > 0.5).any() else None
+    face_finding.SCORE = FOUND_SCORE
+    for azimuth in LIGHTS:
+        lit = cv2.resize(light_surface(heights_m, pitch_m, azimuth), (shape[1], shape[0]))
+        picture = np.repeat(lit[..., None], 3, axis=2)
+        if len(seen.faces):
+            found = face_finding.find_faces(picture, known["face-finder"], known["face-points"])
+            offs += [off for off in [_off(found, seen.faces[0])] if off < MAX_OFF]
+        if wanted is not None:
+            figure = look_for_figure(picture) > 0.5
+            overlaps.append(float((figure & wanted).sum() / max((figure | wanted).sum(), 1)))
+    return Felt(len(offs), fmean(offs) if offs else math.nan, max(overlaps, default=math.nan), len(seen.faces) > 0)
+
+
+def _off(found: np.ndarray, face: np.ndarray) -> float:
+    """Return the mean distance of the nearest face's points, over the face's width; infinite without a face."""
+    width = float(np.ptp(face[:, 0]))
+    return min(
+        (float(np.linalg.norm(each[:, :2] - face[:, :2], axis=1).mean()) / width for each in found), default=math.inf
+    )

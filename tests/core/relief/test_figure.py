@@ -1,0 +1,117 @@
+"""What networks see stands out, rounded and never too steep; else a person is a cliff, or nothing."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from onnx_models import mono
+from tangible_core import Pipeline, Scene
+from tangible_core.data import Figure, Views
+from tangible_core.errors import ConfigError, ModelAbsent, PictureError
+from tangible_core.relief import ReliefChoice, figure_relief
+from tangible_core.relief.figure import BODY, GROOVE_M, GROUND, STEP
+from tangible_core.scene.workspace import FeltSize, Workspace
+
+SHAPE = (240, 320)
+SIZE: FeltSize = Workspace().size("figure")
+ROW, COLUMN = np.mgrid[: SHAPE[0], : SHAPE[1]]
+DISK = np.hypot(ROW - 120, COLUMN - 160) < 90
+VIEWS = Views(np.full((*SHAPE, 3), 128, np.uint8))
+
+
+def heights(seen: Figure, slope: float = 0.0, views: Views = VIEWS) -> np.ndarray:
+    return figure_relief(views, seen, SIZE, ReliefChoice(by="figure", slope=slope)).height_m
+
+
+def face(centre: tuple[float, float], radius: float) -> np.ndarray:
+    """The points of a face that is a half ball, in pixels."""
+    angle, share = np.arange(468) * 2.399963, np.sqrt(np.arange(468) / 467)
+    across = radius * share[:, None] * np.stack([np.cos(angle), np.sin(angle)], 1)
+    return np.column_stack([across + centre, np.sqrt(radius**2 - (across**2).sum(1)).clip(0)]).astype(np.float32)
+
+
+def test_figure_stands_on_a_ground_that_rises_to_the_viewer() -> None:
+    height_m = heights(Figure(DISK.astype(np.float32)))
+    assert height_m[120, 160] == pytest.approx((STEP + BODY) * SIZE.relief_m, rel=0.02), "level in its middle"
+    assert height_m[0, 0] == pytest.approx(0, abs=1e-5)
+    assert height_m[-1, 0] == pytest.approx(GROUND * SIZE.relief_m, rel=0.02)
+    from_rim = height_m[120, 80:160]
+    assert (np.diff(from_rim) > -1e-6).all(), "rounded: it rises from the rim to the middle"
+    assert from_rim[5] < 0.9 * from_rim[-1]
+
+
+@pytest.mark.parametrize("slope", [0.5, 1.1])
+def test_nowhere_steeper_than_asked(slope: float) -> None:
+    seen = Figure(DISK.astype(np.float32), DISK.astype(np.float32), face((160, 120), 40)[None])
+    height_m = heights(seen, slope)
+    pitch_m = SIZE.width_m / SHAPE[1]
+    assert max(np.abs(np.diff(height_m, axis=axis)).max() for axis in (0, 1)) <= 1.03 * slope * pitch_m
+
+
+def test_borders_are_grooves() -> None:
+    line = np.zeros(SHAPE, np.float32)
+    line[:, 158:163] = 1
+    depth_m = heights(Figure(None, line))[0, 100] - heights(Figure(None, line))[0, 160]
+    assert depth_m == pytest.approx(GROOVE_M, rel=0.1)
+
+
+def test_face_has_its_shape_and_no_rim() -> None:
+    ball = face((160, 120), 40)
+    plain, faced = (
+        heights(Figure(DISK.astype(np.float32))),
+        heights(Figure(DISK.astype(np.float32), faces_px=ball[None])),
+    )
+    scale = (faced[120, 160] - faced[120, 136]) / (SIZE.width_m / SHAPE[1] * (40 - np.sqrt(40**2 - 24**2)))
+    assert 0.2 < scale < 0.8, "a lower ball, as high as the share of the height allows"
+    middle = (faced[120, 160] - faced[120, 148]) / (SIZE.width_m / SHAPE[1] * (40 - np.sqrt(40**2 - 12**2)))
+    assert middle == pytest.approx(scale, rel=0.15), "of the same proportions everywhere"
+    assert np.abs(np.diff(faced[120])).max() < 1.5 * np.abs(np.diff(plain[120])).max()
+    assert np.array_equal(faced[:70], plain[:70]), "nothing else changes"
+
+
+def test_two_faces_are_higher_than_the_head_between_them() -> None:
+    pair = np.stack([face((120, 120), 25), face((200, 120), 25)])
+    height_m = heights(Figure(DISK.astype(np.float32), faces_px=pair))
+    assert min(height_m[120, 120], height_m[120, 200]) > height_m[120, 160] + 0.0005
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 50), (3, 2)])
+def test_small_pictures(shape: tuple[int, int]) -> None:
+    views = Views(np.zeros(shape, np.uint8))
+    seen = Figure(np.ones(shape, np.float32), np.ones(shape, np.float32), face((0, 0), 40)[None])
+    height_m = heights(seen, 1.1, views)
+    assert height_m.shape == shape
+    assert np.isfinite(height_m).all()
+
+
+def test_maps_of_two_sizes_are_refused() -> None:
+    with pytest.raises(PictureError):
+        Figure(np.zeros((2, 2), np.float32), np.zeros((3, 2), np.float32))
+
+
+class TestPipeline:
+    @pytest.fixture
+    def models(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+        monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path))
+        return tmp_path
+
+    def test_network_that_comes_or_goes_changes_the_result(self, models: Path) -> None:
+        picture = np.zeros((*SHAPE, 3), np.uint8)
+        picture[DISK] = 255
+        with pytest.raises(ModelAbsent, match="tangible networks add"):
+            _ = Pipeline(Scene.photo(picture), relief="figure").relief
+        mono(models / "own.onnx")
+        (models / "own.yaml").write_text("task: figure\noutput: {means: figure}\n")
+        pipeline = Pipeline(Scene.photo(picture), relief="figure")
+        assert pipeline.relief.height_m[120, 160] > 0.5 * pipeline.relief.height_m.max()
+        (models / "own.onnx").unlink()
+        with pytest.raises(ModelAbsent):
+            _ = Pipeline(Scene.photo(picture), relief="figure").relief
+
+    def test_pair_keeps_its_depth(self) -> None:
+        assert Pipeline(Scene.builtin("builtin/brick"), relief="figure").config.relief_kind == "figure"
+
+    def test_wrong_word_is_told(self) -> None:
+        with pytest.raises(ConfigError, match="figure"):
+            Pipeline(Scene.builtin("builtin/brick"), relief="figur")

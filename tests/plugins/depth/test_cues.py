@@ -1,0 +1,74 @@
+"""Depth by where things stand: else a floor rises away from the hand, or a portrait gets a depth that nobody saw."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from onnx_models import mono
+from tangible_core import Views
+from tangible_core.errors import PictureError
+from tangible_depth.cues import Cues, order_probability, score_nearness
+
+
+@pytest.fixture(autouse=True)
+def models(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path))
+    return tmp_path
+
+
+def room() -> np.ndarray:
+    """A grey floor below a dark wall, with two posts: the light one stands nearer than the red one."""
+    picture = np.zeros((200, 300, 3), np.uint8)
+    picture[:100] = 40, 40, 60
+    for row in range(100, 200):
+        picture[row] = 110 + row // 4, 100, 80
+    picture[60:180, 40:70] = 240, 240, 235
+    picture[60:125, 200:230] = 180, 20, 20
+    return picture
+
+
+def test_what_stands_lower_is_nearer_from_top_to_bottom() -> None:
+    nearness = Cues().estimate(Views(room())).disparity_px
+    light, red, wall = nearness[70:115, 50:60].mean(), nearness[70:115, 210:220].mean(), nearness[70:95, 120].mean()
+    assert light > red > wall, "at the same rows"
+    assert (np.diff(nearness[110:200, 150]) > 0).all(), "the floor recedes"
+    assert nearness.min() == 0
+    assert nearness.max() == 1
+
+
+def test_scores_of_two_regions_are_the_formula() -> None:
+    regions = np.array([[0, 1], [0, 1], [0, 0], [0, 0]], np.int32)
+    own = np.array([0, 0.25, 0.5, 0.75])
+    scores = score_nearness(regions, None)
+    assert scores[:, 0] == pytest.approx(0.75 + 0.25 * (2.75 / 6) + own)
+    assert scores[:2, 1] == pytest.approx(0.25 + 0.25 * 0.125 + own[:2])
+    with_figure = score_nearness(regions, np.float32([[0, 1], [0, 1], [0, 0], [0, 0]]))
+    assert with_figure - scores == pytest.approx(0.4 * (regions == 1))
+
+
+def test_confidence_is_least_in_the_middle() -> None:
+    confidence = Cues().estimate(Views(room())).confidence
+    assert confidence[0, 150] > 1.1 * confidence[105, 150]
+    assert confidence[199, 150] > 1.1 * confidence[105, 150]
+    assert order_probability(np.array(0.0)) == 0.5
+
+
+def test_figure_is_nearer_and_a_portrait_is_refused(models: Path) -> None:
+    before = Cues().estimate(Views(room())).disparity_px
+    mono(models / "own.onnx")
+    (models / "own.yaml").write_text("task: figure\noutput: {means: figure}\n")
+    after = Cues().estimate(Views(room())).disparity_px
+    assert (after - before)[70:115, 50:60].mean() > 0.02, "the light post is the figure"
+    assert Cues().reads() == (models / "own.onnx",)
+    portrait = room()
+    portrait[150:, 20:280] = 250
+    with pytest.raises(PictureError, match="portrait"):
+        Cues().estimate(Views(portrait))
+
+
+def test_paper_is_refused() -> None:
+    page = np.full((100, 80), 255, np.uint8)
+    page[20:30, 10:70] = 0
+    with pytest.raises(PictureError, match="paper"):
+        Cues().estimate(Views(page))

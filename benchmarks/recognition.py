@@ -9,6 +9,7 @@ is lit from twelve sides; networks then look for the face and the figure that th
 
 import math
 from collections.abc import Mapping
+from pathlib import Path
 from statistics import fmean
 from typing import Any, NamedTuple
 
@@ -32,6 +33,9 @@ from .tests_path import drawn_parts
 
 NAMED = "astronaut", "chelsea", "coffee"
 """Photographs that scikit-image ships."""
+DRAWN = "astronaut", "camera", "chelsea", "coffee", "rocket", "motorcycle"
+"""Photographs of the picture in the docs, which `python -m benchmarks.recognition` draws."""
+CELL_PX = 300
 SECONDS = 60, 600
 MIN_LIGHTS, MAX_MEAN_OFF, MIN_OVERLAP = 9, 0.04, 0.8
 TICK_S, PRESS_N, SPEED_M_PER_S = 1e-3, 1.0, 0.15
@@ -192,3 +196,22 @@ def _off(found: np.ndarray, face: np.ndarray) -> float:
     return min(
         (float(np.linalg.norm(each[:, :2] - face[:, :2], axis=1).mean()) / width for each in found), default=math.inf
     )
+
+
+def draw(target: Path) -> None:
+    """Draw photographs beside their reliefs by brightness, by edges and by what networks see, lit from one side."""
+    rows: list[np.ndarray] = []
+    for name in DRAWN:
+        picture = np.asarray(drawn_parts.drawn(name).picture)
+        cells = [picture[..., ::-1] if picture.ndim == 3 else cv2.cvtColor(picture, cv2.COLOR_GRAY2BGR)]
+        for way in ("brightness", "edges", "figure"):
+            relief = Pipeline(Scene.photo(picture), cached=False, **WAYS[way]).relief
+            lit = (255 * light_surface(relief.height_m, relief.pitch_m[0], 135)).astype(np.uint8)
+            cells.append(cv2.cvtColor(lit, cv2.COLOR_GRAY2BGR))
+        size = CELL_PX, round(CELL_PX * picture.shape[0] / picture.shape[1])
+        rows.append(np.hstack([cv2.resize(cell, size, interpolation=cv2.INTER_AREA) for cell in cells]))
+    cv2.imwrite(str(target), np.vstack(rows), [cv2.IMWRITE_JPEG_QUALITY, 85])
+
+
+if __name__ == "__main__":
+    draw(Path("docs/photographs.jpg"))

@@ -4,7 +4,7 @@ The bytes depend on nothing but the network, so that a card can name their diges
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -14,9 +14,8 @@ FLOAT = 1
 """The type of numbers: float32."""
 INTEGER, TEXT, INTEGERS = 2, 3, 7
 """The types of attributes."""
-Value: TypeAlias = "int | str | bytes | Fields"
-Fields: TypeAlias = "Iterable[tuple[int, Value]]"
-"""A message: numbers of fields with their values, in the order in which they are written."""
+Fields: TypeAlias = Iterable[tuple[int, Any]]
+"""A message: numbers of fields with their values, an int, a text, bytes or a message, in the order of writing."""
 
 
 def message(fields: Fields) -> bytes:
@@ -41,9 +40,9 @@ def _varint(value: int) -> bytes:
 
 def node(
     operator: str, inputs: Sequence[str], output: str, **attributes: int | str | Sequence[int]
-) -> list[tuple[int, Value]]:
+) -> list[tuple[int, Any]]:
     """Return a node of a graph."""
-    fields: list[tuple[int, Value]] = [(1, name) for name in inputs]
+    fields: list[tuple[int, Any]] = [(1, name) for name in inputs]
     fields += [(2, output), (3, output), (4, operator)]
     for name, value in attributes.items():
         if isinstance(value, int):
@@ -62,10 +61,10 @@ def network(
     outputs: Mapping[str, Sequence[int | str]],
 ) -> bytes:
     """Return the file of a network. inputs, outputs: their sizes; a text names a dimension of any size."""
-    graph: list[tuple[int, Value]] = [(1, fields) for fields in nodes]
+    graph: list[tuple[int, Any]] = [(1, fields) for fields in nodes]
     graph.append((2, "network"))
     for name, array in weights.items():
-        sizes: list[tuple[int, Value]] = [(1, size) for size in array.shape]
+        sizes: list[tuple[int, Any]] = [(1, size) for size in array.shape]
         graph.append((5, [*sizes, (2, FLOAT), (8, name), (9, array.astype("<f4").tobytes())]))
     for field, declared in ((11, inputs), (12, outputs)):
         for name, shape in declared.items():

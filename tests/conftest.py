@@ -41,7 +41,7 @@ settings.register_profile("nightly", settings.get_profile("default"), max_exampl
 settings.load_profile("nightly" if "--nightly" in sys.argv else "ci" if os.environ.get("CI") else "default")
 
 Install = Callable[..., Path]
-OWN = ("cache", "runtime", "config", "log")
+OWN = ("cache", "runtime", "config", "log", "models")
 """Folders that each test has of its own, told by an environment variable each."""
 FIRST = ("test_every_processor.py", "test_third_party.py")
 """Files of the tests that take longest, minutes each: at the end, all other workers would wait for them."""

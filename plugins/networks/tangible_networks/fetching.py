@@ -180,7 +180,7 @@ def _download_address(address: str, partial: Path, size: int, progress: Progress
 
 
 def _extract(source: Path, card: Card, folder: Path) -> Path:
-    """Return the file of the card in a package, or the source itself if it is no package. Raises: ConfigError."""
+    """Return the file of the card in a package, or the source itself if it is not a package. Raises: ConfigError."""
     package = card.source
     if not isinstance(package, Package) or not (zipfile.is_zipfile(source) or tarfile.is_tarfile(source)):
         return source

@@ -251,7 +251,7 @@ class TestCode:
             ("tangible_core.pipeline.engine.engine", set()),
             ("tangible_depth.semi_global", {"disparity"}),
             ("tangible_depth.sgm.aggregation", {"disparity"}),
-            ("tangible_core.compiled.threads", {"disparity", "segments"}),
+            ("tangible_core.compiled.threads", {"disparity", "figure", "segments"}),
             ("tangible_texture.energies.local_energy", {"segments"}),
         ],
     )
@@ -267,8 +267,8 @@ class TestCode:
         ("distribution", "depth", "products"),
         [
             ("numpy", "semi-global", set(KEPT)),
-            ("numba", "semi-global", {"disparity", "relief", "segments"}),
-            ("llvmlite", "semi-global", {"disparity", "relief", "segments"}),
+            ("numba", "semi-global", {"disparity", "figure", "relief", "segments"}),
+            ("llvmlite", "semi-global", {"disparity", "figure", "relief", "segments"}),
             ("torch", "semi-global", set()),
             ("torch", "kornia-zncc", {"disparity"}),
             ("kornia", "kornia-report", {"disparity"}),

@@ -18,4 +18,5 @@ from .tables import read_table as read_table
 from .writing import atomic_write as atomic_write
 from .writing import folder_lock as folder_lock
 from .writing import sole_writer as sole_writer
+from .writing import temporary_folder as temporary_folder
 from .writing import write_text as write_text

@@ -5,8 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.plugins.interfaces import DepthEstimator, Following
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import DepthEstimator, Following, note
 from tangible_networks.store import networks_here
 
 from .luminance import Luminance

@@ -7,12 +7,10 @@ from typing import ClassVar
 import numpy as np
 from jaxtyping import Float32, Float64, Int32
 
-from tangible_core.data import DisparityMap, Views
-from tangible_core.data.pictures import to_rgb
+from tangible_core.data import DisparityMap, Views, to_rgb
 from tangible_core.errors import PictureError
-from tangible_core.plugins.interfaces import DepthEstimator
-from tangible_core.plugins.notes import note
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.plugins import DepthEstimator, note
+from tangible_core.runtime import plain_opencv
 
 log: logging.Logger = logging.getLogger(__name__)
 CELLS = 40_000

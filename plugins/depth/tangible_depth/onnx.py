@@ -9,8 +9,7 @@ from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views, to_rgb
 from tangible_core.errors import ConfigError, ModelAbsent, PictureError, TangibleError
-from tangible_core.plugins.interfaces import DepthEstimator, Skippable
-from tangible_core.plugins.notes import note
+from tangible_core.plugins import DepthEstimator, Skippable, note
 from tangible_networks.card import Card, check_file, read_card, shipped_cards
 from tangible_networks.fitting import Colours, Map, fit_size, map_in_strips, restore_size, tensor, to_disparity
 from tangible_networks.runtimes import Runtime, run

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float32, Float64
 
-from tangible_core.runtime.opencv import plain_opencv
+from tangible_core.runtime import plain_opencv
 
 from .fitting import Colours
 from .runtimes import run

@@ -20,8 +20,8 @@ from urllib.error import HTTPError
 from urllib.request import Request, urlopen
 
 from tangible_core.errors import ConfigError, OutputError, TangibleError, shown
-from tangible_core.files.writing import atomic_write, temporary_folder
-from tangible_core.runtime.stopping import check_stopped
+from tangible_core.files import atomic_write, temporary_folder
+from tangible_core.runtime import check_stopped
 
 from .card import Card, Package
 from .hed import hed_to_onnx

@@ -5,9 +5,8 @@ import logging
 import numpy as np
 from jaxtyping import Float32
 
-from tangible_core.data import Figure
-from tangible_core.data.pictures import to_rgb
-from tangible_core.plugins.notes import note
+from tangible_core.data import Figure, to_rgb
+from tangible_core.plugins import note
 
 from .card import Task
 from .fitting import Colours, fit_size, resize, restore_size, tensor

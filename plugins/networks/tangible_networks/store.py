@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal, NamedTuple, get_args
 
 from tangible_core.errors import ConfigError, TangibleError, did_you_mean
-from tangible_core.files.paths import as_path
+from tangible_core.files import as_path
 
 from .card import Card, Task, check_file, read_card, shipped_cards
 

@@ -21,7 +21,7 @@ def tangible_networks() -> Mapping[str, str]:
 @hookimpl
 def tangible_commands(app: Typer) -> None:
     """Add `tangible networks`."""
-    from tangible_core.cli.command_table import add
+    from tangible_core.cli import add
 
     add(
         "networks", f"{__package__}.networks:app",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangible_core.cli.options import FAILED, Json, is_listing
+from tangible_core.cli import FAILED, Json, is_listing
 
 if TYPE_CHECKING:
     from collections.abc import Generator

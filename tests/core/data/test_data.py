@@ -14,6 +14,7 @@ from tangible_core import (
     Views,
 )
 from tangible_core.data import digest_of
+from tangible_core.data.outcome import text_table
 from tangible_core.errors import GeometryError, MaterialError, PictureError
 
 ICE = Material("ice", 2000.0, 1.0, 0.1, 0.03)
@@ -165,3 +166,9 @@ def test_surface_with_a_label_without_material_is_refused(label, materials):
 def test_material_with_contradictory_values_is_refused(change, complaint):
     with pytest.raises(MaterialError, match=f"material 'ice': .*{complaint}"):
         Material(**{**vars(ICE), **change})
+
+
+def test_text_table_has_columns_and_no_spaces_at_the_end_of_a_line():
+    assert text_table(("a", "b", "why"), [("wide", "1", ""), (" x", "22", "so")]) == (
+        "a     b   why\nwide  1\n x    22  so"
+    )

@@ -239,8 +239,7 @@ def test_product_is_drawn_as_its_panel(product: str):
     sample = Pipeline(Scene.pair(left, right), depth=Flat(), texture=Histogram(segments=2), cached=False)
     axes = Figure().add_subplot()
     assert show(getattr(sample.scene if product == "views" else sample, product), axes) is axes
-    title = axes.get_title()
-    assert title == show(sample.relief, axes).get_title() if product == "surface" else title
+    assert axes.get_title()
     with pytest.raises(OutputError, match="no picture of its own"):
         show(Calibration(1.0, 1.0))
 

@@ -74,12 +74,16 @@ class TestDepth:
         near = 1 / scene.disparity.disparity_px
         np.testing.assert_allclose(near[0], [NAN, 0.6, 1, 2], rtol=1e-6)
         np.testing.assert_allclose(near[1], [2, 2, 2, 0.6], rtol=1e-6)
+        for bound, column, distance_m in (({"near_m": 0.6}, 1, 0.6), ({"far_m": 1.5}, 3, 1.5)):
+            alone = Scene.photo(GREY, depth=MILLIMETRES, **bound).disparity.disparity_px
+            assert alone[0, column] == pytest.approx(1 / distance_m)
 
     @pytest.mark.parametrize(
         ("options", "sentence"),
         [
             ({"depth": MILLIMETRES, "disparity": MILLIMETRES}, "depth and disparity are two forms of one map"),
             ({"depth": MILLIMETRES, "near_m": 2, "far_m": 1}, "near_m is less than far_m"),
+            ({"depth": MILLIMETRES, "far_m": np.inf}, "far_m: Input should be a finite number"),
             ({"near_m": 2}, "near_m needs depth"),
             ({"depth_unit_m": 2}, "depth_unit_m needs depth"),
             ({"disparity_scale": 2}, "disparity_scale needs disparity"),

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from tangible_core import Pipeline, Scene
+from tangible_core import DisparityMap, Pipeline, Scene
+from tangible_core.scene.geometry import nearness_range
 
 TONES = np.random.default_rng(0).random((20, 30))
 
@@ -66,6 +67,12 @@ class TestUsedRange:
 
 
 class TestFlat:
+    def test_map_with_one_pixel_that_differs_is_not_flat(self):
+        """Nearly all of a photograph's wall is at one distance: percentiles alone would see nothing else."""
+        values = np.full((40, 50), 5, np.float32)
+        values[3, 4] = 9
+        assert tuple(nearness_range(DisparityMap(values), None)) == (5, 9)
+
     @pytest.mark.parametrize("heights", [np.full((4, 5), 7.0), np.zeros((3, 3), np.uint8), np.ones((1, 1))])
     def test_flat_map_warns_with_its_relief(self, heights: np.ndarray):
         pipeline = Pipeline(Scene.heights(heights), cached=False)

@@ -119,6 +119,9 @@ def test_command_measures_shows_and_finds_regressions(tmp_path: Path):
         assert word in done.stdout
     assert (tmp_path / "out" / "plot.png").is_file()
 
+    tangible("compare", "c.yaml", "--quick", cwd=tmp_path)
+    assert (tmp_path / "out-quick" / "results.jsonl").is_file()
+
     # A method that failed on one scene of several has results; without the one that failed on all of them, so has all.
     good = tmp_path / "good.jsonl"
     for row in read_rows(rows).values():

@@ -8,6 +8,7 @@ from PIL import Image
 
 from tangible_bench.config.reading import Comparison, parse_comparison
 from tangible_bench.measuring.plan import measurements
+from tangible_bench.tasks.depth_scenes import DepthScene
 from tangible_core.errors import ConfigError
 from tangible_core.plugins.registry import Registry
 
@@ -39,3 +40,10 @@ def test_all_scenes_that_cannot_be_read_are_named(registry: Registry, tmp_path: 
         measurements(parse(registry, tmp_path, *scenes))
     assert len(error.value.args) == 2
     assert "aa_left.png" in error.value.args[0] and "cc_right.png" in error.value.args[1]
+
+
+def test_pair_of_a_folder_has_the_truth_beside_it(tmp_path: Path):
+    for side in ("left", "right"):
+        Image.fromarray(np.full((24, 32), 90, np.uint8)).save(tmp_path / f"{side}.png")
+    np.savez(tmp_path / "disparity.npz", disparity=np.full((24, 32), 3, np.float32))
+    assert (DepthScene(folder=tmp_path).open().truth_px == 3).all()

@@ -60,6 +60,7 @@ def test_comparison_writes_every_figure_as_csv_and_latex(registry: Registry, tmp
     found = compare(shorten(comparison(registry, tmp_path)))
     assert {"table.csv", "table.tex", "results.jsonl"} <= {path.name for path in found.files}
     lines = list(csv.DictReader(io.StringIO((tmp_path / "out-quick" / "table.csv").read_text())))
+    assert b"\r" not in (tmp_path / "out-quick" / "table.csv").read_bytes()
     assert len(lines) == 6
     known = {(each["method"], each["scene"].split()[0]): each for each in lines}
     assert len(known) == 6

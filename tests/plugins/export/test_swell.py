@@ -237,6 +237,13 @@ def test_page_unreadable_by_finger_is_refused(tmp_path, labels, options, message
     assert not list(tmp_path.iterdir())
 
 
+def test_neighbours_that_feel_the_same_are_a_warning(tmp_path, monkeypatch, caplog):
+    monkeypatch.setattr(page, "choose_fills", lambda neighbours, *_: (["blank"] * len(neighbours), [(0, 1)]))
+    Swell().write(labels_work(halves(), ("sea", "land")), tmp_path / "map")
+    [warning] = [each for each in caplog.records if "neighbours with the same fill" in each.getMessage()]
+    assert warning.levelname == "WARNING" and {"sea", "land"} <= set(warning.getMessage().split())
+
+
 def test_title_without_braille_is_left_out_of_page_and_key(tmp_path):
     with collected() as notes:
         page, key, *_ = Swell().write(labels_work(halves(), ("sea", "land"), title="東京"), tmp_path / "map")

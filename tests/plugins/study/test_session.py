@@ -34,6 +34,9 @@ def answers(study: Path, name: str = "P1"):
 def test_all_answers_and_the_force_of_each_trial_are_kept(study: Path):
     session = sit_down(study)
     assert session.run() == 7
+    said = session.desk.said
+    assert said.count("Press Enter to begin.") == 2, "once before each comparison"
+    assert said.index("First some trials for training.") < said.index("Now one interval.")
     kept = answers(study)
     assert [each.trial for each in kept] == list(range(1, 8))
     assert [each.phase for each in kept] == ["training"] + 6 * ["test"]

@@ -57,6 +57,14 @@ def test_outcome_names_what_vanished_what_is_in_pieces_and_what_would_pass():
     )
 
 
+def test_part_that_vanished_for_a_narrow_place_is_not_called_too_small():
+    """A square of 20 mm with a tail of 2 mm."""
+    labels = np.zeros((200, 300), np.int32)
+    labels[50:150, 50:150] = labels[95:105, 150:250] = 1
+    gone, *_ = noted(part_map(labels), part_map(np.zeros((200, 300))), ("", "kite"))
+    assert ": part 2 (kite), which is too narrow in places; a disc of 6.4 mm must fit" in gone
+
+
 def test_too_many_textures_are_no_matter_of_size():
     labels = np.repeat(np.arange(5), 80)[None].repeat(100, 0)
     (failed,) = noted(part_map(labels), part_map(labels))

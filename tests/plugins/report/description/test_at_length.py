@@ -126,6 +126,10 @@ def test_description_has_exactly_these_lines():
     )
 
 
+def test_description_without_a_title_has_a_heading():
+    assert describe_at_length(still_life(), " ", "en", facts(still_life()))[0].strip()
+
+
 @pytest.mark.parametrize(("extra", "says"), [
     (0, None),
     (1, "One smaller part, 2 % of the picture, is left out."),

@@ -119,6 +119,9 @@ def test_sentence_on_many_parts_lists_the_nearest():
     said = describe(many, "it")
     assert "are step 29 (along the bottom, 2.9 mm high), step 28 (" in said
     assert said.endswith("step 18 (across the middle, from left to right, 1.8 mm high) and 18 others.")
+    few = labels[:26]
+    one_more = replace(surface(few / 10.0, labels=few), names=tuple(f"step {each}" for each in range(13)))
+    assert describe(one_more, "it").endswith(" high) and one other.")
     one = replace(surface(np.zeros((4, 4)), labels=np.zeros((4, 4), np.int32)), names=("plate",))
     assert describe(one, "it").endswith("It is of one part, plate.")
 

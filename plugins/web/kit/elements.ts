@@ -5,10 +5,8 @@ export function make<K extends keyof HTMLElementTagNameMap>(tag: K, properties: 
   return Object.assign(document.createElement(tag), properties);
 }
 
-export function button(text: string, press: () => unknown): HTMLButtonElement {
-  const toggle = document.createElement("button");
-  toggle.type = "button";
-  toggle.textContent = text;
+export function button(text: string, press: () => unknown, properties: Partial<HTMLButtonElement> = {}): HTMLButtonElement {
+  const toggle = make("button", { type: "button", textContent: text, ...properties });
   toggle.addEventListener("click", () => void press());
   return toggle;
 }
@@ -29,6 +27,13 @@ export function foldable(title: string, ...inside: HTMLElement[]): HTMLDetailsEl
   const box = document.createElement("details");
   box.append(make("summary", { textContent: title }), ...inside);
   return box;
+}
+
+/** Return a label around a control and its text. */
+export function labelled(...inside: (Node | string)[]): HTMLLabelElement {
+  const label = document.createElement("label");
+  label.append(...inside);
+  return label;
 }
 
 /** Return a group of controls under a name. */

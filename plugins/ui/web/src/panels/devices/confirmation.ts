@@ -21,10 +21,8 @@ export function confirmStart(about: About): Promise<boolean> {
   ].join(" ");
   const texts = [value, t("sureHands")].map((text) => make("p", { textContent: text }));
   const buttons = make("div", { className: "buttons" });
-  const no = button(t("no"), () => dialog.close());
-  no.autofocus = true;
-  const yes = button(t("yes"), () => dialog.close("yes"));
-  yes.id = "sure-yes";
+  const no = button(t("no"), () => dialog.close(), { autofocus: true });
+  const yes = button(t("yes"), () => dialog.close("yes"), { id: "sure-yes" });
   buttons.append(no, yes);
   dialog.append(heading, ...texts, buttons);
   document.body.append(dialog);

@@ -1,5 +1,5 @@
 /** Selection of exporters with options, local to the panel until written into the file. */
-import { button, make, paragraph } from "kit/elements";
+import { button, labelled, make, paragraph } from "kit/elements";
 import type { Option } from "../../forms/kinds";
 import { FIELD, rows } from "../../forms/rows";
 import type { Plain } from "kit/server/messages";
@@ -58,9 +58,7 @@ export class Choices {
       entry.on = input.checked;
       this.onChange();
     };
-    const label = document.createElement("label");
-    label.append(input, exporterName(entry.use));
-    box.append(label);
+    box.append(labelled(input, exporterName(entry.use)));
     const known = this.exporters.find(({ name }) => name === entry.use); // a file may name an exporter that is not installed
     if (known) box.append(this.options(entry, at, known, input));
     return box;

@@ -76,9 +76,7 @@ export function build(page: Page, root: HTMLElement): Promise<void> {
     return run([chosen ?? SENT]);
   });
   send.id = "export-send";
-  const start = button(t("run"), () => run());
-  start.id = "export-run";
-  start.className = "primary";
+  const start = button(t("run"), () => run(), { id: "export-run", className: "primary" });
   const buttons = make("div", { className: "buttons" });
   buttons.append(start, stopButton(page), button(t("add"), add));
   const names = (): string[] => (choices?.blocks ?? []).map((each) => String(isMap(each) ? each.use : each));
@@ -125,9 +123,7 @@ function exportersOf({ properties, $defs }: FileSchema): Exporter[] {
 
 /** Return a button that stops the computation. */
 function stopButton(page: Page): HTMLElement {
-  const stop = button(t("stop"), () => page.net.ask("stop_making"));
-  stop.id = "export-stop";
-  stop.hidden = true;
+  const stop = button(t("stop"), () => page.net.ask("stop_making"), { id: "export-stop", hidden: true });
   page.hub.on("making", ({ want }) => (stop.hidden = want !== "export"));
   for (const name of ["made", "gone"] as const) page.hub.on(name, () => (stop.hidden = true));
   return stop;
@@ -157,8 +153,7 @@ function zipButton(page: Page, { folder, exports }: Exported, tell: (text: strin
     tell(t("packing"));
     try {
       const name = await page.net.ask<string>("export_zip", { folder });
-      const link = document.createElement("a");
-      Object.assign(link, { href: address(folder, name), download: name });
+      const link = make("a", { href: address(folder, name), download: name });
       link.click();
       tell("");
     } catch (error) {

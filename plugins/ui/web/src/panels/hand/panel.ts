@@ -1,5 +1,5 @@
 /** Settings of this page's hand: whether it is active, its mover, and its penetration. */
-import { button, field, fieldset, hint, make } from "kit/elements";
+import { button, field, fieldset, hint, labelled, make } from "kit/elements";
 import { type HandState, PRESS_M } from "kit/hand/state";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
@@ -23,11 +23,9 @@ function build(page: Page, root: HTMLElement): void {
   root.append(status, take, moved, ways, depth, ...hints, pad);
 
   function way(name: "surface" | "space", free: boolean): HTMLLabelElement {
-    const label = document.createElement("label");
     const input = make("input", { type: "radio", name: "hand-way", value: name, checked: !free });
     input.onchange = () => page.hand?.free(free);
-    label.append(input, t(name));
-    return label;
+    return labelled(input, t(name));
   }
 
   function show(): void {

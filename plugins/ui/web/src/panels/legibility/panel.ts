@@ -48,8 +48,7 @@ export function build(page: Page, root: HTMLElement): void {
       status.textContent = (error as Error).message;
     }
   };
-  const check = button(t("check"), work);
-  check.id = "legible-check";
+  const check = button(t("check"), work, { id: "legible-check" });
   const buttons = make("div", { className: "buttons" });
   buttons.append(check);
   const widthBox = field(t("width"), width);
@@ -107,8 +106,7 @@ function choice(): HTMLSelectElement {
 }
 
 function widthField(): HTMLInputElement {
-  const input = document.createElement("input");
-  Object.assign(input, { id: "legible-width", type: "number", min: `${WIDTH_MM.least}`, max: `${WIDTH_MM.most}`, step: "any" });
+  const input = make("input", { id: "legible-width", type: "number", min: `${WIDTH_MM.least}`, max: `${WIDTH_MM.most}`, step: "any" });
   input.setAttribute("aria-describedby", "legible-width-hint");
   return input;
 }

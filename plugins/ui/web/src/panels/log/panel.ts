@@ -1,5 +1,5 @@
 /** The log panel, with filters and search. */
-import { button, make } from "kit/elements";
+import { button, labelled, make } from "kit/elements";
 import { download } from "../../files";
 import type { Events } from "kit/server/messages";
 import type { Page } from "kit/page";
@@ -177,11 +177,9 @@ function fill(item: HTMLElement, { level, text, foreign, at_s, times }: Line): H
 }
 
 function check(text: string, on: boolean, change: (on: boolean) => void): HTMLElement {
-  const label = document.createElement("label");
   const input = make("input", { type: "checkbox", checked: on });
   input.onchange = () => change(input.checked);
-  label.append(input, text);
-  return label;
+  return labelled(input, text);
 }
 
 export const log: Panel = {

@@ -1,6 +1,6 @@
 /** Mapping of the picture to the hand: a frame to drag, and a region to enlarge. */
 import "../overlay/overlay.css";
-import { button, make } from "kit/elements";
+import { button, labelled, make } from "kit/elements";
 import { MappingFrame } from "kit/overlay/tools/mapping_frame";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
@@ -10,8 +10,7 @@ function build(page: Page, root: HTMLElement): void {
   const frame = new MappingFrame(page);
   const show = make("input", { type: "checkbox" });
   show.onchange = () => frame.show(show.checked);
-  const label = document.createElement("label");
-  label.append(show, t("frameShow"));
+  const label = labelled(show, t("frameShow"));
   const says = document.createElement("p");
   const help = make("small", { textContent: t("frameHelp") });
   const buttons = make("div", { className: "buttons" });

@@ -1,5 +1,5 @@
 /** Buttons to compute depth, texture or everything, to stop, and a note if the surface is outdated. */
-import { button } from "kit/elements";
+import { button, labelled } from "kit/elements";
 import type { DocumentEditor } from "../../forms/editor";
 import type { Page } from "kit/page";
 import { t } from "../../forms/words";
@@ -17,16 +17,12 @@ export function runControls(page: Page, editor: DocumentEditor): HTMLElement {
       status.className = "bad";
     }
   };
-  const all = button(t("make"), make("touch"));
-  all.id = "make";
-  all.className = "primary";
-  const stop = button(t("stopMaking"), () => page.net.ask("stop_making"));
-  stop.id = "stop-making";
+  const all = button(t("make"), make("touch"), { id: "make", className: "primary" });
+  const stop = button(t("stopMaking"), () => page.net.ask("stop_making"), { id: "stop-making" });
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   buttons.append(all, button(t("runDepth"), make("relief")), button(t("runTexture"), make("materials")), stop);
-  const again = button(t("tryAgain"), () => page.net.ask("try_again"));
-  again.hidden = true;
+  const again = button(t("tryAgain"), () => page.net.ask("try_again"), { hidden: true });
   box.append(buttons, atOnce(editor), status, again);
 
   let busy = false;
@@ -64,12 +60,10 @@ export function runControls(page: Page, editor: DocumentEditor): HTMLElement {
 }
 
 function atOnce(editor: DocumentEditor): HTMLElement {
-  const label = document.createElement("label");
   const input = document.createElement("input");
   input.type = "checkbox";
   input.id = "apply-at-once";
   input.checked = editor.apply;
   input.onchange = () => (editor.apply = input.checked);
-  label.append(input, t("atOnce"));
-  return label;
+  return labelled(input, t("atOnce"));
 }

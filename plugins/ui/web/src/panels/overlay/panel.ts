@@ -1,5 +1,5 @@
 /** Settings of the overlay, and what limits the force. */
-import { fieldset, make } from "kit/elements";
+import { fieldset, labelled, make } from "kit/elements";
 import "./overlay.css";
 import { LIMITS, perSecond, type Counts } from "kit/contact/limits";
 import { MM_PER_N, SECONDS, SWITCHES } from "kit/overlay/settings";
@@ -19,9 +19,7 @@ function build(page: Page, root: HTMLElement): void {
       overlay.settings.show[each] = input.checked;
       overlay.changed = true;
     };
-    const label = document.createElement("label");
-    label.append(input, t(each));
-    box.append(label);
+    box.append(labelled(input, t(each)));
   }
   const seconds = number(t("seconds"), SECONDS.least, SECONDS.most, 1, overlay.settings.seconds, (value) => {
     overlay.settings.seconds = value;
@@ -40,8 +38,7 @@ function build(page: Page, root: HTMLElement): void {
 /** Return a number field; values outside of the bounds are not taken. */
 function number(text: string, least: number, most: number, step: number, first: number, take: (value: number) => void): HTMLLabelElement {
   const label = document.createElement("label");
-  const input = document.createElement("input");
-  Object.assign(input, { type: "number", min: `${least}`, max: `${most}`, step: `${step}`, value: `${first}` });
+  const input = make("input", { type: "number", min: `${least}`, max: `${most}`, step: `${step}`, value: `${first}` });
   input.oninput = () => {
     const value = input.valueAsNumber;
     if (value >= least && value <= most) take(value);

@@ -30,11 +30,8 @@ function build(page: Page, root: HTMLElement): void {
       status.textContent = (error as Error).message;
     }
   };
-  const check = button(t("check"), () => work("preflight"));
-  check.id = "preflight-check";
-  const fix = button(t("fix"), () => work("fix"));
-  fix.id = "preflight-fix";
-  fix.hidden = true;
+  const check = button(t("check"), () => work("preflight"), { id: "preflight-check" });
+  const fix = button(t("fix"), () => work("fix"), { id: "preflight-fix", hidden: true });
   const buttons = make("div", { className: "buttons" });
   buttons.append(check, fix);
   root.append(about, buttons, status, stale, results);

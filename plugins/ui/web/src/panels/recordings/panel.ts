@@ -73,8 +73,7 @@ function build(page: Page, root: HTMLElement): void {
   }
 
   const record = button(t("record"), () => attempt(async () => void (await net.ask("record"))));
-  const stop = button(t("stop"), () => attempt(async () => void (await net.ask("stop_recording"))));
-  stop.hidden = true;
+  const stop = button(t("stop"), () => attempt(async () => void (await net.ask("stop_recording"))), { hidden: true });
   hub.on("recorder", ({ recording, path, ticks, why }) => {
     record.hidden = recording;
     stop.hidden = !recording;

@@ -1,5 +1,5 @@
 /** Save the pipeline file on this computer, or download it. */
-import { button, field, make } from "kit/elements";
+import { button, field, labelled, make } from "kit/elements";
 import { download } from "../../files";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
@@ -13,8 +13,7 @@ function build(page: Page, root: HTMLElement): void {
   };
   const path = make("input", { id: "save-path", spellcheck: false });
   const instead = make("input", { type: "checkbox", id: "save-replace" });
-  const replace = document.createElement("label");
-  replace.append(instead, t("replace"));
+  const replace = labelled(instead, t("replace"));
   const save = async (): Promise<void> => {
     try {
       await page.net.ask("save", { path: path.value, replace: instead.checked });
@@ -25,8 +24,7 @@ function build(page: Page, root: HTMLElement): void {
   };
   const name = (): string => path.value.split(/[/\\]/).at(-1) || "pipeline.yaml";
   const buttons = make("div", { className: "buttons" });
-  const first = button(t("save"), save);
-  first.className = "primary";
+  const first = button(t("save"), save, { className: "primary" });
   buttons.append(first, button(t("download"), () => download(page.document?.text ?? "", name(), "application/yaml")));
   page.hub.on("document", (message) => {
     path.value ||= message.path;

@@ -1,5 +1,5 @@
 /** Settings of the person: colours, language, sizes, keys. Kept in this browser, not in the pipeline file. */
-import { button, fieldset, make } from "kit/elements";
+import { button, fieldset, labelled, make } from "kit/elements";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { recall, remember } from "kit/preferences";
@@ -17,7 +17,7 @@ function colours(page: Page): HTMLElement {
   const choice = choose(THEMES.map((each) => [each, t(each)]), page.themes.chosen);
   choice.onchange = () => page.themes.choose(choice.value as Theme);
   page.hub.on("theme", () => (choice.value = page.themes.chosen));
-  return labelAround(t("colours"), choice);
+  return labelled(t("colours"), choice);
 }
 
 function languages(): HTMLElement {
@@ -25,7 +25,7 @@ function languages(): HTMLElement {
   const choice = choose(named, language);
   for (const option of choice.options) option.lang = option.value;
   choice.onchange = () => speak(choice.value as Language);
-  return labelAround(t("language"), choice);
+  return labelled(t("language"), choice);
 }
 
 /** Return buttons for the sizes of the regions, as an alternative to dragging. */
@@ -42,8 +42,7 @@ function sizes(): HTMLElement {
 function keys(): HTMLElement {
   const input = make("input", { type: "checkbox", checked: letters.everywhere });
   input.onchange = () => (letters.everywhere = input.checked);
-  const label = document.createElement("label");
-  label.append(input, t("letters"));
+  const label = labelled(input, t("letters"));
   const hint = make("p", { className: "hint", id: "letters-hint", textContent: t("lettersHint") });
   input.setAttribute("aria-describedby", hint.id);
   const box = document.createElement("div");
@@ -59,9 +58,7 @@ function readLogSwitch(page: Page): HTMLElement {
     tell();
   };
   queueMicrotask(tell); // after all panels are built
-  const label = document.createElement("label");
-  label.append(input, t("read"));
-  return label;
+  return labelled(input, t("read"));
 }
 
 function choose(options: (readonly [value: string, text: string])[], value: string): HTMLSelectElement {
@@ -69,12 +66,6 @@ function choose(options: (readonly [value: string, text: string])[], value: stri
   for (const [each, text] of options) choice.add(new Option(text, each));
   choice.value = value;
   return choice;
-}
-
-function labelAround(text: string, control: HTMLElement): HTMLElement {
-  const label = document.createElement("label");
-  label.append(text, control);
-  return label;
 }
 
 export const settings: Panel = { id: "settings", title: t("title"), task: "any", open: false, build };

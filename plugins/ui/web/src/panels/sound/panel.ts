@@ -1,5 +1,5 @@
 /** Settings of sound and speech. */
-import { button, fieldset, make } from "kit/elements";
+import { button, fieldset, labelled, make } from "kit/elements";
 import type { Page } from "kit/page";
 import type { Panel } from "../panel";
 import { on } from "kit/shortcuts";
@@ -16,8 +16,7 @@ function build(page: Page, root: HTMLElement): void {
 
 function soundButton(page: Page): HTMLElement {
   const toggle = (): void => void page.sound.toggle().catch((error: Error) => page.say(error.message, { urgent: true }));
-  const element = button(t("sound"), toggle);
-  element.id = "sound-on";
+  const element = button(t("sound"), toggle, { id: "sound-on" });
   element.setAttribute("aria-pressed", "false");
   element.setAttribute("aria-keyshortcuts", "S");
   page.hub.on("sound", (told) => {
@@ -30,8 +29,7 @@ function soundButton(page: Page): HTMLElement {
 
 /** Return a meter of the loudness. */
 function meter(page: Page): HTMLElement {
-  const bar = document.createElement("meter");
-  Object.assign(bar, { min: 0, max: 0.3, value: 0, id: "sound-level" });
+  const bar = make("meter", { min: 0, max: 0.3, value: 0, id: "sound-level" });
   bar.setAttribute("aria-label", t("level"));
   setInterval(() => {
     if (bar.checkVisibility() && !document.hidden) bar.value = page.sound.level;
@@ -42,7 +40,7 @@ function meter(page: Page): HTMLElement {
 function volume(page: Page): HTMLElement {
   const input = range({ least: 0, most: 100, step: 5 }, 100 * page.sound.volume);
   input.oninput = () => (page.sound.volume = input.valueAsNumber / 100);
-  return labelAround(t("volume"), input);
+  return labelled(t("volume"), input);
 }
 
 function voices(page: Page): HTMLElement {
@@ -51,9 +49,7 @@ function voices(page: Page): HTMLElement {
   function voice(name: VoiceName): HTMLElement {
     const input = make("input", { type: "checkbox", checked: page.sound.has(name) });
     input.onchange = () => page.sound.let(name, input.checked);
-    const label = document.createElement("label");
-    label.append(input, t(name));
-    return label;
+    return labelled(input, t(name));
   }
 }
 
@@ -77,13 +73,12 @@ function speechControls(page: Page): HTMLElement[] {
     speech.aloud = !speech.aloud;
     page.say(t(speech.aloud ? "speechOn" : "speechOff"), { topic: "speech", asked: true });
   };
-  const element = button(t("aloud"), toggle);
-  element.id = "speech-on";
+  const element = button(t("aloud"), toggle, { id: "speech-on" });
   element.setAttribute("aria-keyshortcuts", "A");
   on("aloud", toggle);
   const rate = range(RATES, speech.rate);
   rate.onchange = () => (speech.rate = rate.valueAsNumber);
-  const rated = labelAround(t("rate"), rate);
+  const rated = labelled(t("rate"), rate);
   const hint = make("p", { className: "hint" });
   const show = (): void => {
     element.hidden = rated.hidden = !speech.voice;
@@ -116,12 +111,6 @@ function range({ least, most, step }: { least: number; most: number; step: numbe
   const input = make("input", { type: "range" });
   Object.assign(input, { min: String(least), max: String(most), step: String(step), value: String(value) });
   return input;
-}
-
-function labelAround(text: string, control: HTMLElement): HTMLElement {
-  const label = document.createElement("label");
-  label.append(text, control);
-  return label;
 }
 
 export const sound: Panel = { id: "sound", title: t("title"), task: "feel", open: false, build };

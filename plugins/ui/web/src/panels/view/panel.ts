@@ -1,6 +1,6 @@
 /** Settings of the view: light, steep walls, magnifier and camera. The strip below the surface has what it shows. */
 import "./view.css";
-import { fieldset, make, slider } from "kit/elements";
+import { fieldset, labelled, make, slider } from "kit/elements";
 import { CAMERA_KEYS, type CameraAct } from "kit/view/camera_input";
 import { Magnifier } from "kit/view/magnifier";
 import type { Page } from "kit/page";
@@ -140,13 +140,9 @@ function keys(): HTMLElement {
   return box;
 }
 
-
 function radio(name: string, value: string, word: Word, chosen: () => void, checked = false): HTMLElement {
-  const label = document.createElement("label");
-  const input = document.createElement("input");
-  Object.assign(input, { type: "radio", name, value, checked, onchange: chosen });
-  label.append(input, t(word));
-  return label;
+  const input = make("input", { type: "radio", name, value, checked, onchange: chosen });
+  return labelled(input, t(word));
 }
 
 export const view: Panel = { id: "view", title: t("title"), task: "advanced", open: true, build };

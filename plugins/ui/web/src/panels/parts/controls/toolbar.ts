@@ -1,5 +1,5 @@
 /** Toolbar of the tools, their options, and undo, redo and zoom. */
-import { button, field, make } from "kit/elements";
+import { button, field, labelled, make } from "kit/elements";
 import { t } from "../editor/words";
 import { caps } from "kit/key_caps";
 import { KINDS } from "../editor/requests";
@@ -108,9 +108,7 @@ export class Toolbar {
     const check = input("parts-snap", "checkbox");
     check.checked = this.state.tools.snaps;
     check.addEventListener("change", () => (this.state.tools.snaps = check.checked));
-    const label = document.createElement("label");
-    label.append(check, t("snap"));
-    return label;
+    return labelled(check, t("snap"));
   }
 
   private methodField(): HTMLElement {

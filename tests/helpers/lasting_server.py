@@ -57,12 +57,12 @@ async def forget(session: Any, tab: Any) -> None:
         del session._latest[event]
     session._history.clear()
     session._logged.clear()
-    session.texts = type(session.texts)()
+    session.document.texts = type(session.document.texts)()
 
 
 async def let_go(session: Any, tab: Any) -> None:
     """Take the hand from all tabs: those of earlier tests may close late, and the next tab gets it as it comes."""
-    session.hold(None)
+    session.tabs.hold(None)
 
 
 def be_patient() -> None:

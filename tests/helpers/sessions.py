@@ -145,7 +145,7 @@ class SmallSession:
         self.session = Session(folder / "drawn", Feeling("test"), [])
         self.worker: Any = self.session.worker
         self.tab = Heard()
-        self.session.tabs.append(self.tab)
+        self.session.tabs.open.append(self.tab)
         self.felt: list[dict[str, Any]] = []
         monkeypatch.setattr(Session, "feel", self._feel)
         monkeypatch.setattr(Session, "feel_on", self._feel)
@@ -153,7 +153,7 @@ class SmallSession:
     async def _feel(self, made: dict[str, Any]) -> None:
         Path(made["parcel"]).unlink()
         self.felt.append(made)
-        self.session.tell("touch", law=made["law"], seconds=0.0, how="")
+        self.session.tabs.tell("touch", law=made["law"], seconds=0.0, how="")
 
     async def ask(self, name: str, **told: Any) -> Any:
         """Send a request of the tab."""

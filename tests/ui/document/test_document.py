@@ -14,27 +14,27 @@ pytestmark = pytest.mark.anyio
 
 async def test_change_of_a_key_leaves_the_rest(small: SmallSession, ask: Any):
     await ask("set", changes={"render.stiffness_n_per_m": 500})
-    assert small.session.text == TEXT.replace("400", "500")
+    assert small.session.document.text == TEXT.replace("400", "500")
     said = small.tab.last("document")
     assert said["values"]["render"]["stiffness_n_per_m"] == 500
     assert (said["said"]["render"], said["complaints"]) == ({"use": "penalty", "stiffness_n_per_m": 500}, [])
     await ask("set", changes={"workspace.smooth_m": "2 mm"})
-    assert "{width_m: 0.06, relief_m: 0.004, smooth_m: 2 mm}" in small.session.text
+    assert "{width_m: 0.06, relief_m: 0.004, smooth_m: 2 mm}" in small.session.document.text
     assert small.tab.last("document")["values"]["workspace"]["smooth_m"] == 0.002
     await ask("set", removed=["workspace.smooth_m", "render.stiffness_n_per_m"])
-    assert small.session.text == TEXT.replace(", stiffness_n_per_m: 400", "")
+    assert small.session.document.text == TEXT.replace(", stiffness_n_per_m: 400", "")
     await ask("set", changes={"depth.use": "contour"})
-    assert "depth: {use: contour}  # bright is near" in small.session.text
+    assert "depth: {use: contour}  # bright is near" in small.session.document.text
 
 
 async def test_change_takes_a_value_in_yaml(small: SmallSession, ask: Any):
     await ask("set", written={"materials.by": "{0: ice, 1: sand, 2: brick}"})
     assert small.tab.last("document")["values"]["materials"]["by"] == {"0": "ice", "1": "sand", "2": "brick"}
-    before = small.session.text
+    before = small.session.document.text
     with pytest.raises(ConfigError) as refused:
         await ask("set", written={"materials.by": "{0: ice"})
     assert refused.value.complaints[0].location == ("materials", "by")
-    assert small.session.text == before
+    assert small.session.document.text == before
 
 
 async def test_complaint_names_its_field_and_leaves_the_text(small: SmallSession, ask: Any):
@@ -45,7 +45,7 @@ async def test_complaint_names_its_field_and_leaves_the_text(small: SmallSession
     assert tuple(complaint["location"]) == ("render", "stiffness_n_per_m")
     assert complaint["line"] == 7
     assert said["said"]["render"]["stiffness_n_per_m"] == -5
-    assert "-5}  # soft" in small.session.text
+    assert "-5}  # soft" in small.session.document.text
     await ask("edit", text="scene: [")
     said = small.tab.last("document")
     assert (said["said"], said["values"], len(said["complaints"])) == (None, None, 1)
@@ -80,9 +80,9 @@ async def test_edit_of_an_older_text_is_refused(small: SmallSession, ask: Any):
     await ask("set", changes={"render.stiffness_n_per_m": 500})
     with pytest.raises(ConfigError, match="changed elsewhere"):
         await ask("edit", text=TEXT + "# mine\n", of=old)
-    assert "500" in small.session.text
-    await ask("edit", text=small.session.text + "# mine\n", of=small.session.digest)
-    assert small.session.text.endswith("# mine\n")
+    assert "500" in small.session.document.text
+    await ask("edit", text=small.session.document.text + "# mine\n", of=small.session.document.digest)
+    assert small.session.document.text.endswith("# mine\n")
 
 
 async def test_undo_and_redo_step_through_the_history(small: SmallSession, ask: Any):
@@ -90,22 +90,22 @@ async def test_undo_and_redo_step_through_the_history(small: SmallSession, ask: 
     for stiffness in (500, 501, 502, 502):  # the last one is no step
         await ask("set", changes={"render.stiffness_n_per_m": stiffness})
     await ask("undo")
-    assert "501" in small.session.text
+    assert "501" in small.session.document.text
     await ask("redo")
-    assert "502" in small.session.text
+    assert "502" in small.session.document.text
     assert await ask("redo") is None
     for _ in range(3):
         assert small.tab.last("document")["can_undo"]
         await ask("undo")
-    assert small.session.text == TEXT and not small.tab.last("document")["can_undo"]
+    assert small.session.document.text == TEXT and not small.tab.last("document")["can_undo"]
     await ask("set", changes={"render.stiffness_n_per_m": 300})
     assert small.tab.last("document")["can_redo"] is False
 
 
 async def test_changes_of_the_command_line_are_in_the_text(small: SmallSession, ask: Any, tmp_path: Path):
-    small.session.sets = ["render.stiffness_n_per_m=0.3 N/mm"]
+    small.session.document.sets = ["render.stiffness_n_per_m=0.3 N/mm"]
     await ask("begin", files=[str(tmp_path / "mine.yaml")])
     await small.tab.until("touch")
-    assert "stiffness_n_per_m: 0.3 N/mm}  # soft" in small.session.text
+    assert "stiffness_n_per_m: 0.3 N/mm}  # soft" in small.session.document.text
     await ask("set", changes={"render.stiffness_n_per_m": 350})
     assert small.tab.last("document")["values"]["render"]["stiffness_n_per_m"] == 350

@@ -47,7 +47,7 @@ async def test_beacon_requested_by_a_tab_is_announced_to_all_tabs(
         await ask("beacon", part=999)
     assert await ask("beacon", part=None) == {"part": None, "name": ""}
     assert pulled[-1] is None and small.tab.last("beacon")["part"] is None
-    assert [each["event"] for each in small.session.history].count("beacon") == 1, "who comes later hears the last"
+    assert [each["event"] for each in small.session.tabs.history].count("beacon") == 1, "who comes later hears the last"
     small.worker.close()
     assert set(shared_folder().glob("*.parcel")) <= before, "nothing is left of what was handed on"
 

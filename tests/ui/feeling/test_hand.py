@@ -78,14 +78,14 @@ async def session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> AsyncItera
 def page(session: Session) -> Heard:
     """The session's tab."""
     page = Heard()
-    session.enter(page)
+    session.tabs.enter(page)
     return page
 
 
 class TestWhoHolds:
     async def test_hand_belongs_to_the_first_tab_until_another_takes_it(self, session: Session, page: Heard) -> None:
         other = Heard()
-        session.enter(other)
+        session.tabs.enter(other)
         assert (page.last("holding")["holding"], other.last("holding")["holding"]) == (True, False)
         session.feeling.hand.point((0.0, 0.0, 0.0), 1, 1)
         await REQUESTS["hold"](session, other)
@@ -94,15 +94,15 @@ class TestWhoHolds:
 
     async def test_hand_of_a_closed_tab_belongs_to_nobody(self, session: Session, page: Heard) -> None:
         other = Heard()
-        session.enter(other)
+        session.tabs.enter(other)
         session.feeling.hand.point((0.0, 0.0, 0.0), 1, 1)
-        session.leave(page)
+        session.tabs.leave(page)
         assert not session.feeling.hand.holding
-        assert session.holder is None
+        assert session.tabs.holder is None
         assert other.last("holding") == {"event": "holding", "holding": False, "free": True}
-        session.leave(other)
-        session.enter(page)
-        assert session.holder is page
+        session.tabs.leave(other)
+        session.tabs.enter(page)
+        assert session.tabs.holder is page
 
 
 @pytest.mark.usefixtures("loop_in_thread")

@@ -49,9 +49,9 @@ async def session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, loop_in_threa
     np.save(tmp_path / "flat.npy", np.zeros((8, 8)))
     (tmp_path / "scene").mkdir()
     session = Session(tmp_path / "scene", Feeling(f"laws-{os.getpid()}"), [])
-    session.text, session.path = TEXT, tmp_path / "p.yaml"
+    session.document.text, session.document.path = TEXT, tmp_path / "p.yaml"
     try:
-        [made] = await session.worker.ask("laws", **session.document(session.felt_sets()), others=[])
+        [made] = await session.worker.ask("laws", **session.document.arguments(session.felt_sets()), others=[])
         await session.feel(made)
         yield session
     finally:
@@ -62,7 +62,7 @@ async def session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, loop_in_threa
 def tab(session: Session) -> Heard:
     """A tab of the session."""
     tab = Heard()
-    session.enter(tab)
+    session.tabs.enter(tab)
     return tab
 
 
@@ -156,7 +156,7 @@ async def test_invalid_law_is_refused_and_the_law_before_stays(session: Session)
 
 async def test_comparison_opens_no_motor_without_consent(session: Session) -> None:
     session.choice = Choice("document", sure=True, agreed=type(load_method("device", "mock")()))
-    session.text = TEXT.replace("{use: pointer}", "{use: falcon}")
+    session.document.text = TEXT.replace("{use: pointer}", "{use: falcon}")
     with pytest.raises(NotConfirmed):
         await asks.compare_laws(session, None, "penalty", "")
     assert session.laws.message() == {"state": "one"}

@@ -261,9 +261,11 @@ class TestSaving:
         found = await saved(small, ask)
         assert (found["path"], found["file"]) == (str(tmp_path / "parts.png"), str(tmp_path / "mine.yaml"))
         assert found["numbers"] == {"0": [0], "7": [1], "3": [2]}
-        assert (tmp_path / "mine.yaml").read_text() == small.session.text
-        assert small.session.text.startswith("# a photograph of mine\nscene: {photo: mine.png, segments: parts.png}\n")
-        assert "# bright is near" in small.session.text
+        assert (tmp_path / "mine.yaml").read_text() == small.session.document.text
+        assert small.session.document.text.startswith(
+            "# a photograph of mine\nscene: {photo: mine.png, segments: parts.png}\n"
+        )
+        assert "# bright is near" in small.session.document.text
         await small.tab.until("touch")
         assert small.tab.last("scene")["parts"] == ["wall", "hat", "bag"]
         surface = load_pipeline(tmp_path / "mine.yaml").surface
@@ -284,10 +286,10 @@ class TestSaving:
             found = await saved(small, ask, beside=beside)
             assert (Path(found["file"]), Path(found["path"])) == (place, place.with_name("parts.png"))
         assert (tmp_path / "mine.yaml").read_text() == (tmp_path / "mine-2.yaml").read_text() == "# of somebody else\n"
-        assert small.session.path == place and (await ask("parts_open"))["file"] == str(place)
+        assert small.session.document.path == place and (await ask("parts_open"))["file"] == str(place)
         assert load_pipeline(place).surface.names == ("wall", "hat", "bag")
         await ask("undo")
-        assert small.session.path.name == "mine.yaml", "undo leads back to the document that had no parts"
+        assert small.session.document.path.name == "mine.yaml", "undo leads back to the document that had no parts"
 
     async def test_uploaded_and_built_in_pictures_have_no_place_beside_them(
         self, small: SmallSession, ask: Any, tmp_path: Path
@@ -336,7 +338,7 @@ class TestSaving:
         (tmp_path / "parts.png").write_bytes(b"of somebody else")
         assert Path((await saved(small, ask))["path"]).name == "parts-2.png"
         assert (tmp_path / "parts.png").read_bytes() == b"of somebody else"
-        assert "segments: parts-2.png" in small.session.text
+        assert "segments: parts-2.png" in small.session.document.text
         other = drawn()
         other[0, 0] = 7
         found = await saved(small, ask, upload=await sent(small, ask, packed(other)))
@@ -366,7 +368,7 @@ class TestSaving:
         for says, told in wrong.items():
             with pytest.raises(TangibleError, match=says):
                 await saved(small, ask, **told)
-            assert small.session.text == (tmp_path / "mine.yaml").read_text() == TEXT
+            assert small.session.document.text == (tmp_path / "mine.yaml").read_text() == TEXT
             assert not list(tmp_path.glob("parts*"))
 
     @pytest.mark.parametrize("size", [100, 3000])
@@ -376,13 +378,13 @@ class TestSaving:
         await ask("begin", files=[str(tmp_path / "mine.yaml")], make_it=False)
         await saved(small, ask)
         await small.tab.until("touch")
-        text, labels = small.session.text, (tmp_path / "parts.png").read_bytes()
+        text, labels = small.session.document.text, (tmp_path / "parts.png").read_bytes()
         other = drawn()
         other[0, 0] = 7
         upload = await sent(small, ask, packed(other))
         with files_up_to(size), pytest.raises(TangibleError, match="free some space"):
             await ask("parts_save", upload=upload, parts=[], heights=GIVEN)
-        assert small.session.text == (tmp_path / "mine.yaml").read_text() == text
+        assert small.session.document.text == (tmp_path / "mine.yaml").read_text() == text
         assert (tmp_path / "parts.png").read_bytes() == labels
         assert not list(tmp_path.glob(".*"))
 
@@ -505,13 +507,13 @@ class TestHeights:
         await saved(small, ask)
         await small.tab.until("touch")
         small.worker.asked.clear()
-        text = small.session.text
+        text = small.session.document.text
         found = await asyncio.gather(*(ask("parts_heights", heights_m=[0.0, k / 1e4, 0.0]) for k in range(20)))
         assert found == [{}, *[None] * 18, {}]
         assert small.worker.asked.count("parts_heights") == 2
         await happened(lambda: small.tab.last("scene")["height_m"][1] >= 19 / 1e4)
         assert small.worker.state.preview.seen.relief.height_m.max() > 19 / 1e4
-        assert small.session.text == text, "nothing is written before it is saved"
+        assert small.session.document.text == text, "nothing is written before it is saved"
         monkeypatch.setattr("tangible_core.pipeline.engine.preview.MAX_CELLS", 200)
         await ask("parts_heights", heights_m=[0.0, 0.002, 0.001])
         assert small.worker.state.preview.preview.grid.shape == (12, 16)

@@ -82,4 +82,4 @@ def test_server_survives_broken_messages(page: PageServer, count: int) -> None:
             with page.tab() as tab:
                 tab.socket.socket.sendall(broken_frames(random))
             witness.until(event="answer", number=witness.ask("examples"))
-        until(lambda: page.done(lambda: len(page.session.tabs)) == 1, "the end of broken tabs")
+        until(lambda: page.done(lambda: len(page.session.tabs.open)) == 1, "the end of broken tabs")

@@ -9,7 +9,8 @@ import pytest
 
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.logs import MOST_A_SECOND, PageHandler, silence, tell_pages
-from tangible_ui.state.session import MOST_LOGGED, Session
+from tangible_ui.state.session import Session
+from tangible_ui.state.tabs import MOST_LOGGED
 
 
 @pytest.fixture
@@ -82,16 +83,16 @@ def test_log_handler_never_raises(
 def test_history_of_a_flooded_log_keeps_the_other_events(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("tangible_ui.state.session.Worker", lambda *_: None)
     session = Session(tmp_path, Feeling("unheard"), [])
-    session.tell("document", text="")
-    session.tell("maker")
+    session.tabs.tell("document", text="")
+    session.tabs.tell("maker")
     for number in range(3000):
-        session.tell("log", level="warning", logger="a", text=str(number))
-    session.tell("touch", law="proxy")
-    assert Counter(each["event"] for each in session.history) == {
+        session.tabs.tell("log", level="warning", logger="a", text=str(number))
+    session.tabs.tell("touch", law="proxy")
+    assert Counter(each["event"] for each in session.tabs.history) == {
         "document": 1,
         "maker": 1,
         "log": MOST_LOGGED,
         "touch": 1,
     }
-    assert [each["at_s"] for each in session.history] == sorted(each["at_s"] for each in session.history)
-    assert max(int(each["text"]) for each in session.history if each["event"] == "log") == 2999
+    assert [each["at_s"] for each in session.tabs.history] == sorted(each["at_s"] for each in session.tabs.history)
+    assert max(int(each["text"]) for each in session.tabs.history if each["event"] == "log") == 2999

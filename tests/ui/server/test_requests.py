@@ -63,7 +63,7 @@ async def session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Session:
     monkeypatch.setattr("tangible_ui.state.session.Worker", Answers)
     monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path / "data"))
     session = Session(tmp_path, Feeling("none"), [])
-    session.path = tmp_path / "mine.yaml"
+    session.document.path = tmp_path / "mine.yaml"
     return session
 
 
@@ -71,7 +71,7 @@ async def session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Session:
 def tab(session: Session) -> Heard:
     """A tab of the session."""
     tab = Heard()
-    session.enter(tab)
+    session.tabs.enter(tab)
     return tab
 
 
@@ -132,7 +132,7 @@ class TestDocument:
         await ask("save", path="mine.yaml")  # its own file
         assert saved_at() == tmp_path / "mine.yaml"
         await ask("save", path="vase.2")
-        assert saved_at() == session.path == tmp_path / "vase.2.yaml"
+        assert saved_at() == session.document.path == tmp_path / "vase.2.yaml"
         for name in ("other.yml", "mine.yaml", "vase"):
             with pytest.raises(ConfigError, match="is there already"):
                 await ask("save", path=name)
@@ -147,15 +147,15 @@ class TestDocument:
         file = tmp_path / "1.json"
         file.touch()
         draft: Any = SimpleNamespace(file=file, text=Text("mine", tmp_path / "b.yaml"), at_s=3.0)
-        session.drafts.left = draft
-        monkeypatch.setattr(session.drafts, "look", lambda: draft)
+        session.document.drafts.left = draft
+        monkeypatch.setattr(session.document.drafts, "look", lambda: draft)
         await asks_document.offer(session)
         told = tab.last("restored")
         assert (told["path"], told["edited_s"]) == (str(tmp_path / "b.yaml"), 3.0)
         worker(session).answers["make"] = Stopped()
         await ask("restore")
-        assert (session.text, session.path) == ("mine", tmp_path / "b.yaml")
-        assert (tab.last("restored")["path"], session.drafts.left, file.exists()) == ("", None, False)
+        assert (session.document.text, session.document.path) == ("mine", tmp_path / "b.yaml")
+        assert (tab.last("restored")["path"], session.document.drafts.left, file.exists()) == ("", None, False)
         assert tab.last("restored")["edited_s"] == 0.0
 
 
@@ -166,7 +166,7 @@ class TestMaking:
         made: list[str] = []
 
         async def make(session: Session, tab: Any) -> None:
-            made.append(session.text)
+            made.append(session.document.text)
 
         monkeypatch.setattr(making, "make", make)
         for slow, refusal, makes in ([], "", True), (["disparity"], "", False), ([], "there is no law", False):
@@ -179,10 +179,10 @@ class TestMaking:
 
     async def test_plan_of_an_earlier_text_is_not_sent(self, session: Session, tab: Heard) -> None:
         def edited_meanwhile(**_: Any) -> dict[str, Any]:
-            session.digest = "later"
+            session.document.digest = "later"
             return {"slow": [], "refusal": ""}
 
-        session.digest = "now"
+        session.document.digest = "now"
         worker(session).answers["plan"] = edited_meanwhile
         await making.foresee(session, apply=True)
         assert "plan" not in tab.names()

@@ -42,7 +42,7 @@ def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[PageServer
 
 def test_tab_is_told_of_a_start_without_a_file_until_one_is_opened(page: PageServer) -> None:
     for waits, text, empty in ((True, "", True), (True, "scene: builtin/brick\n", False), (False, "", False)):
-        page.session.waits_for_file, page.session.text = waits, text
+        page.session.waits_for_file, page.session.document.text = waits, text
         with page.tab() as tab:
             assert tab.until(event="hello")["empty"] is empty, (waits, text)
 
@@ -210,12 +210,12 @@ class TestFloods:
     def test_tab_that_reads_nothing_is_cut_off(self, page: PageServer) -> None:
         raw = handshake(page, page.host)
         with page.tab() as other:
-            until(lambda: page.done(lambda: len(page.session.tabs)) == 2)
+            until(lambda: page.done(lambda: len(page.session.tabs.open)) == 2)
             said = 0
-            while page.done(lambda: len(page.session.tabs)) == 2:
+            while page.done(lambda: len(page.session.tabs.open)) == 2:
                 said += 1
                 assert said < 100  # megabytes
-                page.done(lambda: page.session.tell("log", text="x" * 1_000_000))
+                page.done(lambda: page.session.tabs.tell("log", text="x" * 1_000_000))
                 other.until(event="log")
         raw.close()
 
@@ -224,8 +224,10 @@ class TestFloods:
         monkeypatch.setattr(routes, "static", lambda: tmp_path)
         with PageServer(tmp_path, monkeypatch) as page, handshake(page, page.host) as raw:
             assert raw.recv(4) == b"HTTP"
-            page.done(lambda: page.session.tell("log", text="x" * 4_000_000))  # more than is sent ahead of a reader
-            until(lambda: page.done(lambda: not page.session.tabs))
+            page.done(
+                lambda: page.session.tabs.tell("log", text="x" * 4_000_000)
+            )  # more than is sent ahead of a reader
+            until(lambda: page.done(lambda: not page.session.tabs.open))
 
     def test_flood_of_pointers_keeps_the_hand_moving(self, page: PageServer) -> None:
         pointers = b"".join(mask_frame(pointer(0.01, 0.0, k * 1e-6)) for k in range(500))

@@ -32,7 +32,7 @@ async def session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Session:
 def tab(session: Session) -> Heard:
     """A tab of the session."""
     tab = Heard()
-    session.enter(tab)
+    session.tabs.enter(tab)
     return tab
 
 

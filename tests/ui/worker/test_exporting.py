@@ -45,7 +45,7 @@ class TestExport:
         assert 0 <= small.tab.last("made")["seconds"] <= perf_counter() - begun_s
         told = small.tab.last("exported")
         assert {key: told[key] for key in found} == found
-        assert (told["digest"], small.tab.last("made")["want"]) == (small.session.digest, "export")
+        assert (told["digest"], small.tab.last("made")["want"]) == (small.session.document.digest, "export")
         (only,) = found["exports"]
         assert (only["name"], only["outcome"]) == ("stl", "ran")
         assert only["legible"]["sentence"]
@@ -157,7 +157,7 @@ class TestLegible:
         assert 0 <= small.tab.last("made")["seconds"] <= perf_counter() - begun_s
         assert (drawn["grade"], drawn["simplified"]) == ("ok", True), "paper gets simplified parts in any case"
         await ask("set", changes={"simplify": {"gap_m": 0.0, "part_m": 0.0}})
-        before = small.session.text
+        before = small.session.document.text
         found = await ask("legible", medium="swell", width_m=0.08)
         assert small.tab.last("legible")["verdicts"] == found["verdicts"]
         assert (found["medium"], found["width_m"], found["grade"]) == ("swell", 0.08, "illegible")
@@ -169,9 +169,9 @@ class TestLegible:
         assert "simplify.gap_m" in cures
         await ask("set", changes=cures)
         again = await ask("legible", medium="swell")
-        assert (again["grade"], again["digest"]) == ("ok", small.session.digest)
+        assert (again["grade"], again["digest"]) == ("ok", small.session.document.digest)
         await ask("undo")
-        assert small.session.text == before
+        assert small.session.document.text == before
 
     async def test_legibility_of_the_panel_is_judged_at_the_width_of_the_export(self, ask: Any) -> None:
         """A picture that is legible on its page is so in both panels, and what is not is so in both."""

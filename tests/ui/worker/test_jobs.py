@@ -132,9 +132,11 @@ class TestHandle:
 
 @pytest.mark.anyio
 async def test_job_for_pages_is_asked_with_the_document_and_the_arguments_of_the_page(small: Any) -> None:
-    small.session.sets = ["device={use: mock}"]
+    small.session.document.sets = ["device={use: mock}"]
     assert (await small.ask("reach"))["device"] == "mock"
-    names = [each["name"] for each in (await small.ask("folder", path=str(small.session.path.parent)))["entries"]]
+    names = [
+        each["name"] for each in (await small.ask("folder", path=str(small.session.document.path.parent)))["entries"]
+    ]
     assert "mine.yaml" in names
     for name, said, why in (
         ("raech", {}, "no request .*raech.*did you mean .*reach"),
@@ -147,7 +149,7 @@ async def test_job_for_pages_is_asked_with_the_document_and_the_arguments_of_the
         ("parts_snap", {"points": [["a"]], "reach_px": 1.0}, "points.0.0: .*number"),
     ):
         with pytest.raises(ConfigError, match=why):
-            await small.worker.quick("answer_page", request=name, arguments=said, **small.session.document())
+            await small.worker.quick("answer_page", request=name, arguments=said, **small.session.document.arguments())
 
 
 SLOW = """\
@@ -161,7 +163,7 @@ render: {use: penalty}
 @pytest.mark.anyio
 async def test_stopped_job_ends_at_once_and_the_loop_goes_on(tmp_path: Path):
     session, tab = Session(tmp_path, Feeling("worker-process"), []), Heard()
-    session.enter(tab)
+    session.tabs.enter(tab)
 
     async def ask(name: str, **told: Any) -> Any:
         return await REQUESTS[name](session, tab, **told)

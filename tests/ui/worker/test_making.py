@@ -185,7 +185,7 @@ async def test_edit_during_a_job_is_applied_after_it(small: SmallSession, ask: A
     go.set()
     await making
     await small.tab.until("touch", 3)
-    assert small.tab.last("made")["digest"] == small.session.digest
+    assert small.tab.last("made")["digest"] == small.session.document.digest
 
 
 async def test_stop_making_kills_the_worker_only_during_a_job(small: SmallSession, ask: Any, request: Any):
@@ -219,7 +219,7 @@ async def test_job_that_does_not_give_way_is_killed_and_the_newest_repeated(
     go.set()
     assert await old is None
     await new
-    assert small.tab.last("made")["digest"] == small.session.digest
+    assert small.tab.last("made")["digest"] == small.session.document.digest
     assert small.worker.kills == 1
     assert small.worker.asked.count("make") == 4  # the first, the old, the new twice
 
@@ -230,18 +230,18 @@ async def test_preflight_cures_change_the_document(small: SmallSession, ask: Any
     steep = {"render.use": "penalty-gradient", "workspace.relief_m": 0.02, "workspace.smooth_m": 0}
     hard = {"materials.by": "rules", "materials.default": "brick", "materials.fit": "never"}
     await ask("set", changes={**steep, **hard, "device.use": "mock"})
-    assert small.tab.last("preflight")["digest"] != small.session.digest
+    assert small.tab.last("preflight")["digest"] != small.session.document.digest
     found = await ask("preflight")
     assert (found["grade"], found["device"], found["of_loop"]) == ("unsafe", "mock", False)
     assert found["sentence"].startswith("Unsafe, because")
-    assert found["digest"] == small.session.digest
+    assert found["digest"] == small.session.document.digest
     cures = [each["changes"][0] for each in found["verdicts"] if each["changes"]]
     assert {"key": "materials.fit", "value": "device", "towards": "is"} in cures
     assert all(each["stands"] for each in found["verdicts"])
     fixed = await ask("fix")
     assert fixed["safe"]
-    assert small.session.text.startswith("# a photograph of mine\n")
-    assert "# bright is near" in small.session.text
-    assert "fit: device" in small.session.text
+    assert small.session.document.text.startswith("# a photograph of mine\n")
+    assert "# bright is near" in small.session.document.text
+    assert "fit: device" in small.session.document.text
     now = small.tab.last("preflight")
-    assert (now["grade"] != "unsafe", now["digest"]) == (True, small.session.digest)
+    assert (now["grade"] != "unsafe", now["digest"]) == (True, small.session.document.digest)

@@ -7,7 +7,8 @@ from tangible_core.errors import ConfigError, DeviceError
 
 from ..feeling.choice import Choice
 from ..feeling.doctor import figures
-from ..state.session import Session, Tab
+from ..state.session import Session
+from ..state.tabs import Tab
 from .making import make
 from .table import request
 
@@ -34,7 +35,7 @@ async def choose_device(session: Session, tab: Tab | None, kind: str, name: str 
     if not about["simulated"] and not sure:
         raise ConfigError(f"{about['name']} has a motor: agree to that first")
     session.choice = choice
-    session.tell("device", kind=choice.kind, name=about["name"])
+    session.tabs.tell("device", kind=choice.kind, name=about["name"])
     session.feeling.allow()
     await make(session, tab)
 
@@ -59,8 +60,8 @@ def _choice(kind: str, name: str, sure: bool) -> Choice:
 
 
 async def _about(session: Session, choice: Choice) -> dict[str, Any]:
-    sets = [*session.sets, *choice.sets(session.feeling.own_device)]
-    return await session.worker.ask("about_device", **session.document(sets))
+    sets = [*session.document.sets, *choice.sets(session.feeling.own_device)]
+    return await session.worker.ask("about_device", **session.document.arguments(sets))
 
 
 async def _wait(session: Session) -> None:
@@ -71,7 +72,7 @@ async def _wait(session: Session) -> None:
         except DeviceError as error:
             if str(error) != told:
                 told = str(error)
-                session.tell("loop", running=False, why=told, lost=True, waiting=True)
+                session.tabs.tell("loop", running=False, why=told, lost=True, waiting=True)
             await asyncio.sleep(pause_s)
             pause_s = min(2 * pause_s, LONGEST_PAUSE_S)
 

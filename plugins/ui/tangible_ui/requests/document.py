@@ -7,7 +7,8 @@ from typing import Any
 from tangible_core.errors import ConfigError
 from tangible_core.files import as_path
 
-from ..state.session import Session, Tab
+from ..state.session import Session
+from ..state.tabs import Tab
 from ..state.texts import Text
 from .making import foresee, make
 from .table import request
@@ -23,10 +24,11 @@ async def begin(session: Session, tab: Tab | None, files: list[str], make_it: bo
     if "text" not in found:
         return found
     text, path = found["text"], found["path"]
-    if session.sets:  # changes of the command line become part of the text
-        text, session.sets = await session.worker.quick("overridden", text=text, path=path, sets=session.sets), []
-    session.drafts.remember_opened(text)
-    async with session.texts.lock:
+    if session.document.sets:  # changes of the command line become part of the text
+        text = await session.worker.quick("overridden", text=text, path=path, sets=session.document.sets)
+        session.document.sets = []
+    session.document.drafts.remember_opened(text)
+    async with session.document.texts.lock:
         said = await take(session, Text(text, path))
     if make_it and not said["complaints"]:
         session.begin(make(session, tab))
@@ -40,10 +42,10 @@ async def edit(session: Session, tab: Tab | None, text: str, of: str = "", apply
     of: digest of the text that was edited; if another text replaced that meanwhile, the edit is refused. apply: make it
     unless something slow has to run. Raises: ConfigError.
     """
-    async with session.texts.lock:
-        if of and of != session.digest:
+    async with session.document.texts.lock:
+        if of and of != session.document.digest:
             raise ConfigError("the document was changed elsewhere meanwhile; look at what it says now")
-        return _follow_up(session, await take(session, Text(text, session.path)), apply)
+        return _follow_up(session, await take(session, Text(text, session.document.path)), apply)
 
 
 @request("set")
@@ -56,10 +58,10 @@ async def change(
     apply: bool = False,
 ) -> dict[str, Any]:
     """Change keys of the document and nothing else: values, values in YAML, keys to remove. Raises: ConfigError."""
-    async with session.texts.lock:
+    async with session.document.texts.lock:
         told = {"changes": changes or {}, "written": written or {}, "removed": removed or []}
-        found = await session.worker.quick("change", **session.document(), **told)
-        return _follow_up(session, _put(session, Text(found["text"], session.path), found), apply)
+        found = await session.worker.quick("change", **session.document.arguments(), **told)
+        return _follow_up(session, _put(session, Text(found["text"], session.document.path), found), apply)
 
 
 @request()
@@ -75,38 +77,38 @@ async def redo(session: Session, tab: Tab | None, apply: bool = False) -> dict[s
 
 
 async def take(session: Session, text: Text) -> dict[str, Any]:
-    """Replace text and path of the document, and send it to all tabs. The caller holds `session.texts.lock`."""
+    """Replace text and path of the document, and send it to all tabs. The caller holds the lock of its texts."""
     return _put(session, text, await _check(session, text))
 
 
 async def _step(session: Session, *, back: bool, apply: bool) -> dict[str, Any] | None:
-    async with session.texts.lock:
-        text = session.texts.before() if back else session.texts.after()
+    async with session.document.texts.lock:
+        text = session.document.texts.before() if back else session.document.texts.after()
         if text is None:
             return None
         found = await _check(session, text)
-        session.texts.step(Text(session.text, session.path), back=back)
+        session.document.texts.step(session.document.now, back=back)
         return _follow_up(session, _publish(session, text, found), apply)
 
 
 async def _check(session: Session, text: Text) -> dict[str, Any]:
-    return await session.worker.quick("check", text=text.text, path=text.path, sets=session.sets)
+    return await session.worker.quick("check", text=text.text, path=text.path, sets=session.document.sets)
 
 
 def _put(session: Session, text: Text, found: dict[str, Any]) -> dict[str, Any]:
     """Replace the document's text, and add the one before to the history."""
-    now = Text(session.text, session.path)
+    now = session.document.now
     if text != now:
-        session.texts.leave(now)
+        session.document.texts.leave(now)
     return _publish(session, text, found)
 
 
 def _publish(session: Session, text: Text, found: dict[str, Any]) -> dict[str, Any]:
-    session.text, session.path = text
-    session.digest = found["digest"]
-    session.begin(session.drafts.keep(text))
-    found |= {"can_undo": session.texts.can_undo, "can_redo": session.texts.can_redo}
-    session.tell("document", **found)
+    session.document.text, session.document.path = text
+    session.document.digest = found["digest"]
+    session.begin(session.document.drafts.keep(text))
+    found |= {"can_undo": session.document.texts.can_undo, "can_redo": session.document.texts.can_redo}
+    session.tabs.tell("document", **found)
     return found
 
 
@@ -140,32 +142,33 @@ async def save(session: Session, tab: Tab | None, path: str, replace: bool = Fal
         place = Path.cwd() / place
     if place.suffix not in (".yaml", ".yml"):
         place = place.with_name(f"{place.name}.yaml")
-    if not replace and place.exists() and place != session.path:
+    if not replace and place.exists() and place != session.document.path:
         raise ConfigError(f"{place}: is there already; choose another name, or replace it")
-    await session.worker.quick("save", text=session.text, path=session.path, out=place)
+    await session.worker.quick("save", text=session.document.text, path=session.document.path, out=place)
     return await begin(session, tab, [str(place)], make_it=False)
 
 
 @request()
 async def exchange(session: Session, tab: Tab | None) -> None:
     """Exchange left and right of the pair, and make it again."""
-    await edit(session, tab, await session.worker.quick("exchange", text=session.text, path=session.path))
+    text, path = session.document.now
+    await edit(session, tab, await session.worker.quick("exchange", text=text, path=path))
     session.begin(make(session, tab))
 
 
 async def offer(session: Session) -> None:
     """Tell pages of the draft of an earlier program, if there is one."""
-    if (draft := await asyncio.to_thread(session.drafts.look)) is not None:
-        session.tell("restored", path=str(draft.text.path), edited_s=draft.at_s)
+    if (draft := await asyncio.to_thread(session.document.drafts.look)) is not None:
+        session.tabs.tell("restored", path=str(draft.text.path), edited_s=draft.at_s)
 
 
 @request()
 async def restore(session: Session, tab: Tab | None) -> None:
     """Replace the document by the earlier program's draft, as an edit. Raises: ConfigError if there is none."""
-    draft = session.drafts.left
+    draft = session.document.drafts.left
     if draft is None:
         raise ConfigError("there is no unsaved draft")
-    async with session.texts.lock:
+    async with session.document.texts.lock:
         said = await take(session, draft.text)
     await forget(session, tab)
     if not said["complaints"]:
@@ -175,5 +178,5 @@ async def restore(session: Session, tab: Tab | None) -> None:
 @request("forget_draft")
 async def forget(session: Session, tab: Tab | None) -> None:
     """Remove the earlier program's draft."""
-    await asyncio.to_thread(session.drafts.drop)
-    session.tell("restored", path="", edited_s=0.0)
+    await asyncio.to_thread(session.document.drafts.drop)
+    session.tabs.tell("restored", path="", edited_s=0.0)

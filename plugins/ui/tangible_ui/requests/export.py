@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from ..state.session import Session, Tab
+from ..state.session import Session
+from ..state.tabs import Tab
 from .making import long_job
 from .table import request
 
@@ -13,4 +14,4 @@ async def export(session: Session, tab: Tab | None, exports: list[dict[str, Any]
 
     exports: as `export:` of a pipeline file has them. Raises: ConfigError for invalid ones.
     """
-    return await long_job(session, "export", "surface", sets=session.sets, exports=exports)
+    return await long_job(session, "export", "surface", sets=session.document.sets, exports=exports)

@@ -9,7 +9,8 @@ from tangible_core.servo import Beacon, parcel
 from tangible_core.session import part_label
 
 from ..feeling.feeling import LoopInput
-from ..state.session import Session, Tab
+from ..state.session import Session
+from ..state.tabs import Tab
 from .making import make
 from .table import request
 
@@ -17,14 +18,14 @@ from .table import request
 @request()
 async def hold(session: Session, tab: Tab) -> None:
     """Give the hand to this tab."""
-    session.hold(tab)
+    session.tabs.hold(tab)
 
 
 @request()
 async def stop(session: Session, tab: Tab | None) -> None:
     """Take all force away at once, until `feel`, whatever else is made meanwhile."""
     wait_until_gone = session.feeling.cut()  # before any wait
-    session.tell("loop", running=False, why="stopped", stopped=True)
+    session.tabs.tell("loop", running=False, why="stopped", stopped=True)
     session.begin(asyncio.to_thread(wait_until_gone))
 
 
@@ -46,14 +47,14 @@ async def beacon(session: Session, tab: Tab | None, part: int | None) -> dict[st
         return _tell(session, None, "")
     if not session.feeling.running:
         raise DeviceError("nothing is felt, so nothing can be pulled; make and feel a surface first")
-    made = await session.worker.quick("beacon", **session.document(session.felt_sets()), part=part)
+    made = await session.worker.quick("beacon", **session.document.arguments(session.felt_sets()), part=part)
     found: Beacon = await asyncio.to_thread(parcel.unpack, Path(made["parcel"]))
     await asyncio.to_thread(session.feeling.pull_to, found)
     return _tell(session, found.part, part_label(found.part, found.name))
 
 
 def _tell(session: Session, part: int | None, name: str) -> dict[str, Any]:
-    session.tell("beacon", part=part, name=name, why="asked")
+    session.tabs.tell("beacon", part=part, name=name, why="asked")
     return {"part": part, "name": name}
 
 
@@ -88,7 +89,7 @@ async def end_laws(session: Session, tab: Tab | None) -> None:
         await _feel(session, 0)
     session.laws.alone()
     await asyncio.to_thread(session.laws.comparison.close)
-    session.tell("laws", **session.laws.message())
+    session.tabs.tell("laws", **session.laws.message())
 
 
 @request()
@@ -102,7 +103,7 @@ async def study_laws(
     if session.laws.other is None:
         raise ConfigError(NO_OTHER)
     told = {"other": session.laws.other, "names": session.laws.named, "question": question, "language": language}
-    return await session.worker.quick("write_law_study", **session.document(), **told)
+    return await session.worker.quick("write_law_study", **session.document.arguments(), **told)
 
 
 async def _feel(session: Session, which: int, other: dict[str, Any] | None = None) -> None:
@@ -116,7 +117,7 @@ async def _feel(session: Session, which: int, other: dict[str, Any] | None = Non
     if not feeling.running:
         raise DeviceError("nothing is felt; make and feel a surface first")
     blocks = [other or laws.other]
-    made = await session.worker.ask("laws", **session.document(session.felt_sets()), others=blocks)
+    made = await session.worker.ask("laws", **session.document.arguments(session.felt_sets()), others=blocks)
     felt, shown = (LoopInput.of(made[i], feeling.channel) for i in (which, 1 - which))
     try:
         if await session.put(felt) is None:
@@ -125,7 +126,7 @@ async def _feel(session: Session, which: int, other: dict[str, Any] | None = Non
         await asyncio.to_thread(laws.comparison.feel, shown.touch, shown.safety)
     finally:
         shown.touch.discard()
-    session.tell("laws", **laws.message())
+    session.tabs.tell("laws", **laws.message())
 
 
 def _told_apart(one: str, two: str) -> tuple[str, str]:

@@ -5,7 +5,8 @@ from typing import Any
 
 from tangible_core.errors import Stopped
 
-from ..state.session import Session, Tab
+from ..state.session import Session
+from ..state.tabs import Tab
 from ..worker.handle import WorkerKilled
 from .table import request
 
@@ -37,11 +38,11 @@ async def try_again(session: Session, tab: Tab | None) -> None:
 
 async def foresee(session: Session, apply: bool = False) -> None:
     """Send all tabs the plan of making the document. apply: make it unless something slow has to run."""
-    digest = session.digest
-    plan = await session.worker.quick("plan", **session.document(session.felt_sets()), want="touch")
-    if session.digest != digest:
+    digest = session.document.digest
+    plan = await session.worker.quick("plan", **session.document.arguments(session.felt_sets()), want="touch")
+    if session.document.digest != digest:
         return  # the text was edited again, and that edit sends its own plan
-    session.tell("plan", **plan)
+    session.tabs.tell("plan", **plan)
     if apply and session.long_jobs.running:
         session.long_jobs.apply_after = True
     elif apply and not plan["slow"] and not plan["refusal"]:
@@ -53,15 +54,16 @@ async def long_job(session: Session, job: str, needs: str, sets: list[str], **to
 
     needs: the product that it is made from. Raises: whatever the job raises.
     """
-    document = session.document(sets)
-    digest, earlier, number = session.digest, set(session.long_jobs.running), session.long_jobs.begin()
+    document = session.document.arguments(sets)
+    digest, earlier, number = session.document.digest, set(session.long_jobs.running), session.long_jobs.begin()
     try:
         if earlier and await session.worker.quick("give_way", number=number, **document, want=needs):
             session.begin(_insist(session, earlier))
         return await _request_job(session, job, number, {**document, **told})
     except Exception as error:
         outcome = "failed" if _is_wanted(session, number, error) else "stopped"
-        session.tell("made", want=told.get("want", job), digest=digest, outcome=outcome, why=str(error), seconds=0.0)
+        made = {"want": told.get("want", job), "outcome": outcome, "why": str(error), "seconds": 0.0}
+        session.tabs.tell("made", digest=digest, **made)
         if outcome == "stopped":
             return None
         raise

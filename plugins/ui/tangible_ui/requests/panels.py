@@ -3,7 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-from ..state.session import Session, Tab
+from ..state.session import Session
+from ..state.tabs import Tab
 from .table import request
 
 

@@ -3,7 +3,8 @@
 import asyncio
 from typing import Any, Literal
 
-from ..state.session import Session, Tab
+from ..state.session import Session
+from ..state.tabs import Tab
 from ..state.texts import Text
 from ..user_data import user_folder
 from .document import take
@@ -14,8 +15,8 @@ from .table import request
 @request()
 async def parts_open(session: Session, tab: Tab | None) -> dict[str, Any]:
     """Return what the editor begins with: the document's picture and parts, its file, and where a new one may lie."""
-    told = {"opened": session.drafts.opened_text, "uploads": user_folder("")}
-    return await session.worker.quick("parts_open", **session.document(), **told)
+    told = {"opened": session.document.drafts.opened_text, "uploads": user_folder("")}
+    return await session.worker.quick("parts_open", **session.document.arguments(), **told)
 
 
 @request()
@@ -36,20 +37,21 @@ async def parts_save(
     meanwhile, the request is refused. beside: a document without a file gets one next to the photograph, else in the
     program's folder; no file that is there is replaced. Raises: ConfigError, OutputError; then nothing is changed.
     """
-    async with session.texts.lock:
+    async with session.document.texts.lock:
         sent = await asyncio.to_thread(session.uploads.single, upload)
         try:
             found = await session.worker.quick(
-                "parts_save", **session.document(), sent=sent, parts=parts, heights=heights, of=of,
-                words={"title": title, "language": language}, opened=session.drafts.opened_text,
-                store=user_folder("opened"), drawn=user_folder("drawn"), beside=beside, earlier=session.texts.all,
+                "parts_save", **session.document.arguments(), sent=sent, parts=parts, heights=heights, of=of,
+                words={"title": title, "language": language}, opened=session.document.drafts.opened_text,
+                store=user_folder("opened"), drawn=user_folder("drawn"), beside=beside,
+                earlier=session.document.texts.all,
             )  # fmt: skip
         finally:
             await asyncio.to_thread(session.uploads.drop, upload)
         text, moved = found.pop("text"), found.pop("moved")
-        session.texts.rewrite(moved)
-        session.text = moved.get(session.text, session.text)
-        session.drafts.remember_opened(text)
+        session.document.texts.rewrite(moved)
+        session.document.text = moved.get(session.document.text, session.document.text)
+        session.document.drafts.remember_opened(text)
         await take(session, Text(text, found["file"]))
         found["file"] = str(found["file"])
     session.begin(foresee(session, apply=True))
@@ -72,7 +74,8 @@ async def parts_propose(
     would draw its border, for `regions`: less gives a smaller piece. Raises: ConfigError.
     """
     told = {"points": points, "width_px": width_px, "kind": kind, "within": within, "level": level}
-    return await session.strokes.run(lambda: session.worker.quick("parts_propose", **session.document(), **told))
+    told |= session.document.arguments()
+    return await session.strokes.run(lambda: session.worker.quick("parts_propose", **told))
 
 
 @request()
@@ -91,7 +94,7 @@ async def parts_heights(
     told = {"heights_m": heights_m, "materials": materials, "heights": heights}
 
     async def feel() -> dict[str, Any]:
-        made = await session.worker.quick("parts_heights", **session.document(session.felt_sets()), **told)
+        made = await session.worker.quick("parts_heights", **session.document.arguments(session.felt_sets()), **told)
         await session.feel_on(made)
         return {}
 

@@ -7,7 +7,8 @@ from tangible_core.files.yaml import json_in_yaml
 from tangible_core.plugins import Medium
 from tangible_core.servo import PERIOD_NS, SPINS
 
-from ..state.session import Session, Tab
+from ..state.session import Session
+from ..state.tabs import Tab
 from ..worker.messages import Late
 from .document import change
 from .making import long_job
@@ -20,13 +21,13 @@ LEAST_TICKS = 1000
 @request()
 async def preflight(session: Session, tab: Tab | None) -> dict[str, Any] | None:
     """Judge the document on its device, or on the page's own hand without one; None if it was stopped."""
-    return await long_job(session, "preflight", "touch", sets=session.sets, **_loop(session))
+    return await long_job(session, "preflight", "touch", sets=session.document.sets, **_loop(session))
 
 
 @request()
 async def fix(session: Session, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
     """Apply the changes that preflight proposes, and judge again; None if it was stopped."""
-    found = await long_job(session, "fix", "touch", sets=session.sets, **_loop(session))
+    found = await long_job(session, "fix", "touch", sets=session.document.sets, **_loop(session))
     if found is None:
         return None
     if found["changes"]:
@@ -43,7 +44,7 @@ async def legible(
 
     width_m: of the whole picture there; by default as export draws it.
     """
-    return await long_job(session, "legible", "parts", sets=session.sets, medium=medium, width_m=width_m)
+    return await long_job(session, "legible", "parts", sets=session.document.sets, medium=medium, width_m=width_m)
 
 
 def _loop(session: Session) -> dict[str, Any]:

@@ -10,7 +10,8 @@ from tangible_core.files import as_path
 from tangible_core.session import About, names_in
 
 from ..feeling.recorder import Recorder
-from ..state.session import Session, Tab
+from ..state.session import Session
+from ..state.tabs import Tab
 from ..user_data import RECORDINGS, user_folder
 from .table import request
 
@@ -29,13 +30,13 @@ async def record(session: Session, tab: Tab | None) -> str:
 
     def notify_end(path: Path, ticks: int, why: str) -> None:
         told = {"recording": False, "path": str(path), "ticks": ticks, "why": why}
-        loop.call_soon_threadsafe(lambda: session.tell("recorder", **told))
+        loop.call_soon_threadsafe(lambda: session.tabs.tell("recorder", **told))
 
-    text = session.text
+    text = session.document.text
     parts = await asyncio.to_thread(names_in, text)
     about = About(felt.device_name, felt.law, text, parts=parts, materials=felt.materials)
     session.recorder = await asyncio.to_thread(Recorder, servo, path, about, notify_end)
-    session.tell("recorder", recording=True, path=str(path), ticks=0, why="")
+    session.tabs.tell("recorder", recording=True, path=str(path), ticks=0, why="")
     return str(path)
 
 
@@ -49,4 +50,5 @@ async def stop_recording(session: Session, tab: Tab | None) -> None:
 @request()
 async def try_law(session: Session, tab: Tab | None, record: str) -> dict[str, Any]:
     """Replay a recording with the document's force law: write the result as a recording, and compare both."""
-    return await session.worker.ask("try_law", **session.document(session.felt_sets()), record=as_path(record))
+    document = session.document.arguments(session.felt_sets())
+    return await session.worker.ask("try_law", **document, record=as_path(record))

@@ -34,6 +34,7 @@ def find_request(name: str) -> Request:
     """
 
     async def ask_worker(session: Any, tab: Any, /, **arguments: Any) -> Any:
-        return await session.worker.quick("answer_page", request=name, arguments=arguments, **session.document())
+        document = session.document.arguments()
+        return await session.worker.quick("answer_page", request=name, arguments=arguments, **document)
 
     return REQUESTS.get(name, ask_worker)

@@ -115,7 +115,7 @@ class Served:
             raise
 
         def tell(**told: str) -> None:
-            loop.call_soon_threadsafe(partial(session.tell, "log", **told))
+            loop.call_soon_threadsafe(partial(session.tabs.tell, "log", **told))
 
         telling = tell_pages(tell)
         loop.set_exception_handler(partial(_unforeseen, session))
@@ -141,7 +141,7 @@ def _unforeseen(session: Session, _: asyncio.AbstractEventLoop, context: dict[st
 async def _start(session: Session) -> None:
     """Start the loop when the surface is on its way to the screen, or late: both need the whole processor."""
     until_s = time.monotonic() + LATEST_START_S
-    while session.scene is None and time.monotonic() < until_s:
+    while session.tabs.scene is None and time.monotonic() < until_s:
         await asyncio.sleep(0.02)
     await asyncio.to_thread(session.feeling.start)
 
@@ -152,9 +152,9 @@ async def watch(session: Session) -> None:
         session.feeling.hand.keep()
         session.laws.follow(session.feeling)
         if why := session.feeling.beacon_over():
-            session.tell("beacon", part=None, name="", why=why)
+            session.tabs.tell("beacon", part=None, name="", why=why)
         if (end := session.feeling.loop_end()) is not None:
-            session.tell("loop", running=False, why=end.why, lost=end.lost)
+            session.tabs.tell("loop", running=False, why=end.why, lost=end.lost)
         if why := session.laws.comparison.loop_end():
             log.warning("%s is no longer computed beside the law that is felt: %s", session.laws.shown_name, why)
         await asyncio.sleep(KEEP_S)

@@ -28,20 +28,20 @@ class SessionProgram:
     def greeting(self) -> dict[str, Any]:
         """Return what happened before, the surface, and whether no file was opened yet."""
         session = self.state
-        empty = session.waits_for_file and not session.text
-        return {"history": session.history, "scene": session.scene, "empty": empty}
+        empty = session.waits_for_file and not session.document.text
+        return {"history": session.tabs.history, "scene": session.tabs.scene, "empty": empty}
 
     def enter(self, tab: LiveTab) -> None:
         """Add a tab; it gets the hand if no other tab holds it."""
-        self.state.enter(tab)
+        self.state.tabs.enter(tab)
 
     def leave(self, tab: LiveTab) -> None:
         """Remove a tab; a hand that it held is released."""
-        self.state.leave(tab)
+        self.state.tabs.leave(tab)
 
     def holds(self, tab: LiveTab) -> bool:
         """Return True if this tab moves the hand."""
-        return self.state.holder is tab
+        return self.state.tabs.holder is tab
 
     def frame(self, seq: int, status: int) -> bytes | None:
         """Return the newest tick, with the force of a second law and whether ticks are recorded."""

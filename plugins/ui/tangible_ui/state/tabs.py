@@ -1,0 +1,82 @@
+"""The pages in browsers: what they are told, and which of them moves the hand."""
+
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any, Protocol, final, runtime_checkable
+
+MOST_HISTORY, MOST_LOGGED = 500, 200
+"""Numbers of past events and of log lines that a tab opened later gets."""
+LATEST_ONLY = frozenset(
+    {"restored", "document", "plan", "materials", "preflight", "legible", "exported", "beacon", "described"}
+) | {"maker", "maker_gone"}
+"""Events that describe a state: only the latest of each counts, and it is kept however many other events follow."""
+
+
+@runtime_checkable
+class Tab(Protocol):
+    """A page in a browser."""
+
+    def say(self, event: dict[str, Any]) -> None:
+        """Send an event without waiting."""
+
+
+@final
+class Tabs:
+    """All tabs of a session, and the events that they get."""
+
+    def __init__(self, release: Callable[[], None]) -> None:
+        """release: releases the hand, before another tab or none moves it."""
+        self._release = release
+        self.open: list[Tab] = []
+        self.holder: Tab | None = None
+        """The tab that moves the hand."""
+        self.scene: dict[str, Any] | None = None
+        self._latest: dict[str, dict[str, Any]] = {}
+        """The latest event of each kind in `LATEST_ONLY`."""
+        self._history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
+        self._logged: deque[dict[str, Any]] = deque(maxlen=MOST_LOGGED)
+
+    def tell(self, event: str, **told: Any) -> None:
+        """Send an event to all tabs, and to those opened later."""
+        said = {"event": event, "at_s": round(time.time(), 3), **told}
+        if event == "scene":
+            self.scene = said
+        elif event in LATEST_ONLY:
+            self._latest[event] = said
+        else:
+            (self._logged if event == "log" else self._history).append(said)
+        for tab in list(self.open):
+            tab.say(said)
+
+    @property
+    def history(self) -> list[dict[str, Any]]:
+        """The events that a tab opened now has missed, oldest first; however much is logged, the rest is there."""
+        return sorted([*self._latest.values(), *self._history, *self._logged], key=lambda said: said["at_s"])
+
+    def enter(self, tab: Tab) -> None:
+        """Add a tab; it gets the hand if no other tab holds it."""
+        self.open.append(tab)
+        if self.holder is None:
+            self.hold(tab)
+        else:
+            self._say_who_holds()
+
+    def leave(self, tab: Tab) -> None:
+        """Remove a tab that was closed or is gone. If it held the hand, nobody does until a tab takes it.
+
+        No tab gets the hand unasked: a mouse may lie pressed on a page that nobody looks at.
+        """
+        self.open.remove(tab)
+        if self.holder is tab:
+            self.hold(None)
+
+    def hold(self, tab: Tab | None) -> None:
+        """Give the hand to this tab, or to none; the others watch."""
+        self._release()
+        self.holder = tab
+        self._say_who_holds()
+
+    def _say_who_holds(self) -> None:
+        for each in self.open:
+            each.say({"event": "holding", "holding": each is self.holder, "free": self.holder is None})

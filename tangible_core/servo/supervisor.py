@@ -33,7 +33,7 @@ class LoopProcess:
         self._child: subprocess.Popen[bytes] | None = None
         self._listener: threading.Thread | None = None
         self._over = threading.Event()
-        self.timeout_s: float = limits.MAX_WATCHDOG_S
+        self.timeout_s: float = limits.WATCHDOG_S
         """The longest time without a tick in the current scene, by `watchdog.timeout_s`."""
         self.why: str = ""
         """The reason for which the host ends the loop."""

@@ -590,7 +590,7 @@ def _request(path: Path) -> object:
     from tangible_ui.requests import REQUESTS
     from tangible_web.parsing import parse
 
-    return parse(path.read_bytes().decode(errors="replace"), REQUESTS)
+    return parse(path.read_bytes().decode(errors="replace"), REQUESTS.get)
 
 
 REQUESTS = {

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tangible_core.errors import TangibleError
-from tangible_ui.requests import REQUESTS
+from tangible_ui.requests import REQUESTS, find_request
 from tangible_web import framing as wire
 from tangible_web.hand import Hand
 from tangible_web.live import LiveTab, _as_json
@@ -78,7 +78,7 @@ def ask(**said: Any) -> str:
 
 class TestAsks:
     def test_request_that_is_valid_is_parsed(self) -> None:
-        asked = parse(ask(ask="edit", text="scene: x", apply=True), REQUESTS)
+        asked = parse(ask(ask="edit", text="scene: x", apply=True), find_request)
         assert (asked.number, asked.ask, asked.told) == (1, REQUESTS["edit"], {"text": "scene: x", "apply": True})
 
     def test_request_that_is_invalid_is_refused_with_a_sentence(self) -> None:
@@ -99,7 +99,7 @@ class TestAsks:
             (ask(ask="begin", files=[1]), 1, "files.0: .*string"),
         ):
             with pytest.raises(BadRequest, match=says) as refused:
-                parse(text, REQUESTS)
+                parse(text, find_request)
             assert refused.value.number == number
             assert len(str(refused.value)) < 400 and "\n" not in str(refused.value)
 
@@ -109,7 +109,7 @@ class TestAsks:
         """Every JSON is parsed or refused; nothing else happens."""
         for said in (told, {"number": 1, "ask": told}, {"number": 1, "ask": name, "path": told, "text": told}):
             try:
-                asked = parse(json.dumps(said), REQUESTS)
+                asked = parse(json.dumps(said), find_request)
             except TangibleError as error:
                 assert str(error)
             else:

@@ -12,8 +12,9 @@ from tangible_core.pipeline.config import PipelineConfig, load_config
 from tangible_core.plugins.registry import Registry, default_registry
 
 from .design.study import Comparison, Study
+from .design.trial import Stimulus
 from .procedures.installed import DEFAULTS, load_procedure, procedure_names
-from .procedures.procedure import Procedure, Stimulus
+from .procedures.procedure import Procedure
 
 EXPECTED = "a study is a mapping that starts with `study:`"
 """Complaint about a file that is not a mapping."""

@@ -13,10 +13,10 @@ from tangible_core.errors import ConfigError, OutputError, ResultsError
 from tangible_core.files.writing import sole_writer
 from tangible_study.analysis.analysing import analyse, analyse_kept
 from tangible_study.analysis.files import write_results
-from tangible_study.analysis.rows import What
 from tangible_study.analysis.sentences import counts
 from tangible_study.commands.results import analyse as analyse_study
 from tangible_study.commands.results import simulate as simulate_study
+from tangible_study.measures.rows import What
 from tangible_study.session import folder
 from tangible_study.simulation.observers import observer_of
 from tangible_study.simulation.simulating import kept_of, simulate, write_folder

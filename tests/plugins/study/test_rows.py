@@ -8,13 +8,13 @@ import pytest
 
 from tangible_core.errors import TangibleError
 from tangible_study.analysis.analysing import Analysis, analyse_comparison
-from tangible_study.analysis.curves import blocks_of
 from tangible_study.analysis.files import as_markdown, as_tsv
-from tangible_study.analysis.pairs import wins_of
 from tangible_study.analysis.results_folder import Kept
-from tangible_study.analysis.rows import ALL, Result, Row, What
 from tangible_study.analysis.sentences import is_sure
 from tangible_study.design.study import Comparison, Study
+from tangible_study.measures.curves import blocks_of
+from tangible_study.measures.pairs import wins_of
+from tangible_study.measures.rows import ALL, Result, Row, What
 from tangible_study.statistics.intervals import Estimate, proportion
 from tangible_study.trials import Answer
 

@@ -4,8 +4,8 @@ from math import nan
 
 import pytest
 
-from tangible_study.analysis.rows import Result, Row, What
 from tangible_study.analysis.sentences import sentences
+from tangible_study.measures.rows import Result, Row, What
 from tangible_study.statistics.intervals import Estimate
 
 FEW = "The result is about 1 participant, and says little about other people."

@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Any
 
 from ..design.study import Comparison
-from .curves import analyse_levels
-from .pairs import analyse_pairs
-from .quantities import analyse_adjustments, analyse_ratings
+from ..measures.curves import analyse_levels
+from ..measures.pairs import analyse_pairs
+from ..measures.quantities import analyse_adjustments, analyse_ratings
+from ..measures.right_answers import analyse_choices, analyse_differences
+from ..measures.rows import ByParticipant, Result, as_record
 from .results_folder import Kept, read_results
-from .right_answers import analyse_choices, analyse_differences
-from .rows import ByParticipant, Result, as_record
 from .sentences import sentences
 
 ANALYSES: Mapping[tuple[str, bool], Callable[[Comparison, ByParticipant], Result]] = {

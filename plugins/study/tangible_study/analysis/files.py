@@ -7,10 +7,10 @@ from typing import Any
 
 from tangible_core.files import sole_writer, write_text
 
+from ..measures.rows import Result, Row, as_record
 from ..trials import MISSING
 from .analysing import Analysis
 from .plots import draw
-from .rows import Result, Row, as_record
 from .sentences import counts
 
 HEADINGS = ("measure", "condition", "compared with", "value", "95 % interval", "chance", "p", "trials")

@@ -3,12 +3,12 @@
 from collections.abc import Iterator
 from math import inf, isfinite, isinf, isnan
 
-from .curves import EQUALITY, NOTICEABLE, THRESHOLD
-from .pairs import CHOSEN, DIFFERENCE, SCALE
-from .quantities import ERROR, RATING
+from ..measures.curves import EQUALITY, NOTICEABLE, THRESHOLD
+from ..measures.pairs import CHOSEN, DIFFERENCE, SCALE
+from ..measures.quantities import ERROR, RATING
+from ..measures.right_answers import CORRECT
+from ..measures.rows import Result, Row
 from .results_folder import Kept
-from .right_answers import CORRECT
-from .rows import Result, Row
 
 FEW = 6
 """Number of participants below which a result says little about other people."""

@@ -1,4 +1,4 @@
-"""The design of a study: the keys of its file."""
+"""The design of a study: the keys of its file, and its trials."""
 
 from .study import Comparison as Comparison
 from .study import Condition as Condition

@@ -12,8 +12,8 @@ from tangible_core.pipeline.output import about, join_descriptions
 from tangible_core.servo import Servo
 from tangible_core.session import INTERRUPTED, About, Writer
 
+from ..design.trial import Stimulus, Trial
 from ..desks.desk import Desk
-from ..procedures.procedure import Stimulus, Trial
 from .held_loop import HeldLoop
 from .rendering import Rendering
 from .stimuli import Stimuli

@@ -1,11 +1,11 @@
 """Procedures: which trial is next, given the answers so far; others bring their own by an entry point."""
 
+from ..design.trial import Stimulus as Stimulus
+from ..design.trial import Trial as Trial
 from .installed import DEFAULTS as DEFAULTS
 from .installed import load_procedure as load_procedure
 from .installed import procedure_names as procedure_names
 from .procedure import Course as Course
 from .procedure import Procedure as Procedure
 from .procedure import Score as Score
-from .procedure import Stimulus as Stimulus
-from .procedure import Trial as Trial
 from .procedure import score as score

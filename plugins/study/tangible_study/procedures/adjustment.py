@@ -5,8 +5,9 @@ from typing import final
 import numpy as np
 
 from ..design.study import Comparison
+from ..design.trial import Stimulus, Trial
 from .cells import asks, in_rounds, without_levels
-from .procedure import Course, Listed, Procedure, Stimulus, Trial
+from .procedure import Course, Listed, Procedure
 
 
 @final

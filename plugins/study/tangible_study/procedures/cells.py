@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from ..design.study import Comparison
-from .procedure import Stimulus, Trial
+from ..design.trial import Stimulus, Trial
 
 T = TypeVar("T")
 

@@ -7,10 +7,11 @@ import numpy as np
 from pydantic import Field
 
 from ..design.study import Comparison
+from ..design.trial import Stimulus, Trial
 from ..extra import need
 from .cells import Cell, asks, cells_of, comparison_trial, stimuli_of, without_levels
 from .pairs import odd_one, standard_among_levels
-from .procedure import Course, Procedure, Stimulus, Trial, score
+from .procedure import Course, Procedure, score
 
 
 @final

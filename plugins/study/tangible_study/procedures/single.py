@@ -7,8 +7,9 @@ from typing import final
 import numpy as np
 
 from ..design.study import Comparison
+from ..design.trial import Stimulus, Trial
 from .cells import asks, in_rounds
-from .procedure import Course, Listed, Procedure, Stimulus, Trial
+from .procedure import Course, Listed, Procedure
 
 
 class Single(Procedure):

@@ -8,7 +8,8 @@ import numpy as np
 
 from tangible_core.errors import ResultsError
 
-from ..procedures.procedure import Course, Trial, score
+from ..design.trial import Trial
+from ..procedures.procedure import Course, score
 from ..study_file import StudyFile
 from ..trials import Answer
 

@@ -10,11 +10,11 @@ from tangible_core.errors import DeviceError, OutputError
 from tangible_core.files import write_text
 from tangible_core.session import Writer
 
+from ..design.trial import Stimulus, Trial
 from ..desks.desk import Desk
 from ..presenting.presenter import Presenter
 from ..presenting.rendering import Rendering
 from ..presenting.stimuli import Stimuli
-from ..procedures.procedure import Stimulus, Trial
 from ..trials import Answer, AnswerFile, read_answers
 from . import folder
 from .order import StudyCourse, answer_of, replay

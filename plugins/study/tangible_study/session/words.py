@@ -1,7 +1,7 @@
 """The words for a participant: sentences of each question, and the keys that answer."""
 
 from ..design.study import Comparison
-from ..procedures.procedure import Trial
+from ..design.trial import Trial
 
 MORE, LESS, EQUAL = "1", "2", "3"
 """Keys of an adjustment."""

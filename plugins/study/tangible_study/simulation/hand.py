@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from ..design.study import Comparison
-from ..procedures.procedure import Stimulus, Trial
+from ..design.trial import Stimulus, Trial
 from .observer import Observer, decide
 
 JND_FORCE = 0.07

@@ -10,7 +10,7 @@ from pydantic import Field
 from tangible_core.scene import Section
 
 from ..design.study import Comparison
-from ..procedures.procedure import DIFFERENT, SAME, Stimulus, Trial
+from ..design.trial import DIFFERENT, SAME, Stimulus, Trial
 
 Share = Annotated[float, Field(ge=0, le=0.5)]
 

@@ -9,8 +9,8 @@ import numpy as np
 from scipy import stats
 
 from ..analysis.analysing import analyse_comparison
-from ..analysis.rows import ALL, Result
 from ..design.study import Comparison
+from ..measures.rows import ALL, Result
 from ..study_file import StudyFile
 from .observer import Observer
 from .simulating import kept_of, simulate

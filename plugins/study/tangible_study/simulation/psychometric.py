@@ -7,7 +7,7 @@ from pydantic import Field
 from scipy import stats
 
 from ..design.study import Comparison
-from ..procedures.procedure import Trial
+from ..design.trial import Trial
 from ..statistics.psychometric import GAUSSIAN
 from .observer import Observer, nearest
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import inf, nan
 
 from ..design.study import Comparison
-from ..procedures.procedure import DIFFERENT, SAME
+from ..design.trial import DIFFERENT, SAME
 from ..statistics import sensitivity
 from ..statistics.intervals import Estimate
 from ..trials import Answer

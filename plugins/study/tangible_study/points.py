@@ -1,10 +1,12 @@
-"""The entry points of procedures: ours, and those of other packages by the group `tangible.procedure`."""
+"""The kinds of question, and the entry points of procedures: ours, and others of the group `tangible.procedure`."""
 
 from importlib.metadata import EntryPoint, distribution, entry_points
 
 from tangible_core.plugins.naming import origin
 from tangible_core.plugins.registry import Listing
 
+QUESTIONS = ("rougher", "higher", "same", "different", "equal", "name", "rating")
+"""The kinds of question, each a file in `questions/kinds/`."""
 GROUP = "tangible.procedure"
 OURS = {
     "constant": "pairs:Constant",

@@ -13,8 +13,9 @@ from tangible_core.plugins.registry import Registry, default_registry
 
 from .design.study import Comparison, Study
 from .design.trial import Stimulus
-from .procedures.installed import DEFAULTS, load_procedure, procedure_names
+from .procedures.installed import load_procedure, procedure_names
 from .procedures.procedure import Procedure
+from .questions import load_question
 
 EXPECTED = "a study is a mapping that starts with `study:`"
 """Complaint about a file that is not a mapping."""
@@ -138,6 +139,7 @@ def _design(source: Source) -> Study:
 def _procedure(source: Source, index: int, comparison: Comparison, study: Study) -> Procedure | None:
     """Return the procedure of a comparison; None after complaints."""
     here: Location = ("comparisons", index)
+    question = load_question(comparison.question)
     before = len(source.complaints)
     for number, name in enumerate(comparison.conditions):
         if name not in study.conditions:
@@ -148,7 +150,7 @@ def _procedure(source: Source, index: int, comparison: Comparison, study: Study)
     if list(comparison.levels) != sorted(set(comparison.levels)):
         source.complain((*here, "levels"), "levels: must rise, each once")
     options = dict(comparison.procedure)
-    name = options.pop("use", None) or DEFAULTS[comparison.question]
+    name = options.pop("use", None) or question.procedures[0]
     if name not in procedure_names():
         hint = did_you_mean(str(name), procedure_names())
         known = ", ".join(procedure_names())
@@ -163,7 +165,7 @@ def _procedure(source: Source, index: int, comparison: Comparison, study: Study)
         return None
     if refusal := procedure.refusal(comparison):
         source.complain(here, f"{comparison.name}: the procedure {name} {refusal}")
-    elif len(procedure.stimuli(comparison)) < 2 and comparison.question != "name":
+    elif len(procedure.stimuli(comparison)) < 2 and not question.names_parts:
         source.complain(
             here, f"{comparison.name}: has one condition only; write at least two `conditions:`, or `levels:`"
         )

@@ -23,7 +23,7 @@ class Answer:
     comparison: str
     """Name of the comparison in the study file, to which question and procedure belong."""
     question: str
-    """rougher, higher, same, different, equal, name or rating."""
+    """Kind of the question."""
     procedure: str
     """constant, 2afc, oddity, same-different, quest, adjustment, rating, or the name of another installed procedure."""
     condition: str

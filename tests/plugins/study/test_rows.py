@@ -10,11 +10,12 @@ from tangible_core.errors import TangibleError
 from tangible_study.analysis.analysing import Analysis, analyse_comparison
 from tangible_study.analysis.files import as_markdown, as_tsv
 from tangible_study.analysis.results_folder import Kept
-from tangible_study.analysis.sentences import is_sure
 from tangible_study.design.study import Comparison, Study
 from tangible_study.measures.curves import blocks_of
+from tangible_study.measures.functions import CHOICE, DISTANCE
 from tangible_study.measures.pairs import wins_of
 from tangible_study.measures.rows import ALL, Result, Row, What
+from tangible_study.measures.words import is_sure
 from tangible_study.statistics.intervals import Estimate, proportion
 from tangible_study.trials import Answer
 
@@ -128,7 +129,7 @@ def test_answers_about_levels_are_counted_by_level_or_by_distance():
         answer("one", level=level, standard=2.0, chosen=chosen, correct=correct)
         for level, chosen, correct in ((3.0, 1, 1), (1.0, 1, 0), (3.0, 0, 0), (1.0, 0, 1), (2.5, 1, 1))
     ]
-    by_level, by_distance = blocks_of(some, differences=False), blocks_of(some, differences=True)
+    by_level, by_distance = blocks_of(some, CHOICE), blocks_of(some, DISTANCE)
     assert [each.tolist() for each in by_level] == [[1.0, 2.5, 3.0], [1, 1, 1], [2, 1, 2]]
     assert [each.tolist() for each in by_distance] == [[0.5, 1.0], [1, 2], [1, 4]]
 

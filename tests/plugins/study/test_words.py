@@ -4,7 +4,7 @@ import pytest
 
 from tangible_study.design.study import Comparison, Scale
 from tangible_study.procedures import Trial
-from tangible_study.session.words import choices, question, response, right_answer
+from tangible_study.questions import load_question
 
 PARTS = ("cup", "plate", "knife")
 RATED = Comparison(name="c", question="rating", scale=Scale(of="the grain", ends=("low", "high")))
@@ -32,14 +32,19 @@ def trial(asked: str, *given: str, **more) -> Trial:
             trial("equal", "0.1", "0.2"),
             "equal to interval 1",
             {"1": "no, it needs more", "2": "no, it needs less", "3": "yes, it was equal"},
-            "123",
+            ["0.2"] * 3,
         ),
     ],
 )
 def test_question_has_its_keys_and_each_key_its_response(asked: Trial, word: str, keys: dict, responses):
-    assert word in question(asked, RATED)
-    assert list(choices(asked, RATED).items()) == list(keys.items())
-    assert [response(asked, key) for key in keys] == list(responses)
+    question = load_question(asked.question)
+    assert word in question.ask(RATED)
+    assert list(question.choices(asked, RATED).items()) == list(keys.items())
+    assert [question.response(asked, key, 0.2) for key in keys] == list(responses)
+
+
+def right_answer(asked: Trial) -> str:
+    return load_question(asked.question).right_answer(asked)
 
 
 def test_right_answer_is_the_interval_or_the_word():

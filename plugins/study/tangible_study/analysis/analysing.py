@@ -1,35 +1,14 @@
 """The analysis of a study's folder: each comparison by the question that it asks."""
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ..design.study import Comparison
-from ..measures.curves import analyse_levels
-from ..measures.pairs import analyse_pairs
-from ..measures.quantities import analyse_adjustments, analyse_ratings
-from ..measures.right_answers import analyse_choices, analyse_differences
 from ..measures.rows import ByParticipant, Result, as_record
+from ..questions import load_question
 from .results_folder import Kept, read_results
 from .sentences import sentences
-
-ANALYSES: Mapping[tuple[str, bool], Callable[[Comparison, ByParticipant], Result]] = {
-    ("rougher", False): analyse_pairs,
-    ("rougher", True): analyse_levels,
-    ("higher", False): analyse_pairs,
-    ("higher", True): analyse_levels,
-    ("same", False): analyse_choices,
-    ("same", True): analyse_levels,
-    ("different", False): analyse_differences,
-    ("equal", True): analyse_adjustments,
-    ("name", False): analyse_choices,
-    ("name", True): analyse_choices,
-    ("rating", False): analyse_ratings,
-    ("rating", True): analyse_ratings,
-}
-"""Analyses by the question, and whether a level varies; the procedure does not matter, so that those of other packages
-are analysed as well."""
 
 
 @dataclass(frozen=True)
@@ -75,5 +54,4 @@ def analyse_kept(kept: Kept) -> Analysis:
 
 def analyse_comparison(comparison: Comparison, answers: ByParticipant) -> Result:
     """Analyse the answers of one comparison."""
-    varies = any(each.level is not None for some in answers.values() for each in some)
-    return ANALYSES[comparison.question, varies](comparison, answers)
+    return load_question(comparison.question).analyse(comparison, answers)

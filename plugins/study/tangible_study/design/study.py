@@ -1,15 +1,19 @@
 """The keys of a study file: what varies, the questions, the procedures, and what a participant hears."""
 
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import ConfigDict, Field
 
 from tangible_core.data import Quantities
 from tangible_core.scene import Section
 
-Question = Literal["rougher", "higher", "same", "different", "equal", "name", "rating"]
-"""The question of a comparison."""
+from ..points import QUESTIONS
+
+if TYPE_CHECKING:
+    Question = str
+else:
+    Question = Literal[QUESTIONS]
 Order = Literal["latin-square", "random", "as-written"]
 Sound = Literal["contact", "texture", "force", "height"]
 """A sound of a touch on the page."""
@@ -43,8 +47,7 @@ class Comparison(Section):
     name: Annotated[str, Field(pattern=r"^[a-z0-9]+(-[a-z0-9]+)*$", max_length=40)]
     """Name of the comparison in the results: lower-case words joined by hyphens."""
     question: Question
-    """Question after each trial: which is rougher, which is higher, which one is not the same as the others (`same`),
-    whether two are `different`, adjust until they are equal, name the part, or a rating."""
+    """Kind of the question after each trial."""
     procedure: Annotated[dict[str, Any], Field(default_factory=dict)]
     """Procedure, with its options."""
     conditions: tuple[str, ...] = ()

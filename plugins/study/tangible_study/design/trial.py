@@ -36,8 +36,3 @@ class Trial:
     target: str | None = None
     """Right answer, where it is not the number of an interval: the name of a part, or `same` or `different`."""
     phase: str = "test"
-
-    @property
-    def part(self) -> str | None:
-        """Name of the part to which the hand is led; None if it goes where it likes."""
-        return self.target if self.question == "name" else None

@@ -5,11 +5,11 @@ from jaxtyping import Float64
 
 from ..design.study import Comparison
 from ..statistics.bradley_terry import fit_scale
+from ..statistics.sensitivity import two_afc
 from ..trials import Answer
-from .right_answers import with_dprime
-from .rows import ALL, ByParticipant, Result, Row, What, grouped, over_participants, proportion_row, together
+from .rows import ALL, ByParticipant, Result, Row, What, of_each_and_all, proportion_row, together
+from .shares import CHOSEN, share_rows, with_dprime
 
-CHOSEN = "proportion chosen"
 SCALE = "scale value"
 DIFFERENCE = f"difference of {SCALE}"
 
@@ -18,13 +18,10 @@ def analyse_pairs(comparison: Comparison, answers: ByParticipant) -> Result:
     """Analyse how often each condition was chosen over each other one; three or more are placed on a scale."""
 
     def rows_of(name: str, some: list[Answer]) -> list[Row]:
-        cells = grouped(some, lambda each: What(CHOSEN, each.condition, each.other or ""))
-        return [proportion_row(what, name, [each.chosen or 0 for each in cell], 0.5) for what, cell in cells.items()]
+        return share_rows(CHOSEN, name, some, lambda each: each.chosen, 0.5)
 
-    single = [row for name, some in answers.items() for row in rows_of(name, list(some))]
-    pooled = {row.what: row for row in rows_of("pooled", together(answers))}
-    rows = [*single, *(over_participants(single, pooled) if len(answers) > 1 else ())]
-    dprimes = [with_dprime(row, comparison) for row in rows]
+    rows, _ = of_each_and_all(rows_of, answers)
+    dprimes = [with_dprime(row, two_afc) for row in rows]
     notes = note_on_order(together(answers))
     names = [each for each in comparison.conditions if any(each in (row.what[1:]) for row in rows)]
     if len(names) < 3:

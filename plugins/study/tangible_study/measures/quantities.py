@@ -1,5 +1,6 @@
 """Answers that are numbers: levels that were set, and ratings."""
 
+from collections.abc import Callable
 from math import nan
 
 import numpy as np
@@ -12,25 +13,24 @@ from ..statistics.intervals import Estimate
 from ..trials import Answer
 from .rows import ByParticipant, Result, Row, What, contrasts, grouped, label, over_participants
 
-ERROR = "constant error"
-RATING = "mean rating"
 SPREAD = "standard deviation"
 
 
-def analyse_adjustments(comparison: Comparison, answers: ByParticipant) -> Result:
-    """Analyse how far above the standard the level was set that a participant called equal to it."""
-    return _analyse(comparison, answers, ERROR, comparison.standard or 0.0, 0.0)
+def analyse_quantities(
+    comparison: Comparison,
+    answers: ByParticipant,
+    measure: str,
+    *,
+    origin: float = 0.0,
+    chance: float = nan,
+    unit: str = "",
+    about: Callable[[Answer], str] = label,
+) -> Result:
+    """Analyse numbers by their mean, and how conditions differ.
 
-
-def analyse_ratings(comparison: Comparison, answers: ByParticipant) -> Result:
-    """Analyse the ratings of each condition, and how conditions differ."""
-    return _analyse(comparison, answers, RATING, 0.0, nan)
-
-
-def _analyse(comparison: Comparison, answers: ByParticipant, measure: str, origin: float, chance: float) -> Result:
+    origin: what they are counted from. chance: their mean by chance alone. about: what belongs together.
+    """
     rows: list[Row] = []
-    unit = comparison.unit if measure == ERROR else ""
-    about = (lambda each: each.condition) if measure == ERROR else label
     for name, some in answers.items():
         for condition, cell in grouped(some, about).items():
             values = [_number(each) - origin for each in cell]

@@ -102,6 +102,20 @@ def _mean_of(what: What, group: Sequence[Row], pooled: Row | None, bounds: tuple
     return replace(row, estimate=bounded, count=pooled.count, p=max(chances, default=nan))
 
 
+def of_each_and_all(
+    rows_of: Callable[[str, list[Answer]], list[Row]],
+    answers: ByParticipant,
+    bounds: tuple[float, float] = (0.0, 1.0),
+) -> tuple[list[Row], dict[What, Row]]:
+    """Return the rows of each participant, of all of several; and of all trials together, by what they are about.
+
+    rows_of: rows from a name and answers. bounds: as in `over_participants`.
+    """
+    single = [row for name, some in answers.items() for row in rows_of(name, list(some))]
+    pooled = {row.what: row for row in rows_of("pooled", together(answers))}
+    return [*single, *(over_participants(single, pooled, bounds) if len(answers) > 1 else ())], pooled
+
+
 def contrast(one: Row, other: Row, groups: tuple[Sequence[Row], Sequence[Row]], pooled: Estimate | None = None) -> Row:
     """Return how much larger a measure is in one condition than in another, by the participants who have both.
 

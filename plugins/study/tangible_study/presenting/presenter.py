@@ -14,6 +14,7 @@ from tangible_core.session import INTERRUPTED, About, Writer
 
 from ..design.trial import Stimulus, Trial
 from ..desks.desk import Desk
+from ..questions import load_question
 from .held_loop import HeldLoop
 from .rendering import Rendering
 from .stimuli import Stimuli
@@ -59,6 +60,7 @@ class Presenter:
     def _present_one(
         self, trial: Trial, stimulus: Stimulus, name: str, writer: Writer, start_s: float, rendering: Rendering
     ) -> None:
+        part = load_question(trial.question).part(trial)
         feeling, seconds = self.stimuli.feeling(trial.comparison, stimulus), self.stimuli.file.study.feel_s
         since_s, first_s = max(time.monotonic() - start_s, rendering.last_s + PERIOD_S), math.nan
 
@@ -77,14 +79,14 @@ class Presenter:
 
         if not self.in_real_time:
             self.desk.say(name)
-            recording = feeling.run(seconds, in_real_time=False, beacon=trial.part, stop=self.desk.stop)
+            recording = feeling.run(seconds, in_real_time=False, beacon=part, stop=self.desk.stop)
             keep(recording.rows)
             _check_end(recording.stopped)
         elif feeling.engine.scene.frames is None:
-            self.loop.feel(feeling, seconds, keep, self.desk, begin, trial.part)
+            self.loop.feel(feeling, seconds, keep, self.desk, begin, part)
         else:  # a film, which is played in a loop of its own
             self.loop.close()
-            _check_end(feeling.run(seconds, keep=keep, on_start=begin, beacon=trial.part, stop=self.desk.stop).stopped)
+            _check_end(feeling.run(seconds, keep=keep, on_start=begin, beacon=part, stop=self.desk.stop).stopped)
 
     def _pause(self, seconds: float) -> None:
         if self.in_real_time and seconds:

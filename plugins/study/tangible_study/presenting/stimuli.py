@@ -8,6 +8,7 @@ from tangible_core.plugins.registry import default_registry
 from tangible_core.preflight import Loop, Preflight
 
 from ..design.trial import Stimulus
+from ..questions import load_question
 from ..study_file import Recipe, StudyFile, config_of_recipe
 
 QUICK = Loop(seconds=0.2)
@@ -97,7 +98,7 @@ class Stimuli:
         """Complain about names that are to be chosen and that a surface has no part of."""
         for (comparison, stimulus), recipe in self.recipes.items():
             names = self.file.study.comparison(comparison).names
-            if not names or self.file.study.comparison(comparison).question != "name":
+            if not (names and load_question(self.file.study.comparison(comparison).question).names_parts):
                 continue
             there = self._pipelines[recipe].surface.names or ()
             for name in names:

@@ -2,10 +2,9 @@
 
 from ..design.trial import Stimulus as Stimulus
 from ..design.trial import Trial as Trial
-from .installed import DEFAULTS as DEFAULTS
+from ..questions.question import Score as Score
 from .installed import load_procedure as load_procedure
 from .installed import procedure_names as procedure_names
 from .procedure import Course as Course
 from .procedure import Procedure as Procedure
-from .procedure import Score as Score
 from .procedure import score as score

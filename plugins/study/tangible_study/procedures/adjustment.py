@@ -19,7 +19,7 @@ class Adjustment(Procedure):
 
     def refusal(self, comparison: Comparison) -> str:
         """Return what is missing: levels, a standard, or the question."""
-        return asks(comparison, "equal") or without_levels(comparison)
+        return asks(comparison, "adjustment") or without_levels(comparison)
 
     def course(self, comparison: Comparison, generator: np.random.Generator) -> Course:
         """Return all trials in rounds."""

@@ -8,6 +8,8 @@ import numpy as np
 
 from ..design.study import Comparison
 from ..design.trial import Stimulus, Trial
+from ..points import QUESTIONS
+from ..questions import load_question
 
 T = TypeVar("T")
 
@@ -74,8 +76,9 @@ def without_levels(comparison: Comparison) -> str:
     return ""
 
 
-def asks(comparison: Comparison, *questions: str) -> str:
-    """Return a complaint if a procedure cannot ask the question of this comparison; "" if it can."""
-    if comparison.question in questions:
+def asks(comparison: Comparison, procedure: str) -> str:
+    """Return a complaint if a procedure of ours cannot ask the question of this comparison; "" if it can."""
+    if procedure in load_question(comparison.question).procedures:
         return ""
-    return f"does not ask for {comparison.question!r}; it asks for {' or '.join(questions)}"
+    others = [name for name in QUESTIONS if procedure in load_question(name).procedures]
+    return f"does not ask for {comparison.question!r}; it asks for {' or '.join(others)}"

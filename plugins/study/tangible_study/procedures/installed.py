@@ -1,23 +1,11 @@
 """The installed procedures: ours, and those of other packages by the group of entry points `tangible.procedure`."""
 
-from collections.abc import Mapping
 from typing import Any, cast
 
 from tangible_core.errors import BrokenMethod, UnknownName, shown
 
 from ..points import points
 from .procedure import Procedure
-
-DEFAULTS: Mapping[str, str] = {
-    "rougher": "2afc",
-    "higher": "2afc",
-    "same": "oddity",
-    "different": "same-different",
-    "equal": "adjustment",
-    "name": "naming",
-    "rating": "rating",
-}
-"""Procedure of each question, if the file names none."""
 
 
 def procedure_names() -> list[str]:

@@ -40,7 +40,7 @@ class TwoAfc(Pairs):
 
     def refusal(self, comparison: Comparison) -> str:
         """Return what is missing: a question about more."""
-        return asks(comparison, "rougher", "higher")
+        return asks(comparison, "2afc")
 
     def trial(self, comparison: Comparison, cell: Cell, number: int) -> Trial:
         """Return the pair in either order."""
@@ -53,7 +53,7 @@ class Constant(Pairs):
 
     def refusal(self, comparison: Comparison) -> str:
         """Return what is missing: levels, a standard, or a question about more."""
-        return asks(comparison, "rougher", "higher") or without_levels(comparison)
+        return asks(comparison, "constant") or without_levels(comparison)
 
     def trial(self, comparison: Comparison, cell: Cell, number: int) -> Trial:
         """Return the level first or second."""
@@ -70,7 +70,7 @@ class Oddity(Pairs):
 
     def refusal(self, comparison: Comparison) -> str:
         """Return what is missing: the question, or two things that may differ."""
-        return standard_among_levels(comparison) or asks(comparison, "same")
+        return standard_among_levels(comparison) or asks(comparison, "oddity")
 
     def trial(self, comparison: Comparison, cell: Cell, number: int) -> Trial:
         """Return one of six arrangements."""
@@ -89,7 +89,7 @@ class SameDifferent(Pairs):
         """Return what is missing: the question; or that levels vary."""
         if comparison.levels:
             return "compares conditions and no levels; for levels, ask `same` or `higher`"
-        return asks(comparison, "different")
+        return asks(comparison, "same-different")
 
     def trial(self, comparison: Comparison, cell: Cell, number: int) -> Trial:
         """Return both in one of two orders, or one of them twice."""

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from typing import NamedTuple, final
+from typing import final
 
 import numpy as np
 
@@ -10,15 +10,8 @@ from tangible_core.scene import Section
 
 from ..design.study import Comparison
 from ..design.trial import Stimulus, Trial
-
-
-class Score(NamedTuple):
-    """A response in numbers: None where the question has no such answer."""
-
-    chosen: int | None = None
-    """1 if the comparison was chosen over the other, 0 if not."""
-    correct: int | None = None
-    """1 or 0, where an answer can be right."""
+from ..questions import load_question
+from ..questions.question import Score
 
 
 def score(trial: Trial, response: str) -> Score:
@@ -27,16 +20,7 @@ def score(trial: Trial, response: str) -> Score:
     >>> score(Trial("a", "same", "oddity", (), ("1", "2", "3"), "x", "y", position=3), "3")
     Score(chosen=None, correct=1)
     """
-    if trial.target is not None:
-        return Score(None, int(response == trial.target))
-    if trial.question == "same":
-        return Score(None, int(response == str(trial.position)))
-    if trial.position is None:
-        return Score()
-    chosen = int(response == str(trial.position))
-    if trial.level is None or trial.standard is None or trial.level == trial.standard:
-        return Score(chosen)
-    return Score(chosen, int(chosen == (trial.level > trial.standard)))
+    return load_question(trial.question).score(trial, response)
 
 
 class Course(ABC):

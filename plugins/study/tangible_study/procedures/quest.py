@@ -9,6 +9,8 @@ from pydantic import Field
 from ..design.study import Comparison
 from ..design.trial import Stimulus, Trial
 from ..extra import need
+from ..measures.functions import Function
+from ..questions import load_question
 from .cells import Cell, asks, cells_of, comparison_trial, stimuli_of, without_levels
 from .pairs import odd_one, standard_among_levels
 from .procedure import Course, Procedure, score
@@ -27,8 +29,8 @@ class Quest(Procedure):
 
     def refusal(self, comparison: Comparison) -> str:
         """Return what is missing: levels, a standard, or the question."""
-        itself = standard_among_levels(comparison) if comparison.question == "same" else ""
-        return itself or asks(comparison, "rougher", "higher", "same") or without_levels(comparison)
+        itself = standard_among_levels(comparison) if _asks_for_odd_one(comparison) else ""
+        return itself or asks(comparison, "quest") or without_levels(comparison)
 
     def course(self, comparison: Comparison, generator: np.random.Generator) -> Course:
         """Begin one track a condition."""
@@ -60,7 +62,7 @@ class _Tracks(Course):
         if self._trial is None and self._at < len(self._order):
             name, number = self._order[self._at]
             cell = Cell(Stimulus(name, self._tracks[name].level()), Stimulus(name, self._comparison.standard))
-            if self._comparison.question == "same":
+            if _asks_for_odd_one(self._comparison):
                 self._trial = odd_one(self._comparison, "quest", cell, number)
             else:
                 self._trial = comparison_trial(self._comparison, "quest", cell, 1 + number % 2)
@@ -79,31 +81,13 @@ class _Track:
 
     def __init__(self, lapses: tuple[float, ...], comparison: Comparison) -> None:
         self._lapses, self._comparison = lapses, comparison
+        self._levels = _function(comparison).intensities(np.array(comparison.levels), comparison.standard)
 
     @cached_property
     def _quest(self) -> Any:
-        levels = np.array(_intensities(self._comparison))
-        span = float(np.ptp(levels)) or abs(float(levels[0])) or 1.0
-        if self._comparison.question == "same":
-            function, domain = (
-                "weibull",
-                {
-                    "threshold": np.geomspace(span / 30, 2 * max(span, float(levels.max())), 30),
-                    "slope": [1.0, 2.0, 4.0],
-                    "lower_asymptote": [1 / 3],
-                },
-            )
-        else:
-            function, domain = (
-                "norm_cdf",
-                {
-                    "mean": np.linspace(levels.min(), levels.max(), 31),
-                    "sd": np.geomspace(span / 30, 2 * span, 12),
-                    "lower_asymptote": list(self._lapses[:1]),
-                },
-            )
+        function, domain = _function(self._comparison).grid(self._levels, self._lapses)
         return need("questplus").QuestPlus(
-            stim_domain={"intensity": levels},
+            stim_domain={"intensity": self._levels},
             param_domain={**domain, "lapse_rate": list(self._lapses)},
             outcome_domain={"response": [1, 0]},
             func=function,
@@ -112,16 +96,20 @@ class _Track:
 
     def level(self) -> float:
         """Return the level of the next trial."""
-        where = int(np.argmin(np.abs(_intensities(self._comparison) - self._quest.next_stim["intensity"])))
+        where = int(np.argmin(np.abs(self._levels - self._quest.next_stim["intensity"])))
         return self._comparison.levels[where]
 
     def update(self, level: float, yes: bool) -> None:
         """Take an answer."""
-        intensity = _intensities(self._comparison)[self._comparison.levels.index(level)]
+        intensity = self._levels[self._comparison.levels.index(level)]
         self._quest.update(stim={"intensity": intensity}, outcome={"response": int(yes)})
 
 
-def _intensities(comparison: Comparison) -> np.ndarray:
-    """Return the levels as QUEST+ has them: their distance from the standard, if the question is for the odd one."""
-    levels = np.array(comparison.levels)
-    return np.abs(levels - (comparison.standard or 0.0)) if comparison.question == "same" else levels
+def _function(comparison: Comparison) -> Function:
+    function = load_question(comparison.question).function
+    assert function is not None, "refused before"
+    return function
+
+
+def _asks_for_odd_one(comparison: Comparison) -> bool:
+    return load_question(comparison.question).intervals == 3

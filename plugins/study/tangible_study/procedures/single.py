@@ -52,7 +52,7 @@ class Naming(Single):
         """Return what is missing: the question, or names to choose from."""
         if len(set(comparison.names)) < max(2, len(comparison.names)):
             return "write at least two different `names:`, of which the participant chooses one"
-        return asks(comparison, "name")
+        return asks(comparison, "naming")
 
     def choices(self, comparison: Comparison) -> tuple[str, ...]:
         """Return the names of the parts."""

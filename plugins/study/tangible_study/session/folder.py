@@ -16,6 +16,8 @@ from tangible_core.pipeline.output import make_writable
 from tangible_core.provenance.versions import versions
 
 from ..design.study import Study
+from ..points import QUESTIONS
+from ..questions import load_question
 from ..study_file import StudyFile
 from ..trials import MISSING
 
@@ -227,7 +229,9 @@ def _describe_answers(units: Mapping[str, str]) -> dict[str, Any]:
     unit = next(iter(units.values())) if len(set(units.values())) == 1 else dumps(dict(units))
     described = {"Units": unit} if units else {}
     answers = _columns()["answers"]
-    return answers | {name: answers[name] | described for name in ("level", "standard")}
+    questions = {"Levels": {name: load_question(name).about for name in QUESTIONS}}
+    more = {"question": questions, "level": described, "standard": described}
+    return answers | {name: answers[name] | facts for name, facts in more.items()}
 
 
 @cache

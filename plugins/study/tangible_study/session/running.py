@@ -15,10 +15,10 @@ from ..desks.desk import Desk
 from ..presenting.presenter import Presenter
 from ..presenting.rendering import Rendering
 from ..presenting.stimuli import Stimuli
+from ..questions import load_question
 from ..trials import Answer, AnswerFile, read_answers
 from . import folder
 from .order import StudyCourse, answer_of, replay
-from .words import EQUAL, MORE, choices, question, response, right_answer
 
 CONSENT = "Do you agree?"
 AGREE = {"y": "yes, I agree", "n": "no, I do not"}
@@ -129,25 +129,17 @@ class Session:
     def _present_and_ask(self, trial: Trial, writer: Writer) -> tuple[str, Rendering, float]:
         """Return the response to a trial, what was rendered, and the time of the answer, s."""
         comparison, start_s = self.stimuli.file.study.comparison(trial.comparison), time.monotonic()
-        intervals, whole = trial.intervals, Rendering()
+        question, intervals, whole = load_question(trial.question), trial.intervals, Rendering()
         while True:
             self.presenter.present(trial, intervals, writer, start_s, whole)
-            asked_s = time.monotonic()
-            key = self.desk.ask(question(trial, comparison), choices(trial, comparison))
-            if trial.question != "equal":
-                return response(trial, key), whole, time.monotonic() - asked_s
-            level = intervals[-1].level
-            assert level is not None
-            if key == EQUAL:
-                return repr(level), whole, time.monotonic() - asked_s
-            intervals = (*intervals[:-1], Stimulus(trial.condition, self._next_level(trial, level, key == MORE)))
-
-    def _next_level(self, trial: Trial, level: float, more: bool) -> float:
-        levels = [float(each) for each in trial.choices]
-        there = levels.index(level) + (1 if more else -1)
-        if not 0 <= there < len(levels):
-            self.desk.say("This is the end of the range.")
-        return levels[min(max(there, 0), len(levels) - 1)]
+            asked_s, level = time.monotonic(), intervals[-1].level
+            key = self.desk.ask(question.ask(comparison), question.choices(trial, comparison))
+            following = question.next_level(trial, key, level)
+            if following is None:
+                return question.response(trial, key, level), whole, time.monotonic() - asked_s
+            if following == level:
+                self.desk.say("This is the end of the range.")
+            intervals = (*intervals[:-1], Stimulus(trial.condition, following))
 
     def _keep(self, table: AnswerFile, answer: Answer) -> None:
         """Keep an answer; if the disk is full, tell so and try again until it is kept."""
@@ -159,7 +151,7 @@ class Session:
                 self.desk.ask("Press Enter to save it again.", GO_ON)
 
     def _give_feedback(self, trial: Trial, answer: Answer) -> None:
-        if right := right_answer(trial):
+        if right := load_question(trial.question).right_answer(trial):
             self.desk.say("That is right." if answer.response == right else f"Not right. The answer is {right}.")
 
     def _save_facts(self) -> None:

@@ -10,13 +10,11 @@ from pydantic import Field
 from tangible_core.scene import Section
 
 from ..design.study import Comparison
-from ..design.trial import DIFFERENT, SAME, Stimulus, Trial
+from ..design.trial import Stimulus, Trial
+from ..questions import load_question
+from ..questions.question import Percept
 
 Share = Annotated[float, Field(ge=0, le=0.5)]
-
-
-CRITERION = 1.5
-"""Difference from which two intervals are called different, in standard deviations of the noise of one."""
 
 
 class Observer(Section, ABC):
@@ -50,29 +48,7 @@ def decide(trial: Trial, magnitude: Callable[[Stimulus], float], base: float, ge
     """Return the response of an observer who feels each interval with noise of standard deviation 1.
 
     magnitude: how strong a stimulus is, in standard deviations of the noise. base: d' between the parts that are named,
-    where the magnitude is 0. Most is the strongest interval; the odd one is farthest from the mean of the others.
+    where the magnitude is 0.
     """
     felt = np.array([magnitude(each) for each in trial.intervals]) + generator.standard_normal(len(trial.intervals))
-    match trial.question:
-        case "same":
-            others = (felt.sum() - felt) / (len(felt) - 1)
-            return str(int(np.argmax(np.abs(felt - others))) + 1)
-        case "different":
-            return DIFFERENT if abs(felt[0] - felt[1]) > CRITERION else SAME
-        case "name":
-            evidence = generator.standard_normal(len(trial.choices))
-            evidence[trial.choices.index(trial.target or "")] += max(base + magnitude(trial.intervals[0]), 0.0)
-            return trial.choices[int(np.argmax(evidence))]
-        case "rating":
-            middle = (len(trial.choices) - 1) / 2
-            return trial.choices[int(np.clip(round(middle + float(felt[0])), 0, len(trial.choices) - 1))]
-        case "equal":
-            wanted = float(felt[0]) + float(generator.standard_normal())
-            return nearest(wanted, trial, lambda level: magnitude(Stimulus(trial.condition, level)))
-        case _:
-            return str(int(np.argmax(felt)) + 1)
-
-
-def nearest(wanted: float, trial: Trial, scale: Callable[[float], float] = float) -> str:
-    """Return the level that can be set that is nearest to what is wanted, on a scale of its own."""
-    return min(trial.choices, key=lambda each: abs(scale(float(each)) - wanted))
+    return load_question(trial.question).decide(trial, Percept(felt, magnitude, base), generator)

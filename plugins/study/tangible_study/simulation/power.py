@@ -11,6 +11,7 @@ from scipy import stats
 from ..analysis.analysing import analyse_comparison
 from ..design.study import Comparison
 from ..measures.rows import ALL, Result
+from ..questions import load_question
 from ..study_file import StudyFile
 from .observer import Observer
 from .simulating import kept_of, simulate
@@ -131,7 +132,7 @@ def _need(
     file: StudyFile, comparison: Comparison, repetitions: int, observer: Observer, power: float, seed: int
 ) -> Need:
     one = shortened(file, comparison, repetitions)
-    curves = bool(comparison.levels) and comparison.question in ("rougher", "higher", "same")
+    curves = bool(comparison.levels) and load_question(comparison.question).function is not None
     answers = [simulate(one, observer, number, seed) for number in range(TRIED_CURVES if curves else TRIED)]
     [changed], trials = one.study.comparisons, len(answers[0])
     effects = effects_of(analyse_comparison(changed, kept_of(one, answers).of(changed)))

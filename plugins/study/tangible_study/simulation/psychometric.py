@@ -4,12 +4,12 @@ from typing import Annotated, Self, final
 
 import numpy as np
 from pydantic import Field
-from scipy import stats
 
 from ..design.study import Comparison
 from ..design.trial import Trial
-from ..statistics.psychometric import GAUSSIAN
-from .observer import Observer, nearest
+from ..measures.functions import Threshold
+from ..questions import load_question
+from .observer import Observer
 
 
 @final
@@ -38,26 +38,13 @@ class Psychometric(Observer):
 
     def refusal(self, comparison: Comparison) -> str:
         """Return what is missing: levels."""
-        asks = ("rougher", "higher", "same", "equal")
-        if not comparison.levels or comparison.question not in asks:
+        if not (comparison.levels and load_question(comparison.question).has_threshold):
             return "has no levels that are compared, which this observer needs; take the observer `detection`"
         return ""
 
     def respond(self, trial: Trial, comparison: Comparison, generator: np.random.Generator) -> str:
         """Return a response by the function of the condition."""
-        levels, standard = np.array(comparison.levels), comparison.standard or 0.0
-        width = self.width or 0.5 * float(np.ptp(levels)) or 1.0
-        step = self.difference * comparison.conditions.index(trial.condition) + self.shift * width
-        level = trial.level or 0.0
-        if trial.question == "same":
-            farthest = float(np.abs(levels - standard).max())
-            threshold = max((self.threshold or farthest / 2) + step, 1e-3 * farthest)
-            share = 1 / 3 + 2 / 3 * (1 - 0.5 ** ((abs(level - standard) / threshold) ** self.slope))
-        else:
-            threshold = (standard if self.threshold is None else self.threshold) + step
-            if trial.question == "equal":
-                return nearest(generator.normal(threshold, width / GAUSSIAN), trial)
-            share = float(stats.norm.cdf((level - threshold) / (width / GAUSSIAN)))
-        if generator.random() < share:
-            return str(trial.position)
-        return str(generator.choice([each for each in trial.choices if each != str(trial.position)]))
+        width = self.width or 0.5 * float(np.ptp(comparison.levels)) or 1.0
+        shift = self.difference * comparison.conditions.index(trial.condition) + self.shift * width
+        truth = Threshold(self.threshold, shift, width, self.slope)
+        return load_question(trial.question).draw(trial, comparison, truth, generator)

@@ -5,8 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float64
-from scipy import stats
-from scipy.sparse.csgraph import connected_components
+from scipy.special import stdtrit
 
 from .intervals import LEVEL, Estimate
 
@@ -36,7 +35,7 @@ class Scale(NamedTuple):
         return self._estimate(float(weights @ self.values), float(weights @ self.covariance @ weights))
 
     def _estimate(self, value: float, variance: float) -> Estimate:
-        half = float(stats.t.ppf((1 + LEVEL) / 2, self.degrees)) * max(variance, 0.0) ** 0.5
+        half = float(stdtrit(self.degrees, (1 + LEVEL) / 2)) * max(variance, 0.0) ** 0.5
         return Estimate(value, value - half, value + half)
 
 
@@ -46,6 +45,8 @@ def fit_scale(wins: Sequence[Float64[np.ndarray, "n n"]]) -> Scale:
     From five participants on, their differences count: the covariance is the sandwich of Liang & Zeger (1986), where it
     is larger. Half a win is added to each pair that was compared if the likelihood has no maximum.
     """
+    from scipy.sparse.csgraph import connected_components
+
     total = np.sum(wins, axis=0)
     count = len(total)
     strongly = connected_components(total > 0, directed=True, connection="strong")[0] == 1

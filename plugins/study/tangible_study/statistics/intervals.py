@@ -5,7 +5,6 @@ from math import hypot, isfinite, isinf, nan
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy import stats
 
 LEVEL = 0.95
 """Confidence level of all intervals."""
@@ -43,6 +42,8 @@ def proportion(count: int, trials: int) -> Estimate:
     >>> [round(each, 4) for each in proportion(7, 10)]
     [0.7, 0.3475, 0.9333]
     """
+    from scipy import stats
+
     if trials < 1:
         return Estimate(nan)
     low, high = stats.binomtest(count, trials).proportion_ci(LEVEL)
@@ -61,7 +62,9 @@ def mean(values: Sequence[float]) -> Estimate:
     middle = float(np.mean(values))
     if count < 2 or not all(map(isfinite, values)):
         return Estimate(middle)
-    half = float(stats.t.ppf((1 + LEVEL) / 2, count - 1) * np.std(values, ddof=1) / count**0.5)
+    from scipy.special import stdtrit
+
+    half = float(stdtrit(count - 1, (1 + LEVEL) / 2) * np.std(values, ddof=1) / count**0.5)
     return Estimate(middle, middle - half, middle + half)
 
 
@@ -111,6 +114,8 @@ def p_of_mean(values: Sequence[float], expected: float) -> float:
     """Return the probability, two-sided by Student's t, of a mean this far from the expected one; NaN if unknown."""
     if len(values) < 2 or not all(map(isfinite, values)) or np.ptp(values) == 0:
         return nan
+    from scipy import stats
+
     found: Any = stats.ttest_1samp(values, expected)
     return float(found.pvalue)
 
@@ -119,4 +124,6 @@ def p_of_count(count: int, trials: int, chance: float, one_sided: bool) -> float
     """Return the exact binomial probability of a count this far from chance; one-sided, of one as high as this."""
     if trials < 1:
         return nan
+    from scipy import stats
+
     return float(stats.binomtest(count, trials, chance, "greater" if one_sided else "two-sided").pvalue)

@@ -5,13 +5,13 @@ Source: Macmillan & Creelman, Detection Theory: A User's Guide, 2nd ed. (2005), 
 
 from collections.abc import Callable
 from functools import cache
-from math import inf, nan, sqrt
+from math import inf, nan, pi, sqrt
 
 import numpy as np
 from jaxtyping import Float64
 from numpy.polynomial.hermite_e import hermegauss
 from numpy.polynomial.legendre import leggauss
-from scipy import optimize, stats
+from scipy.special import ndtr, ndtri
 
 from .intervals import LEVEL, Estimate
 
@@ -20,7 +20,7 @@ LARGEST = 12.0
 _NODES, _WEIGHTS = hermegauss(100)
 _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
 _HALF = 4.5 * (1 + leggauss(100)[0])
-_HALF_WEIGHTS = 9 * leggauss(100)[1] * stats.norm.pdf(_HALF)
+_HALF_WEIGHTS = 9 * leggauss(100)[1] * np.exp(-(_HALF**2) / 2) / sqrt(2 * pi)
 """Nodes and weights of a mean over the upper half of a normal distribution, of which 1e-18 is beyond 9."""
 _DPRIMES, _CRITERIA = np.linspace(0, 8, 401), np.linspace(0, 10, 401)
 """d' and criteria among which those of two intervals that are the same or different are looked for."""
@@ -32,7 +32,7 @@ def two_afc(proportion: float) -> float:
     >>> [round(two_afc(each), 2) for each in (0.5, 0.76, 0.92)]
     [0.0, 1.0, 1.99]
     """
-    return sqrt(2) * float(stats.norm.ppf(proportion))
+    return sqrt(2) * float(ndtri(proportion))
 
 
 def oddity(proportion: float) -> float:
@@ -63,12 +63,14 @@ def same_different(hits: int, differing: int, alarms: int, equal: int) -> Estima
     criterion at its best for each d'; its upper bound may be infinite. NaN without trials of a kind.
     Source: Macmillan & Creelman, ch. 9.
     """
+    from scipy.stats import chi2
+
     if not (differing and equal):
         return Estimate(nan)
     counts = np.array([hits, differing - hits, alarms, equal - alarms], float)
     value = _DPRIMES[_likelihood(counts + 0.5).argmax()]
     likelihood = _likelihood(counts)
-    within = np.flatnonzero(2 * (likelihood.max() - likelihood) <= stats.chi2.ppf(LEVEL, 1))
+    within = np.flatnonzero(2 * (likelihood.max() - likelihood) <= chi2.ppf(LEVEL, 1))
     high = inf if within[-1] == len(_DPRIMES) - 1 else float(_DPRIMES[within[-1]])
     return Estimate(float(value), float(_DPRIMES[within[0]]), high)
 
@@ -82,8 +84,8 @@ def _likelihood(counts: Float64[np.ndarray, "4"]) -> Float64[np.ndarray, "d"]:
 def _same_different_logs() -> Float64[np.ndarray, "4 d k"]:
     """Return the logarithms of the shares of hits, misses, false alarms and their absence, by d' and criterion."""
     dprime, criterion = _DPRIMES[:, None], _CRITERIA[None]
-    alarms = 2 * stats.norm.cdf(-criterion / sqrt(2)) + 0 * dprime
-    hits = stats.norm.cdf((dprime - criterion) / sqrt(2)) + stats.norm.cdf((-dprime - criterion) / sqrt(2))
+    alarms = 2 * ndtr(-criterion / sqrt(2)) + 0 * dprime
+    hits = ndtr((dprime - criterion) / sqrt(2)) + ndtr((-dprime - criterion) / sqrt(2))
     shares = np.stack([hits, 1 - hits, alarms, 1 - alarms])
     return np.log(np.clip(shares, 1e-300, 1))
 
@@ -92,14 +94,14 @@ def _same_different_logs() -> Float64[np.ndarray, "4 d k"]:
 def oddity_correct(dprime: float) -> float:
     """Return the proportion correct of an observer who names the odd one of three."""
     shift = dprime * sqrt(2 / 3)
-    shares = stats.norm.cdf(shift - sqrt(3) * _HALF) + stats.norm.cdf(-shift - sqrt(3) * _HALF)
+    shares = ndtr(shift - sqrt(3) * _HALF) + ndtr(-shift - sqrt(3) * _HALF)
     return float(_HALF_WEIGHTS @ shares)
 
 
 @cache
 def naming_correct(dprime: float, choices: int) -> float:
     """Return the proportion correct of an observer who names the one of n choices with the most evidence."""
-    return float(_WEIGHTS @ stats.norm.cdf(_NODES + dprime) ** (choices - 1))
+    return float(_WEIGHTS @ ndtr(_NODES + dprime) ** (choices - 1))
 
 
 def _inverse(correct: Callable[[float], float], proportion: float) -> float:
@@ -107,4 +109,6 @@ def _inverse(correct: Callable[[float], float], proportion: float) -> float:
         return 0.0
     if proportion >= correct(LARGEST):
         return inf
-    return float(optimize.brentq(lambda dprime: correct(dprime) - proportion, 0.0, LARGEST))  # pyright: ignore[reportArgumentType]
+    from scipy.optimize import brentq
+
+    return float(brentq(lambda dprime: correct(dprime) - proportion, 0.0, LARGEST))  # pyright: ignore[reportArgumentType]

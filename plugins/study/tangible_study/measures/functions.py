@@ -1,0 +1,192 @@
+"""How answers depend on a level that varies: what is fitted, where QUEST+ looks, and how a model answers."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from math import inf, isinf
+from typing import Any, ClassVar, NamedTuple, final
+
+import numpy as np
+from jaxtyping import Float64
+
+from ..design.study import Comparison
+from ..statistics.intervals import Estimate
+from ..statistics.psychometric import GAUSSIAN, JND, Blocks, Curve, fit_choice, fit_difference
+from ..trials import Answer
+from .pairs import note_on_order
+from .rows import Result, Row
+from .words import bound, interval
+
+EQUALITY = "point of equality"
+THRESHOLD = "threshold"
+NOTICEABLE = "just noticeable difference"
+WIDTH = "width"
+
+
+class Threshold(NamedTuple):
+    """The truth about a participant who is a model."""
+
+    value: float | None
+    """Threshold; None is that of the function."""
+    shift: float
+    """How far above it this participant's is."""
+    width: float
+    """Distance of the levels at which 5 and 95 % of the way are done."""
+    slope: float
+    """Exponent of the function of a distance."""
+
+
+class Function(ABC):
+    """A psychometric function."""
+
+    main: ClassVar[str]
+    """Measure of the result."""
+    compared: ClassVar[tuple[str, ...]]
+    """Measures by which conditions are compared."""
+
+    @abstractmethod
+    def intensities(self, levels: Float64[np.ndarray, "n"], standard: float | None) -> Float64[np.ndarray, "n"]:
+        """Return levels on the axis of the function."""
+
+    @abstractmethod
+    def hit(self, answer: Answer) -> int | None:
+        """Return 1 for an answer that counts, 0 for another one."""
+
+    @abstractmethod
+    def fit(self, blocks: Blocks, span: tuple[float, float]) -> Curve:
+        """Fit it. span: least and greatest intensity of the study. Raises: ConfigError without psignifit."""
+
+    @abstractmethod
+    def grid(self, intensities: Float64[np.ndarray, "n"], lapses: tuple[float, ...]) -> tuple[str, dict[str, Any]]:
+        """Return the name that QUEST+ has for it, and the values of its parameters."""
+
+    @abstractmethod
+    def share(self, level: float, comparison: Comparison, truth: Threshold) -> float:
+        """Return the probability of an answer that counts."""
+
+    @abstractmethod
+    def figures(self, curve: Curve, comparison: Comparison) -> list[tuple[str, Estimate, str, float]]:
+        """Return measures of a fit, each with its estimate, unit, and value by chance alone."""
+
+    def notes(self, answers: list[Answer]) -> list[str]:
+        """Return what a reader should know about the answers."""
+        return []
+
+    def describe(self, result: Result, row: Row) -> Iterator[str]:
+        """Yield sentences about the main measure in one condition."""
+        _, low, high = row.estimate
+        if isinf(high) and low in (-inf, 0.0):
+            yield f"With {row.what.condition}, the answers do not tell the {self.main}: any level explains them."
+        elif row.estimate.is_bound:
+            yield f"With {row.what.condition}, {self.meaning(row)} is {bound(row)} (95 %)."
+        else:
+            yield from self.estimated(result, row)
+
+    @abstractmethod
+    def meaning(self, row: Row) -> str:
+        """Return what the main measure is, in words."""
+
+    @abstractmethod
+    def estimated(self, result: Result, row: Row) -> Iterator[str]:
+        """Yield sentences about an estimate that is not only a bound."""
+
+
+@final
+class _Choice(Function):
+    main = EQUALITY
+    compared = (EQUALITY, NOTICEABLE)
+
+    def intensities(self, levels: Float64[np.ndarray, "n"], standard: float | None) -> Float64[np.ndarray, "n"]:
+        return levels
+
+    def hit(self, answer: Answer) -> int | None:
+        return answer.chosen
+
+    def fit(self, blocks: Blocks, span: tuple[float, float]) -> Curve:
+        return fit_choice(blocks, span)
+
+    def grid(self, intensities: Float64[np.ndarray, "n"], lapses: tuple[float, ...]) -> tuple[str, dict[str, Any]]:
+        span = _span(intensities)
+        means = np.linspace(intensities.min(), intensities.max(), 31)
+        deviations = np.geomspace(span / 30, 2 * span, 12)
+        return "norm_cdf", {"mean": means, "sd": deviations, "lower_asymptote": list(lapses[:1])}
+
+    def share(self, level: float, comparison: Comparison, truth: Threshold) -> float:
+        from scipy import stats
+
+        equal = equal_level(comparison, truth)
+        return float(stats.norm.cdf((level - equal) / (truth.width / GAUSSIAN)))
+
+    def figures(self, curve: Curve, comparison: Comparison) -> list[tuple[str, Estimate, str, float]]:
+        standard = comparison.standard if comparison.standard is not None else np.nan
+        noticeable = curve.width.mapped(lambda width: JND * width)
+        return [
+            (EQUALITY, curve.threshold, comparison.unit, standard),
+            (NOTICEABLE, noticeable, comparison.unit, np.nan),
+            (WIDTH, curve.width, comparison.unit, np.nan),
+        ]
+
+    def notes(self, answers: list[Answer]) -> list[str]:
+        return note_on_order(answers)
+
+    def meaning(self, row: Row) -> str:
+        return f"what feels equal to the standard, {row.chance:.3g} {row.unit},"
+
+    def estimated(self, result: Result, row: Row) -> Iterator[str]:
+        (value, low, high), unit, condition = row.estimate, row.unit, row.what.condition
+        equal = f"feels equal to the standard, {row.chance:.3g} {unit}"
+        yield f"With {condition}, {value:.3g} {unit} {equal} ({interval(low, high)})."
+        for noticed in result.of_all(NOTICEABLE):
+            if noticed.what.condition == condition and not isinf(noticed.estimate.high):
+                yield f"A difference of {noticed.estimate.value:.3g} {unit} is noticed in three of four trials."
+
+
+@final
+class _Distance(Function):
+    main = THRESHOLD
+    compared = (THRESHOLD,)
+
+    def intensities(self, levels: Float64[np.ndarray, "n"], standard: float | None) -> Float64[np.ndarray, "n"]:
+        return np.abs(levels - (standard or 0.0))
+
+    def hit(self, answer: Answer) -> int | None:
+        return answer.correct
+
+    def fit(self, blocks: Blocks, span: tuple[float, float]) -> Curve:
+        return fit_difference(blocks, span)
+
+    def grid(self, intensities: Float64[np.ndarray, "n"], lapses: tuple[float, ...]) -> tuple[str, dict[str, Any]]:
+        span = _span(intensities)
+        thresholds = np.geomspace(span / 30, 2 * max(span, float(intensities.max())), 30)
+        return "weibull", {"threshold": thresholds, "slope": [1.0, 2.0, 4.0], "lower_asymptote": [1 / 3]}
+
+    def share(self, level: float, comparison: Comparison, truth: Threshold) -> float:
+        distances = self.intensities(np.array([level, *comparison.levels]), comparison.standard)
+        farthest = float(distances[1:].max())
+        threshold = max((truth.value or farthest / 2) + truth.shift, 1e-3 * farthest)
+        return 1 / 3 + 2 / 3 * (1 - 0.5 ** ((float(distances[0]) / threshold) ** truth.slope))
+
+    def figures(self, curve: Curve, comparison: Comparison) -> list[tuple[str, Estimate, str, float]]:
+        return [(THRESHOLD, curve.threshold, comparison.unit, np.nan), (WIDTH, curve.width, "ln", np.nan)]
+
+    def meaning(self, row: Row) -> str:
+        return "the difference that is named rightly in two of three trials"
+
+    def estimated(self, result: Result, row: Row) -> Iterator[str]:
+        (value, low, high), condition = row.estimate, row.what.condition
+        named = f"a difference of {value:.3g} {row.unit} is named rightly in two of three trials"
+        yield f"With {condition}, {named} ({interval(low, high)})."
+
+
+CHOICE = _Choice()
+"""How often a level is chosen over the standard: a cumulative Gaussian, whose middle feels equal."""
+DISTANCE = _Distance()
+"""How often the odd one of three is found: a Weibull function of the distance from the standard."""
+
+
+def equal_level(comparison: Comparison, truth: Threshold) -> float:
+    """Return the level that feels equal to the standard."""
+    return ((comparison.standard or 0.0) if truth.value is None else truth.value) + truth.shift
+
+
+def _span(intensities: Float64[np.ndarray, "n"]) -> float:
+    return float(np.ptp(intensities)) or abs(float(intensities[0])) or 1.0

@@ -1,0 +1,62 @@
+"""Whether two intervals were the same, or different."""
+
+from dataclasses import replace
+from math import inf
+
+import numpy as np
+
+from ...design.study import Comparison
+from ...design.trial import DIFFERENT, SAME, Trial
+from ...measures.rows import ByParticipant, Result, Row, What, grouped, of_each_and_all
+from ...measures.shares import DPRIME, analyse_right_answers
+from ...measures.words import told_apart
+from ...statistics import sensitivity
+from ...trials import Answer
+from ..question import Percept, Question
+
+CRITERION = 1.5
+"""Difference from which two intervals are called different, in standard deviations of the noise of one."""
+
+
+class Different(Question):
+    """Two intervals that may be the same."""
+
+    sentence = "Were the two intervals the same, or different?"
+    about = "were the two intervals the same, or different"
+    procedures = ("same-different",)
+
+    def choices(self, trial: Trial, comparison: Comparison) -> dict[str, str]:
+        """Return a number for each word."""
+        return {"1": "they were the same", "2": "they were different"}
+
+    def response(self, trial: Trial, key: str, level: float | None) -> str:
+        """Return the word."""
+        return trial.choices[int(key) - 1]
+
+    def decide(self, trial: Trial, percept: Percept, generator: np.random.Generator) -> str:
+        """Return whether the two are farther apart than a criterion."""
+        return DIFFERENT if abs(percept.felt[0] - percept.felt[1]) > CRITERION else SAME
+
+    def analyse_conditions(self, comparison: Comparison, answers: ByParticipant) -> Result:
+        """Analyse how often the word was right; d' is that of the differencing rule."""
+        result = analyse_right_answers(comparison, answers, 0.5)
+        dprimes, _ = of_each_and_all(_dprimes, answers, bounds=(0.0, inf))
+        return replace(result, rows=[*result.rows, *dprimes])
+
+    def describe(self, row: Row, who: str) -> str:
+        """Return whether two conditions can be told apart."""
+        return told_apart(row, f"{who} answered rightly")
+
+
+def _dprimes(name: str, answers: list[Answer]) -> list[Row]:
+    rows: list[Row] = []
+    for what, cell in grouped(answers, lambda each: What(DPRIME, each.condition, each.other or "")).items():
+        different = [each for each in cell if each.target == DIFFERENT]
+        equal = [each for each in cell if each.target == SAME]
+        hits, alarms = ([each.response for each in some].count(DIFFERENT) for some in (different, equal))
+        estimate = sensitivity.same_different(hits, len(different), alarms, len(equal))
+        rows.append(Row(what, name, estimate, "", len(cell), None, 0.0))
+    return rows
+
+
+QUESTION = Different()

@@ -17,6 +17,7 @@ SECTIONS = {
     "texture": "Texture",
     "regions": "Regions that people draw",
     "photos": "Photographs",
+    "recognition": "Recognised by touch",
     "relief": "The relief of depth",
     "parts": "Parts of a picture",
     "export": "Handing it on",

@@ -55,10 +55,10 @@ def figure_relief(views: Views, seen: Figure, size: FeltSize, choice: ReliefChoi
     shape: tuple[int, int] = small.shape[:2]
     pitch_m = size.width_m / shape[1]
     with plain_opencv():
-        figure = np.zeros(shape, bool) if seen.figure is None else _resized(seen.figure, shape) >= IS_FIGURE
-        height_m = size.relief_m * _blurred(_shares(figure, pitch_m), SOFT_M / pitch_m)
+        figure = np.zeros(shape, bool) if seen.figure is None else _resize(seen.figure, shape) >= IS_FIGURE
+        height_m = size.relief_m * _blur(_shares(figure, pitch_m), SOFT_M / pitch_m)
         if seen.borders is not None:
-            height_m -= GROOVE_M * _blurred(_resized(seen.borders, shape), GROOVE_SIGMA_M / pitch_m)
+            height_m -= GROOVE_M * _blur(_resize(seen.borders, shape), GROOVE_SIGMA_M / pitch_m)
         light = _lightness(small)
         for face in seen.faces:
             _add_face(
@@ -82,7 +82,7 @@ def _shares(figure: Bool[np.ndarray, "r c"], pitch_m: float) -> Float32[np.ndarr
     if not figure.any():
         return np.broadcast_to(lower, figure.shape).astype(np.float32)
     from_rim = np.minimum(np.asarray(distance_transform_edt(figure)) * (pitch_m / ROUNDING_M), 1)
-    rounding = _blurred(np.sqrt(1 - (1 - from_rim) ** 2).astype(np.float32), 0.1 * ROUNDING_M / pitch_m)
+    rounding = _blur(np.sqrt(1 - (1 - from_rim) ** 2).astype(np.float32), 0.1 * ROUNDING_M / pitch_m)
     return np.where(figure, STEP + BODY * rounding, lower).astype(np.float32)
 
 
@@ -112,7 +112,7 @@ def _add_face(
     if int(inside.sum()) < MIN_FACE_CELLS or not rim.any():
         return
     width = float(np.ptp(face[:, 0]))
-    features = (_blurred(light, FINE * width) - _blurred(light, COARSE * width))[box]
+    features = (_blur(light, FINE * width) - _blur(light, COARSE * width))[box]
     spread = max(float(features[inside].std()), 1e-6)
     own_m = np.where(inside, own_m, 0) + FEATURES * width * pitch_m * np.clip(features / spread, -2, 2)
     own_m += float(np.median(height_m[box][rim] - own_m[rim]))
@@ -128,7 +128,7 @@ def _lightness(picture: np.ndarray) -> Float32[np.ndarray, "r c"]:
     return np.ascontiguousarray(to_grey(picture), np.float32)
 
 
-def _resized(values: Float32[np.ndarray, "h w"], shape: tuple[int, int]) -> Float32[np.ndarray, "r c"]:
+def _resize(values: Float32[np.ndarray, "h w"], shape: tuple[int, int]) -> Float32[np.ndarray, "r c"]:
     import cv2
 
     if values.shape == shape:
@@ -137,7 +137,7 @@ def _resized(values: Float32[np.ndarray, "h w"], shape: tuple[int, int]) -> Floa
     return np.asarray(cv2.resize(values, shape[::-1], interpolation=cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR))
 
 
-def _blurred(values: Float32[np.ndarray, "r c"], sigma: float) -> Float32[np.ndarray, "r c"]:
+def _blur(values: Float32[np.ndarray, "r c"], sigma: float) -> Float32[np.ndarray, "r c"]:
     """Return a map blurred by a Gaussian; sigma: in cells."""
     import cv2
 

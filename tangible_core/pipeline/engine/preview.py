@@ -58,7 +58,7 @@ def preview_config(config: PipelineConfig, heights: Mapping[str, Any] | None, sh
     if config.render is None:
         raise config.missing("render")
     choice = {**config_heights(config).model_dump(), **(heights or {}), "by": "given"}
-    given = config.with_values(heights=_validated(HeightChoice, choice), parts=config.parts or {})
+    given = config.with_values(heights=_validate(HeightChoice, choice), parts=config.parts or {})
     if wrong := list(wrong_of_parts(given)):
         raise given.error_at(*wrong)
     size, (rows, columns) = config.size, shape
@@ -119,7 +119,7 @@ class PartHeightPreview:
         Raises: ConfigError for a height above the workspace, an unknown part, a depth that is not made yet;
         MaterialError; TangibleError as `Engine.make`.
         """
-        said = {number: _validated(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
+        said = {number: _validate(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
         check_parts(config.with_values(parts=said), self._parts, self.grid.scene.shape[1])
         check_numbers(config, self._parts.count)
         known_m = self._known_heights(heights_m, by)
@@ -143,7 +143,7 @@ class PartHeightPreview:
             if by == "depth" and disparity is None:
                 raise ConfigError("the picture's depth is not made yet; make it, and heights by depth are felt")
             config = self.engine.config
-            choice = _validated(HeightChoice, {**config_heights(config).model_dump(), "by": by})
+            choice = _validate(HeightChoice, {**config_heights(config).model_dump(), "by": by})
             stage = ReliefStage(Context(config.with_values(heights=choice), self.engine.scene))
             self._found_m[by] = stage.part_heights(self._parts, disparity).heights_m
         found_m = self._found_m.get(by, ())
@@ -182,7 +182,7 @@ def _with_own(
     return tuple(named.get(number, material) for number, material in enumerate(found))
 
 
-def _validated(section: type[S], said: Mapping[str, Any]) -> S:
+def _validate(section: type[S], said: Mapping[str, Any]) -> S:
     """Validate options. Raises: ConfigError."""
     try:
         return section.model_validate(said)

@@ -1,4 +1,4 @@
-"""The pages in browsers: what they are told, and which of them moves the hand."""
+"""The pages in browsers: what they hear of, and which of them moves the hand."""
 
 import time
 from collections import deque

@@ -3,7 +3,8 @@
 import numpy as np
 from jaxtyping import Bool, Float64
 
-from tangible_core.metrics import Vectors
+Vectors = Float64[np.ndarray, "n 3"]
+"""A vector at each tick."""
 
 
 def force_steps(force_n: Vectors) -> dict[str, float]:

@@ -19,7 +19,7 @@ from scipy.interpolate import LinearNDInterpolator
 
 from tangible_core import Pipeline, Scene
 from tangible_core.data import Figure as Seen
-from tangible_core.data import HapticState, HapticSurface
+from tangible_core.data import HapticSurface
 from tangible_depth import Luminance
 from tangible_networks import faces as face_finding
 from tangible_networks.seeing import look, look_for_figure
@@ -39,10 +39,8 @@ CELL_PX = 300
 SECONDS = 60, 600
 MIN_LIGHTS, MAX_MEAN_OFF, MIN_OVERLAP = 9, 0.04, 0.8
 TICK_S, PRESS_N, SPEED_M_PER_S = 1e-3, 1.0, 0.15
-GIVES_M_PER_N_S = 0.2
-"""How fast the hand gives way to a force that is not its press: 0.2 mm a tick and newton, below 2 / stiffness."""
 LANDING = 100
-"""Ticks at the start in which the hand comes down on one place."""
+"""Ticks in which the hand comes down on one place."""
 LIGHTS = tuple(range(0, 360, 30))
 """Directions of the light, degrees."""
 ELEVATION = 35
@@ -121,43 +119,41 @@ def _pictures() -> dict[str, np.ndarray]:
 
 
 def stroke_surface(surface: HapticSurface, seconds: float) -> np.ndarray:
-    """Stroke a surface in rows from top to bottom; return the heights that were felt, (h, w) as the surface has, m."""
+    """Stroke a surface in rows from top to bottom; return the heights that were felt, (h, w) as the surface has, m.
+
+    The hand lands once, to learn the stiffness; then it goes as deep as its press needs, by the row felt before.
+    """
     touch = Proxy().touch(surface)
     rows, columns = surface.height_m.shape
     width_m, length_m = surface.extent_m
-    ticks = round(seconds / TICK_S)
-    lines = max(2, round((ticks * TICK_S * SPEED_M_PER_S) / width_m))
-    along = np.linspace(-0.5, 0.5, max(2, ticks // lines))
-    path = [
-        (width_m * (x if line % 2 == 0 else -x), length_m * (0.5 - (line + 0.5) / lines))
-        for line in range(lines)
-        for x in along
-    ]
-    path = [path[0]] * LANDING + path
-    z = float(surface.height_m.max()) + 0.001
-    positions, forces = np.empty((len(path), 3)), np.empty((len(path), 3))
-    before = (*path[0], z)
-    for tick, (x, y) in enumerate(path):
-        speed = ((x - before[0]) / TICK_S, (y - before[1]) / TICK_S, (z - before[2]) / TICK_S)
-        force = touch.force(HapticState((x, y, z), speed, tick * TICK_S))
-        positions[tick], forces[tick], before = (x, y, z), force, (x, y, z)
-        z += GIVES_M_PER_N_S * TICK_S * (force[2] - PRESS_N)
-    pressed = forces[:, 2] > PRESS_N / 4
-    points = positions + forces / _stiffness(positions, forces)
-    places = np.column_stack([points[pressed, 0] / width_m + 0.5, 0.5 - points[pressed, 1] / length_m]) * [
-        columns,
-        rows,
-    ]
+    lines = max(2, round(seconds * SPEED_M_PER_S / width_m))
+    x = np.linspace(-0.5, 0.5, max(2, round(seconds / TICK_S / lines))) * width_m
+    y = (0.5 - (np.arange(lines) + 0.5) / lines) * length_m
+    top_m = float(surface.height_m.max()) + 0.001
+    landing = np.column_stack([np.full((LANDING, 2), [x[0], y[0]]), np.linspace(top_m, -0.001, LANDING)])
+    forces = touch.path(landing, TICK_S)
+    stiffness = _stiffness(landing, forces)
+    known = np.full(x.size, landing[-1, 2] + forces[-1, 2] / stiffness)
+    points: list[np.ndarray] = []
+    for line in range(lines):
+        way = slice(None) if line % 2 == 0 else slice(None, None, -1)
+        positions = np.column_stack([x, np.full(x.size, y[line]), known - PRESS_N / stiffness])[way]
+        forces = touch.path(positions, TICK_S)
+        felt = (positions + forces / stiffness)[forces[:, 2] > 0]
+        points.append(felt)
+        order = np.argsort(felt[:, 0])
+        known = np.interp(x, felt[order, 0], felt[order, 2]) if felt.size else known - PRESS_N / stiffness
+    every = np.concatenate(points)
+    places = (every[:, :2] / [width_m, -length_m] + 0.5) * [columns, rows]
     row, column = np.mgrid[:rows, :columns] + 0.5
-    felt = LinearNDInterpolator(places, points[pressed, 2])(column, row)
-    return np.where(np.isfinite(felt), felt, np.nanmin(felt)).astype(np.float32)
+    heights = LinearNDInterpolator(places, every[:, 2])(column, row)
+    return np.where(np.isfinite(heights), heights, np.nanmin(heights)).astype(np.float32)
 
 
 def _stiffness(positions: np.ndarray, forces: np.ndarray) -> float:
     """Return the stiffness that the hand feels while it comes down on one place, N/m."""
-    pressed = forces[:LANDING, 2] > 0
-    deeper, more = np.ptp(positions[:LANDING, 2][pressed]), np.ptp(forces[:LANDING, 2][pressed])
-    return float(more / deeper)
+    pressed = forces[:, 2] > 0
+    return float(np.ptp(forces[pressed, 2]) / np.ptp(positions[pressed, 2]))
 
 
 def light_surface(heights_m: np.ndarray, pitch_m: float, azimuth: float) -> np.ndarray:
@@ -182,8 +178,10 @@ def recognise(heights_m: np.ndarray, pitch_m: float, seen: Seen, shape: tuple[in
             found = face_finding.find_faces(picture, known["face-finder"], known["face-points"])
             offs += [off for off in [_off(found, seen.faces[0])] if off < MAX_OFF]
         if wanted is not None:
-            figure = look_for_figure(picture) > 0.5
-            overlaps.append(float((figure & wanted).sum() / max((figure | wanted).sum(), 1)))
+            figure = look_for_figure(picture)
+            assert figure is not None
+            both, either = (figure > 0.5) & wanted, (figure > 0.5) | wanted
+            overlaps.append(float(both.sum() / max(either.sum(), 1)))
     return Felt(len(offs), fmean(offs) if offs else math.nan, max(overlaps, default=math.nan), len(seen.faces) > 0)
 
 

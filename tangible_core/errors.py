@@ -128,6 +128,9 @@ class Stopped(TangibleError):
     def __init__(self) -> None:
         super().__init__("stopped on request; what was finished is kept")
 
+    def __reduce__(self) -> tuple[type["Stopped"], tuple[()]]:
+        return Stopped, ()  # it is sent from the process that stopped, and takes no arguments
+
 
 class ResultsError(TangibleError):
     """Files of measurements that are damaged or cannot be compared."""

@@ -53,10 +53,11 @@ class LastingServer(UiServer):
 
 async def forget(session: Any, tab: Any) -> None:
     """Forget verdicts, files, comparisons and steps back of the documents before; the worker and the surface stay."""
-    for event in session._latest.keys() - {"maker", "described"}:
-        del session._latest[event]
-    session._history.clear()
-    session._logged.clear()
+    tabs = session.tabs
+    for event in tabs._latest.keys() - {"maker", "described"}:
+        del tabs._latest[event]
+    tabs._history.clear()
+    tabs._logged.clear()
     session.document.texts = type(session.document.texts)()
 
 

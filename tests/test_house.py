@@ -9,6 +9,7 @@ import tomllib
 from importlib import import_module
 from inspect import isabstract
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -65,6 +66,21 @@ def test_rooms_of_tests_have_a_budget_of_five_minutes():
     names = {"/".join(parts[:3] if parts[1:2] in (("core",), ("plugins",)) else parts[:2]) for parts in rooms}
     assert names <= budget.keys()
     assert sum(budget.values()) <= 660  # what they took, and a fifth
+
+
+def test_names_of_rooms_are_not_hidden_by_files_of_the_same_name():
+    """`from tangible_core.testing import checks` is a function, whatever was imported before."""
+    for stub in ROOT.joinpath("tangible_core").rglob("__init__.pyi"):
+        room = ".".join(stub.parent.relative_to(ROOT).parts)
+        names = {
+            each.asname or each.name
+            for node in ast.walk(ast.parse(stub.read_text()))
+            if isinstance(node, ast.ImportFrom)
+            for each in node.names
+        }
+        for name in names & {path.stem for path in stub.parent.iterdir()}:
+            import_module(f"{room}.{name}")
+            assert not isinstance(getattr(import_module(room), name), ModuleType), f"{room}.{name} is the file"
 
 
 def test_files_import_only_from_the_floors_below():

@@ -8,4 +8,3 @@ from .heights import PartChoice as PartChoice
 from .heights import PartHeights as PartHeights
 from .heights import SimplifyChoice as SimplifyChoice
 from .layering import Layering as Layering
-from .neighbours import neighbours as neighbours

@@ -4,4 +4,3 @@ from .starter import SIDE_MM as SIDE_MM
 from .starter import are_pictures as are_pictures
 from .starter import not_pictures as not_pictures
 from .starter import scene_key as scene_key
-from .starter import starter as starter

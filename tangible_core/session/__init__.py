@@ -2,4 +2,9 @@
 
 import lazy_loader  # pyright: ignore[reportMissingTypeStubs]
 
+# a file of this room has the same name: the last to be imported would win
+from .guard_summary import guard_summary as guard_summary
+from .parts_felt import parts_felt as parts_felt
+from .tracking_error import tracking_error as tracking_error
+
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)  # pyright: ignore[reportUnknownVariableType]

@@ -15,9 +15,10 @@ from tangible_core.errors import ConfigError, OutputError, check_positive
 from tangible_core.files import atomic_write, sole_writer
 from tangible_core.files.yaml import on_one_line
 from tangible_core.parts import HeightChoice, PartHeights
-from tangible_core.pipeline import SIDE_MM, Pipeline, starter
+from tangible_core.pipeline import SIDE_MM, Pipeline
 from tangible_core.pipeline.config import parse_config
 from tangible_core.pipeline.engine import Cache, heights_of
+from tangible_core.pipeline.starter import starter
 from tangible_core.plugins import hooks
 from tangible_core.plugins.registry import Registry, default_registry
 from tangible_core.scene import Scene

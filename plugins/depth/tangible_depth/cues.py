@@ -122,5 +122,6 @@ def _regions(colours: Float32[np.ndarray, "h w 3"]) -> Int32[np.ndarray, "h w"]:
 
 def _is_paper(colours: Float32[np.ndarray, "h w 3"]) -> bool:
     """Return True if more than MAX_PAPER of the picture has about one colour."""
-    shades = np.minimum((colours * SHADES).astype(np.int64), SHADES - 1) @ [SHADES * SHADES, SHADES, 1]
+    red, green, blue = np.moveaxis(np.minimum((colours * SHADES).astype(np.int64), SHADES - 1), 2, 0)
+    shades = (red * SHADES + green) * SHADES + blue
     return float(np.bincount(shades.ravel()).max()) > MAX_PAPER * shades.size

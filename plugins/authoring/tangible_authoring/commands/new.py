@@ -26,7 +26,8 @@ def new(
     from tangible_core.cli import show
     from tangible_core.errors import OutputError
     from tangible_core.files import write_text
-    from tangible_core.pipeline import are_pictures, not_pictures, starter
+    from tangible_core.pipeline import are_pictures, not_pictures
+    from tangible_core.pipeline.starter import starter
 
     if not are_pictures(pictures):
         raise not_pictures(pictures)

@@ -8,7 +8,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from tangible_core.data import PartMap, SegmentMap, border_pixels, check_same_shape, to_rgb8
-from tangible_core.parts import find_parts, neighbours
+from tangible_core.parts import find_parts
+from tangible_core.parts.neighbours import neighbours
 from tangible_core.runtime import plain_opencv
 
 LIGHTNESS_IN_BYTES = (100 / 255, 1.0, 1.0)

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float32, Float64, Int32, Int64
 
 from tangible_core.data import HapticSurface, MaterialMap, PartMap
-from tangible_core.parts import neighbours
+from tangible_core.parts.neighbours import neighbours
 from tangible_legibility.cells import resampled
 from tangible_legibility.words.places import place_of_counts
 

@@ -11,7 +11,7 @@ from tangible_core.errors import Complaint, ConfigError, quoted
 from tangible_core.files import as_path, write_text
 from tangible_core.files.yaml import parse_value, plain, read_text
 from tangible_core.materials import load_library
-from tangible_core.pipeline import are_pictures, starter
+from tangible_core.pipeline import are_pictures
 from tangible_core.pipeline.config import (
     REMOVE,
     edit_text,
@@ -21,6 +21,7 @@ from tangible_core.pipeline.config import (
     relocate_text,
     with_overrides,
 )
+from tangible_core.pipeline.starter import starter
 from tangible_core.scene import BUILTINS, kind_of
 from tangible_core.scene.formats import MAPS, PICTURES, VIDEOS
 from tangible_core.session import SUFFIXES

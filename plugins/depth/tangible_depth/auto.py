@@ -66,5 +66,5 @@ def _network() -> Onnx | None:
     """Return the first network for one picture."""
     for network in networks_here("depth"):
         if not network.card.is_stereo:
-            return Onnx(model=network.path, card=network.name)
+            return Onnx(model=network.path, card=str(network.card_file or network.name))
     return None

@@ -1,5 +1,6 @@
 """The networks that are here: files in a folder of the user, each next to a copy of its card."""
 
+import logging
 import os
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,6 +11,7 @@ from tangible_core.files import as_path
 
 from .card import Card, Task, check_file, read_card, shipped_cards
 
+log: logging.Logger = logging.getLogger(__name__)
 VARIABLE = "TANGIBLE_MODELS_DIR"
 """The environment variable of the folder of networks."""
 TASKS: tuple[Task, ...] = get_args(Task)
@@ -24,6 +26,8 @@ class KnownNetwork(NamedTuple):
     card: Card
     path: Path
     """Where its file is, or would be."""
+    card_file: Path | None = None
+    """The file of a card of the user's own; None for one that is shipped."""
 
     @property
     def is_here(self) -> bool:
@@ -55,14 +59,17 @@ def models_folder() -> Path:
 def known_networks() -> Mapping[str, KnownNetwork]:
     """Return all networks with a card, by name: those whose cards are shipped, and those of the user's own folder.
 
-    Raises: ConfigError for a card in the folder that cannot be read.
+    A card in the folder that cannot be read is left out, with a warning.
     """
     folder = models_folder()
     networks = {name: KnownNetwork(name, card, folder / card.file) for name, card in shipped_cards().items()}
     for path in sorted(folder.glob("*.yaml")) if folder.is_dir() else ():
-        if path.stem not in networks:
+        try:
             card = read_card(path)
-            networks[path.stem] = KnownNetwork(path.stem, card, folder / (card.file or f"{path.stem}.onnx"))
+        except (TangibleError, OSError) as error:
+            log.warning("a network cannot be used: %s", error)
+            continue
+        networks.setdefault(path.stem, KnownNetwork(path.stem, card, folder / (card.file or f"{path.stem}.onnx"), path))
     return networks
 
 
@@ -87,11 +94,8 @@ def chosen_networks(names: list[str]) -> list[KnownNetwork]:
 
 
 def networks_here(task: Task) -> list[KnownNetwork]:
-    """Return the networks for a task whose files are here; none for a folder that cannot be read."""
-    try:
-        return [network for network in known_networks().values() if network.card.task == task and network.is_here]
-    except (TangibleError, OSError):
-        return []
+    """Return the networks for a task whose files are here."""
+    return [network for network in known_networks().values() if network.card.task == task and network.is_here]
 
 
 def identity_here() -> str:

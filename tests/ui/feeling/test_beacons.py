@@ -121,7 +121,7 @@ async def test_beacon_that_ends_is_announced_with_the_reason() -> None:
     session: Any = SimpleNamespace(
         feeling=feeling,
         laws=SimpleNamespace(follow=lambda _: None, comparison=SimpleNamespace(loop_end=lambda: "")),
-        tell=lambda event, **said: told.append({"event": event, **said}),
+        tabs=SimpleNamespace(tell=lambda event, **said: told.append({"event": event, **said})),
     )
 
     task = asyncio.ensure_future(watch(session))

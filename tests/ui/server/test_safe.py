@@ -262,7 +262,7 @@ class TestFloods:
             for each in slow:
                 each.sendall(b"GET / HT")
             tab.socket.send(pointer(0.01, 0, 0))
-            tab.ask("nothing")
+            tab.ask(None)
             tab.until(event="refused")
             assert page.done(lambda: page.session.feeling.hand.holding)
             assert page.ask(with_key("/stop"), "POST", b"").status == 204

@@ -42,7 +42,7 @@ _OURS = re.compile(r"[0-9a-f]{32,64}\.npz")
 """The names of entries: the folder may hold other files too."""
 _unwritable: set[Path] = set()
 """Folders of which the log has a warning: one for each folder, not for each result."""
-KEPT = frozenset(name for name, each in vars(data).items() if is_dataclass(each))
+KEPT = frozenset(name for name in dir(data) if is_dataclass(getattr(data, name)))
 """The names of the classes that an entry may be made of."""
 
 

@@ -1,6 +1,9 @@
 """The verdicts on the legibility of parts for fingers."""
 
+from typing import ClassVar
+
 from .preflight import Verdicts, reasons
+from .verdict import Grade
 
 
 class Legibility(Verdicts):
@@ -8,7 +11,7 @@ class Legibility(Verdicts):
 
     __slots__ = ()
     good = "readable"
-    bad = "illegible"
+    bad: ClassVar[Grade] = "illegible"
 
     @property
     def readable(self) -> bool:

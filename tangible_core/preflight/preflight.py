@@ -53,7 +53,7 @@ class Preflight(Verdicts):
 
     __slots__ = ()
     good = "safe"
-    bad = "unsafe"
+    bad: ClassVar[Grade] = "unsafe"
 
     @property
     def safe(self) -> bool:

@@ -93,7 +93,7 @@ class Function(ABC):
 @final
 class _Choice(Function):
     main = EQUALITY
-    compared = (EQUALITY, NOTICEABLE)
+    compared: ClassVar[tuple[str, ...]] = (EQUALITY, NOTICEABLE)
 
     def intensities(self, levels: Float64[np.ndarray, "n"], standard: float | None) -> Float64[np.ndarray, "n"]:
         return levels
@@ -143,7 +143,7 @@ class _Choice(Function):
 @final
 class _Distance(Function):
     main = THRESHOLD
-    compared = (THRESHOLD,)
+    compared: ClassVar[tuple[str, ...]] = (THRESHOLD,)
 
     def intensities(self, levels: Float64[np.ndarray, "n"], standard: float | None) -> Float64[np.ndarray, "n"]:
         return np.abs(levels - (standard or 0.0))

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..design.study import Comparison
 from ..design.trial import Trial
-from ..measures.functions import CHOICE, EQUALITY
+from ..measures.functions import CHOICE, EQUALITY, Function
 from ..measures.pairs import DIFFERENCE, SCALE, analyse_pairs
 from ..measures.rows import ByParticipant, Result, Row
 from ..measures.words import is_sure, share
@@ -17,8 +17,8 @@ from .question import Percept, Question, Score
 class More(Question):
     """Which of two intervals has more; the name is the comparative of what they have."""
 
-    procedures = ("2afc", "constant", "quest")
-    function = CHOICE
+    procedures: ClassVar[tuple[str, ...]] = ("2afc", "constant", "quest")
+    function: ClassVar[Function | None] = CHOICE
     has_threshold = True
     nouns: ClassVar[Mapping[str, str]] = {EQUALITY: "the level that feels equal"}
 

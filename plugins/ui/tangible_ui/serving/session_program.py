@@ -4,7 +4,9 @@ from collections.abc import Coroutine
 from typing import Any, final
 
 from tangible_web.framing import RECORDING
+from tangible_web.hand import Hand
 from tangible_web.live import LiveTab
+from tangible_web.parsing import Request
 
 from ..requests import find_request
 from ..state.session import Session
@@ -15,10 +17,13 @@ from .translating import in_language, language_of
 class SessionProgram:
     """The program behind the page of `tangible ui`."""
 
-    find_request = staticmethod(find_request)
-
     def __init__(self, session: Session) -> None:
-        self.state, self.hand = session, session.feeling.hand
+        self.state: Session = session
+        self.hand: Hand = session.feeling.hand
+
+    def find_request(self, name: str, /) -> Request:
+        """Return what answers a request of this name: the server, or else the worker, which may refuse it."""
+        return find_request(name)
 
     @property
     def running(self) -> bool:

@@ -35,7 +35,7 @@ SPREAD = "heights are spread so that borders can be felt; `relief: depth` keeps 
 LEVEL, MOST_REGIONS = 0.6, 64
 """The least share of people who would draw a border that is a raised line, and the most regions between such lines. On
 20 photographs, lines at this level are at drawn borders as often as lines at edges, and find more of these."""
-NEEDS = {"edges": ("views",), "figure": ("views", "figure")}
+NEEDS: dict[str, tuple[str, ...]] = {"edges": ("views",), "figure": ("views", "figure")}
 """The products that a relief needs that is not made of depth."""
 LINEAR = ReliefChoice(by="depth", slope=0, grain_m=0)
 """The shape of a relief that is neither spread nor limited."""

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import inf
+from typing import ClassVar
 
 import numpy as np
 
@@ -23,7 +24,7 @@ class Different(Question):
 
     sentence = "Were the two intervals the same, or different?"
     about = "were the two intervals the same, or different"
-    procedures = ("same-different",)
+    procedures: ClassVar[tuple[str, ...]] = ("same-different",)
 
     def choices(self, trial: Trial, comparison: Comparison) -> dict[str, str]:
         """Return a number for each word."""

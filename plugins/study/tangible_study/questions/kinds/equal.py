@@ -1,6 +1,7 @@
 """Whether the last interval is equal to the first, which the participant adjusts until it is."""
 
 from collections.abc import Callable
+from typing import ClassVar
 
 import numpy as np
 
@@ -22,7 +23,7 @@ class Equal(Question):
 
     sentence = "Was interval 2 equal to interval 1?"
     about = "adjust the last interval until it is equal to the first"
-    procedures = ("adjustment",)
+    procedures: ClassVar[tuple[str, ...]] = ("adjustment",)
     has_threshold = True
 
     def choices(self, trial: Trial, comparison: Comparison) -> dict[str, str]:

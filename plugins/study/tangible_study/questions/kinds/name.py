@@ -19,7 +19,7 @@ class Name(Question):
 
     sentence = "Which part was this?"
     about = "which part is this"
-    procedures = ("naming",)
+    procedures: ClassVar[tuple[str, ...]] = ("naming",)
     names_parts = True
     nouns: ClassVar[Mapping[str, str]] = {CORRECT: "the share of parts named rightly"}
 

@@ -20,7 +20,7 @@ class Rating(Question):
 
     sentence = "Which number fits best?"
     about = "a whole number on a scale"
-    procedures = ("rating",)
+    procedures: ClassVar[tuple[str, ...]] = ("rating",)
     nouns: ClassVar[Mapping[str, str]] = {RATING: "the rating"}
 
     def ask(self, comparison: Comparison) -> str:

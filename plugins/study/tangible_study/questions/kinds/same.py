@@ -1,10 +1,12 @@
 """Which of three intervals was not the same as the others."""
 
+from typing import ClassVar
+
 import numpy as np
 
 from ...design.study import Comparison
 from ...design.trial import Trial
-from ...measures.functions import DISTANCE
+from ...measures.functions import DISTANCE, Function
 from ...measures.rows import ByParticipant, Result, Row
 from ...measures.shares import analyse_right_answers
 from ...measures.words import told_apart
@@ -17,9 +19,9 @@ class Same(Question):
 
     sentence = "Which interval was not the same as the others?"
     about = "which interval was not the same as the others"
-    procedures = ("oddity", "quest")
+    procedures: ClassVar[tuple[str, ...]] = ("oddity", "quest")
     intervals = 3
-    function = DISTANCE
+    function: ClassVar[Function | None] = DISTANCE
     has_threshold = True
 
     def right_answer(self, trial: Trial) -> str:

@@ -21,7 +21,7 @@ from tangible_core import Pipeline, Scene
 from tangible_core.data import Figure as Seen
 from tangible_core.data import HapticSurface
 from tangible_depth import Luminance
-from tangible_networks import faces as face_finding
+from tangible_networks.faces import LOWEST_SCORE, find_faces
 from tangible_networks.seeing import look, look_for_figure
 from tangible_networks.store import known_networks, networks_here
 from tangible_render import Proxy
@@ -46,8 +46,6 @@ LIGHTS = tuple(range(0, 360, 30))
 ELEVATION = 35
 MAX_OFF = 0.3
 """Largest mean distance of the points of a face from those in the photograph, of its width: farther, it is another."""
-FOUND_SCORE = 0.5
-"""Least score of a face on a lit surface: the threshold that the finder was published with."""
 
 
 class Felt(NamedTuple):
@@ -170,12 +168,11 @@ def recognise(heights_m: np.ndarray, pitch_m: float, seen: Seen, shape: tuple[in
     """Compare what networks see on lit heights with what they see in the photograph."""
     known, offs, overlaps = known_networks(), list[float](), list[float]()
     wanted = seen.figure > 0.5 if seen.figure is not None and (seen.figure > 0.5).any() else None
-    face_finding.SCORE = FOUND_SCORE
     for azimuth in LIGHTS:
         lit = cv2.resize(light_surface(heights_m, pitch_m, azimuth), (shape[1], shape[0]))
         picture = np.repeat(lit[..., None], 3, axis=2)
         if len(seen.faces):
-            found = face_finding.find_faces(picture, known["face-finder"], known["face-points"])
+            found = find_faces(picture, known["face-finder"], known["face-points"], LOWEST_SCORE)
             offs += [off for off in [_off(found, seen.faces[0])] if off < MAX_OFF]
         if wanted is not None:
             figure = look_for_figure(picture)

@@ -8,6 +8,7 @@ from .options import Json as Json
 from .options import NoCache as NoCache
 from .options import Sets as Sets
 from .options import Verbose as Verbose
+from .options import ask as ask
 from .options import is_listing as is_listing
 from .sentences import approximately as approximately
 from .sentences import listing as listing

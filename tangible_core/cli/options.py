@@ -1,5 +1,6 @@
 """Options that several commands have, and the exit codes."""
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -36,6 +37,14 @@ Verbose = Annotated[
 ]
 Yes = Annotated[bool, typer.Option("--yes", "-y", help="Skip the confirmation when the depth map is unreliable.")]
 Record = Annotated[Path | None, typer.Option(help="Save every tick to this file (.nc, .npz or .csv).")]
+
+
+def ask(question: str, refusal: str, default: bool = False) -> None:
+    """Ask a question on the terminal. Raises: ConfigError with the refusal if there is no terminal, Exit for a no."""
+    if sys.stdin is None or not sys.stdin.isatty():
+        raise ConfigError(refusal)
+    if not typer.confirm(question, err=True, default=default):
+        raise typer.Exit
 
 
 def is_listing(group: str, subcommand: str | None, as_json: bool) -> bool:

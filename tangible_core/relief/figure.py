@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float32
 
 from ..data import Figure, Relief, Views
+from ..data.pictures import to_grey
 from ..runtime.opencv import plain_opencv
 from ..scene import geometry, scaling
 from ..scene.workspace import FeltSize
@@ -55,11 +56,11 @@ def figure_relief(views: Views, seen: Figure, size: FeltSize, choice: ReliefChoi
     shape: tuple[int, int] = small.shape[:2]
     pitch_m = size.width_m / shape[1]
     with plain_opencv():
-        figure = np.zeros(shape, bool) if seen.figure is None else _resize(seen.figure, shape) >= IS_FIGURE
+        figure = np.zeros(shape, bool) if seen.figure is None else scaling.reduced_map(seen.figure, shape) >= IS_FIGURE
         height_m = size.relief_m * _blur(_shares(figure, pitch_m), SOFT_M / pitch_m)
         if seen.borders is not None:
-            height_m -= GROOVE_M * _blur(_resize(seen.borders, shape), GROOVE_SIGMA_M / pitch_m)
-        light = _lightness(small)
+            height_m -= GROOVE_M * _blur(scaling.reduced_map(seen.borders, shape), GROOVE_SIGMA_M / pitch_m)
+        light = to_grey(small)
         for face in seen.faces:
             _add_face(
                 height_m,
@@ -119,22 +120,6 @@ def _add_face(
     share = np.clip(from_rim_m / RIM_M, 0, 1)
     share = share * share * (3 - 2 * share)
     height_m[box] = height_m[box] * (1 - share) + own_m * share
-
-
-def _lightness(picture: np.ndarray) -> Float32[np.ndarray, "r c"]:
-    """Return the brightness of a picture of any type, 0..1."""
-    from ..data.pictures import to_grey
-
-    return np.ascontiguousarray(to_grey(picture), np.float32)
-
-
-def _resize(values: Float32[np.ndarray, "h w"], shape: tuple[int, int]) -> Float32[np.ndarray, "r c"]:
-    import cv2
-
-    if values.shape == shape:
-        return values
-    shrinks = shape[0] < values.shape[0]
-    return np.asarray(cv2.resize(values, shape[::-1], interpolation=cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR))
 
 
 def _blur(values: Float32[np.ndarray, "r c"], sigma: float) -> Float32[np.ndarray, "r c"]:

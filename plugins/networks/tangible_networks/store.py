@@ -1,4 +1,4 @@
-"""The networks that are here: files in a folder of the user, each next to a copy of its card."""
+"""The networks that are known by their cards, and those of them whose files are in the user's folder."""
 
 import logging
 import os
@@ -95,6 +95,8 @@ def chosen_networks(names: list[str]) -> list[KnownNetwork]:
 
 def networks_here(task: Task) -> list[KnownNetwork]:
     """Return the networks for a task whose files are here."""
+    if not models_folder().is_dir():  # most people have none: no card is read
+        return []
     return [network for network in known_networks().values() if network.card.task == task and network.is_here]
 
 

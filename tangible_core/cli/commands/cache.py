@@ -6,8 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ...errors import ConfigError
-from ..options import Json, is_listing
+from ..options import Json, ask, is_listing
 
 app: typer.Typer = typer.Typer(name="cache", rich_markup_mode=None, add_completion=False)
 
@@ -49,22 +48,15 @@ def clear(
     results = Cache()
     count, size = results.size()
     if count and not yes:
-        _ask(f"Delete {_results(count)} ({_megabytes(size)}) in {results.folder}?")
+        ask(
+            f"Delete {_results(count)} ({_megabytes(size)}) in {results.folder}?",
+            "cache clear: there is no terminal to ask on; --yes deletes without asking",
+        )
     gone, freed = results.clear()
     if as_json:
         show.print_json({"folder": results.folder, "entries": gone, "bytes": freed})
     else:
         show.say(f"{_results(gone)} deleted, {_megabytes(freed)} freed")
-
-
-def _ask(question: str) -> None:
-    """Ask a question. Raises: ConfigError without a terminal, Exit if the answer is no."""
-    import sys
-
-    if sys.stdin is None or not sys.stdin.isatty():
-        raise ConfigError("cache clear: there is no terminal to ask on; --yes deletes without asking")
-    if not typer.confirm(question, err=True):
-        raise typer.Exit
 
 
 def _results(count: int) -> str:

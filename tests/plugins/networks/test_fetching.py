@@ -7,6 +7,7 @@ import tarfile
 import threading
 import zipfile
 from collections.abc import Iterator
+from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 
@@ -104,6 +105,15 @@ def test_card_that_lies_leaves_nothing(tmp_path: Path, content: bytes, member: s
     assert list(new.path.parent.iterdir()) == []
 
 
+@pytest.mark.parametrize("content", [CONTENT, b"another"])
+def test_file_of_the_user_stays(tmp_path: Path, content: bytes) -> None:
+    own = tmp_path / "own.part"
+    own.write_bytes(content)
+    with suppress(ConfigError):
+        add_network(network(tmp_path / "models"), own)
+    assert own.read_bytes() == content
+
+
 def test_damaged_file_is_told_from_a_right_one(tmp_path: Path) -> None:
     new = network(tmp_path)
     assert new.state == "absent"
@@ -171,6 +181,7 @@ def test_commands(models: Path, tmp_path: Path) -> None:
 
     assert {each["name"]: each["state"] for each in json.loads(called("--json")[1])}["own"] == "absent"
     assert called("add", "own")[0] == 2  # there is no terminal to ask on
+    assert called("add", "own", "--json")[0] == 2, "nor does a program fetch without --yes"
     assert called("add", "own", "--from", package)[0] == 0
     assert called("check")[0] == 0
     (models / "net.onnx").write_bytes(b"?")

@@ -9,6 +9,7 @@ from onnx import TensorProto, helper, numpy_helper
 
 import tangible_networks.faces as faces
 from onnx_models import mono
+from tangible_core.errors import ConfigError
 from tangible_networks.card import Card
 from tangible_networks.faces import ANCHORS, find_faces
 from tangible_networks.hed import BLOCKS, hed_to_onnx
@@ -35,6 +36,16 @@ class TestMaps:
     def test_without_networks_nothing_is_seen(self, models: Path) -> None:
         seen = look(bright_square())
         assert (seen.figure, seen.borders, seen.faces_px) == (None, None, None)
+
+    def test_network_without_a_map_is_refused(self, models: Path) -> None:
+        output = helper.make_tensor_value_info("same", TensorProto.FLOAT, [1, 3, "h", "w"])
+        inputs = [helper.make_tensor_value_info("picture", TensorProto.FLOAT, [1, 3, "h", "w"])]
+        graph = helper.make_graph([helper.make_node("Relu", ["picture"], ["same"])], "same", inputs, [output])
+        model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 13)], ir_version=8)
+        onnx.save(model, models / "own.onnx")
+        (models / "own.yaml").write_text("task: figure\noutput: {means: figure}\n")
+        with pytest.raises(ConfigError, match="no map"):
+            look(bright_square())
 
     def test_figure_lies_where_the_network_sees_it(self, models: Path) -> None:
         mono(models / "own.onnx")

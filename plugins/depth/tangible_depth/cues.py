@@ -121,7 +121,11 @@ def _regions(colours: Float32[np.ndarray, "h w 3"]) -> Int32[np.ndarray, "h w"]:
 
 
 def _is_paper(colours: Float32[np.ndarray, "h w 3"]) -> bool:
-    """Return True if more than MAX_PAPER of the picture has about one colour."""
+    """Return True if more than MAX_PAPER of the picture has about one colour, without grain."""
+    import cv2
+
+    with plain_opencv():
+        smooth = cv2.erode(colours, np.ones((3, 3))) > cv2.dilate(colours, np.ones((3, 3))) - 1 / SHADES
     red, green, blue = np.moveaxis(np.minimum((colours * SHADES).astype(np.int64), SHADES - 1), 2, 0)
-    shades = (red * SHADES + green) * SHADES + blue
-    return float(np.bincount(shades.ravel()).max()) > MAX_PAPER * shades.size
+    shades = ((red * SHADES + green) * SHADES + blue)[smooth.reshape(colours.shape).all(2)]
+    return float(np.bincount(shades, minlength=1).max()) > MAX_PAPER * colours[..., 0].size

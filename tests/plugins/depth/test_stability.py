@@ -13,6 +13,7 @@ import pytest
 
 from tangible_core import load_method
 from tangible_core.data import DisparityMap, Views
+from tangible_core.errors import PictureError
 from tangible_core.plugins.registry import default_registry
 from tangible_core.testing.synthetic.stereo_scenes import KnownPair, synthetic_pair
 from tangible_core.testing.synthetic.surfaces import (
@@ -31,7 +32,7 @@ PERIOD_PX = 8
 HALF = SHAPE[0] // 2
 WINDOWS_PX = 12
 """Margin, in pixels, in which a border of texture may affect a map."""
-FROM_ONE_PICTURE = ("contour", "luminance")
+FROM_ONE_PICTURE = ("contour", "cues", "luminance")
 OTHERS_ANSWERS = ("auto", "onnx")
 """Methods that forward to others, or to the user's network."""
 METHODS = [
@@ -233,7 +234,11 @@ def test_method_on_a_case_keeps_its_bound(case: str, name: str):
     if not options.keys() <= cls.model_fields.keys() or (case, name) in NOT_KEPT:
         return
     known = pair()
-    found = cls(**options).estimate(known.views)
+    try:
+        found = cls(**options).estimate(known.views)
+    except PictureError:
+        assert name == "cues"  # refuses a picture in which nothing stands on a ground
+        return
     well_formed(found, known)
     assert found.unit == ("relative" if name in FROM_ONE_PICTURE else "px")
     assert found.unit == "relative" or all(demand(found, known) for demand in demands)

@@ -88,6 +88,7 @@ hub.on("hello", ({ history }) => {
   questions.takeAll(history as unknown as Told[]);
 });
 hub.on("said", (told) => questions.takeAll([told]));
+hub.on("ended", () => net.leave());
 hub.on("gone", () => questions.lose());
 hub.on("state", ({ seq }) => net.drawn(seq)); // nothing is drawn that would take time
 const stop = (): void => void net.stop().catch(() => undefined);

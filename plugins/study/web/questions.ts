@@ -30,6 +30,8 @@ export interface Told {
 /** Events of a participant's page. */
 export interface StudyEvents extends PageEvents {
   said: Told;
+  /** The study is over, and the program ends. */
+  ended: object;
 }
 
 interface Places {

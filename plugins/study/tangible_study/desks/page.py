@@ -101,6 +101,8 @@ class Page(Desk):
         return self
 
     def __exit__(self, *error: Any) -> None:
+        if error[0] is None:  # a page that expects the end does not try to connect again
+            self._server.post(lambda: [tab.say({"event": "ended"}) for tab in self._tabs])
         until_s = time.monotonic() + LAST_S  # the last sentence reaches the page first
         while time.monotonic() < until_s and self._server.call(lambda: any(tab.unread for tab in self._tabs)):
             time.sleep(0.01)

@@ -87,6 +87,11 @@ export class Connection {
     if (this.open) this.socket!.send(encodeAck(seq));
   }
 
+  /** Expect the end of the program: it is neither reported nor followed by another connection. */
+  leave(): void {
+    this.socket!.onclose = null;
+  }
+
   private get open(): boolean {
     return this.socket?.readyState === WebSocket.OPEN;
   }

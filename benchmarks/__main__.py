@@ -13,6 +13,7 @@ from . import results
 
 SECTIONS = {
     "house": "The house itself",
+    "wheel": "The wheel of a platform",
     "depth": "Depth",
     "texture": "Texture",
     "regions": "Regions that people draw",

@@ -26,6 +26,8 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OPENCV
 
 PLAIN_KERNELS = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
 """Of numba, which compiles all kernels anew for it: a minute, for what differs under `fastmath` alone."""
+WHEEL_KERNELS = {"NUMBA_CPU_NAME": "x86-64-v3", "NUMBA_CPU_FEATURES": ""}
+"""Those of the wheel of a platform (`deploy/platform_wheel.py`)."""
 PLAIN = {
     "NPY_DISABLE_CPU_FEATURES": ",".join(each for each in __cpu_dispatch__ if __cpu_features__.get(each)),
     "OPENBLAS_CORETYPE": SIMPLEST_CORE.get(platform.machine(), ""),
@@ -120,8 +122,17 @@ class Running:
         pytest.param(PLAIN, ("pictures", "reliefs"), 15, marks=pytest.mark.whole),
         pytest.param(PLAIN, (), 90, marks=pytest.mark.nightly),
         pytest.param(PLAIN | PLAIN_KERNELS, (), 90, marks=pytest.mark.nightly),
+        pytest.param(
+            PLAIN | WHEEL_KERNELS,
+            (),
+            90,
+            marks=[
+                pytest.mark.nightly,
+                pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="the code is for x86-64"),
+            ],
+        ),
     ],
-    ids=["some", "same kernels", "own kernels"],
+    ids=["some", "same kernels", "own kernels", "kernels of the wheel"],
 )
 def test_results_are_the_same_on_every_processor_and_with_any_number_of_threads(
     tmp_path: Path, plain: dict[str, str], parts: Sequence[str], least: int

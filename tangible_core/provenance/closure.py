@@ -15,6 +15,7 @@ from . import STARTED_NS, versions
 from .imports import Import, definitions, imports
 from .places import HOME, Place, is_read, place
 
+SOURCE_DIGITS, VERSION_DIGITS = 24, 12
 _OF_THIS_PROCESS = f"{os.getpid()} {STARTED_NS}"
 
 
@@ -23,7 +24,7 @@ class Closure:
     """The dependencies of some code."""
 
     digest: str
-    """The SHA-256 of the sources and the versions, shortened."""
+    """The SHA-256 of the sources, shortened to `SOURCE_DIGITS`, and that of the versions."""
     modules: tuple[str, ...]
     """The modules whose source is in the digest."""
     versions: Mapping[str, str]
@@ -57,10 +58,12 @@ def _closure(start: tuple[Place, ...], alone: tuple[str, ...]) -> Closure:
     texts = {each.name: _text(each) for each in (*walk.done, *walk.packages, *map(place, alone)) if each is not None}
     libraries = versions.of_imported(walk.libraries)
     settled = all(text.settled for text in texts.values())
-    state = hashlib.sha256(repr((sorted(libraries.items()), "" if settled else _OF_THIS_PROCESS)).encode())
+    sources = hashlib.sha256()
     for name in sorted(texts):
-        state.update(f"\0{name}\0{len(texts[name].content)}\0".encode() + texts[name].content)
-    return Closure(state.hexdigest()[:24], tuple(sorted(texts)), libraries, settled)
+        sources.update(f"\0{name}\0{len(texts[name].content)}\0".encode() + texts[name].content)
+    below = hashlib.sha256(repr((sorted(libraries.items()), "" if settled else _OF_THIS_PROCESS)).encode())
+    digest = sources.hexdigest()[:SOURCE_DIGITS] + below.hexdigest()[:VERSION_DIGITS]
+    return Closure(digest, tuple(sorted(texts)), libraries, settled)
 
 
 @dataclass

@@ -8,12 +8,14 @@ imported.
 """
 
 import logging
+import pickle
 from contextlib import suppress
 from glob import escape
 from pathlib import Path
 from typing import Any
 
-from .closure import closure_of_function
+from . import machine_code
+from .closure import SOURCE_DIGITS, closure_of_function
 
 log: logging.Logger = logging.getLogger(__name__)
 
@@ -24,9 +26,12 @@ KEPT = 4
 def extend(caching: Any) -> None:
     """Make each cache of `numba.core.caching`, in whichever folder, check closures.
 
-    A kernel whose closure is unknown, or changed since this process began, is compiled anew and not saved.
+    A kernel whose closure is unknown, or changed since this process began, is compiled anew and not saved. One that is
+    not in the cache is looked for in the wheel.
     """
-    numba_init, numba_save = caching.Cache.__init__, caching.Cache.save_overload
+    numba_init, numba_load, numba_save = (
+        getattr(caching.Cache, name) for name in ("__init__", "_load_overload", "save_overload")
+    )
 
     def init(self: Any, py_func: Any) -> None:
         numba_init(self, py_func)
@@ -37,15 +42,24 @@ def extend(caching: Any) -> None:
         try:
             name = f"{self._impl.filename_base}-{closure.digest}"
             self._cache_file = type(self._cache_file)(self.cache_path, name, self._impl.locator.get_source_stamp())
+            self.shipped_name = f"{self._impl.filename_base}-{closure.digest[:SOURCE_DIGITS]}"
         except (AttributeError, TypeError) as error:
             self.disable()
             log.warning("this version of numba is unknown, so kernels are compiled in every process: %s", error)
+
+    def load(self: Any, sig: Any, target_context: Any) -> Any:
+        compiled_here = numba_load(self, sig, target_context)
+        if compiled_here is not None or not self._enabled:
+            return compiled_here
+        _, _, hashes = self._index_key(sig, target_context.codegen())
+        shipped = machine_code.find(self.shipped_name, sig, hashes)
+        return None if shipped is None else self._impl.rebuild(target_context, pickle.loads(shipped))
 
     def save(self: Any, sig: Any, data: Any) -> None:
         numba_save(self, sig, data)
         _prune(Path(self.cache_path), self._impl.filename_base)
 
-    caching.Cache.__init__, caching.Cache.save_overload = init, save
+    caching.Cache.__init__, caching.Cache._load_overload, caching.Cache.save_overload = init, load, save
 
 
 def _prune(folder: Path, kernel: str) -> None:

@@ -163,6 +163,8 @@ def test_unknown_numba_version_disables_the_cache_with_a_warning(caplog: pytest.
 
         def save_overload(self, sig, data) -> None: ...
 
+        def _load_overload(self, sig, context) -> None: ...
+
     closure = SimpleNamespace(settled=True, digest="d")
     monkeypatch.setattr(numba_cache, "closure_of_function", lambda function: closure)
     extend(SimpleNamespace(Cache=Cache))

@@ -4,6 +4,7 @@ import asyncio
 import http.client
 import json
 import threading
+import time
 from collections.abc import AsyncGenerator, Callable
 from contextlib import AbstractContextManager, ExitStack, asynccontextmanager
 from pathlib import Path
@@ -17,6 +18,7 @@ from tangible_ui.serving.routes import application
 from tangible_ui.serving.serve import Server, watch
 from tangible_ui.state.session import Session
 from tangible_web.address import HOST, Address
+from tangible_web.framing import BEAT_FRAME
 from tangible_web.server import settings
 from waiting import LONGEST_S
 
@@ -138,9 +140,10 @@ class TestTab:
 
     def next(self, timeout: float = LONGEST_S) -> dict[str, Any] | None:
         """The next event; frames are counted. None if there is none in time. Raises: ConnectionClosed."""
+        until_s = time.monotonic() + timeout
         try:
-            while isinstance(said := self.socket.recv(timeout), bytes):
-                self.frames += 1
+            while isinstance(said := self.socket.recv(max(0.0, until_s - time.monotonic())), bytes):
+                self.frames += said != BEAT_FRAME
         except TimeoutError:
             return None
         return json.loads(said)

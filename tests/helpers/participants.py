@@ -6,7 +6,7 @@ from websockets.sync.client import connect
 
 from page_server import TestTab
 from tangible_study.desks.page import Page
-from tangible_web.framing import ACK, ACK_FRAME, POINTER, POINTER_FRAME, RELEASE, RELEASE_FRAME, STATE_FRAME
+from tangible_web.framing import ACK, ACK_FRAME, BEAT_FRAME, POINTER, POINTER_FRAME, RELEASE, RELEASE_FRAME, STATE_FRAME
 
 
 class Participant(TestTab):
@@ -45,7 +45,7 @@ class Participant(TestTab):
         """Press in the middle of the surface; return the force of the next state, newtons."""
         self.socket.send(POINTER_FRAME.pack(POINTER, 1, 7, 0.0, 0.0, 0.0, 0.002))
         self.socket.send(ACK_FRAME.pack(ACK, 2**32 - 1))  # all that came so far
-        while not isinstance(state := self.socket.recv(), bytes):
+        while not isinstance(state := self.socket.recv(), bytes) or state == BEAT_FRAME:
             pass
         return STATE_FRAME.unpack(state)[15]
 

@@ -9,7 +9,7 @@ import socket
 import threading
 import webbrowser
 from collections.abc import Generator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -49,6 +49,28 @@ class Address:
         with listening:
             yield cls(listening, new_key())
 
+    @classmethod
+    @contextmanager
+    def again(cls, memory: Path) -> Generator[Self]:
+        """Listen on the address of a program that was killed, so that its pages return; else on a free port.
+
+        memory: file with port and key, readable by this user alone, while a program listens; it goes with its end.
+        Raises: ConfigError if the page was not built.
+        """
+        port, key = _remembered(memory)
+        with ExitStack() as stack:
+            try:
+                new = stack.enter_context(cls.of(port))
+            except ConfigError:
+                if not port:
+                    raise
+                yield stack.enter_context(cls.of(0))  # the other program lives
+                return
+            address = cls(new.listening, key or new.key)
+            _remember(memory, address)
+            stack.callback(memory.unlink, missing_ok=True)
+            yield address
+
     @property
     def port(self) -> int:
         """The port that listens."""
@@ -66,6 +88,23 @@ class Address:
         print(url, file=stream(), flush=True)
         if browser:  # in a thread, as a browser in the terminal blocks until it ends
             threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
+
+
+def _remembered(memory: Path) -> tuple[int, str]:
+    """Return port and key; 0 and nothing without a file that holds both."""
+    try:
+        port, key = memory.read_text("utf-8").split()
+        return (int(port), key) if 0 < int(port) < 2**16 else (0, "")
+    except (OSError, ValueError):
+        return 0, ""
+
+
+def _remember(memory: Path, address: Address) -> None:
+    with suppress(OSError):  # the next start takes another address
+        memory.parent.mkdir(parents=True, exist_ok=True)
+        memory.unlink(missing_ok=True)
+        with os.fdopen(os.open(memory, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600), "w", encoding="utf-8") as file:
+            file.write(f"{address.port} {address.key}")
 
 
 def new_key() -> str:

@@ -6,7 +6,7 @@ from tangible_core.data import BEACON_SHIFT
 
 VERSION = 1
 """Version of frames and messages; a page of another version must be reloaded."""
-STATE, POINTER, ACK, RELEASE = 1, 2, 3, 4
+STATE, POINTER, ACK, RELEASE, BEAT = 1, 2, 3, 4, 5
 """Kinds of frames: the first byte."""
 STATE_FRAME = struct.Struct("<BBHIIId15ff8x")
 """Frame to the page, 96 bytes: kind, status, flags, seq, tag, overruns, sample_ms; hand 3, proxy 3, force 3,
@@ -18,6 +18,8 @@ ACK_FRAME = struct.Struct("<BxxxI")
 """Frame from the page, 8 bytes: kind, seq of the state that was drawn."""
 RELEASE_FRAME = struct.Struct("<B")
 """Frame from the page, 1 byte: it releases its hand."""
+BEAT_FRAME = struct.pack("<B", BEAT)
+"""Frame to the page, 1 byte: the program lives."""
 RUNNING, HOLDING, RECORDING = 1, 2, 4
 """Bits of `status`: the force loop runs; this page's hand moves it; ticks are recorded."""
 TAG_BITS, BUTTON_BITS = 22, 8

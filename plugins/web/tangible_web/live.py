@@ -26,6 +26,8 @@ SPACING_S = 0.012
 """Minimum time between two states, s; a screen draws sixty a second."""
 IDLE_SPACING_S = 0.1
 """Minimum time between two states without force, s: nothing moves, and loop and surface need the processor to start."""
+BEAT_S = 1.0
+"""Longest time without an event or a beat, s: a page that hears nothing for three times as long says so."""
 MOST_WAITING, MOST_WAITING_CHARACTERS = 2000, 16_000_000
 """Limits of unread events, in number and characters; a tab that reads none is cut off."""
 MOST_ASKS = 32
@@ -177,7 +179,11 @@ class LiveTab:
     async def _send_events(self) -> None:
         with suppress(WebSocketDisconnect, RuntimeError):
             while True:
-                text = await self._events.get()
+                try:
+                    text = await asyncio.wait_for(self._events.get(), BEAT_S)
+                except TimeoutError:
+                    await self._socket.send_bytes(framing.BEAT_FRAME)
+                    continue
                 self._waiting -= len(text)
                 await self._socket.send_text(text)
 

@@ -3,9 +3,11 @@
 import os
 import re
 import signal
+import time
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from lasting_server import LastingServer
 from page_files import built_page
@@ -50,6 +52,24 @@ def test_draft_of_a_killed_program_is_offered_once(serve, open_page, tmp_path: P
     page.get_by_role("button", name="Open it again").click()
     page.wait_for_function("text => window.page.document?.text === text", arg=TEXT)
     page.get_by_role("button", name="Open it again").wait_for(state="hidden")
+
+
+@pytest.mark.whole
+def test_program_that_hangs_is_reported_until_it_answers(serve, open_page):
+    built_page()
+    server = serve("builtin/brick")
+    page = open_page(server.url)
+    status = page.locator("#status")
+    status.filter(has_text="Feeling").wait_for()
+    server.process.send_signal(signal.SIGSTOP)
+    try:
+        start_s = time.monotonic()
+        status.filter(has_text="No answer: the program hangs.").wait_for()
+        assert time.monotonic() - start_s < 2 * 3
+        status.filter(has_text="Start `tangible ui` again").wait_for(timeout=20_000)
+    finally:
+        server.process.send_signal(signal.SIGCONT)
+    status.filter(has_text="Feeling").wait_for()
 
 
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)

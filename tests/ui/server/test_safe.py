@@ -1,6 +1,7 @@
 """Access to the page's server, and floods: otherwise another page reads files, or nobody can stop the force."""
 
 import asyncio
+import os
 import socket
 import time
 from collections.abc import Iterator
@@ -75,6 +76,25 @@ class TestWhoIsLetIn:
         keys = {new_key() for _ in range(50)}
         assert len(keys) == 50
         assert all(len(key) * 6 >= 128 for key in keys)
+
+    def test_address_returns_after_a_kill_alone(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.delenv("TANGIBLE_UI_TOKEN", raising=False)
+        memory = tmp_path / "data" / "address"
+        with Address.again(memory) as first:
+            killed = memory.read_bytes()
+            assert os.name == "nt" or memory.stat().st_mode & 0o777 == 0o600
+            with Address.again(memory) as beside:
+                assert beside.port != first.port
+                assert beside.key != first.key
+            assert memory.read_bytes() == killed
+        assert not memory.exists(), "a new key after a program that ended"
+        memory.write_bytes(killed)
+        with Address.again(memory) as second:
+            assert (second.port, second.key) == (first.port, first.key)
+        for damage in (b"", b"99999 key", b"\xff\xfe", b"a b c"):
+            memory.write_bytes(damage)
+            with Address.again(memory) as other:
+                assert len(other.key) * 6 >= 128
 
     def test_host_of_another_name_is_refused(self, page: PageServer) -> None:
         for host in ("evil.example", "127.0.0.1", "127.0.0.1:1", "", None):

@@ -11,19 +11,24 @@ HELP = "A pipeline file, a picture, left and right, or a recording; without one,
 def ui(
     files: Annotated[list[Path] | None, typer.Argument(metavar="[FILE]...", help=HELP, show_default=False)] = None,
     sets: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one value.")] = None,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of this machine; 0 takes a free one.")] = 0,
+    port: Annotated[
+        int | None, typer.Option(min=0, max=65535, help="Port of this machine; by default, and for 0, a free one.")
+    ] = None,
     browser: Annotated[bool, typer.Option(help="Open the page in the browser.")] = True,
 ) -> None:
     """See, hear and feel a surface in the browser.
 
-    The page is served to this machine alone; its address holds a key that changes with every start. Ctrl-C ends it.
+    The page is served to this machine alone; its address holds a key that changes with every start, except after a
+    program that was killed: its pages go on. Ctrl-C ends it.
     """
     _check_files(files or [])
     from tangible_web.address import Address
 
     from ..prestart import prestart_worker
+    from ..user_data import user_folder
 
-    with Address.of(port) as address, prestart_worker():
+    listening = Address.again(user_folder("address") / "ui") if port is None else Address.of(port)
+    with listening as address, prestart_worker():
         address.announce(browser)
         from ..serving.serve import serve
 

@@ -10,6 +10,9 @@ const LONGEST_PAUSE_MS = 4000;
 const KEPT_TAGS = 512;
 /** Milliseconds without an answer after which stop is sent by HTTP as well. */
 const STOP_PATIENCE_MS = 300;
+/** The program sends something every second; milliseconds of silence after which it counts as hanging. */
+const SILENCE_MS = 2500;
+const LOOK_EVERY_MS = 250;
 /** Close code of the server for a page with a wrong key. */
 const WRONG_KEY = 4401;
 
@@ -38,9 +41,12 @@ export class Connection {
   private waiting = new Map<number, Waiting>();
   private socket: WebSocket | null = null;
   private pauseMs = FIRST_PAUSE_MS;
+  private messageMs = 0;
+  private isSilent = false;
 
   constructor(private hub: Hub) {
     this.connect();
+    setInterval(() => this.look(), LOOK_EVERY_MS);
   }
 
   /** Send a request; rejects with the server's text if it is refused. */
@@ -100,11 +106,28 @@ export class Connection {
     const { href } = new URL(`live?token=${encodeURIComponent(token)}&language=${language}`, location.href);
     const socket = new WebSocket(href.replace(/^http/, "ws"));
     socket.binaryType = "arraybuffer";
-    socket.onopen = () => (this.pauseMs = FIRST_PAUSE_MS);
-    socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) =>
-      typeof data === "string" ? this.onText(JSON.parse(data)) : this.onState(data);
+    socket.onopen = () => {
+      this.pauseMs = FIRST_PAUSE_MS;
+      this.messageMs = performance.now();
+    };
+    socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => {
+      this.messageMs = performance.now();
+      if (this.isSilent) this.setSilent(false);
+      if (typeof data === "string") this.onText(JSON.parse(data));
+      else this.onState(data);
+    };
     socket.onclose = ({ code }) => this.onClosed(code === WRONG_KEY ? "key" : undefined);
     this.socket = socket;
+  }
+
+  /** Report a program that hangs: its socket stays open. A page that slept itself first reads what has come meanwhile. */
+  private look(): void {
+    if (this.open && !this.isSilent && performance.now() - this.messageMs > SILENCE_MS) this.setSilent(true);
+  }
+
+  private setSilent(silent: boolean): void {
+    this.isSilent = silent;
+    this.hub.tell("silence", { event: "silence", at_s: now() / 1000, silent });
   }
 
   private onText(message: Events[keyof Events] & { event: string; number?: number; value?: unknown; text?: string }): void {
@@ -138,6 +161,7 @@ export class Connection {
   private onClosed(forGood?: "key" | "version"): void {
     for (const { reject: refused } of this.waiting.values()) refused(new Error("the program is gone"));
     this.waiting.clear();
+    this.isSilent = false;
     this.latest = null;
     this.hub.tell("gone", { event: "gone", at_s: now() / 1000 });
     if (forGood) return this.hub.tell("refused", { event: "refused", at_s: now() / 1000, why: forGood });

@@ -192,6 +192,8 @@ export interface Events {
   /** empty: true if the program was started without a file, and none is opened yet. */
   hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null; empty: boolean };
   gone: Said;
+  /** Told by the page itself: the program hangs, or answers again. */
+  silence: Said & { silent: boolean };
   /** Told by the page itself: the server is another one, by its key or by its version. */
   refused: Said & { why: "key" | "version" };
   /** A previous program ended while this file had unsaved edits; an empty path withdraws the offer. */

@@ -3,6 +3,9 @@ import type { Hub } from "kit/hub";
 import { productName } from "../words/product_words";
 import { t } from "./status_words";
 
+/** Time without an answer after which the head says what to do, ms. */
+const LONG_MS = 10_000;
+
 export type What = "idle" | "busy" | "felt" | "stopped" | "error";
 
 export interface Headline {
@@ -12,7 +15,7 @@ export interface Headline {
 
 /** The latest facts; an empty text stands for none. */
 export interface Facts {
-  connection: "starting" | "open" | "lost" | "key" | "version";
+  connection: "starting" | "open" | "silent" | "lost" | "dead" | "key" | "version";
   /** Why the computing process is gone for good. */
   workerGone: string;
   document: "none" | "wrong" | "fine";
@@ -38,7 +41,7 @@ export function headline(facts: Facts): Headline {
   const { connection, workerGone, document, making, trouble, seen, law, noForce, hand } = facts;
   if (connection === "key") return { what: "error", text: t("wrongKey") };
   if (connection === "version") return { what: "error", text: t("loadAgain") };
-  if (connection === "lost") return { what: "error", text: t("lost") };
+  if (connection === "silent" || connection === "lost" || connection === "dead") return { what: "error", text: t(connection) };
   if (connection === "starting") return { what: "idle", text: t("starting") };
   if (workerGone) return { what: "error", text: workerGone };
   if (noForce) return { what: "stopped", text: making ? `${noForce} ${making}` : noForce };
@@ -55,8 +58,20 @@ export function headline(facts: Facts): Headline {
 export function follow(hub: Hub, changed: (facts: Facts) => void): Facts {
   const facts = { ...FIRST };
   const set = (more: Partial<Facts>): void => changed(Object.assign(facts, more));
-  hub.on("hello", () => set({ connection: "open" }));
-  hub.on("gone", () => set({ connection: "lost", making: "" }));
+  let waiting = 0;
+  /** Say what to do if nothing answers for long. */
+  const lose = (connection: "silent" | "lost", more: Partial<Facts> = {}): void => {
+    if (facts.connection !== "dead") set({ connection, ...more });
+    waiting ||= window.setTimeout(() => set({ connection: "dead" }), LONG_MS);
+  };
+  const find = (): void => {
+    clearTimeout(waiting);
+    waiting = 0;
+    set({ connection: "open" });
+  };
+  hub.on("hello", find);
+  hub.on("gone", () => lose("lost", { making: "" }));
+  hub.on("silence", ({ silent }) => (silent ? lose("silent") : find()));
   hub.on("refused", ({ why }) => set({ connection: why }));
   hub.on("maker", () => set({ workerGone: "" }));
   hub.on("maker_gone", ({ why }) => set({ workerGone: why, making: "" }));

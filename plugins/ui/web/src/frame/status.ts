@@ -75,7 +75,7 @@ export class Status {
   private show(facts: Facts): void {
     const { what, text } = headline(facts);
     const { line, page } = this;
-    if (facts.connection === "lost") this.back = (clearTimeout(this.back), 0);
+    if (["lost", "silent", "dead"].includes(facts.connection)) this.back = (clearTimeout(this.back), 0);
     const shown = this.back ? `${says("back")} ${text}` : text;
     this.showButtons(facts);
     if (line.textContent === shown && line.dataset.state === what) return;

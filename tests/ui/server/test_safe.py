@@ -90,7 +90,7 @@ class TestWhoIsLetIn:
         assert not memory.exists(), "a new key after a program that ended"
         memory.write_bytes(killed)
         with Address.again(memory) as second:
-            assert (second.port, second.key) == (first.port, first.key)
+            assert f"{second.port} {second.key}" == killed.decode()
         for damage in (b"", b"99999 key", b"\xff\xfe", b"a b c"):
             memory.write_bytes(damage)
             with Address.again(memory) as other:

@@ -13,6 +13,9 @@ from ..state.texts import Text
 from .making import foresee, make
 from .table import request
 
+SHOWN_BY_BROWSERS = frozenset({".png", ".jpg", ".jpeg", ".webp", ".gif", ".bmp"})
+"""Endings of pictures that a page shows by itself, before anything was computed."""
+
 
 @request()
 async def begin(session: Session, tab: Tab | None, files: list[str], make_it: bool = True) -> dict[str, Any]:
@@ -20,6 +23,9 @@ async def begin(session: Session, tab: Tab | None, files: list[str], make_it: bo
 
     Returns: the path of a recording, if it is one, for the panel of recordings.
     """
+    picture = as_path(files[0]) if files else Path()
+    session.opening = picture if picture.suffix.lower() in SHOWN_BY_BROWSERS else None
+    session.tabs.tell("opening", name=picture.name, picture=session.opening is not None)
     found = await session.worker.quick("begin", files=[as_path(each) for each in files])
     if "text" not in found:
         return found

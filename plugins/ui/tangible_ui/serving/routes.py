@@ -69,6 +69,13 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
             return await window_of(path, request)
         return FileResponse(path, headers={"cache-control": FOREVER})
 
+    async def opening(request: Request) -> Response:
+        """Send the picture that was opened last, for a page that has no surface yet."""
+        path = session().opening
+        if path is None or not path.is_file():
+            return refusal(request, "this file is gone", 404)
+        return FileResponse(path, headers={"cache-control": "no-store"})
+
     async def export_file(request: Request) -> Response:
         """Send a file to keep; it is never shown as a page of this address, whatever it contains."""
         folder, name = request.path_params["folder"], request.path_params["name"]
@@ -119,6 +126,7 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
 
     return [
         Route("/scene/{digest}/{name}", require_key(scene)),
+        Route("/opening", require_key(opening)),
         Route("/export/{folder}/{name}", require_key(export_file)),
         Route("/panels/{panel}/{name}", require_key(panel_file)),
         Route("/upload/{batch}/{name}", require_key(upload), methods=["PUT"]),

@@ -36,6 +36,8 @@ class Session:
         self.document: Document = Document(sets)
         self.waits_for_file = False
         """True if the program was started without a file: until one is opened, pages begin with a choice."""
+        self.opening: Path | None = None
+        """The picture that was opened last, if a browser can show it."""
         self.long_jobs: LongJobs = LongJobs()
         self.strokes: LatestWins = LatestWins()
         """Requests for a part under a stroke."""

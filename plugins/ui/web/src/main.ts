@@ -27,6 +27,7 @@ import { Overlay } from "kit/overlay/overlay";
 import type { Page } from "kit/page";
 import type { PluginPanel } from "kit/server/messages";
 import { build } from "./panels/panel";
+import { showOpening } from "./start/opening";
 import { warnOfNoDepth } from "./notices/no_depth";
 import { offerToMake } from "./notices/pending";
 import { panels } from "./panels";
@@ -118,6 +119,7 @@ warnOfNoDepth(page);
 offerToMake(page);
 showHint(page);
 findCommands(page);
+showOpening(page);
 hub.on("hello", ({ empty }) => empty && void import("./start/start").then(({ start }) => start(page)));
 new Frames(page);
 requestAnimationFrame(() => setTimeout(() => view.prepare(recallSettings()))); // after the first paint

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -110,7 +111,8 @@ def _view(pipeline: Pipeline, shows: Shows, relief: Relief) -> SurfaceView:
     materials = chosen.materials if chosen is not None and labels is not None else ()
     picture = None if pipeline.scene.views is None else pipeline.scene.views.left
     names = _names(pipeline) if labels is not None else None
-    return SurfaceView(pipeline.scene.name, shows, relief, labels, materials, picture, _layers(pipeline), names)
+    name = pipeline.config.title.strip() or Path(pipeline.scene.name).name
+    return SurfaceView(name, shows, relief, labels, materials, picture, _layers(pipeline), names)
 
 
 def _names(pipeline: Pipeline) -> tuple[str, ...] | None:

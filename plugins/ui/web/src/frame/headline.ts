@@ -6,6 +6,9 @@ import { t } from "./status_words";
 /** Time without an answer after which the head says what to do, ms. */
 const LONG_MS = 10_000;
 
+/** The logger that tells, in seconds, how long kernels are compiled. */
+const COMPILES = "tangible_core.compiled.compiling";
+
 export type What = "idle" | "busy" | "felt" | "stopped" | "error";
 
 export interface Headline {
@@ -81,6 +84,9 @@ export function follow(hub: Hub, changed: (facts: Facts) => void): Facts {
   hub.on("making", () => set({ trouble: "" }));
   hub.on("stage", ({ product, method, done }) => {
     if (!done.outcome) set({ making: t(method ? "making" : "makingPlain", { product: productName(product), method }) });
+  });
+  hub.on("log", ({ logger, text }) => {
+    if (logger === COMPILES) set({ making: t("preparing", { seconds: /\d+/.exec(text)?.[0] ?? "30" }) });
   });
   hub.on("made", ({ outcome, why }) => set({ making: "", trouble: outcome === "failed" ? why : "" }));
   hub.on("error", ({ text }) => set({ trouble: text }));

@@ -97,9 +97,12 @@ export function run(name: Name, surface: HTMLElement): void {
   for (const type of ["keydown", "keyup"]) surface.dispatchEvent(new KeyboardEvent(type, about));
 }
 
-/** Listen to the keys of the page; call once. The stop key acts before any part can take it, and stays available to them. */
+/** Listen to the keys of the page; call once. The stop key acts before any part can take it, and stays available to them;
+ * a list that it closes has `data-own-escape`. */
 export function listen(surface: HTMLElement): void {
-  document.addEventListener("keydown", (event) => shortcutOf(event) === "stop" && actions.get("stop")?.(), { capture: true });
+  document.addEventListener("keydown", (event) => {
+    if (shortcutOf(event) === "stop" && !(event.target as Element).closest?.("[data-own-escape]")) actions.get("stop")?.();
+  }, { capture: true });
   document.addEventListener("keydown", (event) => {
     const name = shortcutOf(event);
     const act = name && actions.get(name);

@@ -83,7 +83,8 @@ export function follow(hub: Hub, changed: (facts: Facts) => void): Facts {
   });
   hub.on("making", () => set({ trouble: "" }));
   hub.on("stage", ({ product, method, done }) => {
-    if (!done.outcome) set({ making: t(method ? "making" : "makingPlain", { product: productName(product), method }) });
+    const isNews = method !== "core" && !product.endsWith(method); // the method is a choice, and not the product's own name
+    if (!done.outcome) set({ making: t(isNews ? "making" : "makingPlain", { product: productName(product), method }) });
   });
   hub.on("log", ({ logger, text }) => {
     if (logger === COMPILES) set({ making: t("preparing", { seconds: /\d+/.exec(text)?.[0] ?? "30" }) });

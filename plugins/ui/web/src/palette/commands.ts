@@ -5,7 +5,7 @@ import type { Page } from "kit/page";
 import { reveal } from "../panels/panel";
 import { t as does } from "../panels/help/shortcut_words";
 import { SHORTCUTS, run, type Name } from "kit/shortcuts";
-import { language, LANGUAGES, tables } from "kit/words/words";
+import { language, LANGUAGES, speak, tables } from "kit/words/words";
 import { t } from "./words";
 
 export interface Command {
@@ -35,11 +35,19 @@ export function commands(page: Pick<Page, "hub" | "canvas">): Command[] {
     ...panels().map((panel) => named(titleOf(panel), t("panel"), () => reveal(panel.id))),
     ...options("look").map(({ text, value }) => named(text, t("show"), () => page.hub.tell("look at", { look: value }))),
     ...options("theme").map(({ text, value }) => named(text, element("theme").ariaLabel ?? "", () => choose("theme", value))),
+    ...LANGUAGES.map((each) => ({ name: `${t("language")}: ${inLanguage(each, each)}`, where: t("head"), keys: [], others: namesOf(each), run: () => speak(each) })),
     ...controls("#controls").map((control) => named(nameOf(control), t("head"), () => control.click())),
     ...panels().flatMap((panel) => controls(`#${panel.id} .inside`).map((each) => named(nameOf(each), titleOf(panel), () => use(panel, each)))),
   ];
   const seen = new Set<string>();
   return all.filter(({ name, where }) => name && !seen.has(`${name}\n${where}`) && seen.add(`${name}\n${where}`));
+}
+
+const inLanguage = (language: string, own: string): string => new Intl.DisplayNames([own], { type: "language" }).of(language)!;
+
+/** Return the words by which somebody looks for a language: its name, and "language", in every language. */
+function namesOf(language: string): string {
+  return LANGUAGES.map((own) => inLanguage(language, own)).join(" ") + " language Sprache langue";
 }
 
 /** Return the names in other languages by the name in the page's. */

@@ -17,6 +17,7 @@ const OWN_KEYS: readonly string[] = SHORTCUTS.palette.keys;
 export function open(page: Pick<Page, "hub" | "canvas" | "say">): void {
   const dialog = Object.assign(document.createElement("dialog"), { id: "palette" });
   dialog.setAttribute("aria-label", t("title"));
+  dialog.dataset.ownEscape = "";
   const input = Object.assign(document.createElement("input"), { id: "palette-input", role: "combobox", autocomplete: "off", spellcheck: false });
   const list = Object.assign(document.createElement("ul"), { id: "palette-list", role: "listbox" });
   list.setAttribute("aria-label", t("results"));

@@ -9,6 +9,7 @@ export const t = words({
   results: ["Found", "Gefunden", "Trouvé"],
   none: ["Nothing has this name.", "Nichts heißt so.", "Rien ne porte ce nom."],
   count: ["{count} found", "{count} gefunden", "{count} trouvés"],
+  language: ["Language of the page", "Sprache der Seite", "Langue de la page"],
   task: ["Task", "Aufgabe", "Tâche"],
   key: ["Key", "Taste", "Touche"],
   head: ["Header", "Kopf der Seite", "En-tête"],

@@ -10,7 +10,8 @@ const t = words({
   materials: ["Materials", "Materialien", "Matières"],
   surface: ["Surface", "Oberfläche", "Surface"],
   touch: ["Force law", "Kraftgesetz", "Loi de force"],
-  export: ["Export as {name}", "Export als {name}", "Export en {name}"],
+  export: ["Export", "Export", "Export"],
+  exportAs: ["Export as {name}", "Export als {name}", "Export en {name}"],
 });
 
 /** The program's prefix of exported products. */
@@ -18,6 +19,6 @@ const EXPORT = "export: ";
 
 /** Return a product's name; an unknown one keeps the name of the pipeline file. */
 export function productName(product: string): string {
-  if (product.startsWith(EXPORT)) return t("export", { name: product.slice(EXPORT.length) });
+  if (product.startsWith(EXPORT)) return t("exportAs", { name: product.slice(EXPORT.length) });
   return t.has(product) ? t(product) : product;
 }

@@ -1,6 +1,7 @@
 """Requests about the document: open it, edit it, save it, restore a draft."""
 
 import asyncio
+import logging
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from ..state.texts import Text
 from .making import foresee, make
 from .table import request
 
+log: logging.Logger = logging.getLogger(__name__)
 SHOWN_BY_BROWSERS = frozenset({".png", ".jpg", ".jpeg", ".webp", ".gif", ".bmp"})
 """Endings of pictures that a page shows by itself, before anything was computed."""
 
@@ -36,6 +38,9 @@ async def begin(session: Session, tab: Tab | None, files: list[str], make_it: bo
     session.document.drafts.remember_opened(text)
     async with session.document.texts.lock:
         said = await take(session, Text(text, path))
+    for complaint in said["complaints"]:  # at the terminal too: whoever started it there looks at it first
+        place = ":".join(str(part) for part in (path, complaint["line"], complaint["column"]) if part is not None)
+        log.warning("%s: %s", place, complaint["text"])
     if make_it and not said["complaints"]:
         session.begin(make(session, tab))
     return {}

@@ -35,7 +35,7 @@ type Heard = Pick<Page, "hub" | "net" | "scene" | "hand" | "view" | "canvas" | "
 export class Narrator implements Narration {
   private names: Names;
   private tour: Tour;
-  private telling = new Telling();
+  private telling: Telling;
   private stroke: Stroke | null = null;
   private contact: Contact | null = null;
   /** Since when the contact has been another one; null while it is not. */
@@ -49,6 +49,7 @@ export class Narrator implements Narration {
     clock: Clock = BROWSERS,
   ) {
     const { hub } = page;
+    this.telling = new Telling(clock);
     this.names = new Names(hub, () => this.updateDescription());
     this.tour = new Tour(page, this.names, clock);
     hub.on("state", (state) => this.follow(state));

@@ -1,4 +1,5 @@
 /** What a hand met since the last announcement, as sentences that are composed when their turn comes. */
+import type { Clock } from "./announcer";
 import { decimal } from "../words/words";
 import type { Side } from "./stroke";
 import { t } from "./words";
@@ -16,11 +17,15 @@ export type Told =
 /** Step at an edge below which both sides are level, metres. */
 export const LEVEL_M = 0.0002;
 /** Sentences of an announcement; of more, the last ones, after the number of edges left out. */
-const MOST = 4;
+const MAX_SENTENCES = 2;
+/** Age at which what was met is no longer news, ms. */
+const MAX_AGE_MS = 2000;
 
 export class Telling {
-  private waiting: Told[] = [];
+  private waiting: (Told & { atMs: number })[] = [];
   private contact: Contact | null = null;
+
+  constructor(private clock: Pick<Clock, "now">) {}
 
   get isEmpty(): boolean {
     return !this.waiting.length;
@@ -38,21 +43,22 @@ export class Telling {
       if (before?.kind === "contact") waiting.pop(); // what ended before it was announced
       if (told.contact === this.contact && told.contact !== "touching" && !waiting.length) return;
     }
-    waiting.push(told);
+    waiting.push({ ...told, atMs: this.clock.now() });
   }
 
   clear(): void {
     this.waiting = [];
   }
 
-  /** Return the sentences, and forget what they tell. */
+  /** Return the sentences, and forget what they tell; what is old is not said any more. */
   take(): string {
-    const all = this.waiting;
+    const nowMs = this.clock.now();
+    for (const each of this.waiting) if (each.kind === "contact") this.contact = each.contact;
+    const all = this.waiting.filter(({ atMs }) => nowMs - atMs <= MAX_AGE_MS);
     this.waiting = [];
-    const left = Math.max(0, all.length - MOST);
+    const left = Math.max(0, all.length - MAX_SENTENCES);
     const told = all.slice(left);
     const over = all.slice(0, left).filter(({ kind }) => kind === "edge").length;
-    for (const each of all) if (each.kind === "contact") this.contact = each.contact;
     return [...(over ? [t(over === 1 ? "oneLeftOut" : "leftOut", { count: over })] : []), ...told.map(sentence)].join(" ");
   }
 }

@@ -69,7 +69,10 @@ async function open(data: Packed): Promise<void> {
 
   page.scene = scene;
   const looks = [...(scene.photo ? ["photo"] : []), "relief", "height", ...(scene.meta.labels > 1 ? ["segments"] : [])];
-  hub.on("shown", () => view.put(scene, { ...DEFAULTS, look: looks[0]! }));
+  hub.on("shown", () => {
+    view.put(scene, { ...DEFAULTS, look: looks[0]! });
+    if (matchMedia("(pointer: coarse)").matches) view.eye.top(); // for a finger, as wide as the screen
+  });
   const digest = scene.meta.digest;
   hub.tell("described", { event: "described", at_s: now_s(), digest, says: data.says });
   hub.tell("loop", { event: "loop", at_s: now_s(), running: true, why: "", own_hand: true });

@@ -124,7 +124,7 @@ class TestNames:
         assert f"WRONG_KEY = {WRONG_KEY};" in (WEB / "kit/server/connection.ts").read_text(encoding="utf-8")
 
 
-OF_THE_PAGE = {"gone", "refused"}
+OF_THE_PAGE = {"gone", "refused", "silence"}
 """Events that the page sends to itself when the program is gone, or is another one."""
 PAGE_JOBS = {name for name, each in JOBS.items() if each.page}
 ANSWERED = REQUESTS.keys() | PAGE_JOBS

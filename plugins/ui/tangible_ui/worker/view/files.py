@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Float32, Shaped
 from PIL import Image
 
-from tangible_core.data import to_grey
+from tangible_core.data import to_rgb8
 from tangible_core.errors import OutputError
 from tangible_web.materials import distinct_materials
 
@@ -159,9 +159,7 @@ def _write_picture(picture: np.ndarray, part: Path) -> None:
 
 def image_of(picture: np.ndarray) -> Image.Image:
     """Return a picture as a browser shows it."""
-    if picture.dtype != np.uint8:
-        picture = np.round(255 * np.clip(to_grey(picture), 0, 1)).astype(np.uint8)
-    return Image.fromarray(picture).convert("RGB")
+    return Image.fromarray(picture if picture.dtype == np.uint8 else to_rgb8(picture)).convert("RGB")
 
 
 def write_whole(picture: np.ndarray, path: Path) -> None:

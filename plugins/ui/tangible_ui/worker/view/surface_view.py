@@ -8,7 +8,17 @@ from typing import Literal, NamedTuple
 import numpy as np
 from jaxtyping import Float32, Int32
 
-from tangible_core.data import DisparityMap, HapticSurface, Material, PartMap, Product, Relief, SegmentMap, digest_of
+from tangible_core.data import (
+    DisparityMap,
+    HapticSurface,
+    Material,
+    PartMap,
+    Product,
+    Relief,
+    SegmentMap,
+    digest_of,
+    to_rgb8,
+)
 from tangible_core.metrics import absolute_error
 from tangible_core.pipeline import Pipeline
 from tangible_core.pipeline.config import PipelineConfig, names_of
@@ -110,6 +120,8 @@ def _view(pipeline: Pipeline, shows: Shows, relief: Relief) -> SurfaceView:
     chosen = product_at_hand(pipeline.engine, "materials")
     materials = chosen.materials if chosen is not None and labels is not None else ()
     picture = None if pipeline.scene.views is None else pipeline.scene.views.left
+    if picture is not None and (opaque := pipeline.scene.shown) is not None:  # transparent ground is white paper
+        picture = np.where(opaque[..., None], to_rgb8(picture), np.uint8(255))
     names = _names(pipeline) if labels is not None else None
     name = pipeline.config.title.strip() or Path(pipeline.scene.name).name
     return SurfaceView(name, shows, relief, labels, materials, picture, _layers(pipeline), names)

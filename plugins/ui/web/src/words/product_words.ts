@@ -3,6 +3,7 @@ import { words } from "kit/words/words";
 const t = words({
   views: ["Pictures", "Bilder", "Images"],
   disparity: ["Disparity", "Disparität", "Disparité"],
+  figure: ["What networks see", "Was Netze sehen", "Ce que voient les réseaux"],
   relief: ["Relief", "Relief", "Relief"],
   segments: ["Segments", "Segmente", "Segments"],
   parts: ["Parts", "Teile", "Parties"],

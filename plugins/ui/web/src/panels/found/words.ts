@@ -14,6 +14,7 @@ export const t = words({
   reliefFrom: ["Relief from", "Relief aus", "Relief d'après"],
   from_photograph: ["brightness", "Helligkeit", "la luminosité"],
   from_edges: ["edges", "Kanten", "les contours"],
+  from_figure: ["what networks see", "dem, was Netze sehen", "ce que voient les réseaux"],
   from_depth: ["depth", "Tiefe", "la profondeur"],
   from_heights: ["measured heights", "gemessenen Höhen", "des hauteurs mesurées"],
   from_parts: ["heights of its parts", "Höhen seiner Teile", "les hauteurs de ses parties"],

@@ -203,3 +203,8 @@ def sha256_of(path: Path) -> str:
 def _sha256(path: Path, changed_ns: int, size: int) -> str:
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def forget_digests() -> None:
+    """Have each file read again by the next `sha256_of`."""
+    _sha256.cache_clear()

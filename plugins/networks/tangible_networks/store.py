@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple, get_args
 from tangible_core.errors import ConfigError, TangibleError, did_you_mean
 from tangible_core.files import as_path
 
-from .card import Card, Task, check_file, read_card, shipped_cards
+from .card import Card, Package, Task, check_file, read_card, shipped_cards
 
 log: logging.Logger = logging.getLogger(__name__)
 VARIABLE = "TANGIBLE_MODELS_DIR"
@@ -45,6 +45,22 @@ class KnownNetwork(NamedTuple):
         except ConfigError:
             return "damaged"
         return "here"
+
+    @property
+    def can_be_fetched(self) -> bool:
+        """True if its card says where it is and by which digest it is known; otherwise it is brought by hand."""
+        source = self.card.source
+        return isinstance(source, Package) or (source.startswith("https://") and bool(self.card.sha256))
+
+    def as_data(self) -> dict[str, str | int | bool]:
+        """Return what is known of it as JSON data; reads the file once."""
+        card = self.card
+        return {
+            "name": self.name, "title": card.title, "task": card.task, "state": self.state, "file": str(self.path),
+            "bytes": card.size_bytes, "licence": card.licence, "trained_on": card.trained_on,
+            "improves": card.improves, "source": str(card.source), "verified": card.verified,
+            "recommended": card.recommended, "can_be_fetched": self.can_be_fetched,
+        }  # fmt: skip
 
 
 def models_folder() -> Path:

@@ -3,18 +3,22 @@
 import hashlib
 import io
 import json
+import os
 import tarfile
 import threading
+import time
 import zipfile
 from collections.abc import Iterator
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
+from subprocess import PIPE, Popen
 
 import pytest
 
 from command_line import tangible
 from tangible_core.errors import ConfigError, OutputError
+from tangible_core.runtime import command
 from tangible_networks import fetching
 from tangible_networks.card import Card, Package
 from tangible_networks.fetching import FetchError, add_network, remove_network
@@ -196,3 +200,34 @@ def test_commands(models: Path, tmp_path: Path) -> None:
     (models / "net.onnx").write_bytes(b"?")
     assert called("check")[0] == 1
     assert json.loads(called("remove", "own", "--json")[1]) == ["own"]
+
+
+def test_fetch_for_another_program_reports_ends_and_stops(models: Path) -> None:
+    """The page's server fetches so: an error is a sentence, and the end of the input is a stop."""
+    models.mkdir()
+    source = models / "given"
+    source.write_bytes(CONTENT)
+    (models / "mine.yaml").write_text(f"sha256: {DIGEST}\noutput: {{means: figure}}\n")
+    (models / "npm.yaml").write_text("source: {npm: none, version: 1, member: net.onnx}\noutput: {means: figure}\n")
+    (models.parent / "npm").write_text("#!/bin/sh\nexec sleep 60\n")
+    (models.parent / "npm").chmod(0o755)
+    environment = {**os.environ, "PATH": f"{models.parent}{os.pathsep}{os.environ['PATH']}"}
+
+    def fetch(*told: object) -> list[dict[str, object]]:
+        with Popen(command("tangible_networks.fetching"), stdin=PIPE, stdout=PIPE, env=environment) as process:
+            assert process.stdin is not None and process.stdout is not None
+            process.stdin.write(f"{json.dumps(told)}\n".encode())
+            process.stdin.flush()
+            reports = []
+            for line in process.stdout:
+                reports.append(json.loads(line))
+                if told[0] == ["npm"]:
+                    process.stdin.close()
+        return reports
+
+    assert fetch(["mine"], str(source)) == [{"name": "mine", "done": 0, "whole": 0, "why": ""}]
+    assert (models / "mine.onnx").read_bytes() == CONTENT
+    assert "mien: no such network" in fetch(["mien"], None)[0]["why"]
+    start_s = time.monotonic()
+    assert "stopped on request" in fetch(["npm"], None)[-1]["why"]
+    assert time.monotonic() - start_s < 30 and not list(models.glob(".*"))

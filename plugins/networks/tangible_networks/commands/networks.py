@@ -40,7 +40,7 @@ def networks(context: typer.Context, as_json: Json = False) -> None:
 
     known = known_networks()
     if as_json:
-        show.print_json([_record(network) for network in known.values()])
+        show.print_json([network.as_data() for network in known.values()])
         return
     rows = [
         (
@@ -104,7 +104,7 @@ def add(
         if not as_json:
             show.say(f"{network.name} is here and right")
     if as_json:
-        show.print_json([_record(network) for network in chosen])
+        show.print_json([network.as_data() for network in chosen])
 
 
 @app.command()
@@ -131,7 +131,7 @@ def check(as_json: Json = False) -> None:
 
     present = [network for network in known_networks().values() if network.state != "absent"]
     if as_json:
-        show.print_json([_record(network) for network in present])
+        show.print_json([network.as_data() for network in present])
     elif not present:
         show.say("no network is here; `tangible networks add figure borders faces` fetches some")
     else:
@@ -167,12 +167,3 @@ def _progress(name: str, hidden: bool) -> Generator[Progress]:
 
 def _megabytes(size: int) -> str:
     return f"{size / 1e6:,.1f} MB" if size else "size unknown"
-
-
-def _record(network: KnownNetwork) -> dict[str, object]:
-    card = network.card
-    return {
-        "name": network.name, "title": card.title, "task": card.task, "state": network.state, "file": network.path,
-        "bytes": card.size_bytes, "licence": card.licence, "trained_on": card.trained_on, "improves": card.improves,
-        "source": str(card.source), "verified": card.verified,
-    }  # fmt: skip

@@ -49,6 +49,8 @@ class Session:
         self.uploads: UploadStore = UploadStore(user_folder("opened"), folder / "incoming")
         self.recorder: Recorder | None = None
         """The last recording, or the running one."""
+        self.fetch: asyncio.Future[asyncio.subprocess.Process] | None = None
+        """The process that fetches networks, from its start to its end."""
         self.laws: Laws = Laws(ComparisonLoop(f"{feeling.channel}-beside"))
         self.panel_folders: dict[str, Path] = {}
         """Folders of the ES modules of plugins' panels, by name of the panel."""

@@ -9,7 +9,7 @@ MOST_HISTORY, MOST_LOGGED = 500, 200
 """Numbers of past events and of log lines that a tab opened later gets."""
 LATEST_ONLY = frozenset(
     {"restored", "document", "plan", "materials", "preflight", "legible", "exported", "beacon", "described"}
-) | {"maker", "maker_gone", "opening"}
+) | {"maker", "maker_gone", "opening", "fetching"}
 """Events that describe a state: only the latest of each counts, and it is kept however many other events follow."""
 
 

@@ -232,6 +232,8 @@ export interface Events {
   beacon: Said & { part: number | null; name: string; why: "asked" | "button" | "scene" | "ended" };
   /** The chosen device changed. */
   device: Said & { kind: "hand" | "document" | "other"; name: string };
+  /** Progress of fetching a network, bytes; no name at the end, with the reason if it failed. */
+  fetching: Said & { name: string; done: number; whole: number; why: string };
   error: Said & { text: string };
   laws: Said & ({ state: "one" } | { state: "two"; named: [string, string]; felt: number });
   recorder: Said & { recording: boolean; path: string; ticks: number; why: string };

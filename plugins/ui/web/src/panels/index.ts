@@ -29,7 +29,11 @@ import "./export/export.css";
 import "./legibility/legibility.css";
 
 /** The tasks, in which what is needed first stands first. */
-const PICTURE: Panel[] = [open, found];
+const PICTURE: Panel[] = [
+  open,
+  found,
+  lazy({ id: "networks", title: t("networks"), task: "picture", open: false }, () => import("./networks/panel")),
+];
 const PARTS: Panel[] = [parts, materials];
 const FEEL: Panel[] = [hand, sound, devices, laws, recordings, signs];
 const HAND_ON: Panel[] = [

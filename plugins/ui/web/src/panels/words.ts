@@ -4,6 +4,7 @@ import { words } from "kit/words/words";
 export const t = words({
   legible: ["Legible to fingers", "Für Finger lesbar", "Lisible au doigt"],
   description: ["Description", "Beschreibung", "Description"],
+  networks: ["Networks", "Netze", "Réseaux"],
   export: ["Export", "Exportieren", "Exporter"],
   failed: ["This panel could not be shown: {error}",
     "Dieser Abschnitt konnte nicht gezeigt werden: {error}",

@@ -18,7 +18,8 @@ export async function uploadAndOpen(net: Server, files: File[], progress: Progre
   return net.ask<Opened>("open_batch", { batch });
 }
 
-function sendFile(batch: string, file: File, progress: Progress): Promise<void> {
+/** Send one file of a batch. Rejects with the server's text. */
+export function sendFile(batch: string, file: File, progress: Progress): Promise<void> {
   const request = new XMLHttpRequest(); // fetch reports no progress
   const name = encodeURIComponent(file.name);
   return new Promise((done, refused) => {

@@ -1,0 +1,58 @@
+"""Requests to fetch networks, in a process of its own: no edit of the document ends it."""
+
+import asyncio
+import json
+from asyncio.subprocess import PIPE
+
+from tangible_core.errors import ConfigError
+from tangible_core.runtime import command
+
+from ..state.session import Session
+from ..state.tabs import Tab
+from .table import request
+
+FETCHING = "tangible_networks.fetching"
+
+
+@request()
+async def add_networks(session: Session, tab: Tab | None, names: list[str], batch: str = "") -> None:
+    """Fetch networks, or make one from the file of a batch; all tabs get the progress, and in the end no name.
+
+    Raises: ConfigError if some are being fetched, or for a batch that is not one file.
+    """
+    if session.fetch is not None:
+        raise ConfigError("networks are being fetched already; wait for them, or stop them")
+    source = str(session.uploads.single(batch)) if batch else None
+    start = asyncio.create_subprocess_exec(*command(FETCHING), stdin=PIPE, stdout=PIPE)
+    session.fetch = asyncio.ensure_future(start)
+    session.tabs.tell("fetching", name=", ".join(names), done=0, whole=0, why="")
+    session.begin(_fetch(session, session.fetch, json.dumps([names, source]), batch))
+
+
+@request()
+async def stop_networks(session: Session, tab: Tab | None) -> None:
+    """Stop fetching networks; those that are complete stay."""
+    if session.fetch is not None and (pipe := (await session.fetch).stdin) is not None:
+        pipe.close()
+
+
+async def _fetch(session: Session, start: "asyncio.Future[asyncio.subprocess.Process]", told: str, batch: str) -> None:
+    """Send all tabs what the process reports, until it ends; it stops if this is cancelled."""
+    why = ""
+    try:
+        process = await start
+        assert process.stdin is not None and process.stdout is not None
+        process.stdin.write(f"{told}\n".encode())
+        async for line in process.stdout:
+            said = json.loads(line)
+            why = said["why"]
+            if said["name"]:
+                session.tabs.tell("fetching", **said)
+        if (code := await process.wait()) and not why:
+            why = f"the process that fetches networks ended by itself ({code}); try again"
+        process.stdin.close()
+    finally:
+        session.fetch = None
+        if batch:
+            session.uploads.drop(batch)
+        session.tabs.tell("fetching", name="", done=0, whole=0, why=why)

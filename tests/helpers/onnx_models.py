@@ -9,16 +9,31 @@ from onnx import TensorProto, helper, numpy_helper
 GREY = np.full((1, 3, 1, 1), 1 / 3, np.float32)
 
 
-def mono(path: Path, confidence: bool = False) -> Path:
+def mono(path: Path, confidence: bool = False, names: tuple[str, str] = ("image", "inverse_depth")) -> Path:
     """(1, 3, h, w) -> `inverse_depth` (1, h, w): the mean of the colours; and, if asked, `sure`: half of it."""
-    nodes = [_node("Conv", ["image", "grey"], "g"), _node("Squeeze", ["g", "one"], "inverse_depth")]
+    image, nearness = names
+    nodes = [_node("Conv", [image, "grey"], "g"), _node("Squeeze", ["g", "one"], nearness)]
     given = {"grey": GREY, "one": np.array([1])}
-    gives = {"inverse_depth": [1, "h", "w"]}
+    gives = {nearness: [1, "h", "w"]}
     if confidence:
-        nodes.append(_node("Mul", ["inverse_depth", "half"], "sure"))
+        nodes.append(_node("Mul", [nearness, "half"], "sure"))
         given["half"] = np.float32(0.5)
         gives["sure"] = [1, "h", "w"]
-    return _save(path, nodes, {"image": [1, 3, "h", "w"]}, gives, given)
+    return _save(path, nodes, {image: [1, 3, "h", "w"]}, gives, given)
+
+
+def points(path: Path) -> Path:
+    """image, the whole number `tokens` -> `points` (1, h, w, 3): the colours of each pixel, times the number."""
+    nodes = [
+        _node("Transpose", ["image"], "colours", perm=[0, 2, 3, 1]),
+        _node("Cast", ["tokens"], "factor", to=TensorProto.FLOAT),
+        _node("Mul", ["colours", "factor"], "points"),
+    ]
+    _save(path, nodes, {"image": [1, 3, "h", "w"], "tokens": []}, {"points": [1, "h", "w", 3]}, {})
+    model = onnx.load(path)
+    model.graph.input[1].type.tensor_type.elem_type = TensorProto.INT64
+    onnx.save(model, path)
+    return path
 
 
 def stereo(path: Path, disparities: int = 16, size: tuple[int, int] | None = None) -> Path:

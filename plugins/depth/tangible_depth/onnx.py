@@ -10,9 +10,9 @@ from pydantic import Field
 from tangible_core.data import DisparityMap, Views, to_rgb
 from tangible_core.errors import ConfigError, ModelAbsent, PictureError, TangibleError
 from tangible_core.plugins import DepthEstimator, Skippable, note
-from tangible_networks.card import Card, check_file, read_card, shipped_cards
+from tangible_networks.card import Card, Runtime, check_file, read_card, shipped_cards
 from tangible_networks.fitting import Colours, Map, fit_size, map_in_strips, restore_size, tensor, to_disparity
-from tangible_networks.runtimes import Runtime, run
+from tangible_networks.runtimes import run
 
 log: logging.Logger = logging.getLogger(__name__)
 
@@ -33,7 +33,8 @@ class Onnx(DepthEstimator, Skippable):
     """Description of the network: the name of a shipped card (depth-anything-v2-small, ...), or a YAML file; empty for
     the YAML file next to the model with its name."""
     runtime: Runtime = "opencv"
-    """Library that runs the network: `opencv` (5 or newer), or `onnxruntime` if installed, which can use a GPU."""
+    """Library that runs the network, unless its card names the only one that can: `opencv` (5 or newer), or
+    `onnxruntime` if installed, which can use a GPU; `kornia` is for cards that name it."""
     most_px: Annotated[int, Field(ge=4096, le=100_000_000)] = 600_000
     """Largest number of pixels of the network's input: its memory grows with them."""
 
@@ -100,11 +101,12 @@ class Onnx(DepthEstimator, Skippable):
         fit = fit_size(shape, takes, most_px)
         names = (takes.left, takes.right) if len(views) == 2 else (takes.left,)
         inputs = {name: tensor(view, takes, fit) for name, view in zip(names, views, strict=True)}
+        inputs |= {name: np.array(number, np.int64) for name, number in takes.constants.items()}
         wanted = [gives.name, gives.confidence] if gives.confidence else [gives.name]
-        outputs = run(model, self.runtime, inputs, wanted)
+        outputs = run(model, card.runtime or self.runtime, inputs, wanted)
         maps: list[Map] = []
         for name, each in zip(wanted, outputs, strict=True):
-            values = restore_size(each, fit, shape)
+            values = restore_size(each, fit, shape, gives.channel if name == gives.name else None)
             if values is None:
                 raise ConfigError(
                     f"model: {model} returns {name or 'an output'} of {each.shape}, which is not a map; name another "

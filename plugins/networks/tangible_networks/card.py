@@ -19,6 +19,8 @@ Means = Literal["disparity-px", "inverse-depth", "depth", "depth-m", "figure", "
 `depth`: larger is farther, without a unit. `depth-m`: metres. `figure`, `borders`: from 0 to 1, how much a pixel
 belongs to what stands out from its ground, or to a border that people would draw. `faces`: places of faces, or points
 of one face."""
+Runtime = Literal["opencv", "onnxruntime", "kornia"]
+"""The libraries that run networks."""
 Task = Literal["depth", "figure", "borders", "faces"]
 """The tasks of networks: depth of a picture or a pair, what stands out from its ground, borders, and faces."""
 
@@ -50,6 +52,9 @@ class NetworkInput(_Part):
     """Height and width of a network with a fixed input size, to which each picture is resized."""
     trained_px: tuple[Annotated[int, Field(ge=1, le=20_000)], Annotated[int, Field(ge=1, le=20_000)]] | None = None
     """Height and width of the pictures that the network was trained with, if known; a size far from it is reported."""
+
+    constants: Mapping[str, int] = {}
+    """Further inputs of one whole number each, by name, such as the number of tokens."""
 
     @model_validator(mode="after")
     def _two_inputs(self) -> Self:
@@ -93,6 +98,8 @@ class NetworkOutput(_Part):
     """Name of the output; empty for the first."""
     means: Means
     """Meaning of the numbers."""
+    channel: Annotated[int, Field(ge=0)] | None = None
+    """The number of its last axis that is taken, for an output (h, w, channels) such as points in space."""
     confidence: str = ""
     """Name of an output with the network's confidence, 0 to 1; empty without one."""
 
@@ -119,6 +126,10 @@ class Card(_Part):
     """Digest that the file must have; empty if unknown."""
     size_bytes: Annotated[int, Field(ge=0)] = 0
     """Size of the file; 0 if unknown."""
+    about_bytes: Annotated[int, Field(ge=0)] = 0
+    """Published size of a file whose exact size is unknown; 0 if that is unknown too."""
+    runtime: Runtime | None = None
+    """The only library that can run it; None where OpenCV can."""
     licence: str = ""
     """Licence of the network."""
     trained_on: str = ""

@@ -93,12 +93,14 @@ def tensor(picture: Colours, takes: NetworkInput, fit: Fit) -> Float32[np.ndarra
     return np.ascontiguousarray(normal.transpose(2, 0, 1)[None])
 
 
-def restore_size(output: np.ndarray, fit: Fit, shape: tuple[int, int]) -> Map | None:
+def restore_size(output: np.ndarray, fit: Fit, shape: tuple[int, int], channel: int | None = None) -> Map | None:
     """Remove the padding from a network's output and resize it to the picture; None if it is not a map.
 
-    A map of a half or a quarter of the size is enlarged first.
+    A map of a half or a quarter of the size is enlarged first. channel: the number of its last axis to take.
     """
     values = np.asarray(output, np.float32)
+    if channel is not None and values.ndim and channel < values.shape[-1]:
+        values = values[..., channel]
     while values.ndim > 2 and values.shape[0] == 1:
         values = values[0]
     if values.ndim == 3 and values.shape[2] == 1:

@@ -1,27 +1,29 @@
-"""Runtimes of networks: OpenCV, or onnxruntime if installed.
+"""Runtimes of networks: OpenCV, or onnxruntime or kornia if installed.
 
 A damaged file can end the process that runs it, so the first run of a file is in a process of its own. The cache
 remembers by its content and the version of the runtime that it ran; all later runs are in this process.
 """
-# OpenCV's `dnn` and onnxruntime have no types.
+# OpenCV's `dnn` and onnxruntime have no types, kornia's builders have not all.
 # pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
 import hashlib
+import json
 import os
 import pickle
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
+from shutil import copyfile
 from signal import Signals
 from subprocess import DEVNULL, PIPE, Popen
+from tempfile import TemporaryDirectory
 from threading import Lock
-from typing import Any, Literal, Protocol
+from typing import Any, Protocol
 
 import numpy as np
-from jaxtyping import Float32
 
 from tangible_core.data import Calibration
 from tangible_core.errors import BrokenMethod, ConfigError, shown
@@ -31,11 +33,16 @@ from tangible_core.provenance.versions import of_imported
 from tangible_core.runtime import command, pipe_of
 from tangible_core.runtime.system import exit_with_parent
 
+from .card import Runtime
 from .onnx_file import Shape, read_inputs
 
-Runtime = Literal["opencv", "onnxruntime"]
-TFLITE = ".tflite"
-"""The suffix of networks in the format of TensorFlow Lite, which OpenCV alone runs here."""
+TFLITE, TORCH = ".tflite", ".pth"
+"""The suffixes of networks in the format of TensorFlow Lite, which OpenCV alone runs here, and of weights for torch,
+which kornia builds the network for."""
+LIBRARIES: Mapping[Runtime, tuple[str, ...]] = {
+    "opencv": ("cv2",), "onnxruntime": ("onnxruntime",), "kornia": ("kornia", "torch", "onnxruntime"),
+}  # fmt: skip
+"""The libraries whose versions a runtime depends on."""
 OLDEST_OPENCV = 5
 """Oldest version of OpenCV that runs transformers, and pictures of another size than the network's own."""
 RAN = Calibration(1.0, 1.0)
@@ -47,22 +54,21 @@ _lock = Lock()
 class Network(Protocol):
     """A loaded network."""
 
-    def run(self, inputs: Mapping[str, Float32[np.ndarray, "1 3 _ _"]], outputs: Sequence[str]) -> list[np.ndarray]:
+    def run(self, inputs: Mapping[str, np.ndarray], outputs: Sequence[str]) -> list[np.ndarray]:
         """Return the named outputs. An empty name is the first output, or the only input."""
         ...
 
 
-def run(
-    model: Path, runtime: Runtime, inputs: Mapping[str, Float32[np.ndarray, "1 3 _ _"]], outputs: Sequence[str]
-) -> list[np.ndarray]:
+def run(model: Path, runtime: Runtime, inputs: Mapping[str, np.ndarray], outputs: Sequence[str]) -> list[np.ndarray]:
     """Run the network in this file and return its outputs.
 
+    inputs: float32 (1, 3, h, w) or a whole number each, by name.
     Raises: ConfigError if it cannot be loaded or rejects these inputs; BrokenMethod without the runtime.
     """
     status = model.stat()
     with _lock:
         try:
-            if model.suffix != TFLITE:
+            if model.suffix not in (TFLITE, TORCH):
                 _check_sizes(model, _inputs(model, status.st_mtime_ns, status.st_size), inputs)
             if (key := _key(model, runtime)) in (cache := Cache()):
                 network = _load(model, status.st_mtime_ns, status.st_size, runtime)
@@ -82,7 +88,7 @@ def run(
 
 def _key(model: Path, runtime: Runtime) -> str:
     """Return the key under which the cache remembers that this content ran with this version of the runtime."""
-    versions = of_imported(["cv2" if runtime == "opencv" else "onnxruntime"])
+    versions = of_imported(LIBRARIES[runtime])
     return hashlib.sha256(repr((__name__, content_digest(model), runtime, versions)).encode()).hexdigest()
 
 
@@ -128,6 +134,8 @@ def main() -> None:
 def _check_sizes(model: Path, declared: Mapping[str, Shape], given: Mapping[str, np.ndarray]) -> None:
     """Raise a ConfigError for an input of another size than the network's only one: OpenCV would compute nonsense."""
     for name, values in given.items():
+        if not values.ndim:  # a whole number
+            continue
         takes = declared.get(name, ()) if name else next(iter(declared.values()), ())
         rows, columns = takes[2:] if len(takes) == 4 else (None, None)
         if rows not in (None, values.shape[2]) or columns not in (None, values.shape[3]):
@@ -139,7 +147,7 @@ def _check_sizes(model: Path, declared: Mapping[str, Shape], given: Mapping[str,
 
 
 def _other_runtime(runtime: Runtime) -> Runtime:
-    return "onnxruntime" if runtime == "opencv" else "opencv"
+    return "onnxruntime" if runtime == "opencv" else "opencv"  # kornia's cards allow no other
 
 
 @lru_cache(maxsize=1)
@@ -149,7 +157,10 @@ def _inputs(model: Path, changed_ns: int, size: int) -> Mapping[str, Shape]:
 
 @lru_cache(maxsize=4)
 def _load(model: Path, changed_ns: int, size: int, runtime: Runtime) -> Network:
-    return _OpenCV(model) if runtime == "opencv" else _OnnxRuntime(model)
+    kinds: dict[Runtime, Callable[[Path], Network]] = {
+        "opencv": _OpenCV, "onnxruntime": _OnnxRuntime, "kornia": _Kornia,
+    }  # fmt: skip
+    return kinds[runtime](model)
 
 
 class _OpenCV:
@@ -168,7 +179,7 @@ class _OpenCV:
             )
         self._net = cv2.dnn.readNetFromONNX(str(model))
 
-    def run(self, inputs: Mapping[str, Float32[np.ndarray, "1 3 _ _"]], outputs: Sequence[str]) -> list[np.ndarray]:
+    def run(self, inputs: Mapping[str, np.ndarray], outputs: Sequence[str]) -> list[np.ndarray]:
         for name, values in inputs.items():
             self._net.setInput(values, name)
         names = list(self._net.getUnconnectedOutLayersNames())
@@ -194,7 +205,7 @@ class _OnnxRuntime:
         self._session: Any = library.InferenceSession(str(model), options, providers=library.get_available_providers())
         self._options: type[Any] = library.RunOptions
 
-    def run(self, inputs: Mapping[str, Float32[np.ndarray, "1 3 _ _"]], outputs: Sequence[str]) -> list[np.ndarray]:
+    def run(self, inputs: Mapping[str, np.ndarray], outputs: Sequence[str]) -> list[np.ndarray]:
         own = [each.name for each in self._session.get_inputs()]
         names = [each.name for each in self._session.get_outputs()]
         feed = {name or own[0]: values for name, values in inputs.items()}
@@ -206,3 +217,49 @@ class _OnnxRuntime:
             except BaseException:
                 options.terminate = True
                 raise
+
+
+class _Kornia:
+    """A network that kornia builds: DexiNed from its weights, or Depth Anything from its ONNX file."""
+
+    def __init__(self, model: Path) -> None:
+        from tangible_core.compiled import thread_count  # imports numba
+
+        try:
+            self._torch: Any = import_module("torch")
+            import_module("kornia")
+        except ImportError as error:
+            raise BrokenMethod(
+                f"runtime: kornia is not installed ({error}); pip install torch kornia onnx onnxruntime"
+            ) from error
+        self._torch.set_num_threads(thread_count())
+        self._network: Callable[[Any], Any] = (
+            _build_dexined(model) if model.suffix == TORCH else _build_depth_anything(model)
+        )
+
+    def run(self, inputs: Mapping[str, np.ndarray], outputs: Sequence[str]) -> list[np.ndarray]:
+        (picture,) = inputs.values()
+        with self._torch.inference_mode():
+            values = self._network(self._torch.from_numpy(picture)).numpy()
+        return [values for _ in outputs]
+
+
+def _build_dexined(model: Path) -> Callable[[Any], Any]:
+    """Source: Soria et al., Dense extreme inception network for edge detection, WACV 2020."""
+    network = import_module("kornia.filters.dexined").DexiNed(pretrained=False)
+    network.load_state_dict(import_module("torch").load(model, map_location="cpu", weights_only=True))
+    network.eval()
+    return lambda picture: network(picture).sigmoid()
+
+
+def _build_depth_anything(model: Path) -> Callable[[Any], Any]:
+    """Source: Yang et al., Depth Anything V2, NeurIPS 2024."""
+    builder = import_module("kornia.models.depth_estimation").DepthAnythingONNXBuilder
+    name, plain = "depth-anything-v2-small", ("do_pad", "do_resize", "do_rescale", "do_normalize")
+    with TemporaryDirectory() as folder:  # a cache in which all is there, so that kornia downloads nothing
+        cache = Path(folder) / name
+        cache.mkdir()
+        copyfile(model, cache / "model.onnx")
+        config = {"image_processor_type": "DPTImageProcessor", **dict.fromkeys(plain, False)}  # the card says all that
+        (cache / "preprocessor_config.json").write_text(json.dumps(config))
+        return builder.build(name, cache_dir=folder)

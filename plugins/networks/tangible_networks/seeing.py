@@ -56,11 +56,15 @@ def _map(colours: Colours, task: Task) -> Float32[np.ndarray, "r c"] | None:
     card = network.card
     fit = fit_size(colours.shape[:2], card.input, MAX_PX[card.task])
     small = resize(colours, fit.resized)
-    output = run(network.path, "opencv", {card.input.left: tensor(small, card.input, fit)}, [card.output.name])[0]
-    values = restore_size(output, fit, fit.resized)
+    output = run(
+        network.path, card.runtime or "opencv", {card.input.left: tensor(small, card.input, fit)}, [card.output.name]
+    )[0]
+    values = restore_size(output, fit, fit.resized, card.output.channel)
     if values is None:
         raise ConfigError(f"the network {network.name} returns no map; name another output in its card")
     note(log, f"{card.task}: seen by the network {network.name}")
+    if not card.verified:
+        note(log, f"the card of {card.title} was never tested with its network", logging.WARNING)
     return values
 
 

@@ -57,7 +57,7 @@ class KnownNetwork(NamedTuple):
         card = self.card
         return {
             "name": self.name, "title": card.title, "task": card.task, "state": self.state, "file": str(self.path),
-            "bytes": card.size_bytes, "licence": card.licence, "trained_on": card.trained_on,
+            "bytes": card.size_bytes or card.about_bytes, "licence": card.licence, "trained_on": card.trained_on,
             "improves": card.improves, "source": str(card.source), "verified": card.verified,
             "recommended": card.recommended, "can_be_fetched": self.can_be_fetched,
         }  # fmt: skip

@@ -401,3 +401,14 @@ def put_outside(place: str, weight: onnx.TensorProto) -> None:
     weight.data_location = onnx.TensorProto.EXTERNAL
     for key, value in (("location", place), ("offset", "0"), ("length", "12")):
         weight.external_data.add(key=key, value=value)
+
+
+def test_channel_of_points_is_taken_and_a_whole_number_goes_in(card, tmp_path: Path) -> None:
+    """As MoGe-2 has them; its card names the only runtime that takes such a number."""
+    text = "runtime: onnxruntime\ninput: {left: image, constants: {tokens: 3}}\n"
+    text += "output: {name: points, channel: CHANNEL, means: disparity-px}\n"
+    model, shown = onnx_models.points(tmp_path / "points.onnx"), picture()
+    found = card(model, text.replace("CHANNEL", "2")).estimate(Views(shown))
+    np.testing.assert_allclose(found.disparity_px, 3 * shown[..., 2], rtol=1e-6)
+    with pytest.raises(ConfigError, match=r"points of .*3.*is not a map"):
+        card(model, text.replace("CHANNEL", "3")).estimate(Views(shown))

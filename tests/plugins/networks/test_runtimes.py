@@ -86,3 +86,27 @@ def test_text_that_is_not_utf_8_is_refused_wherever_it_stands(tmp_path: Path, da
     (tmp_path / "m.onnx").write_bytes(data.replace(b"damaged", b"damag\xe9d"))
     with pytest.raises(ConfigError, match="is not an ONNX file, or is damaged"):
         runtimes.read_inputs(tmp_path / "m.onnx")
+
+
+def test_kornia_builds_both_networks_of_its_cards_and_downloads_nothing(tmp_path: Path, monkeypatch):
+    """Weights are random, and made here."""
+    import torch
+    from kornia.core import download
+    from kornia.filters.dexined import DexiNed
+
+    def refuse(*_: object, **__: object) -> None:
+        raise AssertionError("a run downloads")
+
+    monkeypatch.setattr("urllib.request.urlopen", refuse)
+    monkeypatch.setattr(download, "load_state_dict_from_url", refuse)
+    torch.manual_seed(0)
+    network = DexiNed(pretrained=False).eval()
+    torch.save(network.state_dict(), tmp_path / "edges.pth")
+    picture = np.random.default_rng(0).normal(0, 100, (1, 3, 32, 48)).astype(np.float32)
+    (edges,) = runtimes._load(tmp_path / "edges.pth", 0, 0, "kornia").run({"": picture}, [""])
+    with torch.inference_mode():
+        np.testing.assert_allclose(edges, network(torch.from_numpy(picture)).sigmoid().numpy(), atol=1e-6)
+
+    depth = onnx_models.mono(tmp_path / "depth.onnx", names=("pixel_values", "predicted_depth"))
+    (found,) = runtimes._load(depth, 0, 0, "kornia").run({"": picture}, [""])
+    np.testing.assert_allclose(found[0, 0], picture[0].mean(axis=0), rtol=1e-4, atol=1e-3)

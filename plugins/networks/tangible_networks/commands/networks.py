@@ -13,6 +13,7 @@ from tangible_core.cli import FAILED, Json, ask, is_listing
 if TYPE_CHECKING:
     from collections.abc import Generator
 
+    from ..card import Card
     from ..fetching import Progress
     from ..store import KnownNetwork
 
@@ -47,7 +48,7 @@ def networks(context: typer.Context, as_json: Json = False) -> None:
             name,
             network.card.task,
             f"[{COLOURS[network.state]}]{network.state}[/]",
-            _megabytes(network.card.size_bytes),
+            _megabytes(network.card),
             network.card.improves,
             network.card.licence,
             network.card.trained_on,
@@ -147,7 +148,7 @@ def _announcement(network: KnownNetwork, is_here: bool) -> str:
     card = network.card
     if is_here:
         return f"{network.name} is here already"
-    size = _megabytes(card.size_bytes)
+    size = _megabytes(card)
     return f"{network.name} ({card.title}): {card.improves}; {size}, licence {card.licence}, from {card.source}"
 
 
@@ -165,5 +166,6 @@ def _progress(name: str, hidden: bool) -> Generator[Progress]:
         yield lambda done, whole: bar.update(task, completed=done, total=whole or None)
 
 
-def _megabytes(size: int) -> str:
+def _megabytes(card: Card) -> str:
+    size = card.size_bytes or card.about_bytes
     return f"{size / 1e6:,.1f} MB" if size else "size unknown"

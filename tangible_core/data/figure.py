@@ -3,11 +3,15 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Bool, Float32
 
 from ..errors import PictureError
 from .arguments import named_fields
 from .records import Record
+from .views import PartMap
+
+IS_FIGURE = 0.5
+"""Least value of the figure's map at a pixel of the figure."""
 
 
 @named_fields
@@ -35,3 +39,21 @@ class Figure(Record):
     def faces(self) -> Float32[np.ndarray, "n 468 3"]:
         """The points of each face; (0, 468, 3) without one."""
         return np.zeros((0, 468, 3), np.float32) if self.faces_px is None else self.faces_px
+
+    @property
+    def people(self) -> int:
+        """The number of people that are known to be in front: faces, where there is a figure."""
+        return len(self.faces) if self.figure is not None and (self.figure >= IS_FIGURE).any() else 0
+
+    def is_figure(self, shape: tuple[int, int]) -> Bool[np.ndarray, "r c"]:
+        """Return the mask of the figure on a grid of another size; no pixel is one without a network."""
+        if self.figure is None:
+            return np.zeros(shape, np.bool_)
+        row, column = ((2 * np.arange(n) + 1) * own // (2 * n) for n, own in zip(shape, self.figure.shape, strict=True))
+        return self.figure[np.ix_(row, column)] >= IS_FIGURE
+
+    def front_parts(self, parts: PartMap) -> tuple[int, ...]:
+        """Return the numbers of the parts that are mostly figure, in order."""
+        flat = parts.labels.reshape(-1)
+        inside = np.bincount(flat[self.is_figure(parts.labels.shape).reshape(-1)], minlength=parts.count)
+        return tuple(np.flatnonzero(2 * inside > np.bincount(flat, minlength=parts.count)).tolist())

@@ -62,8 +62,8 @@ class Work:
     names: tuple[str, ...] = ()
     """The names of parts, by number, "" for a part without a name; () if the pipeline has no parts."""
     extras: Mapping[str, Any] = field(default_factory=dict[str, Any])
-    """Further things that a sheet shows, where they exist: `views`, the `truth` of the disparity (h, w) in px, and the
-    `recording` of a run."""
+    """Further things that a sheet shows, where they exist: `views`, the `truth` of the disparity (h, w) in px, the
+    `recording` of a run, and the `figure` that networks see, where the relief is made of it."""
     film: bool = False
     """True for a film, of which the products show the first frame."""
 

@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float32
 
 from ..data import Figure, Relief, Views
+from ..data.figure import IS_FIGURE
 from ..data.pictures import to_grey
 from ..runtime.opencv import plain_opencv
 from ..scene import geometry, scaling
@@ -18,8 +19,6 @@ from .slope_limit import limit_slopes
 
 CELL_M = 2e-4
 """Side of the cells on which heights are made, m: finer than a fingertip resolves."""
-IS_FIGURE = 0.5
-"""Least value of the figure's map at a pixel of the figure."""
 GROUND, STEP, BODY, FACE = 0.1, 0.18, 0.4, 0.5
 """Shares of the height: of a ground that rises towards the viewer, of the step from the ground to the figure, of the
 figure's rounding, and the largest of a face's own shape."""

@@ -10,11 +10,11 @@ from time import perf_counter
 import numpy as np
 
 from tangible_authoring.label_picture import label_picture
-from tangible_core.data import Outcome, PartMap, SegmentMap
+from tangible_core.data import Figure, Outcome, PartMap, SegmentMap
 from tangible_core.errors import ConfigError, OutputError, check_positive
 from tangible_core.files import atomic_write, sole_writer
 from tangible_core.files.yaml import on_one_line
-from tangible_core.parts import HeightChoice, PartHeights
+from tangible_core.parts import HeightChoice, PartChoice, PartHeights
 from tangible_core.pipeline import SIDE_MM, Pipeline
 from tangible_core.pipeline.config import parse_config
 from tangible_core.pipeline.engine import Cache, heights_of
@@ -24,6 +24,7 @@ from tangible_core.plugins.registry import Registry, default_registry
 from tangible_core.scene import Scene
 from tangible_core.scene.formats import file_kind
 from tangible_legibility.simplifying.large import large_parts
+from tangible_networks.store import networks_here
 from tangible_report.numbered_parts import numbered_parts
 
 from .listed_parts import ListedPart, list_rows
@@ -36,6 +37,10 @@ SMALLEST_MM = 5.0
 """The diameter of a disc, mm, that each part must hold: a narrower part is felt as an edge rather than as a thing."""
 SEGMENTS_PER_PART = 4 / 3
 """Segments that are requested of a method for each part: segments that are too small go to their neighbours."""
+THE_FIGURE = "the figure"
+"""The name of what a network sees stand out from its ground."""
+GROUND = 0.5
+"""Share of the height for the parts of the ground where a network sees a figure; those of the figure have the rest."""
 STEPS_PER_M = 10_000
 """Steps of a height in a metre: a tenth of a millimetre is easy to read, and nobody feels less."""
 
@@ -110,7 +115,9 @@ def first_parts(
     scene, parts = pipeline.scene, proposed_parts(pipeline, most, smallest_mm)
     assert scene.views is not None
     heights = proposed_heights(pipeline, parts)
-    rows, title = list_rows(parts, heights, {}), title_of(pictures[0])
+    front = _figure(pipeline).front_parts(parts)
+    named = {number: PartChoice(name=THE_FIGURE) for number in front if len(front) == 1}
+    rows, title = list_rows(parts, heights, named), title_of(pictures[0])
     text = parts_starter(pipeline, file, LABELS, NUMBERED, title, rows)
     labels, numbered, _ = files_beside(file)
     shown = numbered_parts(scene.views.left, parts)
@@ -122,6 +129,7 @@ def first_parts(
 def proposed_parts(pipeline: Pipeline, most: int = MOST_PARTS, smallest_mm: float = SMALLEST_MM) -> PartMap:
     """Find the parts of a pipeline's picture: the segments of its texture method, joined until they are few and large.
 
+    Where a network for figures is here, segments are divided along the outline of what it sees.
     most, smallest_mm: as in `first_parts`. Raises: TangibleError as `Pipeline.make`.
     """
     scene, segments = pipeline.scene, pipeline.make("segments")
@@ -129,7 +137,17 @@ def proposed_parts(pipeline: Pipeline, most: int = MOST_PARTS, smallest_mm: floa
     if segments is None:
         segments = SegmentMap(np.zeros(scene.shape, np.int32))
     with _observers_notified(pipeline.engine.registry):
+        figure = _figure(pipeline).is_figure(segments.labels.shape)
+        if figure.any():
+            segments = SegmentMap(2 * segments.labels + figure.astype(np.int32))
         return large_parts(segments, scene.views.left, smallest_mm / SIDE_MM * max(scene.shape), most)
+
+
+def _figure(pipeline: Pipeline) -> Figure:
+    """Return what networks see in one picture; nothing where no network for figures is here."""
+    views = pipeline.scene.views
+    one_picture = views is not None and views.right is None
+    return pipeline.make("figure") if one_picture and networks_here("figure") else Figure()
 
 
 def segments_for(most: int = MOST_PARTS) -> int:
@@ -172,7 +190,10 @@ def proposed_heights(pipeline: Pipeline, parts: PartMap, top_m: float | None = N
     by_depth = choice.model_copy(update={"by": "depth"})
     by, picture = choice if disparity is None else by_depth, scene.views.left if scene.views else None
     found = heights_of(parts, by, top_m, {}, disparity, scene.shown, picture)
-    rounded = (floor(height_m * STEPS_PER_M + 1e-6) / STEPS_PER_M for height_m in found.heights_m)
+    front = _figure(pipeline).front_parts(parts) if disparity is None else ()
+    share, lift_m = (GROUND, GROUND * top_m) if front else (1.0, 0.0)
+    heights = (share * height_m + lift_m * (number in front) for number, height_m in enumerate(found.heights_m))
+    rounded = (floor(height_m * STEPS_PER_M + 1e-6) / STEPS_PER_M for height_m in heights)
     return PartHeights(tuple(rounded), found.reasons)
 
 

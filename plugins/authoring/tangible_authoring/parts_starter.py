@@ -62,7 +62,7 @@ def _count_in_words(parts: int) -> str:
 
 def _lines(listed: Sequence[ListedPart]) -> str:
     """Write a line for each part, with its number and place, which stay true when the height changes."""
-    parts = {each.number: {"name": "", "height_m": f"{1000 * (each.height_m or 0):.1f} mm"} for each in listed}
+    parts = {each.number: {"name": each.name, "height_m": f"{1000 * (each.height_m or 0):.1f} mm"} for each in listed}
     comments = {each.number: f"{name_part(each.number)}: {each.where}" for each in listed}
     return part_lines(parts, comments).removesuffix("\n")
 

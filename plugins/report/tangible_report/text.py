@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar, final
 
 from pydantic import Field
 
-from tangible_core.data import Work
+from tangible_core.data import Figure, Work
 from tangible_core.files import write_text
 from tangible_core.plugins import Exporter, note
 from tangible_export.braille import as_ascii, width_m, wrapped, written_by
@@ -56,7 +56,8 @@ class Text(Exporter):
         language = self.language or spoken_language(work.language, log)
         parts, kind = self._parts(work), None if work.picture is not None else "heights"
         surface = work.surface if self.materials else replace(work.surface, materials=None)
-        content = surface, work.title, language, parts, kind
+        seen: Figure | None = work.extras.get("figure")
+        content = surface, work.title, language, parts, kind, 0 if seen is None else seen.people
         lines = describe_at_length(*content)
         texts = {
             ".txt": "".join(f"{line}\n" for line in lines),

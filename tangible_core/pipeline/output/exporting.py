@@ -28,6 +28,7 @@ from ...scene.scene_files import SceneFiles
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from ..engine.engine import Engine
+from ..engine.networks import has_figure
 from ..engine.planning import REQUESTED, with_notes
 from ..engine.stage import Progress, StageEvent, ignore_event
 from .export_folder import check_writable, check_written, move
@@ -195,13 +196,16 @@ def work_for(engine: Engine, exporter: Exporter) -> Work:
         raise BrokenMethod(f"{name}: needs {quoted(odd[0])}; an exporter may need {', '.join(EXPORTABLE)}")
     products: dict[str, Record | None] = {name: engine.make_on_grid(name) for name in exporter.needs}
     views = engine.scene.views
+    extras = {"views": views, "truth": engine.scene.truth}
+    if has_figure(engine.config, engine.registry):
+        extras["figure"] = engine.make_on_grid("figure")
     return Work(
         title_of(engine.config, engine.scene),
         engine.config.language,
         products,
         None if views is None else views.left,
         names_of_parts(engine.config, products),
-        {"views": views, "truth": engine.scene.truth},
+        extras,
         film=engine.scene.frames is not None,
     )
 

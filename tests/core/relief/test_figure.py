@@ -7,7 +7,7 @@ import pytest
 
 from onnx_models import mono
 from tangible_core import Pipeline, Scene
-from tangible_core.data import Figure, Views
+from tangible_core.data import Figure, PartMap, Views
 from tangible_core.errors import ConfigError, ModelAbsent, PictureError
 from tangible_core.relief import ReliefChoice, figure_relief
 from tangible_core.relief.figure import BODY, GROOVE_M, GROUND, STEP
@@ -108,6 +108,28 @@ class TestPipeline:
         (models / "own.onnx").unlink()
         with pytest.raises(ModelAbsent):
             _ = Pipeline(Scene.photo(picture), relief="figure").relief
+
+    def test_figure_stays_apart_where_parts_are_simplified(self, models: Path) -> None:
+        """Its colour is that of a part of the ground: without the network they are one texture."""
+        picture = np.full((*SHAPE, 3), 120, np.uint8)
+        picture[:120] = 0
+        labels = np.where(DISK, 2, picture[..., 0] // 120).astype(np.int32)
+        picture[DISK] = 130
+
+        def simplified(relief: str) -> PartMap:
+            scene = Scene.photo(picture, segments=labels)
+            return Pipeline(scene, relief=relief, simplify={"textures": 2}, workspace={"width_m": 0.2}).make(
+                "simplified"
+            )
+
+        for relief, network, apart in (("figure", False, False), ("edges", True, False), ("figure", True, True)):
+            if network:
+                mono(models / "own.onnx")
+                (models / "own.yaml").write_text("task: figure\noutput: {means: figure}\n")
+            found = simplified(relief)
+            rows, columns = found.labels.shape
+            middle, below = (found.segments[found.labels[row, columns // 2]] for row in (rows // 2, rows - 9))
+            assert (middle != below) == apart
 
     def test_pair_keeps_its_depth(self) -> None:
         assert Pipeline(Scene.builtin("builtin/brick"), relief="figure").config.relief_kind == "figure"

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from command_line import tangible
+from onnx_models import mono
 from pictures import write_png
 from tangible_authoring.first_parts import first_parts
 from tangible_core.errors import OutputError
@@ -73,3 +74,29 @@ def test_picture_of_a_hostile_name_is_read_back_from_the_file(stripes: Path, nam
     config = load_pipeline(stripes / "p.yaml").config
     assert isinstance(config.scene, SceneFiles) and config.scene.photo == stripes / name
     assert config.title.startswith("A ")
+
+
+def test_parts_of_the_figure_that_a_network_sees_are_in_front(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Divided along its outline; a figure of one part has a name. Without a network, parts are as ever."""
+    monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path / "models"))
+    picture = np.full((80, 120), 30, np.uint8)
+    picture[:40] = 90
+    picture[10:50, 40:80] = 200
+    before = listed_parts(tmp_path, picture)
+    assert not any(each.name for each in before)
+    assert before[2].height_m != max(each.height_m or 0 for each in before), "by its place, the square is not in front"
+    (tmp_path / "models").mkdir()
+    mono(tmp_path / "models" / "own.onnx")
+    (tmp_path / "models" / "own.yaml").write_text("task: figure\noutput: {means: figure}\n")
+    found = listed_parts(tmp_path, picture)
+    assert [each.name for each in found] == ["", "the figure", ""]
+    assert found[1].height_m == pytest.approx(2.1e-3 + (before[1].height_m or 0) / 2, abs=1.1e-4)
+    picture[10:50, 60:80] = 240
+    assert [each.name for each in listed_parts(tmp_path, picture)] == [""] * 4
+    lowest_of_figure, highest_of_ground = sorted(each.height_m or 0 for each in listed_parts(tmp_path, picture))[2:0:-1]
+    assert highest_of_ground <= 2.1e-3 <= lowest_of_figure
+
+
+def listed_parts(folder: Path, picture: np.ndarray):
+    write_png(folder / "stripes.png", picture)
+    return parts_of(folder, overrides=["texture.segments=4"]).listed

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tangible_core import Pipeline, Scene
-from tangible_core.data import HapticSurface, MaterialMap, PartMap, Work
+from tangible_core.data import Figure, HapticSurface, MaterialMap, PartMap, Work
 from tangible_core.errors import BrailleError
 from tangible_core.materials.assignment import library
 from tangible_core.plugins.notes import collected
@@ -55,6 +55,21 @@ def test_text_with_named_parts_describes_the_surface(tmp_path: Path):
     assert "Le long du bord inférieur" in items(texts[".txt"])[0]
     assert '<html lang="fr">' in texts[".html"]
     assert notes == []
+
+
+def test_text_counts_the_people_that_networks_see_in_front(tmp_path: Path):
+    """A face without a figure is not in front of anything, and a figure without a face is not a person."""
+    figure, faces = np.ones((8, 8), np.float32), np.zeros((2, 468, 3), np.float32)
+    for seen, says in (
+        (Figure(figure, None, faces), "2 people are in front of the ground."),
+        (Figure(figure, None, faces[:1]), "One person is in front of the ground."),
+        (Figure(figure), ""),
+        (Figure(None, None, faces), ""),
+    ):
+        given = replace(work(language="en"), extras={"figure": seen})
+        for text in write_texts(given, Text(), tmp_path)[0].values():
+            assert says in text
+            assert bool(says) == ("in front" in text)
 
 
 def test_text_without_names_describes_the_simplified_parts(tmp_path: Path):

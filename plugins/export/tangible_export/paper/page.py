@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 from jaxtyping import Float64
 
-from tangible_core.data import PartMap, Work
+from tangible_core.data import Figure, PartMap, Work
 from tangible_core.errors import PictureError
 from tangible_core.errors import shown as shown_text
 from tangible_core.plugins import note
@@ -79,7 +79,8 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[Dr
         areas=(),
         texts=(title_at(title, lines),),
     )
-    symbols, picture = _draw_readable(blank, parts, groups)
+    seen: Figure = work.extras.get("figure") or Figure()
+    symbols, picture = _draw_readable(blank, parts, groups, seen.front_parts(parts))
     _note_left_out(symbols, picture)
     keys = key_pages(_entries(symbols, picture), title, work.language, page, sheet)
     for key in keys:
@@ -87,15 +88,19 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[Dr
     return [picture, *keys]
 
 
-def _draw_readable(blank: Drawing, parts: PartMap, groups: Sequence[NamedParts]) -> tuple[list[Symbols], Drawing]:
+def _draw_readable(
+    blank: Drawing, parts: PartMap, groups: Sequence[NamedParts], front: Sequence[int]
+) -> tuple[list[Symbols], Drawing]:
     """Draw the page; open the parts where their outlines run too near to each other, until none do.
 
+    front: numbers of the parts of the figure, whose common outline is heavier if that has room.
     Raises: PictureError if that does not help.
     """
-    near, sheet = list[Near](), blank.sheet
+    near, sheet, given = list[Near](), blank.sheet, parts
     wide_mm = sheet.picture_mm[0]
     for turn in range(ROUNDS):
         shapes = _on_page(parts, sheet)
+        blank = replace(blank, figure=shapely.union_all([shapes[number] for number in front]) if front else None)
         outlines = [Area(group.name, shapes[number]) for group in groups for number in group.numbers]
         if not (near := narrow_places(read(svg(replace(blank, areas=tuple(outlines), texts=()))))):
             symbols = _choose_symbols(groups, shapes, _neighbours(parts, groups), blank.language)
@@ -104,6 +109,8 @@ def _draw_readable(blank: Drawing, parts: PartMap, groups: Sequence[NamedParts])
             if not near:
                 return symbols, drawing
         parts = open_at(parts, _on_picture([each.place_mm for each in near], sheet), wide_mm / 1000, turn + 1)
+    if front:  # a thinner line may have the room
+        return _draw_readable(replace(blank, figure=None), given, groups, ())
     raise PictureError(f"{near[0]}, and {GAP_MM} mm must be between them; make the picture larger or simpler")
 
 

@@ -14,6 +14,8 @@ MARGIN_MM = 10.0
 """Margin on all sides, which printers leave white, and where a hand holds the sheet."""
 LINE_MM = 1.0
 """Width of outlines. A convention of ours, within the 0.5 to 1.5 mm that tactile graphics use."""
+HEAVY_MM = 1.5
+"""Width of the outline of the figure: the most that tactile graphics use."""
 GAP_MM = 3.2
 """Smallest gap between marks that a finger tells apart. Source: tactilegraphics.org."""
 CLEAR_MM = GAP_MM + 0.2

@@ -26,6 +26,7 @@ def simplify(
     choice: SimplifyChoice,
     names: Sequence[str] = (),
     picture: np.ndarray | None = None,
+    front: Sequence[int] = (),
 ) -> PartMap:
     """Simplify parts until fingers can read them; they keep their numbers, on a grid that may be another one.
 
@@ -34,7 +35,8 @@ def simplify(
     become one texture until there are `choice.textures`. Then places narrower than `choice.gap_m` and parts that hold
     no disc of `choice.part_m` go to their neighbours, again and again until all parts pass. A part that vanished has
     no pixel. Parts that became one texture have one segment.
-    names: of parts, by number; parts with a name stay apart. picture: of the parts' size, for its colours.
+    names: of parts, by number; parts with a name stay apart. picture: of the parts' size, for its colours. front:
+    numbers of the parts of the figure, which become textures of their own.
     Notes name the named parts that vanished, the parts in several pieces and, if it cannot pass, the cure.
     Raises: GeometryError if width_m is not positive.
     """
@@ -46,7 +48,7 @@ def simplify(
         widths = measure(whole.parts.labels, whole.pitch_m, choice.gap_m)
         if not find_failures(whole.parts, widths, choice, names):
             return whole.parts
-    kinds = texture_kinds(grid.parts, names, choice.textures, picture)
+    kinds = texture_kinds(grid.parts, names, choice.textures, picture, front)
     named = np.zeros(int(kinds.max()) + 1, np.bool_)
     named[[kind for kind, name in zip(kinds.tolist(), names, strict=False) if name]] = True
     labels, shape = kinds[grid.parts.labels], grid.parts.labels.shape

@@ -11,6 +11,9 @@ from tangible_core.runtime import plain_opencv
 MOST_COMPARED = 256
 """Textures that are compared pairwise; the smallest of more go to the most similar of these."""
 
+FAR = 1000.0
+"""Difference in colour that is added between the figure and the ground: more than any two colours have."""
+
 
 def count_textures(parts: PartMap, names: Sequence[str] = ()) -> int:
     """Count the textures of the parts that have a pixel: one a segment, without parts that a name distinguishes."""
@@ -19,20 +22,26 @@ def count_textures(parts: PartMap, names: Sequence[str] = ()) -> int:
 
 
 def texture_kinds(
-    parts: PartMap, names: Sequence[str], textures: int, picture: np.ndarray | None
+    parts: PartMap, names: Sequence[str], textures: int, picture: np.ndarray | None, front: Sequence[int] = ()
 ) -> Int32[np.ndarray, "n"]:
     """Return the kind of each part, from 0 on: a separate one for each named part, at most `textures` for the others.
 
     Kinds of unnamed parts are their segments. While there are too many, the two kinds are merged that add least to the
     spread of colours within textures (Ward 1963), in CIELAB; without a picture, the smallest kinds.
+    front: numbers of the parts of the figure, which merge with each other rather than with the ground.
     """
-    keys = [-1 - n if n < len(names) and names[n] else segment for n, segment in enumerate(parts.segments)]
+    most, figure = max(parts.segments, default=0) + 1, set(front)
+    keys = [
+        -1 - n if n < len(names) and names[n] else segment + most * (n in figure)
+        for n, segment in enumerate(parts.segments)
+    ]
     order = {each: at for at, each in enumerate(dict.fromkeys(keys))}
     kinds = np.array([order[each] for each in keys], np.int32)
     size = np.bincount(kinds[parts.labels].reshape(-1), minlength=len(order))
     free = np.array([at for each, at in order.items() if each >= 0 and size[at]], np.int64)
     if free.size > textures:
         colour = np.zeros((len(order), 3)) if picture is None else _colours(picture, kinds[parts.labels], size)
+        colour[:, 0] += FAR * np.array([each >= most for each in order])
         into = np.arange(len(order), dtype=np.int32)
         into[free] = free[_merge(size[free].astype(np.float64), colour[free], textures, picture is not None)]
         kinds = into[kinds]

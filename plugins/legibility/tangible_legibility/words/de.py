@@ -14,6 +14,8 @@ WORDS: Mapping[str, str] = {
     "mixed": "Hohe und tiefe Stellen liegen überall darauf{flat}.",
     "size": "{what} ist als Fläche zu fühlen, {width} cm breit und {length} cm lang{high}.",
     "high": ", bis zu {relief} mm hoch",
+    "one person": "Ein Mensch ist vor dem Grund zu sehen.",
+    "people": "{count} Menschen sind vor dem Grund zu sehen.",
     "all flat": "Sie ist überall eben.",
     "flat": "; etwa {share} % davon sind eben{where}",
     "nearly all flat": "; fast alles davon ist eben",

@@ -14,6 +14,8 @@ WORDS: Mapping[str, str] = {
     "mixed": "High and low places lie all over it{flat}.",
     "size": "{what} is felt as a surface {width} cm wide and {length} cm long{high}.",
     "high": ", up to {relief} mm high",
+    "one person": "One person is in front of the ground.",
+    "people": "{count} people are in front of the ground.",
     "all flat": "It is flat everywhere.",
     "flat": "; about {share} % of it is flat{where}",
     "nearly all flat": "; nearly all of it is flat",

@@ -14,6 +14,8 @@ WORDS: Mapping[str, str] = {
     "mixed": "Creux et bosses se répartissent sur toute la surface{flat}.",
     "size": "{what} se touche comme une surface de {width} cm de large et {length} cm de long{high}.",
     "high": ", jusqu'à {relief} mm de haut",
+    "one person": "Une personne se trouve devant le fond.",
+    "people": "{count} personnes se trouvent devant le fond.",
     "all flat": "Tout est plat.",
     "flat": " ; environ {share} % de la surface sont plats{where}",
     "nearly all flat": " ; presque tout est plat",

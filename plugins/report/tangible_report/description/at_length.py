@@ -11,7 +11,7 @@ from tangible_core.scene import SceneKind
 from tangible_legibility.words.languages import Language, Words, one_line
 from tangible_legibility.words.places import NOWHERE
 
-from .describing import FLAT_M, heights_in_words, materials_in_words
+from .describing import FLAT_M, heights_in_words, materials_in_words, people_in_words
 from .facts import PartFacts
 
 MOST_PARTS = 60
@@ -64,15 +64,16 @@ def describe_at_length(
     language: Language = "en",
     parts: Sequence[PartFacts] = (),
     kind: SceneKind | None = None,
+    people: int = 0,
 ) -> tuple[str, ...]:
     """Return the lines of a long description: title, overview, heading, and a line for each part.
 
-    parts: from near to far, by `facts`. kind: the kind of the scene, if it is known.
+    parts: from near to far, by `facts`. kind: the kind of the scene, if it is known. people: known to be in front.
 
     >>> describe_at_length(HapticSurface.from_heights(np.zeros((8, 8))), "A plate")
     ('A plate', '', 'A surface 80 mm wide and 80 mm long. It is flat everywhere.')
     """
-    told = tell(surface, title, language, parts, kind)
+    told = tell(surface, title, language, parts, kind, people)
     lines = [told.title, "", " ".join(told.overview)]
     if told.parts:
         lines += ["", told.heading]
@@ -86,6 +87,7 @@ def page_of(
     language: Language = "en",
     parts: Sequence[PartFacts] = (),
     kind: SceneKind | None = None,
+    people: int = 0,
     *,
     named_in: str | None = None,
 ) -> str:
@@ -94,7 +96,7 @@ def page_of(
     named_in: the tag of the language of the title and names, if it differs from the language of the words.
     """
     other = named_in if named_in and named_in != language else ""
-    told = tell(surface, title, language, parts, kind, lambda text: _quote(text, other))
+    told = tell(surface, title, language, parts, kind, people, lambda text: _quote(text, other))
     items = "".join(
         f"<li><strong>{end_sentence(each.label)}</strong> {' '.join(each.sentences)}</li>\n" for each in told.parts
     )
@@ -127,6 +129,7 @@ def tell(
     language: Language,
     parts: Sequence[PartFacts],
     kind: SceneKind | None,
+    people: int = 0,
     given: Callable[[str], str] = one_line,
 ) -> Told:
     """Return a long description. given: formats custom names, which are those of the title, of parts and materials."""
@@ -137,9 +140,10 @@ def tell(
     share = _percent(sum(each.share for each in left), say)
     left_out = say("small part" if len(left) == 1 else "small parts", count=len(left), share=share) if left else ""
     materials = "" if any(each.material for each in largest) else materials_in_words(surface, say)
+    whole = _size(surface, say), people_in_words(people, say), heights_in_words(surface, say), materials
     return Told(
         given(title) if title.strip() else say("nameless"),
-        tuple(filter(None, [_size(surface, say), heights_in_words(surface, say), materials])),
+        tuple(filter(None, whole)),
         say("part list heights" if kind == "heights" else "part list") if largest else "",
         tuple(ToldPart(labels[each.number], _sentences(each, labels, say, given)) for each in largest),
         left_out,

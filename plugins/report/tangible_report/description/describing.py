@@ -23,12 +23,19 @@ FLAT_M = 1e-6
 """The height up to which a relief counts as flat: a hand does not feel it."""
 
 
-def describe(surface: HapticSurface, scene_name: str, language: Language = "en", kind: SceneKind | None = None) -> str:
+def describe(
+    surface: HapticSurface,
+    scene_name: str,
+    language: Language = "en",
+    kind: SceneKind | None = None,
+    people: int = 0,
+) -> str:
     """Return one to three sentences on a surface and its scene, always the same for the same surface.
 
     Places are those of the picture: `at the top` is far from the hand. Parts with a name are described one by one,
     each with its material; without names, the materials are described.
-    kind: the kind of the scene, if it is to be mentioned (`kind_of`). language: one of `LANGUAGES`.
+    kind: the kind of the scene, if it is to be mentioned (`kind_of`). people: known to be in front of the ground.
+    language: one of `LANGUAGES`.
     Raises: ArgumentError for another language.
 
     >>> describe(HapticSurface.from_heights(np.zeros((8, 8))), "a plate")
@@ -38,7 +45,13 @@ def describe(surface: HapticSurface, scene_name: str, language: Language = "en",
         raise wrong_argument("language", language, f"one of {', '.join(LANGUAGES)}")
     say = Words(language)
     of_what = _parts(surface, say) if any(surface.names or ()) else materials_in_words(surface, say)
-    return " ".join(filter(None, [_size(surface, scene_name, kind, say), heights_in_words(surface, say), of_what]))
+    size = _size(surface, scene_name, kind, say)
+    return " ".join(filter(None, [size, people_in_words(people, say), heights_in_words(surface, say), of_what]))
+
+
+def people_in_words(people: int, say: Words) -> str:
+    """Return a sentence on the people in front of the ground; empty for none."""
+    return say("one person" if people == 1 else "people", count=people) if people else ""
 
 
 def _size(surface: HapticSurface, name: str, kind: SceneKind | None, say: Words) -> str:

@@ -6,6 +6,7 @@ from ....data import PartMap
 from ....parts import SimplifyChoice
 from ...config.part_checks import names_of
 from ..legibility import legibility_point, simplify_function
+from ..networks import has_figure
 from ..stage import Inputs
 from .parts import OfPartsStage
 
@@ -17,7 +18,7 @@ class SimplifiedStage(OfPartsStage):
 
     @property
     def needs(self) -> tuple[str, ...]:
-        return "views", "parts"
+        return "views", "parts", *(("figure",) if has_figure(self.config, self.context.registry) else ())
 
     @property
     def _choice(self) -> SimplifyChoice:
@@ -34,7 +35,8 @@ class SimplifiedStage(OfPartsStage):
         names = names_of(self.config.parts or {}, parts.count)
         picture = self.grid.views.left if self.grid.views else None
         simplify = simplify_function(self.context.registry)
-        return simplify(parts, self.config.size.width_m, self._choice, names, picture)
+        front = {"front": inputs["figure"].front_parts(parts)} if "figure" in self.needs else {}
+        return simplify(parts, self.config.size.width_m, self._choice, names, picture, **front)
 
     @property
     def in_outcomes(self) -> bool:

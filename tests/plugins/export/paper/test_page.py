@@ -1,15 +1,19 @@
 """What a page is made of: if a case fails, its key or its fills do not fit its parts."""
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 import shapely
 
 from exported_pictures import labels_work
-from tangible_core.data import PartMap, Work
+from tangible_core.data import Figure, PartMap, Work
 from tangible_export.paper import page
+from tangible_export.paper.marks.reading import read
 from tangible_export.paper.marks.svg import BLACK, Area, Braille, Drawing, svg
 from tangible_export.paper.named_parts import NamedParts, group_by_name
 from tangible_export.paper.page import Symbols
-from tangible_export.paper.sheet import Sheet
+from tangible_export.paper.sheet import HEAVY_MM, Sheet
 from tangible_export.swell import _aspect
 
 SHEET = Sheet(210, 297, 10, 20, (100, 50))
@@ -58,3 +62,20 @@ def test_page_has_the_sides_of_the_picture_though_parts_have_others():
     picture = np.zeros((30, 45, 3), np.uint8)
     assert _aspect(Work("Map", "en", {}, picture, ()), parts) == 1.5
     assert _aspect(Work("Map", "en", {}, None, ()), parts) == 1.55
+
+
+def test_outline_of_the_figure_is_heavier_and_one_for_all_its_parts():
+    """Without what networks see, the page is as ever."""
+    labels = np.zeros((60, 80), np.int32)
+    labels[15:45, 20:60] = 1
+    labels[15:45, 40:60] = 2
+    work = labels_work(labels, ("wall", "coat", "sleeve"))
+    sheet = Sheet(210, 297, 10, 60, (180, 135))
+    plain = svg(page.drawn_pages(work, work.simplified, sheet, "a4")[0])
+    seen = replace(work, extras={"figure": Figure((labels > 0).astype(np.float32))})
+    drawn = svg(page.drawn_pages(seen, work.simplified, sheet, "a4")[0])
+    heavy = [mark for mark in read(drawn).marks if mark.stroke_mm == HEAVY_MM]
+    assert len(heavy) == 1
+    assert np.ptp(heavy[0].shape.vertices, axis=0) == pytest.approx((90, 67.5), abs=1)
+    lines = [line for line in plain.splitlines() if 'data-mark="fill"' not in line]
+    assert [line for line in drawn.splitlines() if line in lines] == lines, "but for fills, which keep clear of it"

@@ -14,7 +14,7 @@ from jaxtyping import Float64
 from ...braille import DOT_DIAMETER_M
 from ..fills import DOT_MM as FILL_DOT_MM
 from ..fills import Fill
-from ..sheet import CORNER_MM, LINE_MM, MARGIN_MM, Sheet
+from ..sheet import CORNER_MM, HEAVY_MM, LINE_MM, MARGIN_MM, Sheet
 
 BLACK = "#000"
 BRAILLE_DOT_MM = 1000 * DOT_DIAMETER_M
@@ -52,6 +52,8 @@ class Drawing:
     """The text alternative of the corner mark."""
     areas: tuple[Area, ...]
     texts: tuple[Braille, ...]
+    figure: Any = None
+    """The shape of the figure, whose outline is heavier; None without one."""
 
 
 def svg(drawing: Drawing, colour: str = BLACK, over: Sequence[str] = ()) -> str:
@@ -71,6 +73,7 @@ def svg(drawing: Drawing, colour: str = BLACK, over: Sequence[str] = ()) -> str:
         *(_braille(text) for text in drawing.texts),
         _corner(drawing),
         *(_area(area, colour) for area in drawing.areas),
+        *([] if drawing.figure is None else [_outline(drawing.figure, colour, HEAVY_MM)]),
         *over,
         "</svg>",
     ]
@@ -84,15 +87,19 @@ def _corner(drawing: Drawing) -> str:
 
 
 def _area(area: Area, colour: str) -> str:
-    rings = shapely.get_rings(shapely.get_parts(area.outline))
-    outline = "".join(f"{_line(shapely.get_coordinates(each)[:-1])}Z" for each in rings)
-    inside = [
-        f'<path data-mark="outline" fill="none" stroke="{colour}" stroke-width="{LINE_MM:g}" stroke-linejoin="round" '
-        f'd="{outline}"/>'
-    ]
+    inside = [_outline(area.outline, colour, LINE_MM)]
     inside += [_braille(area.letter)] if area.letter else []
     inside += [_fill(area.fill, colour)] if area.fill else []
     return "\n".join([f'<g role="img" aria-label={quoteattr(area.label)}>', *inside, "</g>"])
+
+
+def _outline(shape: Any, colour: str, width_mm: float) -> str:
+    rings = shapely.get_rings(shapely.get_parts(shape))
+    line = "".join(f"{_line(shapely.get_coordinates(each)[:-1])}Z" for each in rings)
+    return (
+        f'<path data-mark="outline" fill="none" stroke="{colour}" stroke-width="{width_mm:g}" stroke-linejoin="round" '
+        f'd="{line}"/>'
+    )
 
 
 def _fill(fill: Fill, colour: str) -> str:

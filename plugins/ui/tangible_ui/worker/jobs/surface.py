@@ -11,6 +11,7 @@ from jaxtyping import Float32, Float64, Shaped
 from tangible_core.data import Material, digest_of
 from tangible_core.errors import GeometryError
 from tangible_core.pipeline import Pipeline
+from tangible_core.pipeline.engine import product_at_hand
 from tangible_core.pipeline.output import title_of
 from tangible_core.scene import kind_of
 from tangible_legibility.words.languages import LANGUAGES, Language
@@ -95,7 +96,8 @@ def description(state: WorkerState, language: Language) -> dict[str, Any] | None
     pipeline, seen = state.described
     config, kind = pipeline.config, kind_of(pipeline.scene)
     title, parts = title_of(config, pipeline.scene), facts(seen.surface)
-    told = tell(seen.surface, title, language, parts, kind)
+    people = _people(pipeline)
+    told = tell(seen.surface, title, language, parts, kind, people)
     return {
         "digest": seen.digest,
         "title": told.title,
@@ -103,16 +105,22 @@ def description(state: WorkerState, language: Language) -> dict[str, Any] | None
         "heading": told.heading,
         "parts": [{"label": each.label, "says": " ".join(each.sentences)} for each in told.parts],
         "left_out": told.left_out,
-        "text": "\n".join(describe_at_length(seen.surface, title, language, parts, kind)),
-        "html": page_of(seen.surface, title, language, parts, kind, named_in=config.language),
+        "text": "\n".join(describe_at_length(seen.surface, title, language, parts, kind, people)),
+        "html": page_of(seen.surface, title, language, parts, kind, people, named_in=config.language),
     }
 
 
 def description_data(pipeline: Pipeline, seen: SurfaceView) -> dict[str, Any]:
     """Return descriptions by language."""
     scene = pipeline.scene
-    kind = kind_of(scene)
+    kind, people = kind_of(scene), _people(pipeline)
     return {
         "digest": seen.digest,
-        "says": {each: describe(seen.surface, scene.name, each, kind) for each in LANGUAGES},
+        "says": {each: describe(seen.surface, scene.name, each, kind, people) for each in LANGUAGES},
     }
+
+
+def _people(pipeline: Pipeline) -> int:
+    """Return the number of people known to be in front; 0 where the relief is not made of what networks see."""
+    seen = product_at_hand(pipeline.engine, "figure") if pipeline.config.relief_kind == "figure" else None
+    return 0 if seen is None else seen.people

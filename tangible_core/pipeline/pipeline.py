@@ -240,6 +240,7 @@ class Pipeline:
         stop: Event | None = None,
         *,
         force: bool = False,
+        cut_out: bool = False,
     ) -> Export:
         """Write files for other devices and programs: a printer, swell paper, a pin display, a reader.
 
@@ -247,11 +248,12 @@ class Pipeline:
         `export` lists by default. Only the products that they need are made, at the width of each exporter. An exporter
         that fails does not stop the others: see `Export.outcomes`.
         progress, stop: as `make`. force: overwrites files that are not an earlier export of this pipeline, too.
+        cut_out: leaves the ground of a photograph away, where a network sees what stands out from it.
         Raises: ConfigError without exporters; UnknownMethod, BrokenMethod; OutputError if the folder cannot be written;
         Stopped after `stop`.
         """
         chosen = chosen_exporters(self.config, to, self.engine.registry)
-        return export(self.engine, as_path(out, "out"), chosen, progress, stop, force=force)
+        return export(self.engine, as_path(out, "out"), chosen, progress, stop, force=force, cut=cut_out)
 
     def feel(
         self, device: HapticDevice | None = None, seconds: float | None = 8.0, **options: Unpack[FeelOptions]

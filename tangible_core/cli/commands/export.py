@@ -36,6 +36,9 @@ def export(
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for the files [default: out/NAME].")] = None,
     sets: Sets = None,
+    cut_out: Annotated[
+        bool, typer.Option("--cut-out", help="Leave the ground of a photograph away; a network sees the figure.")
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Overwrite files that no export of this wrote.")] = False,
     verbose: Verbose = False,
     as_json: Json = False,
@@ -53,7 +56,7 @@ def export(
         _print_recording(_as_csv(config, out or Path("out") / config[0].stem, force), as_json)
         return
     pipeline = open_pipeline(config, sets or [], not no_cache)
-    done = pipeline.export(out or default_place(config[0]), names or None, force=force)
+    done = pipeline.export(out or default_place(config[0]), names or None, force=force, cut_out=cut_out)
     if as_json:
         show.print_json(done.document())
     elif not is_quiet():

@@ -31,6 +31,7 @@ from ..engine.engine import Engine
 from ..engine.networks import has_figure
 from ..engine.planning import REQUESTED, with_notes
 from ..engine.stage import Progress, StageEvent, ignore_event
+from .cutting import remove_ground
 from .export_folder import check_writable, check_written, move
 from .export_result import Export, Exported
 from .legible import drawn_parts, drawn_width_m, judge_products, names_of_parts, with_cures_of, with_width
@@ -89,15 +90,21 @@ def export(
     stop: Event | None = None,
     *,
     force: bool = False,
+    cut: bool = False,
 ) -> Export:
     """Write the files of each exporter into a folder. An exporter that fails does not stop the others.
 
+    cut: leave the ground of a photograph away.
     Raises: OutputError if the folder cannot be written, or another process exports files of this name into it;
     TangibleError for a scene that cannot be read; Stopped.
     """
     stem = stem_of(engine.config, engine.scene)
     check_writable(folder)
-    run, done, names = _ExportRun(engine, folder, force, progress or ignore_event), list[Exported](), Counter[str]()
+    run, done, names = (
+        _ExportRun(engine, folder, force, cut, progress or ignore_event),
+        list[Exported](),
+        Counter[str](),
+    )
     with sole_writer(folder / stem), stoppable(stop):
         for each in chosen:
             names[each.name] += 1
@@ -110,10 +117,11 @@ def export(
 class _ExportRun:
     """The state of one call of `export`, whose exporters share their products."""
 
-    def __init__(self, engine: Engine, folder: Path, force: bool, progress: Progress) -> None:
+    def __init__(self, engine: Engine, folder: Path, force: bool, cut: bool, progress: Progress) -> None:
         self.engine = engine
         self.folder = folder
         self.force = force
+        self.cut = cut
         self.progress = progress
         self.source = relative_source(engine.config.path, folder)
         config = engine.config
@@ -134,7 +142,7 @@ class _ExportRun:
         try:
             engine = self._engine(chosen)
             with engine.watching(listen):
-                work = work_for(engine, chosen.method)
+                work = work_for(engine, chosen.method, cut=self.cut)
                 legible = legible_for(engine, chosen)
             check_stopped()
             self.progress(StageEvent(product, chosen.name))
@@ -186,9 +194,10 @@ def _full_name(exporter: Exporter) -> str:
     return plugin_name("export", type(exporter).__module__, type(exporter).__qualname__)
 
 
-def work_for(engine: Engine, exporter: Exporter) -> Work:
+def work_for(engine: Engine, exporter: Exporter, *, cut: bool = False) -> Work:
     """Make the work for an exporter: the products that it needs, on the working grid.
 
+    cut: leave the ground of a photograph away.
     Raises: BrokenMethod for a product that nothing makes; TangibleError as `Engine.make`.
     """
     if odd := [each for each in exporter.needs if each not in EXPORTABLE]:
@@ -196,6 +205,8 @@ def work_for(engine: Engine, exporter: Exporter) -> Work:
         raise BrokenMethod(f"{name}: needs {quoted(odd[0])}; an exporter may need {', '.join(EXPORTABLE)}")
     products: dict[str, Record | None] = {name: engine.make_on_grid(name) for name in exporter.needs}
     views = engine.scene.views
+    if cut:
+        products = remove_ground(engine, products)
     extras = {"views": views, "truth": engine.scene.truth}
     if has_figure(engine.config, engine.registry):
         extras["figure"] = engine.make_on_grid("figure")

@@ -4,11 +4,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from onnx_models import mono
 from tangible_core import Pipeline, Scene
 from tangible_core.data import Figure, PartMap, Views
 from tangible_core.errors import ConfigError, ModelAbsent, PictureError
+from tangible_core.pipeline.output.cutting import flatten_ground
+from tangible_core.pipeline.output.export_result import Exported
 from tangible_core.relief import ReliefChoice, figure_relief
 from tangible_core.relief.figure import BODY, GROOVE_M, GROUND, STEP
 from tangible_core.scene.workspace import FeltSize, Workspace
@@ -108,6 +111,27 @@ class TestPipeline:
         (models / "own.onnx").unlink()
         with pytest.raises(ModelAbsent):
             _ = Pipeline(Scene.photo(picture), relief="figure").relief
+
+    def test_cut_out_leaves_the_ground_away(self, models: Path) -> None:
+        """Of heights and of parts; without the network, or without a figure, a sentence says so."""
+        picture = np.zeros((*SHAPE, 3), np.uint8)
+        picture[DISK] = 255
+        picture[:20] = 100
+
+        def write(shown: np.ndarray) -> Exported:
+            pipeline = Pipeline(Scene.photo(shown), relief="edges")
+            return pipeline.export(models / "out", "heights", cut_out=True, force=True).exports[0]
+
+        assert "tangible networks add figure" in write(picture).outcome.why
+        mono(models / "own.onnx")
+        (models / "own.yaml").write_text("task: figure\noutput: {means: figure}\n")
+        height_mm = np.asarray(Image.open(write(picture).files[2]))
+        assert (height_mm[~DISK] == 0).all()
+        assert height_mm[DISK].max() > 1
+        assert "nothing stands out" in write(picture // 4).outcome.why
+        parts = PartMap((picture[..., 0] // 100).astype(np.int32), (0, 1, 2))
+        cut = flatten_ground(parts, Figure(DISK.astype(np.float32)))
+        assert np.array_equal(cut.labels, np.where(DISK, 2, 3))
 
     def test_figure_stays_apart_where_parts_are_simplified(self, models: Path) -> None:
         """Its colour is that of a part of the ground: without the network they are one texture."""

@@ -4,9 +4,9 @@ import hashlib
 import io
 import json
 import os
+import socket
 import tarfile
 import threading
-import time
 import zipfile
 from collections.abc import Iterator
 from contextlib import suppress
@@ -208,26 +208,25 @@ def test_fetch_for_another_program_reports_ends_and_stops(models: Path) -> None:
     source = models / "given"
     source.write_bytes(CONTENT)
     (models / "mine.yaml").write_text(f"sha256: {DIGEST}\noutput: {{means: figure}}\n")
-    (models / "npm.yaml").write_text("source: {npm: none, version: 1, member: net.onnx}\noutput: {means: figure}\n")
-    (models.parent / "npm").write_text("#!/bin/sh\nexec sleep 60\n")
-    (models.parent / "npm").chmod(0o755)
-    environment = {**os.environ, "PATH": f"{models.parent}{os.pathsep}{os.environ['PATH']}"}
+    (models / "slow.yaml").write_text("source: {pypi: none, version: 1, member: a}\noutput: {means: figure}\n")
 
-    def fetch(*told: object) -> list[dict[str, object]]:
-        with Popen(command("tangible_networks.fetching"), stdin=PIPE, stdout=PIPE, env=environment) as process:
+    def fetch(*told: object, **environment: str) -> list[dict[str, str]]:
+        begin = command("tangible_networks.fetching")
+        with Popen(begin, stdin=PIPE, stdout=PIPE, env={**os.environ, **environment}) as process:
             assert process.stdin is not None and process.stdout is not None
             process.stdin.write(f"{json.dumps(told)}\n".encode())
             process.stdin.flush()
             reports = []
             for line in process.stdout:
                 reports.append(json.loads(line))
-                if told[0] == ["npm"]:
+                if environment:
                     process.stdin.close()
         return reports
 
     assert fetch(["mine"], str(source)) == [{"name": "mine", "done": 0, "whole": 0, "why": ""}]
     assert (models / "mine.onnx").read_bytes() == CONTENT
     assert "mien: no such network" in fetch(["mien"], None)[0]["why"]
-    start_s = time.monotonic()
-    assert "stopped on request" in fetch(["npm"], None)[-1]["why"]
-    assert time.monotonic() - start_s < 30 and not list(models.glob(".*"))
+    with socket.create_server(("127.0.0.1", 0)) as silent:  # a registry that never answers
+        reports = fetch(["slow"], None, PIP_INDEX_URL=f"http://127.0.0.1:{silent.getsockname()[1]}/")
+    assert "stopped on request" in reports[-1]["why"]
+    assert not list(models.glob(".*"))

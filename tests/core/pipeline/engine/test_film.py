@@ -113,6 +113,7 @@ def test_what_cannot_be_a_film_is_refused(film_pipeline, walk):
     for feel, words in (
         (lambda: film_pipeline(render=Penalty()).feel(Mock(), 0.1, in_real_time=False), "penalty.*proxy"),
         (lambda: film_pipeline(texture=Histogram(segments=2), heights="guess").feel(Mock(), 0.1), "`heights:`"),
+        (lambda: Feeling(film_pipeline(relief="figure")).reliefs, "not of figure; leave `by: figure` out"),
         (lambda: Feeling(still).reliefs, "does not move"),
         (lambda: Feeling(still).film(), "does not move"),
     ):

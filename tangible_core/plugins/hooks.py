@@ -88,7 +88,8 @@ class Specs:
     @hookspec
     def tangible_networks(self) -> Mapping[str, str]:  # pyright: ignore[reportReturnType]
         """Return the functions that `look` at a photograph with networks, and tell the `identity` of those that are
-        here, as 'package.module:function'; nothing is imported, and the first answer counts."""
+        here, for all tasks or for some, as 'package.module:function'; nothing is imported, and the first answer counts.
+        """
 
     @hookspec
     def tangible_commands(self, app: Typer) -> None:

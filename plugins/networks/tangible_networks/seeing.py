@@ -1,6 +1,8 @@
 """What the networks that are here see in one photograph."""
 
 import logging
+from collections.abc import Collection
+from functools import lru_cache
 
 import numpy as np
 from jaxtyping import Float32
@@ -12,7 +14,7 @@ from tangible_core.plugins import note
 from .card import Task
 from .fitting import Colours, fit_size, resize, restore_size, tensor
 from .runtimes import run
-from .store import networks_here
+from .store import KnownNetwork, networks_here
 
 log: logging.Logger = logging.getLogger(__name__)
 MAX_PX = {"figure": 102_400, "borders": 154_401, "faces": 4_000_000}
@@ -22,16 +24,22 @@ SURE = 0.5
 """Least value of a figure's surest pixel: in a picture without a figure, no pixel is one."""
 
 
-def look(picture: np.ndarray) -> Figure:
+def look(picture: np.ndarray, tasks: Collection[Task] = ("figure", "borders", "faces")) -> Figure:
     """Return the figure, the borders and the faces of a picture, as far as there are networks for them.
 
-    picture: uint8, uint16 or float (h, w), (h, w, 3) or (h, w, 4). Raises: ConfigError for a network that cannot run.
+    picture: uint8, uint16 or float (h, w), (h, w, 3) or (h, w, 4). tasks: what is looked for.
+    Raises: ConfigError for a network that cannot run.
     """
     colours = to_rgb(picture)
+    borders = look_for_borders(colours, colours.shape[:2]) if "borders" in tasks else None
+    figure = look_for_figure(colours) if "figure" in tasks else None
+    return Figure(figure, borders, _faces(colours) if "faces" in tasks else None)
+
+
+def look_for_borders(colours: Colours, shape: tuple[int, int]) -> Float32[np.ndarray, "r c"] | None:
+    """Return how surely people would draw a border at each pixel of this size; None without a network."""
     borders = _map(colours, "borders")
-    return Figure(
-        look_for_figure(colours), None if borders is None else restore_map(borders, colours.shape[:2]), _faces(colours)
-    )
+    return None if borders is None else restore_map(borders, shape)
 
 
 def look_for_figure(colours: Colours) -> Float32[np.ndarray, "h w"] | None:
@@ -55,10 +63,8 @@ def _map(colours: Colours, task: Task) -> Float32[np.ndarray, "r c"] | None:
     network = networks[0]
     card = network.card
     fit = fit_size(colours.shape[:2], card.input, MAX_PX[card.task])
-    small = resize(colours, fit.resized)
-    output = run(
-        network.path, card.runtime or "opencv", {card.input.left: tensor(small, card.input, fit)}, [card.output.name]
-    )[0]
+    given = tensor(resize(colours, fit.resized), card.input, fit)
+    output = _run_once(network, network.path.stat().st_mtime_ns, given.tobytes(), given.shape)
     values = restore_size(output, fit, fit.resized, card.output.channel)
     if values is None:
         raise ConfigError(f"the network {network.name} returns no map; name another output in its card")
@@ -66,6 +72,14 @@ def _map(colours: Colours, task: Task) -> Float32[np.ndarray, "r c"] | None:
     if not card.verified:
         note(log, f"the card of {card.title} was never tested with its network", logging.WARNING)
     return values
+
+
+@lru_cache(maxsize=2)
+def _run_once(network: KnownNetwork, changed_ns: int, given: bytes, shape: tuple[int, ...]) -> np.ndarray:
+    """Return a network's map: several stages ask for the borders of one picture."""
+    card = network.card
+    picture = np.frombuffer(given, np.float32).reshape(shape)
+    return run(network.path, card.runtime or "opencv", {card.input.left: picture}, [card.output.name])[0]
 
 
 def _faces(colours: Colours) -> Float32[np.ndarray, "n 468 3"] | None:

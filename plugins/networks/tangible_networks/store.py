@@ -116,10 +116,10 @@ def networks_here(task: Task) -> list[KnownNetwork]:
     return [network for network in known_networks().values() if network.card.task == task and network.is_here]
 
 
-def identity_here() -> str:
-    """Return a text that differs for other networks that see figures, borders or faces; "" without one.
+def identity_here(*tasks: Task) -> str:
+    """Return a text that differs for other networks for these tasks, or for figures, borders or faces; "" without one.
 
     Their files are not read: a file that was changed by hand has another time.
     """
-    present = (network for task in TASKS if task != "depth" for network in networks_here(task))
+    present = (network for task in tasks or TASKS if tasks or task != "depth" for network in networks_here(task))
     return " ".join(f"{network.name}:{network.card.sha256}:{network.path.stat().st_mtime_ns}" for network in present)

@@ -2,8 +2,6 @@
 
 from collections.abc import Callable
 
-import numpy as np
-
 from ...data import Figure
 from ...plugins.registry import Registry
 from ..config.model import PipelineConfig
@@ -12,15 +10,21 @@ from .hooked import hooked_point, load_hooked
 HOOK, LOOK = "tangible_networks", "look at a photograph"
 
 
-def look_function(registry: Registry) -> Callable[[np.ndarray], Figure]:
-    """Import the function that returns what networks see in a picture. Raises: BrokenMethod."""
+def look_function(registry: Registry) -> Callable[..., Figure]:
+    """Import the function that returns what networks see in a picture; tasks, if not all, are its second argument.
+
+    Raises: BrokenMethod.
+    """
     return load_hooked(hooked_point(registry, HOOK, "look", LOOK), LOOK)
 
 
-def networks_identity(registry: Registry) -> str:
-    """Return a text that differs wherever networks may see something else. Raises: BrokenMethod."""
+def networks_identity(registry: Registry, *tasks: str) -> str:
+    """Return a text that differs wherever networks for these tasks, or for any, may see something else; "" without one.
+
+    Raises: BrokenMethod.
+    """
     purpose = "tell which networks are here"
-    return load_hooked(hooked_point(registry, HOOK, "identity", purpose), purpose)()
+    return load_hooked(hooked_point(registry, HOOK, "identity", purpose), purpose)(*tasks)
 
 
 def has_figure(config: PipelineConfig, registry: Registry) -> bool:

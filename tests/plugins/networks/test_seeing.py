@@ -8,6 +8,7 @@ import pytest
 from onnx import TensorProto, helper, numpy_helper
 
 import tangible_networks.faces as faces
+import tangible_networks.seeing as seeing
 from onnx_models import mono
 from tangible_core.errors import ConfigError
 from tangible_networks.card import Card
@@ -67,6 +68,25 @@ class TestMaps:
         borders = look(picture).borders
         assert borders is not None
         assert np.allclose(borders, bright_square()[..., 0] / 255, atol=1e-5)
+
+    def test_several_ask_and_the_network_runs_once(self, models: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        asked: list[np.ndarray] = []
+
+        def answer(path: Path, runtime: str, inputs: dict, outputs: list[str]) -> list[np.ndarray]:
+            asked.append(inputs["picture"])
+            return [inputs["picture"][:, :1]]
+
+        monkeypatch.setattr(seeing, "run", answer)
+        (models / "own.onnx").write_bytes(b"a network")
+        (models / "own.yaml").write_text("task: borders\ninput: {left: picture}\noutput: {means: borders}\n")
+        maps = [look(picture).borders for picture in (bright_square(), bright_square(), 255 - bright_square())]
+        assert len(asked) == 2
+        assert np.array_equal(maps[0], maps[1])
+        assert np.array_equal(maps[0], 1 - maps[2])
+        (models / "own.onnx").write_bytes(b"another")
+        look(bright_square())
+        assert len(asked) == 3, "for another file"
+        assert look(bright_square(), ("figure", "faces")).borders is None
 
 
 class TestFaces:

@@ -10,6 +10,8 @@ from jaxtyping import Int32, UInt8
 
 REGIONS = "TANGIBLE_REGIONS"
 """Environment variable: a folder of photographs, .jpg, each with an .npz of the same name: label maps (h, w)."""
+UNSEEN = "_unseen"
+"""The end of the name of a folder beside it: photographs that networks were not trained on."""
 
 
 class Photograph(NamedTuple):
@@ -19,10 +21,10 @@ class Photograph(NamedTuple):
     drawn: list[Int32[np.ndarray, "h w"]]
 
 
-def photographs() -> dict[str, Photograph]:
-    """Return the photographs by their names, in order; none without the variable."""
+def photographs(end: str = "") -> dict[str, Photograph]:
+    """Return the photographs by their names, in order; none without the variable. end: of the folder's name."""
     folder = os.environ.get(REGIONS)
-    files = sorted(Path(folder).glob("*.jpg")) if folder else []
+    files = sorted(Path(folder.rstrip("/") + end).glob("*.jpg")) if folder else []
     return {file.stem: Photograph(_read(file), _labels(file.with_suffix(".npz"))) for file in files}
 
 

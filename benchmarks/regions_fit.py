@@ -12,20 +12,21 @@ from typing import NamedTuple
 
 import cv2
 import numpy as np
+from numba import njit
 from scipy.ndimage import distance_transform_edt
 from scipy.optimize import minimize
 
 from tangible_bench.metrics.segments import contingency
-from tangible_core.data import SegmentTree
+from tangible_core.data import SegmentTree, to_rgb
 from tangible_core.data.views import border_pixels
+from tangible_networks.seeing import look_for_borders
 from tangible_texture.features.channels import channels
 from tangible_texture.tree.cells import opponent_colours, reduce_to_cells, shares
-from tangible_texture.tree.cues import Tensors, tensors, weighted_strength
+from tangible_texture.tree.cues import Tensors, border_tensors, tensors, weighted_strength
 from tangible_texture.tree.joining import TERMS, join_regions
 from tangible_texture.tree.regions import Regions, measure_regions, small_regions
-from tangible_texture.tree.weights import border_weights
 
-from .regions_drawn import Photograph, photographs
+from .regions_drawn import UNSEEN, Photograph, photographs
 
 ROUNDS, SAMPLES = 4, 5000
 """The rounds of fitting, and the borders taken from each photograph in each of them."""
@@ -57,14 +58,19 @@ class Prepared(NamedTuple):
     """The people's labels of cells."""
 
 
-def prepare(photograph: Photograph) -> Prepared:
-    """Compute the cues of a photograph, and reduce the drawn regions to its cells."""
+def prepare(photograph: Photograph, seen: bool = False) -> Prepared:
+    """Compute the cues of a photograph, and reduce the drawn regions to its cells. seen: with a network's borders."""
     colours = opponent_colours(reduce_to_cells(channels(photograph.picture, colour=True)))
     assert colours is not None
     held = shares(colours)
     size = colours.shape[:0:-1]
     drawn = [cv2.resize(each, size, interpolation=cv2.INTER_NEAREST) for each in photograph.drawn]
-    return Prepared(photograph, colours, held["roughness"], tensors(colours[0], held), drawn)
+    cues = tensors(colours[0], held)
+    if seen:
+        borders = look_for_borders(to_rgb(photograph.picture), colours.shape[1:])
+        assert borders is not None, "no network is here; `tangible networks add borders`"
+        cues = np.concatenate([cues, border_tensors(borders)])
+    return Prepared(photograph, colours, held["roughness"], cues, drawn)
 
 
 def fit(prepared: Sequence[Prepared]) -> Model:
@@ -113,10 +119,9 @@ class Measured:
         one, other = rows[:, 0].astype(int), rows[:, 1].astype(int)
         first, last = _leaves(joins)
         ends = first[self.regions.borders]
-        inside = (ends >= first[one][:, None, None]) & (ends < last[one][:, None, None])
-        beyond = (ends >= first[other][:, None, None]) & (ends < last[other][:, None, None])
-        between = (inside[..., 0] & beyond[..., 1]) | (inside[..., 1] & beyond[..., 0])
-        cues = (between @ self.strengths) / (between @ self.regions.pairs)[:, None]
+        bounds = np.stack([first[one], last[one], first[other], last[other]], axis=1)
+        cues = np.zeros((len(rows), self.strengths.shape[1]))
+        _add_between(bounds, ends, self.strengths, self.regions.pairs, cues)
         nodes = [_nodes(counts, joins) for counts in self.drawn]
         apart = np.mean([1 - (held[one] * held[other]).sum(axis=1) for held in nodes], axis=0)
         return np.hstack([cues, rows[:, 3:]]), apart, np.exp(rows[:, 5])
@@ -126,6 +131,22 @@ class Measured:
         regions = self.regions._replace(strengths=self.strengths @ model.at_borders)
         joins, costs, count = join_regions(regions, model.terms, model.constant, seen)
         return joins, costs, seen[:count]
+
+
+@njit
+def _add_between(bounds, ends, strengths, pairs, cues):  # noqa: ANN001, ANN202 -- numba takes the types from the call
+    """Write the mean strengths of the borders between two nodes, each with the places of its leaves."""
+    for row in range(len(bounds)):
+        low, high, start, stop = bounds[row]
+        count = 0.0
+        for border in range(len(ends)):
+            one, other = ends[border]
+            if low <= other < high:
+                one, other = other, one
+            if low <= one < high and start <= other < stop:
+                count += pairs[border]
+                cues[row] += strengths[border]
+        cues[row] /= count
 
 
 def _cells(prepared: Prepared, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
@@ -192,11 +213,11 @@ def _logistic(
 
 
 def main() -> None:
-    """Print the weights fitted to all photographs."""
-    model = fit([prepare(each) for each in photographs().values()])
-    assert len(model.at_borders) == len(border_weights())
-    for name, values in model._asdict().items():
-        print(name, np.array2string(np.asarray(values), precision=3, separator=", ", suppress_small=True))
+    """Print the weights fitted to all photographs, and those with a network that did not see them."""
+    for end in ("", UNSEEN):
+        model = fit([prepare(photograph, seen=bool(end)) for photograph in photographs(end).values()])
+        for name, values in model._asdict().items():
+            print(name, np.array2string(np.asarray(values), precision=3, separator=", ", suppress_small=True))
 
 
 if __name__ == "__main__":

@@ -1,12 +1,14 @@
 """Segments by the borders that people would draw: a tree of regions, cut where asked."""
 
 import logging
+from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
+from jaxtyping import Float32
 from pydantic import Field
 
-from tangible_core.data import SegmentMap, SegmentTree, check_picture
+from tangible_core.data import SegmentMap, SegmentTree, check_picture, to_rgb
 from tangible_core.plugins import Hierarchical, note
 
 from .signal.skipping import Dividing, one_segment
@@ -32,6 +34,9 @@ class Hierarchy(Dividing, Hierarchical):
     Sources: Arbelaez, Maire, Fowlkes & Malik, Contour detection and hierarchical image segmentation, IEEE TPAMI 33,
     2011 (cues, levels); Nunez-Iglesias et al., Machine learning of hierarchical clustering to segment 2D and 3D images,
     PLoS ONE 8, 2013 (weights fitted along the joinings).
+
+    Where a network of borders is (`tangible networks add borders`), what it sees is one more cue, with weights of its
+    own. They are fitted to 60 photographs that the network was not trained on.
     """
 
     segments: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
@@ -40,6 +45,12 @@ class Hierarchy(Dividing, Hierarchical):
     level: Annotated[float, Field(ge=0.02, lt=1)] = 0.5
     """Lowest level of a border under `auto`: the share of people who would draw it. Less gives more and finer segments.
     """
+
+    def reads(self) -> tuple[Path, ...]:
+        """Return the network of borders, if there is one."""
+        from tangible_networks.store import networks_here
+
+        return tuple(network.path for network in networks_here("borders")[:1])
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Divide the picture along the borders of highest level.
@@ -68,19 +79,30 @@ class Hierarchy(Dividing, Hierarchical):
         from .features.channels import channels
         from .regions.refining import refine_regions
         from .tree.cells import opponent_colours, reduce_to_cells, shares
-        from .tree.cues import tensors, weighted_strength
+        from .tree.cues import border_tensors, tensors, weighted_strength
         from .tree.joining import join_regions
         from .tree.regions import measure_regions, small_regions
-        from .tree.weights import CONSTANT, TERMS, border_weights, cell_weights
+        from .tree.weights import WITH_BORDERS, WITHOUT
 
         paint = channels(picture, colour=True)
         colours = opponent_colours(reduce_to_cells(paint))
         if colours is None:
             return SegmentTree(np.zeros(picture.shape[:2], np.int32), np.empty((0, 2), np.int32))
         held = shares(colours)
-        cues = tensors(colours[0], held)
-        cells = small_regions(weighted_strength(cues, cell_weights()))
-        regions = measure_regions(cells, colours, held["roughness"], cues, border_weights())
-        joins, costs, _ = join_regions(regions, np.array(TERMS), CONSTANT, np.empty((0, len(TERMS) + 2)))
+        cues, weights, borders = tensors(colours[0], held), WITHOUT, self._borders(picture, colours.shape[1:])
+        if borders is not None:
+            cues, weights = np.concatenate([cues, border_tensors(borders)]), WITH_BORDERS
+        cells = small_regions(weighted_strength(cues, weights.at_cells))
+        regions = measure_regions(cells, colours, held["roughness"], cues, weights.at_borders)
+        unseen = np.empty((0, weights.terms.size + 2))
+        joins, costs, _ = join_regions(regions, weights.terms, weights.constant, unseen)
         rising = np.maximum.accumulate(costs) if costs.size else costs
         return SegmentTree(refine_regions(cells, paint), joins, 1 / (1 + exponentials(-rising)))
+
+    def _borders(self, picture: np.ndarray, shape: tuple[int, int]) -> Float32[np.ndarray, "r c"] | None:
+        """Return how surely people would draw a border at each cell, 0..1; None without a network."""
+        if not self.reads():
+            return None
+        from tangible_networks.seeing import look_for_borders
+
+        return look_for_borders(to_rgb(picture), shape)

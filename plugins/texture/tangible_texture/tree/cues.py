@@ -67,6 +67,13 @@ def weighted_strength(tensors: Tensors, weights: Float32[np.ndarray, "cues"]) ->
     return result
 
 
+def border_tensors(borders: Float32[np.ndarray, "h w"]) -> Tensors:
+    """Return the tensors of a map of borders, 0..1, whose strengths are the map and its square in every direction."""
+    result = np.zeros((2, 3, *borders.shape), np.float32)
+    result[:, ::2] = np.stack([borders**4, borders**8])[:, None]
+    return result
+
+
 @njit(**KERNEL)
 def _add_outer(plane, tensor):
     """Add the outer product of central differences; the border is repeated."""

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tangible_texture.tree.cells import CELLS, opponent_colours, reduce_to_cells, shares
-from tangible_texture.tree.cues import EMPTY, LEVELS, tensors, weighted_strength
+from tangible_texture.tree.cues import EMPTY, LEVELS, border_tensors, tensors, weighted_strength
 from tangible_texture.tree.joining import TERMS, join_regions
 from tangible_texture.tree.regions import Regions, measure_regions
 
@@ -130,6 +130,18 @@ def test_strength_is_the_root_of_the_steepest_change_whatever_its_direction():
     both = np.concatenate([tensor, 16 * tensor])
     assert weighted_strength(both, np.float32([1, 0])) == pytest.approx(np.full((1, 7), 0.3), rel=1e-5)
     assert weighted_strength(both, np.float32([1, 2])) == pytest.approx(np.full((1, 7), 0.3 + 2 * 0.6), rel=1e-5)
+
+
+def test_borders_that_are_seen_are_as_strong_in_every_direction():
+    """Cells, and pairs of cells across an upright border and a lying one."""
+    seen = np.full((6, 8), 0.7, np.float32)
+    both, flat = border_tensors(seen), np.zeros((8, 6, 8), np.float32)
+    weights = np.float32([2, 3])
+    strength = 2 * 0.7 + 3 * 0.7**2
+    assert weighted_strength(both, weights) == pytest.approx(np.full((6, 8), strength), rel=1e-5)
+    for labels in (np.indices((6, 8))[1] // 4, np.indices((6, 8))[0] // 3):
+        regions = measure_regions(labels.astype(np.int32), flat[:3], flat, both, weights)
+        assert regions.strengths / regions.pairs == pytest.approx([strength], rel=1e-5)
 
 
 SHAPE = 14, 17

@@ -21,8 +21,9 @@ class ReliefChoice(Section):
     """The source of heights. `disparity`: near things get more of the height, as in a bas-relief. `depth`: heights to
     scale, where the calibration of the cameras is known. `edges`: for one photograph without depth, raised lines on low
     steps from dark to light: at the borders that people would draw, if the texture method knows these, as `hierarchy`
-    does, and at the edges of the picture otherwise. `figure`: for one photograph, what networks see in it: what stands
-    out from its ground is raised and rounded, borders are grooves, and faces have their shape (`tangible networks`)."""
+    does, or a network of borders, and at the edges of the picture otherwise. `figure`: for one photograph, what
+    networks see in it: what stands out from its ground is raised and rounded, borders are grooves, and faces have their
+    shape (`tangible networks`)."""
     slope: Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)] = 1.1
     """The greatest slope, rise over run; steeper places become ramps. A hand that presses down climbs it with at most
     this many times its press sideways. 0 keeps cliffs."""

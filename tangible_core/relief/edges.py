@@ -3,7 +3,7 @@
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
 import numpy as np
-from jaxtyping import Bool, Float32, Int32
+from jaxtyping import Bool, Float32, Int32, UInt8
 
 from ..data import Relief, Views
 from ..data.views import border_pixels
@@ -32,16 +32,24 @@ LINES = 0.6
 """The share of the height that lines have; the rest is that of light over dark."""
 HALF = 0.5
 """The distance of the cells on both sides of a border from the border, cells."""
+SURE = 0.55
+"""The least value of a map of borders in a raised line: of .55 to .7, that whose lines lie best at the borders that
+people drew in 30 photographs."""
 CALM_M, CALM = 0.0015, 0.1
 """The radius, m, within which light and dark are made even, and their standard deviation up to which they are."""
 
 
 def edge_relief(
-    views: Views, size: FeltSize, choice: ReliefChoice, regions: Int32[np.ndarray, "r c"] | None = None
+    views: Views,
+    size: FeltSize,
+    choice: ReliefChoice,
+    regions: Int32[np.ndarray, "r c"] | None = None,
+    borders: Float32[np.ndarray, "h w"] | None = None,
 ) -> Relief:
     """Make the relief of the left view's edges: raised lines on low steps from dark to light, pixels square.
 
-    regions: labels whose borders are the edges, on the cells of `reduce_to_cells`. Without them, an edge is a
+    regions: labels whose borders are the edges, on the cells of `reduce_to_cells`. borders: how surely people would
+    draw a border at each pixel, 0..1; without regions, lines run along its ridges. Without both, an edge is a
     difference of colour at the scale of the blur that is among the strongest of the picture, or continues one of these
     (Canny 1986, on the channel of Lab with the greatest difference), and is at least LONG times as long.
     """
@@ -52,10 +60,15 @@ def edge_relief(
     pitch_m = size.width_m / small.shape[1]
     with plain_opencv():
         lab = np.asarray(cv2.cvtColor(_colours(small), cv2.COLOR_RGB2LAB), np.float32)
-        if regions is None:
-            lines = _lines(_edges(lab, (BLUR_M * BLUR_SHARE * size.width_m) ** 0.5 / pitch_m), 0, pitch_m)
-        else:
+        sigma = (BLUR_M * BLUR_SHARE * size.width_m) ** 0.5 / pitch_m
+        if regions is not None:
             lines = _lines(border_pixels(regions), HALF, pitch_m)
+        elif borders is not None:
+            sure = scaling.reduced_map(borders, lab.shape[:2]) > SURE
+            thin = np.asarray(cv2.ximgproc.thinning(255 * sure.astype(np.uint8)))
+            lines = _lines(_long(thin, sigma), 0, pitch_m)
+        else:
+            lines = _lines(_edges(lab, sigma), 0, pitch_m)
         height_m = (1 - LINES) * size.relief_m * _calm_light(np.ascontiguousarray(lab[..., 0]) / 100, pitch_m)
         height_m = np.maximum(height_m + LINES * size.relief_m * lines, 0).astype(np.float32)
         shown = np.asarray(cv2.resize(height_m, views.shape[::-1], interpolation=cv2.INTER_LINEAR))
@@ -103,7 +116,14 @@ def _edges(lab: Float32[np.ndarray, "h w 3"], sigma: float) -> Bool[np.ndarray, 
     strong = max(float(np.quantile(contrast, STRONG)), LEAST)
     unit = 16384 / max(float(contrast.max()), strong)  # OpenCV takes whole numbers of 16 bits
     whole_across, whole_along = (np.rint(each * unit).astype(np.int16) for each in (across, along))
-    found: np.ndarray = cv2.Canny(whole_across, whole_along, strong / WEAK * unit, strong * unit, L2gradient=True)
+    found = cv2.Canny(whole_across, whole_along, strong / WEAK * unit, strong * unit, L2gradient=True)
+    return _long(np.asarray(found), sigma)
+
+
+def _long(found: UInt8[np.ndarray, "h w"], sigma: float) -> Bool[np.ndarray, "h w"]:
+    """Return the cells of lines that are not 0, without the short ones. sigma: of the blur, cells."""
+    import cv2
+
     _, pieces, about, _ = cv2.connectedComponentsWithStats(found, connectivity=8)
     long: np.ndarray = np.asarray(about)[:, cv2.CC_STAT_AREA] >= LONG * sigma
     long[0] = False

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from onnx_models import mono
 from tangible_core import Pipeline, Scene
 from tangible_core.data import Views
+from tangible_core.data.views import border_pixels
 from tangible_core.relief import ReliefChoice, edge_relief
 from tangible_core.scene.workspace import FeltSize
 from tangible_texture import Hierarchy
@@ -118,3 +120,46 @@ def test_pipeline_draws_the_border_that_people_would_draw():
     assert lines[155:165].max() > lines[180:280].max() + 0.0005
     said = {each.product: each.why for each in pipeline.outcomes}["relief"]
     assert "borders that people would draw are raised lines" in said
+
+
+def test_ridges_of_a_map_of_borders_are_lines_and_edges_are_not():
+    """A ridge 9 cells wide at column 200 is one line; a short one and a faint one are none."""
+    seen = np.zeros((240, 320), np.float32)
+    seen[:, 196:205] = np.float32([0.3, 0.4, 0.6, 0.7, 0.8, 0.7, 0.6, 0.4, 0.3])
+    seen[100:120, 40:43], seen[:, 280:283] = 1, 0.5
+    found = edge_relief(Views(block()), SIZE, ReliefChoice(slope=0), borders=seen).height_m[20]
+    assert found[200] > 0.8 * 0.6 * SIZE.relief_m
+    assert np.flatnonzero(found > 0.5 * found.max()).tolist() == list(range(198, 203)), "1 mm"
+    assert found[:190].max() < 1e-9, "the step of the picture at column 160 is none, nor is the short ridge"
+    assert found[215:].max() < 1e-9
+
+
+def test_pipeline_draws_what_a_network_sees(tmp_path, monkeypatch):
+    """The network sees the bright line alone, and not the block, which is an edge."""
+    monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path))
+    picture = block(0, 130)
+    picture[:, 30:33] = 255
+
+    def relief(**options):
+        pipeline = Pipeline(Scene.photo(picture), relief={"by": "edges", "slope": 0}, **options)
+        heights = pipeline.relief.height_m[120]
+        return heights, {outcome.product: outcome.why for outcome in pipeline.outcomes}["relief"]
+
+    def has_line(heights, column):
+        return heights[column - 2 : column + 3].max() > heights[column + 15] + 0.0006
+
+    before, said = relief()
+    assert "edges are raised lines" in said
+    assert has_line(before, 80)
+    mono(tmp_path / "own.onnx")
+    (tmp_path / "own.yaml").write_text("task: borders\noutput: {means: borders}\n")
+    found, said = relief()
+    assert "borders that people would draw are raised lines; borders: seen by the network own" in said
+    assert has_line(found, 31)
+    assert not has_line(found, 80)
+    regions, said = relief(texture=Hierarchy())
+    assert "borders: seen by the network own" in said
+    labels = Hierarchy().tree(picture).cut(64, 0.4).labels
+    assert (regions[border_pixels(labels)[120]] > 0.9 * 0.6 * SIZE.relief_m).all()
+    (tmp_path / "own.onnx").unlink()
+    assert np.array_equal(relief(cached=False)[0], before)

@@ -3,22 +3,31 @@
 TANGIBLE_REGIONS names a folder of photographs, *.jpg, each with the regions that people drew, in an .npz of that name.
 """
 
+import os
 import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from statistics import fmean
 from time import process_time
+from unittest.mock import patch
 
 import cv2
 import numpy as np
+from scipy.special import logit
 
 from tangible_bench.metrics.segments import adjusted_rand_index, contingency, covering, rand_index
-from tangible_core.data import SegmentTree
+from tangible_core.data import SegmentTree, Views
+from tangible_core.data.views import border_pixels
+from tangible_core.pipeline.engine.stages.relief import LEVEL, SEEN_LEVEL
+from tangible_core.relief import ReliefChoice, edge_relief
 from tangible_core.runtime.threads import limited_threads
+from tangible_core.scene.workspace import FeltSize
+from tangible_networks.seeing import look
+from tangible_networks.store import VARIABLE, networks_here
 from tangible_texture import Gradient, Hierarchy
 
 from .figures import Figure, judged, mean_and_error, part, table
-from .regions_drawn import Photograph, photographs
+from .regions_drawn import UNSEEN, Photograph, photographs
 from .regions_fit import fit, prepare, tree
 from .turns import in_turns
 
@@ -29,7 +38,10 @@ GRAPH = {"sigma": 0.5, "k": 500.0, "min_size": 300}
 """OpenCV's graph at the options that cover the given photographs best, of k 100..1000 and sizes 50..500."""
 RUNS, LARGE = 7, (3000, 4000)
 Labels = np.ndarray
-MEASURES = {"covering": covering, "PRI": rand_index, "ARI": adjusted_rand_index}
+COUNTED = {"covering": covering, "PRI": rand_index, "ARI": adjusted_rand_index}
+MEASURES = *COUNTED, "F"
+NEAR = 0.0075
+"""The distance within which two borders are one, of the diagonal."""
 
 
 def section() -> str:
@@ -37,14 +49,19 @@ def section() -> str:
     given = photographs()
     if not given:
         return "Not measured: TANGIBLE_REGIONS names no folder of photographs."
-    quality, figures = part("regions", lambda: _quality(given))
-    figures += part("times", lambda: _times(given))
+    with patch.dict(os.environ, {VARIABLE: os.devnull}):
+        quality, figures = part("regions", lambda: _quality(given))
+        figures += part("times", lambda: _times(given))
+    if networks_here("borders"):
+        seen, judgement = part("a network of borders", _with_network)
+        quality, figures = [*quality, "", *seen], figures + judgement
     head = (
         f"{len(given)} photographs of the Berkeley data set, each divided by about five people; a measure is the mean "
         "over the people, then over the photographs, with its standard error. Covering: the overlap of each drawn "
         "region with the segment that fits it best, by area. Best: the number that covers this photograph best. "
         "Cross-validation: weights fitted to three quarters of the photographs, measured on the others, "
-        f"in {FOLDS} turns."
+        f"in {FOLDS} turns. F: of precision, the share of border pixels that are within {100 * NEAR} % of the diagonal "
+        "from somebody's border, and recall, the mean share of a person's."
     )
     return "\n".join([head, "", *quality, "", *judged(figures)])
 
@@ -68,7 +85,7 @@ def _quality(given: Mapping[str, Photograph]) -> tuple[list[str], list[Figure]]:
         for name, found in kinds.items()
     ]
     said = "Of the regions at cells, of 2 x 2 pixels here, in the rows of cross-validation; at pixels in the others."
-    means = {measure: fmean(each[measure] for each in default[crossed]) for measure in MEASURES}
+    means = {measure: fmean(each[measure] for each in default[crossed]) for measure in COUNTED}
     most = fmean(each["covering"] for each in best[crossed])
     figures = [
         Figure(
@@ -91,9 +108,43 @@ def _cuts(tree: SegmentTree) -> list[Labels]:
     return [tree.cut(count).labels for count in COUNTS]
 
 
-def _crossed(given: Mapping[str, Photograph]) -> tuple[list[Mapping[str, float]], list[Mapping[str, float]]]:
+def _with_network() -> tuple[list[str], list[Figure]]:
+    """Measure what a network's borders add, on photographs that it was not trained on, nor the weights fitted to."""
+    given = photographs(UNSEEN)
+    (without, _), (within, _) = (_crossed(given, seen) for seen in (False, True))
+    names = *MEASURES, "lines"
+    more = {name: [w[name] - o[name] for w, o in zip(within, without, strict=True)] for name in names}
+    rows = [
+        (label, *(mean_and_error([each[name] for each in found]) for name in names))
+        for label, found in (("`hierarchy`", without), ("`hierarchy` with the network", within))
+    ]
+    rows.append(("difference", *(mean_and_error(more[name]) for name in names)))
+    for label, tasks in (("edges of the picture", ()), ("ridges of the network's map", ("borders",))):
+        found = [_raised(photo, look(photo.picture, tasks).borders) for photo in list(given.values())[1::2]]
+        rows.append((label, *("" for _ in MEASURES), mean_and_error(found)))
+    said = (
+        f"{len(given)} other photographs, which the network of borders was not trained on, in cross-validation; the "
+        "last rows on every other one, as on the rest their level was chosen. Lines: F of the lines of `relief: edges`."
+    )
+    figures = [
+        Figure(f"a network of borders adds to {name}", ">= .04", f"{fmean(more[name]):.3f}", fmean(more[name]) >= 0.04)
+        for name in ("covering", "F")
+    ]
+    return [said, "", *table(("method", *names), rows)], figures
+
+
+def _raised(photo: Photograph, borders: np.ndarray | None) -> float:
+    """Return the F of the middles of the raised lines, which alone are above .6 of the height."""
+    size = FeltSize(0.08, 1.0, 0.0, 3e-5, "fill")
+    heights = edge_relief(Views(photo.picture), size, ReliefChoice(slope=0), borders=borders).height_m
+    return border_f(cv2.ximgproc.thinning(255 * (heights > 0.599).astype(np.uint8)) > 0, photo)
+
+
+def _crossed(
+    given: Mapping[str, Photograph], seen: bool = False
+) -> tuple[list[Mapping[str, float]], list[Mapping[str, float]]]:
     """Return the measures of trees whose weights were fitted to other photographs: at a cost of 0, and the best."""
-    prepared = [prepare(each) for each in given.values()]
+    prepared = [prepare(each, seen) for each in given.values()]
     default: dict[int, Mapping[str, float]] = {}
     best: dict[int, Mapping[str, float]] = {}
     for fold in range(FOLDS):
@@ -101,7 +152,8 @@ def _crossed(given: Mapping[str, Photograph]) -> tuple[list[Mapping[str, float]]
         for at in range(fold, len(prepared), FOLDS):
             photo = Photograph(prepared[at].photograph.picture, prepared[at].drawn)
             found = tree(prepared[at], model)
-            default[at] = _measures(found.cut(64, 0.0).labels, photo)
+            lines = border_pixels(found.cut(64, float(logit(SEEN_LEVEL if seen else LEVEL))).labels)
+            default[at] = _measures(found.cut(64, 0.0).labels, photo) | {"lines": border_f(lines, photo)}
             best[at] = _best(_cuts(found), photo)
     return [default[at] for at in range(len(prepared))], [best[at] for at in range(len(prepared))]
 
@@ -117,7 +169,21 @@ def _best(cuts: Sequence[Labels], photo: Photograph) -> Mapping[str, float]:
 def _measures(labels: Labels, photo: Photograph) -> Mapping[str, float]:
     """Return the mean of each measure over the people."""
     counts = [contingency(labels, drawn) for drawn in photo.drawn]
-    return {name: fmean(measure(each) for each in counts) for name, measure in MEASURES.items()}
+    means = {name: fmean(measure(each) for each in counts) for name, measure in COUNTED.items()}
+    return means | {"F": border_f(border_pixels(labels), photo)}
+
+
+def border_f(found: np.ndarray, photo: Photograph) -> float:
+    """Return the harmonic mean of the precision and the recall of border pixels, a mask of the photograph's size."""
+    drawn = [border_pixels(labels) for labels in photo.drawn]
+    reach = NEAR * float(np.hypot(*found.shape))
+
+    def near(some: np.ndarray, others: np.ndarray) -> float:
+        away = cv2.distanceTransform((~others).astype(np.uint8), cv2.DIST_L2, 5)
+        return float((away[some] <= reach).mean()) if some.any() else 1.0
+
+    precision, recall = near(found, np.any(drawn, axis=0)), fmean(near(each, found) for each in drawn)
+    return 2 * precision * recall / max(precision + recall, 1e-9)
 
 
 def _people(photo: Photograph) -> Mapping[str, float]:

@@ -1,8 +1,8 @@
 """Options for the relief in a pipeline file."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from ..scene.workspace import Section
 
@@ -10,6 +10,10 @@ SPREAD = 0.5
 """The default share of the height that goes where borders are: more steepens level ground between them."""
 ACCENT_M = 0.001
 """The default of the most by which a border is accented, m: twice the least step that is felt under a fingertip."""
+
+FIGURE_SLOPE = 0.8
+"""The default slope of what networks see: the rim of a figure is a wall all around it, and a hand that strokes across
+rough materials gets over this slope."""
 
 Length = Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)]
 
@@ -26,7 +30,7 @@ class ReliefChoice(Section):
     shape (`tangible networks`)."""
     slope: Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)] = 1.1
     """The greatest slope, rise over run; steeper places become ramps. A hand that presses down climbs it with at most
-    this many times its press sideways. 0 keeps cliffs."""
+    this many times its press sideways. 0 keeps cliffs. By figure it is 0.8 if it is left out."""
     spread: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)] | None = None
     """The share of the height that is given to those depths which borders cross; the order of all depths stays. 0 keeps
     heights proportional. null for 0.5 by disparity and 0 by depth."""
@@ -35,6 +39,11 @@ class ReliefChoice(Section):
     0.001 by disparity and 0 by depth."""
     grain_m: Length = 0.0003
     """Noise of less than 0.1 mm that is finer than this is taken out; 0 keeps it."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _slope_by_figure(cls, values: dict[str, Any]) -> dict[str, Any]:
+        return {"slope": FIGURE_SLOPE, **values} if values.get("by") == "figure" else values
 
     @property
     def spread_share(self) -> float:

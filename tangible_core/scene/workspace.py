@@ -26,7 +26,7 @@ ReliefKind = SceneKind | Literal["edges", "figure", "parts"]
 SUITS: dict[ReliefKind, tuple[float, float]] = {
     "photograph": (0.004, 0.0015),
     "edges": (0.002, 0.00025),
-    "figure": (0.007, 0.00025),
+    "figure": (0.007, 0.0001),
     "depth": (0.005, 0.00025),
     "heights": (0.02, 0.0),
     "parts": (0.006, 0.0005),

@@ -8,13 +8,14 @@ from PIL import Image
 
 from onnx_models import mono
 from tangible_core import Pipeline, Scene
-from tangible_core.data import Figure, PartMap, Views
+from tangible_core.data import DisparityMap, Figure, PartMap, Views
 from tangible_core.errors import ConfigError, ModelAbsent, PictureError
 from tangible_core.pipeline.output.cutting import flatten_ground
 from tangible_core.pipeline.output.export_result import Exported
 from tangible_core.relief import ReliefChoice, figure_relief
-from tangible_core.relief.figure import BODY, GROOVE_M, GROUND, STEP
+from tangible_core.relief.figure import BODY, FACE, GROOVE_M, GROUND, STEP
 from tangible_core.scene.workspace import FeltSize, Workspace
+from tangible_depth import Cues, Luminance
 
 SHAPE = (240, 320)
 SIZE: FeltSize = Workspace().size("figure")
@@ -66,7 +67,8 @@ def test_face_has_its_shape_and_no_rim() -> None:
         heights(Figure(DISK.astype(np.float32), faces_px=ball[None])),
     )
     scale = (faced[120, 160] - faced[120, 136]) / (SIZE.width_m / SHAPE[1] * (40 - np.sqrt(40**2 - 24**2)))
-    assert 0.2 < scale < 0.8, "a lower ball, as high as the share of the height allows"
+    share = FACE * SIZE.relief_m / (40 * SIZE.width_m / SHAPE[1])
+    assert scale == pytest.approx(share, rel=0.1), "a lower ball, as high as the share of the height allows"
     middle = (faced[120, 160] - faced[120, 148]) / (SIZE.width_m / SHAPE[1] * (40 - np.sqrt(40**2 - 12**2)))
     assert middle == pytest.approx(scale, rel=0.15), "of the same proportions everywhere"
     assert np.abs(np.diff(faced[120])).max() < 1.5 * np.abs(np.diff(plain[120])).max()
@@ -76,7 +78,35 @@ def test_face_has_its_shape_and_no_rim() -> None:
 def test_two_faces_are_higher_than_the_head_between_them() -> None:
     pair = np.stack([face((120, 120), 25), face((200, 120), 25)])
     height_m = heights(Figure(DISK.astype(np.float32), faces_px=pair))
-    assert min(height_m[120, 120], height_m[120, 200]) > height_m[120, 160] + 0.0005
+    assert min(height_m[120, 120], height_m[120, 200]) > height_m[120, 160] + 0.0003
+
+
+def test_board_is_level_and_a_pole_is_not() -> None:
+    board, pole = np.zeros(SHAPE, np.float32), np.zeros(SHAPE, np.float32)
+    board[40:200, 60:260] = pole[40:200, 150:170] = 1
+    top_m = (STEP + BODY) * SIZE.relief_m
+    assert heights(Figure(board))[45:195, 65:255].min() == pytest.approx(top_m, rel=0.02)
+    assert heights(Figure(pole))[40:200].max() < 0.8 * top_m
+    assert np.ptp(heights(Figure(np.ones(SHAPE, np.float32)))) < 1e-6, "all of the picture"
+
+
+def test_depth_shapes_the_figure_without_spikes_at_its_outline() -> None:
+    rim = np.abs(np.hypot(ROW - 120, COLUMN - 160) - 90) < 2
+    nearness = np.where(DISK, 0.6 + 0.001 * COLUMN, 0.001 * ROW) + 3 * rim
+    size, choice = SIZE._replace(smooth_m=0.0), ReliefChoice(by="figure", slope=0)
+    height_m = figure_relief(VIEWS, Figure(DISK.astype(np.float32)), size, choice, DisparityMap(nearness)).height_m
+    assert height_m.max() <= (STEP + BODY) * SIZE.relief_m * 1.001
+    assert (np.diff(height_m[120, 80:240]) > -1e-6).all(), "nearer to the right, up to the rim"
+    assert height_m[120, 235] - height_m[120, 85] == pytest.approx(BODY * SIZE.relief_m, rel=0.15)
+    assert np.ptp(height_m[:, :60].max(axis=1)) == pytest.approx(GROUND * SIZE.relief_m, rel=0.1)
+
+
+def test_flat_thing_stays_flat() -> None:
+    nearness = np.where(DISK, 0.9 + 0.00001 * COLUMN, 0.001 * ROW)
+    height_m = figure_relief(
+        VIEWS, Figure(DISK.astype(np.float32)), SIZE, ReliefChoice(by="figure"), DisparityMap(nearness)
+    ).height_m
+    assert np.ptp(height_m[80:160, 120:200]) < 0.1 * BODY * SIZE.relief_m
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 50), (3, 2)])
@@ -155,8 +185,13 @@ class TestPipeline:
             middle, below = (found.segments[found.labels[row, columns // 2]] for row in (rows // 2, rows - 9))
             assert (middle != below) == apart
 
-    def test_pair_keeps_its_depth(self) -> None:
-        assert Pipeline(Scene.builtin("builtin/brick"), relief="figure").config.relief_kind == "figure"
+    def test_depth_that_a_method_finds_shapes_the_figure(self, models: Path) -> None:
+        mono(models / "own.onnx")
+        (models / "own.yaml").write_text("task: figure\noutput: {means: figure}\n")
+        scene = Scene.photo(np.where(DISK, 255, 0).astype(np.uint8))
+        for depth, outcome in ((Luminance(), None), (Cues(), "ran")):
+            plan = Pipeline(scene, relief="figure", depth=depth).plan("relief")
+            assert {step.product: step.outcome for step in plan.steps}.get("disparity") == outcome
 
     def test_wrong_word_is_told(self) -> None:
         with pytest.raises(ConfigError, match="figure"):

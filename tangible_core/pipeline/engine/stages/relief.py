@@ -39,8 +39,6 @@ LEVEL, MOST_REGIONS = 0.6, 64
 SEEN_LEVEL = 0.4
 """The least share where the method has a network, whose borders are surer: of .3 to .6, that whose lines lie best at
 the borders that people drew in 30 photographs."""
-NEEDS: dict[str, tuple[str, ...]] = {"edges": ("views",), "figure": ("views", "figure")}
-"""The products that a relief needs that is not made of depth."""
 LINEAR = ReliefChoice(by="depth", slope=0, grain_m=0)
 """The shape of a relief that is neither spread nor limited."""
 
@@ -54,7 +52,8 @@ class ReliefStage(Stage):
     def needs(self) -> tuple[str, ...]:
         heights = self.config.heights
         if heights is None:
-            return NEEDS.get(self.config.relief_kind, ("views", "disparity"))
+            seen = ("figure",) if self.config.relief_kind == "figure" else ()
+            return "views", *seen, *(("disparity",) if self._takes_depth else ())
         by_depth = ("disparity",) if heights.by == "depth" else ()
         return "views", self.config.felt_parts, *by_depth
 
@@ -89,6 +88,8 @@ class ReliefStage(Stage):
                 return "no depth is needed: borders that people would draw are raised lines"
             return "no depth is needed: edges are raised lines"
         if heights is None and self.config.relief_kind == "figure":
+            if self._takes_depth:
+                return "the figure is raised, and its depth shapes it"
             return "no depth is needed: the figure is raised and rounded"
         if heights is None or heights.by == "depth":
             return ""
@@ -107,7 +108,10 @@ class ReliefStage(Stage):
             relief = edge_relief(self.views, self.size, self.choice, self._regions(), self._borders())
             return flatten_transparent(relief, self.grid.opaque_mask)
         if self.config.relief_kind == "figure":
-            relief = figure_relief(self.views, inputs["figure"], self.size, self.choice)
+            disparity = inputs.get("disparity")
+            if disparity is not None:
+                disparity = scaling.reduced_disparity(disparity, self.grid.shape)
+            relief = figure_relief(self.views, inputs["figure"], self.size, self.choice, disparity)
             return flatten_transparent(relief, self.grid.opaque_mask)
         disparity: DisparityMap | None = inputs["disparity"]
         if disparity is None:
@@ -136,6 +140,12 @@ class ReliefStage(Stage):
     def _borders(self) -> Float32[np.ndarray, "h w"] | None:
         """Return how surely people would draw a border at each pixel; None without a network."""
         return look_function(self.context.registry)(self.views.left, ("borders",)).borders if self._network else None
+
+    @property
+    def _takes_depth(self) -> bool:
+        """True if the relief is made of depth: that of a figure is where a method finds it."""
+        kind, depth = self.config.relief_kind, self.config.depth
+        return kind != "edges" and (kind != "figure" or (depth is not None and depth.method.finds_depth))
 
     @property
     def _divider(self) -> Hierarchical | None:

@@ -115,9 +115,20 @@ def _mesh(picture: Colours, face: Found, points: KnownNetwork) -> Float32[np.nda
 
 
 def _crop(picture: Colours, matrix: np.ndarray, side: int, scale: float) -> Colours:
-    """Return a square of the picture; black outside of it. matrix: from the square's pixels to the picture's."""
+    """Return a square of the picture; black outside of it. matrix: from the square's pixels to the picture's.
+
+    A square without a pixel of the picture is black.
+    """
     import cv2
 
+    corners = matrix @ np.array([[0, side, 0, side], [0, 0, side, side], [1, 1, 1, 1]])
+    margin = int(np.ceil(2 * scale)) + 2  # of the blur, which OpenCV cuts off at four standard deviations
+    low = np.maximum(np.floor(corners.min(axis=1)).astype(int) - margin, 0)
+    high = np.maximum(np.ceil(corners.max(axis=1)).astype(int) + margin, 0)
+    picture = picture[low[1] : high[1], low[0] : high[0]]  # the rest of a large picture is not blurred
+    if not picture.size:
+        return np.zeros((side, side, 3), np.float32)
+    matrix = matrix - np.array([[0, 0, low[0]], [0, 0, low[1]]])
     with plain_opencv():
         if scale > 1:  # averaging first: no pixel of a large picture is left out
             picture = cv2.GaussianBlur(picture, (0, 0), scale / 2)

@@ -185,7 +185,7 @@ def test_check_of_a_declared_failure_reports_it_and_succeeds(monkeypatch: pytest
         ("scene.left=cut.png", "cut.png"),
         ("scene.left=wide.png", "one size"),
         ("scene={height: nan.npy}", "only NaN"),
-        ("materials={7: ice}", "7"),
+        ("materials={8: ice}", "7"),
         ("materials.rules=[{at: [500, 1], material: ice}]", "outside the picture of 96 x 64 pixels"),
     ],
 )

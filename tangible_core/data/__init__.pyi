@@ -14,6 +14,7 @@ from .outcome import Outcome as Outcome
 from .outcome import OutcomeKind as OutcomeKind
 from .outcome import Outcomes as Outcomes
 from .outcome import Plan as Plan
+from .part_words import label_of_number as label_of_number
 from .part_words import name_part as name_part
 from .part_words import shown_number as shown_number
 from .pictures import check_finite as check_finite

@@ -1,4 +1,7 @@
-"""The number by which people know a part or a segment, from 1; labels, and keys of a pipeline file, are from 0."""
+"""The number of a part or a segment, from 1 in texts, pictures and files; labels in arrays are from 0."""
+
+FROM_ONE = "from 1, as on the sheet of a run (an older file, with numbers from 0, needs 1 more in each)"
+"""The cure of a number below 1."""
 
 
 def shown_number(label: int) -> int:
@@ -19,6 +22,13 @@ def label_of_number(number: int) -> int:
     return number - 1
 
 
+def check_number(number: int) -> int:
+    """Return the number of a part or segment in a file. Raises: ValueError for one below 1."""
+    if number < 1:
+        raise ValueError(f"Input should be a number {FROM_ONE}")
+    return number
+
+
 def name_part(label: int, name: str = "", noun: str = "part") -> str:
     """Name a part or segment in a sentence.
 
@@ -28,11 +38,11 @@ def name_part(label: int, name: str = "", noun: str = "part") -> str:
     return f"{noun} {shown_number(label)}" + (f" ({name})" if name else "")
 
 
-def missing_key(key: int | str, count: int, noun: str = "part") -> str:
-    """Say that a key of a pipeline file stands for none of `count` parts or segments.
+def missing_number(number: int | str, count: int, noun: str = "part") -> str:
+    """Say that a number of a pipeline file stands for none of `count` parts or segments.
 
-    >>> print(missing_key(7, 4))
-    no part has the key 7: the keys of the 4 parts are 0 to 3, and part 1 is key 0
+    >>> print(missing_number(7, 4))
+    there is no part 7: the 4 parts are numbered from 1 to 4
     """
-    there = f"the keys of the {count} {noun}s are 0 to {count - 1}" if count > 1 else f"there is one {noun}"
-    return f"no {noun} has the key {key}: {there}, and {noun} 1 is key 0"
+    there = f"the {count} {noun}s are numbered from 1 to {count}" if count > 1 else f"{noun} 1 is the only one"
+    return f"there is no {noun} {number}: {there}"

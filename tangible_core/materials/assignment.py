@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from ..data import Material, MaterialMap, PartMap, SegmentMap
-from ..data.part_words import missing_key, name_part
+from ..data.part_words import label_of_number, missing_number, name_part, shown_number
 from ..data.pictures import to_grey
 from ..errors import MaterialError, did_you_mean, quoted
 from ..runtime.opencv import plain_opencv
@@ -67,11 +67,11 @@ def assign(
 ) -> MaterialMap:
     """Assign a material, with a reason, to each segment, or to each part if parts are given.
 
-    own: materials by number that stand with the parts themselves; they decide first.
+    own: materials by label that stand with the parts themselves; they decide first.
     rules: decide next, the first that fits (see `apply_rules`).
-    by: decides the rest. A map from a segment's label to material; `rules`, nothing; or `roughness`, which ranks the
-    rest by `relative_roughness` in this picture and spreads it evenly over `LADDER`, the smoothest to ice, the roughest
-    to brick. Equally rough segments share a rank; a single rank gives the default.
+    by: decides the rest. A map from a segment's number, from 1, to material; `rules`, nothing; or `roughness`, which
+    ranks the rest by `relative_roughness` in this picture and spreads it evenly over `LADDER`, the smoothest to ice,
+    the roughest to brick. Equally rough segments share a rank; a single rank gives the default.
     default: the material of undecided segments.
     shape: see `apply_rules`.
     ground: segments where the picture is transparent: they get the default, and have no roughness.
@@ -98,7 +98,7 @@ def _roughness(segments: SegmentMap | PartMap, picture: np.ndarray | None) -> Fl
         actual = "there is none" if picture is None else f"it is {picture.shape[:2]}"
         raise MaterialError(
             f"materials by roughness need the picture of the segments, {segments.labels.shape}, and {actual}; "
-            "name the materials instead, such as {0: ice, 1: sand}"
+            "name the materials instead, such as {1: ice, 2: sand}"
         )
     return relative_roughness(segments, picture)
 
@@ -135,9 +135,10 @@ def _by_name(
 ) -> dict[int, Choice]:
     complaints: list[str] = []
     count = max(segments.segments) + 1 if isinstance(segments, PartMap) else segments.count
+    names = {label_of_number(number): name for number, name in names.items()}
     for label, name in names.items():
         if label not in range(count):
-            complaints.append(missing_key(quoted(label), count, "segment"))
+            complaints.append(missing_number(shown_number(label), count, "segment"))
         try:
             find(name, library)
         except MaterialError as error:

@@ -5,16 +5,18 @@ from collections.abc import Mapping, Sequence
 from typing import Annotated, ClassVar, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchema, model_validator
 
 from ..data import PartMap, SegmentMap
-from ..data.part_words import missing_key, name_part
+from ..data.part_words import check_number, label_of_number, missing_number, name_part, shown_number
 from ..errors import MaterialError, quoted
 from .colours import Colour, segment_colours
 
 log: logging.Logger = logging.getLogger(__name__)
 
 Place = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Number = Annotated[int, AfterValidator(check_number), WithJsonSchema({"type": "integer", "minimum": 1})]
+"""The number of a segment or part in a file, from 1."""
 Choice = tuple[str, str]
 """The name of a material, and the reason for the choice."""
 
@@ -24,10 +26,10 @@ class MaterialRule(BaseModel):
 
     model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
-    segment: Annotated[int, Field(ge=0)] | None = None
-    """The segment with this label, 0 for segment 1; all of its parts, if there are parts."""
-    part: Annotated[int, Field(ge=0)] | str | None = None
-    """The part with this key of `parts:`, 0 for part 1, or of this name there."""
+    segment: Number | None = None
+    """The segment with this number, from 1; all of its parts, if there are parts."""
+    part: Number | str | None = None
+    """The part with this number, from 1, or of this name under `parts:`."""
     at: tuple[Place, Place] | None = None
     """The segment or part at this pixel of the left picture: [x, y], counted from the upper left corner."""
     colour: Colour | None = None
@@ -88,7 +90,7 @@ def _fits(
 ) -> dict[int, str]:
     """Return the labels that a rule fits, each with the reason."""
     if rule.segment is not None:
-        return _of_segment(rule.segment, segments)
+        return _of_segment(label_of_number(rule.segment), segments)
     if rule.part is not None:
         return _part(rule.part, segments)
     if rule.at is not None:
@@ -103,7 +105,7 @@ def parts_of(segment: int, parts: PartMap) -> list[int]:
     """Return the parts of a segment. Raises: MaterialError if there is no such segment."""
     numbers = [number for number, each in enumerate(parts.segments) if each == segment]
     if not numbers:
-        raise MaterialError(missing_key(segment, max(parts.segments) + 1, "segment"))
+        raise MaterialError(missing_number(shown_number(segment), max(parts.segments) + 1, "segment"))
     return numbers
 
 
@@ -111,16 +113,16 @@ def _of_segment(segment: int, segments: SegmentMap | PartMap) -> dict[int, str]:
     if isinstance(segments, PartMap):
         return dict.fromkeys(parts_of(segment, segments), f"of {name_part(segment, noun='segment')}")
     if segment >= segments.count:
-        raise MaterialError(missing_key(segment, segments.count, "segment"))
+        raise MaterialError(missing_number(shown_number(segment), segments.count, "segment"))
     return {segment: "named"}
 
 
 def _part(part: int | str, segments: SegmentMap | PartMap) -> dict[int, str]:
     if not isinstance(segments, PartMap):
         raise MaterialError("a rule by part needs parts, and these are segments; name the segment instead")
-    if isinstance(part, str) or part >= segments.count:
-        raise MaterialError(missing_key(quoted(part), segments.count))
-    return {part: "named"}
+    if isinstance(part, str) or part > segments.count:
+        raise MaterialError(missing_number(quoted(part), segments.count))
+    return {label_of_number(part): "named"}
 
 
 def _label_at(x: float, y: float, segments: SegmentMap | PartMap, shape: tuple[int, ...]) -> int:

@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float64, Int32
 
 from ..data import HapticSurface, ServoReport, TickFlag, Vector
-from ..data.part_words import name_part
+from ..data.part_words import label_of_number, name_part
 from ..errors import OutputError, TangibleError, quoted
 from .recording import Recording
 
@@ -92,8 +92,8 @@ def names_in(configuration: str) -> str:
 
     try:
         parts: Any = plain(parse_source(configuration, Path(), "a mapping", empty=True).tree).get("parts")
-        names = {int(number): getattr(each, "get", {"name": each}.get)("name") for number, each in parts.items()}
-        return names_text({number: str(name).strip() for number, name in names.items() if name})
+        names = {int(number): getattr(part, "get", {"name": part}.get)("name") for number, part in parts.items()}
+        return names_text({label_of_number(number): str(name).strip() for number, name in names.items() if name})
     except (TangibleError, AttributeError, TypeError, ValueError):  # reported when the file is run
         return ""
 

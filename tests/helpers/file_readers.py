@@ -252,7 +252,7 @@ workspace: {width_m: 0.1, relief_m: 0.01}
 relief: {by: disparity, slope: 1.5, accent_m: 0.0005}
 depth: {use: luminance, smoothing_px: 1}
 texture: {use: histogram, segments: 3}
-materials: {0: ice, 1: rubber, 2: wood}
+materials: {1: ice, 2: rubber, 3: wood}
 render: {use: proxy, stiffness_n_per_m: 500}
 device: {use: mock, path: circle}
 safety: {max_force_n: 2.5}
@@ -263,9 +263,9 @@ scene: {photo: photo.png, segments: labels.png}
 want: surface
 heights: {by: given, round_m: 6 mm, bulge_m: 1.5 mm}
 parts:
-  0: wall             # behind
-  1: {name: helmet, height_m: 0.004}
-  2: {name: face, material: rubber}
+  1: wall             # behind
+  2: {name: helmet, height_m: 0.004}
+  3: {name: face, material: rubber}
 simplify: {}
 """
 
@@ -283,7 +283,7 @@ def _edits(path: Path) -> object:
     from tangible_core.pipeline.config.editing import with_overrides
 
     text = read_text(path)
-    return with_overrides(text, path, ["render.stiffness_n_per_m=300"]), with_parts(text, path, {0: "sky"})
+    return with_overrides(text, path, ["render.stiffness_n_per_m=300"]), with_parts(text, path, {1: "sky"})
 
 
 MATERIALS = """\

@@ -55,7 +55,7 @@ class ListedParts(NamedTuple):
 def list_rows(parts: PartMap, heights: PartHeights | None, choices: Mapping[int, PartChoice]) -> tuple[ListedPart, ...]:
     """Make a row for every part.
 
-    heights: None where the relief is not made of parts. choices: what the file has for parts, by number.
+    heights: None where the relief is not made of parts. choices: what the file has for parts, by label.
     """
     step = -(-max(parts.labels.shape) // MOST_CELLS)
     shown, sizes = parts.labels[::step, ::step], part_sizes(parts)
@@ -98,7 +98,7 @@ def list_parts(pipeline: Pipeline) -> ListedParts:
         disparity = alone.make("disparity") if config.heights.by == "depth" else None
         picture = scene.views.left
         heights = heights_of(parts, config.heights, config.top_m, given_m, disparity, scene.shown, picture)
-    rows = list_rows(parts, heights, config.parts or {})
+    rows = list_rows(parts, heights, config.choices)
     names = [each.name for each in rows]
     numbered = numbered_parts(scene.views.left, parts, names)
     return ListedParts(parts, rows, numbered, scene.name, _wrong(config, parts))

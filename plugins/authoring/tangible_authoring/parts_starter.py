@@ -7,7 +7,7 @@ from importlib.resources import files
 from pathlib import Path
 from string import Template
 
-from tangible_core.data import name_part
+from tangible_core.data import name_part, shown_number
 from tangible_core.files import plain_line
 from tangible_core.files.yaml import on_one_line, part_lines
 from tangible_core.parts import HeightChoice
@@ -62,8 +62,11 @@ def _count_in_words(parts: int) -> str:
 
 def _lines(listed: Sequence[ListedPart]) -> str:
     """Write a line for each part, with its number and place, which stay true when the height changes."""
-    parts = {each.number: {"name": each.name, "height_m": f"{1000 * (each.height_m or 0):.1f} mm"} for each in listed}
-    comments = {each.number: f"{name_part(each.number)}: {each.where}" for each in listed}
+    parts = {
+        shown_number(part.number): {"name": part.name, "height_m": f"{1000 * (part.height_m or 0):.1f} mm"}
+        for part in listed
+    }
+    comments = {shown_number(part.number): f"{name_part(part.number)}: {part.where}" for part in listed}
     return part_lines(parts, comments).removesuffix("\n")
 
 

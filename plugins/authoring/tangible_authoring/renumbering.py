@@ -5,7 +5,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
-from tangible_core.data import name_part, shown_number
+from tangible_core.data import label_of_number, name_part, shown_number
 from tangible_core.errors import ConfigError
 from tangible_core.files import atomic_write
 from tangible_core.files.yaml import parse_source, plain, read_text, with_parts
@@ -65,7 +65,7 @@ def draw_numbers(
     config = parse_config(text, file, default_registry(), overrides)
     listed = list_parts(Pipeline.from_config(config, default_registry(), cache))
     before = drawn.before(listed.found) if drawn else None
-    by_rules = {rule.part: "" for rule in config.materials.rules if isinstance(rule.part, int)}
+    by_rules = {label_of_number(rule.part): "" for rule in config.materials.rules if isinstance(rule.part, int)}
     moved = moves({**by_rules, **parts_in(text, file)}, before or ())
     title = config.title or Path(listed.scene_name).name
     if moved and not (renumber or force):
@@ -89,7 +89,7 @@ def _check_rules(file: Path, by_rules: Collection[int], moved: Iterable[Moved]) 
     """Refuse rules for parts by numbers that have changed. Raises: ConfigError."""
     if each := next((each for each in moved if each.before in by_rules), None):
         raise ConfigError(
-            f"{file}: a rule of materials.rules is for {name_part(each.before)} by its key {each.before}, which has "
+            f"{file}: a rule of materials.rules is for {name_part(each.before)} by its number, which has "
             "changed; give the part a name, and write that into the rule"
         )
 
@@ -129,9 +129,10 @@ def in_words(moved: Sequence[Moved]) -> str:
 
 
 def parts_in(text: str, path: Path) -> dict[int, Any]:
-    """Read the parts of a pipeline file as plain values. Raises: ConfigError if it is not YAML."""
+    """Read the parts of a pipeline file by label, as plain values. Raises: ConfigError if it is not YAML."""
     block = plain(parse_source(text, path, "a configuration is a mapping that starts with `scene:`").tree).get("parts")
-    return cast("dict[int, Any]", block) if isinstance(block, dict) else {}
+    entries = cast("dict[int, Any]", block) if isinstance(block, dict) else {}
+    return {label_of_number(number): entry for number, entry in entries.items()}
 
 
 def renumber_parts(text: str, path: Path, before: Sequence[Before], found: Sequence[ListedPart]) -> str:
@@ -141,8 +142,8 @@ def renumber_parts(text: str, path: Path, before: Sequence[Before], found: Seque
     Raises: ConfigError where `parts:` does not stand in lines of its own.
     """
     written = parts_in(text, path)
-    parts = {number: _choice_of(written, each) for number, each in enumerate(before)}
-    comments = {part.number: _comment(was, part) for was, part in zip(before, found, strict=True)}
+    parts = {number: _choice_of(written, earlier) for number, earlier in enumerate(before, 1)}
+    comments = {shown_number(part.number): _comment(was, part) for was, part in zip(before, found, strict=True)}
     try:
         return with_parts(text, path, parts, comments)
     except ConfigError as error:

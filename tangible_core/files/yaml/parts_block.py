@@ -16,9 +16,9 @@ BLOCK = re.compile(r"^parts:.*\n(?:(?:[ \t]*\n)*[ \t]+\S.*\n)*", re.MULTILINE)
 def part_lines(parts: Mapping[int, Any], comments: Mapping[int, str] | None = None) -> str:
     """Write a line for each part, the comments in a column behind them.
 
-    >>> print(part_lines({0: "wall", 6: {"name": "helmet"}}, {0: "on the left", 6: "in the middle"}), end="")
-      0: wall             # on the left
-      6: {name: helmet}   # in the middle
+    >>> print(part_lines({1: "wall", 7: {"name": "helmet"}}, {1: "on the left", 7: "in the middle"}), end="")
+      1: wall             # on the left
+      7: {name: helmet}   # in the middle
     """
     heads = {number: f"  {number}: {on_one_line(part)}" for number, part in parts.items()}
     wide, comments = max(map(len, heads.values()), default=0), comments or {}

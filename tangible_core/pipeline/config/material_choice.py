@@ -8,7 +8,7 @@ from pydantic import Discriminator, Tag
 from ...errors import ConfigError, MaterialError
 from ...files.yaml.source import Location, Source
 from ...materials.assignment import NEUTRAL, find, load_library
-from ...materials.rules import MaterialRule
+from ...materials.rules import MaterialRule, Number
 from ...scene.workspace import Section
 
 
@@ -19,11 +19,12 @@ class MaterialChoice(Section):
     """Rules for segments or parts; of several that fit, the first one wins. A material under `parts:` goes before
     them."""
     by: Annotated[
-        Annotated[Literal["roughness", "rules"], Tag(":word")] | Annotated[dict[int, str], Tag(":labels")],
+        Annotated[Literal["roughness", "rules"], Tag(":word")] | Annotated[dict[Number, str], Tag(":labels")],
         Discriminator(lambda value: ":labels" if isinstance(value, dict) else ":word"),
     ] = "roughness"
     """The choice for segments without a rule. `roughness`: by rank, the roughest segment of the picture gets the
-    roughest material. A map: from label to material, for all parts of that segment. `rules`: they get `default`."""
+    roughest material. A map: from the number of a segment to material, for all of its parts. `rules`: they get
+    `default`."""
     default: str = NEUTRAL
     """The material of all other segments."""
     library: Path | None = None

@@ -15,6 +15,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from ruamel.yaml import YAML
 from ruamel.yaml.representer import SafeRepresenter
 
+from ...data.part_words import label_of_number
 from ...data.products import Product
 from ...errors import ConfigError, quoted
 from ...files.paths import CONTROLS, without_folders
@@ -102,10 +103,10 @@ class PipelineConfig(BaseModel):
     """The product to make."""
     parts: Annotated[
         Mapping[int, PartChoice] | None,
-        PartsBlock("A word alone is a name (`{0: wall, 6: helmet}`), or ([more](parts.md)):"),
+        PartsBlock("A word alone is a name (`{1: wall, 7: helmet}`), or ([more](parts.md)):"),
     ] = None
-    """The names, heights and materials of the connected parts of the segments, by key: 0 for part 1, 1 for part 2, in
-    the order of their first pixels, row by row. With it, each part has one material."""
+    """The names, heights and materials of the connected parts of the segments, by number, from 1, in the
+    order of their first pixels, row by row. With it, each part has one material."""
     heights: Annotated[HeightChoice | None, Block("A word alone is `by` (`heights: given`), or:", word="by")] = None
     """The relief is made of parts, each of one height, with rounded rims and a little of the picture's brightness, in
     place of depth or brightness alone; `null` switches it off."""
@@ -124,7 +125,7 @@ class PipelineConfig(BaseModel):
     """The place of the surface in the device's workspace, and how the hand moves over it."""
     materials: Annotated[
         MaterialChoice,
-        Block("A map from label to material (`{0: ice, 1: sand}`), or:", labels="by", check=check_material_names),
+        Block("A map from segment to material (`{1: ice, 2: sand}`), or:", labels="by", check=check_material_names),
     ] = MaterialChoice()
     """The material of each segment; of each part, with `parts:` or `heights:`."""
     depth: Annotated[NamedMethod[DepthEstimator] | None, MethodBlock()] = None
@@ -163,14 +164,19 @@ class PipelineConfig(BaseModel):
         return "parts" if self.simplify is None else "simplified"
 
     @property
+    def choices(self) -> dict[int, PartChoice]:
+        """The configured parts by label, from 0; in `parts` they are by number, from 1."""
+        return {label_of_number(number): part for number, part in (self.parts or {}).items()}
+
+    @property
     def part_names(self) -> dict[int, str]:
-        """The names of parts by number; parts without a name are left out."""
-        return {number: name for number, each in (self.parts or {}).items() if (name := each.name.strip())}
+        """The names of parts by label; parts without a name are left out."""
+        return {label: name for label, part in self.choices.items() if (name := part.name.strip())}
 
     @property
     def given_heights_m(self) -> dict[int, float]:
-        """The heights of parts by number, metres; parts without a height are left out."""
-        return {number: each.height_m for number, each in (self.parts or {}).items() if each.height_m is not None}
+        """The heights of parts by label, metres; parts without a height are left out."""
+        return {label: part.height_m for label, part in self.choices.items() if part.height_m is not None}
 
     @property
     def top_m(self) -> float:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 
 from ...data import Material
-from ...data.part_words import name_part
+from ...data.part_words import label_of_number, name_part, shown_number
 from ...errors import MOST_QUOTED, ConfigError, MaterialError, did_you_mean, quoted
 from ...materials.assignment import find, load_library
 from ...parts import PartChoice
@@ -33,7 +33,7 @@ def _wrong_heights(config: PipelineConfig) -> Iterator[Wrong]:
         switched_off = config.source is not None and "heights" in config.source.tree
         if not switched_off and (idle := next(iter(config.given_heights_m), None)) is not None:
             yield (
-                ("parts", idle, "height_m"),
+                ("parts", shown_number(idle), "height_m"),
                 "without `heights:` no part has a height; write `heights: {by: given}`, or `heights: null` to leave "
                 "the heights of parts aside",
             )
@@ -55,7 +55,8 @@ def _wrong_names(parts: Mapping[int, PartChoice]) -> Iterator[Wrong]:
         wrong = _wrong_name(choice.name)
         other = first.setdefault(choice.name.strip().casefold(), number) if choice.name.strip() else number
         if other != number:
-            wrong = f"{quoted(choice.name)} is the name of {name_part(other)} as well; give each part a name of its own"
+            also = name_part(label_of_number(other))
+            wrong = f"{quoted(choice.name)} is the name of {also} as well; give each part a name of its own"
         if wrong:
             yield ("parts", number, "name"), wrong
 
@@ -100,9 +101,9 @@ def numbers_of(parts: Mapping[int, PartChoice]) -> dict[str, int]:
     return {choice.name.strip(): number for number, choice in parts.items() if choice.name.strip()}
 
 
-def names_of(parts: Mapping[int, PartChoice], count: int) -> tuple[str, ...]:
+def names_of(config: PipelineConfig, count: int) -> tuple[str, ...]:
     """Return a name for each of `count` parts; empty for a part without one."""
-    return tuple(parts[number].name.strip() if number in parts else "" for number in range(count))
+    return tuple(config.part_names.get(label, "") for label in range(count))
 
 
 def wrong_of_scale(config: PipelineConfig) -> Iterator[Wrong]:

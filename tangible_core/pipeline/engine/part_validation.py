@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from ...data import HapticSurface, MaterialMap, PartMap, SegmentMap
-from ...data.part_words import missing_key, name_part
+from ...data.part_words import missing_number, name_part, shown_number
 from ...errors import PictureError
 from ...materials.rules import MaterialRule
 from ...parts import find_parts, part_sizes
@@ -89,24 +89,24 @@ def check_numbers(config: PipelineConfig, count: int) -> None:
 def _wrong_numbers(config: PipelineConfig, count: int) -> Iterator[Wrong]:
     draws = "(`tangible parts` draws the parts with their numbers)"
     for number in config.parts or {}:
-        if number >= count:
-            yield ("parts", number), f"{missing_key(number, count)} {draws}"
+        if number > count:
+            yield ("parts", number), f"{missing_number(number, count)} {draws}"
     for index, rule in enumerate(config.materials.rules):
-        if isinstance(rule.part, int) and rule.part >= count:
-            yield ("materials", "rules", index, "part"), f"{missing_key(rule.part, count)} {draws}"
+        if isinstance(rule.part, int) and rule.part > count:
+            yield ("materials", "rules", index, "part"), f"{missing_number(rule.part, count)} {draws}"
 
 
 def _wrong_heights(config: PipelineConfig, parts: PartMap, columns: int) -> Iterator[Wrong]:
     if config.heights is None:
         return
     top_m, size, names = config.top_m, config.size, config.part_names
-    for number, height_m in config.given_heights_m.items():
-        if number < parts.count and height_m > top_m + ROUNDING_M:
+    for label, height_m in config.given_heights_m.items():
+        if label < parts.count and height_m > top_m + ROUNDING_M:
             above_m = config.heights.bulge_m + config.heights.detail_m
-            place = place_of(parts, number, columns / parts.labels.shape[1])
+            place = place_of(parts, label, columns / parts.labels.shape[1])
             yield (
-                ("parts", number, "height_m"),
-                f"{name_part(number, names.get(number, ''))}, at {place} of the picture, is {_mm(height_m)} high, "
+                ("parts", shown_number(label), "height_m"),
+                f"{name_part(label, names.get(label, ''))}, at {place} of the picture, is {_mm(height_m)} high, "
                 f"and the highest can be {_mm(top_m)}: workspace.relief_m, {_mm(size.relief_m)}, less bulge_m and "
                 f"detail_m, {_mm(above_m)}; make it lower, or workspace.relief_m {_mm(height_m + above_m)}",
             )
@@ -126,8 +126,8 @@ def number_rules(config: PipelineConfig) -> tuple[MaterialRule, ...]:
 
 
 def own_materials(config: PipelineConfig) -> dict[int, str]:
-    """Return the materials of the parts that name one, by number."""
-    return {number: each.material for number, each in (config.parts or {}).items() if each.material is not None}
+    """Return the materials of the parts that name one, by label."""
+    return {label: part.material for label, part in config.choices.items() if part.material is not None}
 
 
 def add_names_to_reasons(config: PipelineConfig, materials: MaterialMap) -> MaterialMap:
@@ -143,4 +143,4 @@ def add_names_to_surface(config: PipelineConfig, surface: HapticSurface) -> Hapt
     """Add the names of its parts. Raises: ConfigError for parts that do not exist."""
     count = len(surface.names or ())
     check_numbers(config, count)
-    return replace(surface, names=names_of(config.parts or {}, count))
+    return replace(surface, names=names_of(config, count))

@@ -119,7 +119,7 @@ class PartHeightPreview:
         Raises: ConfigError for a height above the workspace, an unknown part, a depth that is not made yet;
         MaterialError; TangibleError as `Engine.make`.
         """
-        said = {number: _validate(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
+        said = {number: _validate(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m, 1)}
         check_parts(config.with_values(parts=said), self._parts, self.grid.scene.shape[1])
         check_numbers(config, self._parts.count)
         known_m = self._known_heights(heights_m, by)

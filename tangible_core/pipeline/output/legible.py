@@ -130,4 +130,4 @@ def names_of_parts(config: PipelineConfig, products: Mapping[str, Record | None]
     if not config.parts:
         return ()
     counts = [each.count for each in products.values() if isinstance(each, PartMap)]
-    return names_of(config.parts, max(counts, default=max(config.parts) + 1))
+    return names_of(config, max(counts, default=max(config.parts)))

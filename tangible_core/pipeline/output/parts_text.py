@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from ...data import DisparityMap, PartMap
-from ...data.part_words import name_part
+from ...data.part_words import shown_number
 from ...errors import ConfigError, shown
 from ...files.yaml.editing import on_one_line
 from ...files.yaml.parts_block import with_parts
@@ -52,19 +52,19 @@ def to_correct(engine: Engine) -> str:
         rest = ""
     head = f"# {SOURCES[config.heights.by]} Correct what is wrong, and give names.\n"
     given = config.heights.model_copy(update={"by": "given"}).model_dump(mode="json")
-    reasons = {number: f"{name_part(number)}: {shown(why, MOST_REASON)}" for number, why in enumerate(heights.reasons)}
+    reasons = {number: f"part {number}: {shown(why, MOST_REASON)}" for number, why in enumerate(heights.reasons, 1)}
     parts = with_parts(rest, Path(), _blocks(config, heights), reasons)
     return f"{head}{parts}heights: {on_one_line(given)}\n"
 
 
 def _blocks(config: PipelineConfig, heights: PartHeights) -> dict[int, dict[str, Any]]:
     """Return the block of each part, with its present height."""
-    choices = {number: (config.parts or {}).get(number, PartChoice()) for number in range(len(heights.heights_m))}
+    choices = {label: config.choices.get(label, PartChoice()) for label in range(len(heights.heights_m))}
     return {
-        number: {
+        shown_number(label): {
             "name": choice.name.strip(),
-            "height_m": heights.heights_m[number],
+            "height_m": heights.heights_m[label],
             **({} if choice.material is None else {"material": choice.material}),
         }
-        for number, choice in choices.items()
+        for label, choice in choices.items()
     }

@@ -101,17 +101,17 @@ class TestOwnFile:
 
 class TestByName:
     def test_each_label_gets_its_material(self):
-        assigned = assign(stripes(3), None, {0: "ice", 1: "sand", 2: "ice"}, library())
+        assigned = assign(stripes(3), None, {1: "ice", 2: "sand", 3: "ice"}, library())
         assert [each.name for each in assigned.materials] == ["ice", "sand", "ice"]
         assert assigned.reasons == ("segment 1: named ice", "segment 2: named sand", "segment 3: named ice")
 
     def test_wrong_labels_and_names_are_all_reported(self):
         with pytest.raises(MaterialError) as error:
-            assign(stripes(3), None, {0: "icee", 3: "sand", -1: "sand"}, library())
+            assign(stripes(3), None, {1: "icee", 4: "sand", -1: "sand"}, library())
         first, second, third = str(error.value).splitlines()
         assert first.startswith("segment 1: no material is named 'icee' (did you mean 'ice'?)")
-        assert second == "no segment has the key 3: the keys of the 3 segments are 0 to 2, and segment 1 is key 0"
-        assert third == "no segment has the key -1: the keys of the 3 segments are 0 to 2, and segment 1 is key 0"
+        assert second == "there is no segment 4: the 3 segments are numbered from 1 to 3"
+        assert third == "there is no segment -1: the 3 segments are numbered from 1 to 3"
 
 
 class TestByRoughness:
@@ -167,11 +167,11 @@ class TestByRules:
     def test_first_fitting_rule_wins(self):
         segments, picture = quarters()
         given = rules(
-            {"segment": 3, "material": "sand"},
+            {"segment": 4, "material": "sand"},
             {"at": [25.4, 0], "material": "ice"},
             {"colour": "brown", "material": "wood"},
             {"colour": "blue", "material": "water"},
-            {"segment": 0, "material": "glass"},
+            {"segment": 1, "material": "glass"},
         )
         assigned = assign(segments, picture, "rules", library(), given, "leather")
         assert [each.name for each in assigned.materials] == ["water", "ice", "leather", "sand"]
@@ -191,8 +191,8 @@ class TestByRules:
         assert [each.name for each in assigned.materials].index("ice") == label
 
     def test_rest_is_decided_by_name_or_by_roughness(self):
-        given = rules({"segment": 1, "material": "glass"})
-        assigned = assign(stripes(3), None, {1: "sand", 2: "wood"}, library(), given)
+        given = rules({"segment": 2, "material": "glass"})
+        assigned = assign(stripes(3), None, {2: "sand", 3: "wood"}, library(), given)
         assert [each.name for each in assigned.materials] == ["plain", "glass", "wood"]
         picture = checkers(0.3, 0.0, 0.1)
         alone, ruled = (assign(stripes(3), picture, "roughness", library(), each) for each in ([], given))
@@ -210,16 +210,16 @@ class TestByRules:
 
     def test_every_wrong_rule_is_reported(self):
         given = rules(
-            {"segment": 4, "material": "ice"}, {"at": [40, 3], "material": "ice"}, {"colour": "red", "material": "ice"}
+            {"segment": 5, "material": "ice"}, {"at": [40, 3], "material": "ice"}, {"colour": "red", "material": "ice"}
         )
         with pytest.raises(MaterialError) as error:
             assign(quarters()[0], np.zeros((3, 4)), "rules", library(), given)
         first, second, third = str(error.value).splitlines()
-        assert first.startswith("materials: rule 1: no segment has the key 4: the keys of the 4 segments are 0 to 3")
+        assert first.startswith("materials: rule 1: there is no segment 5: the 4 segments are numbered from 1 to 4")
         assert second == "materials: rule 2: [40, 3] lies outside the picture of 40 x 40 pixels"
         assert third.startswith("materials: rule 3: a rule by colour needs the segmented picture")
 
-    @pytest.mark.parametrize("rule", [{}, {"segment": 0, "colour": "red"}])
+    @pytest.mark.parametrize("rule", [{}, {"segment": 1, "colour": "red"}])
     def test_rule_with_two_selectors_or_none_is_refused(self, rule: dict):
         with pytest.raises(ValueError, match="takes one of segment, part, at and colour"):
             MaterialRule.model_validate({**rule, "material": "ice"})

@@ -97,13 +97,13 @@ def write_pipeline(folder: Path, text: str, name: str = "p.yaml") -> Path:
     return path
 
 
-SAID = "parts: {0: wall, 1: {name: left box, height_m: 1 mm}, 3: {name: chest, height_m: 3 mm, material: glass}}\n"
+SAID = "parts: {1: wall, 2: {name: left box, height_m: 1 mm}, 4: {name: chest, height_m: 3 mm, material: glass}}\n"
 
 
 class TestHeights:
     def test_heights_given_are_those_of_the_relief(self):
         made = pipeline(
-            parts={0: "wall", 1: PartChoice(height_m=0.001), 3: {"name": "chest", "height_m": 0.003}},
+            parts={1: "wall", 2: PartChoice(height_m=0.001), 4: {"name": "chest", "height_m": 0.003}},
             heights={"by": "given", "bulge_m": 0, "detail_m": 0},
             workspace={"smooth_m": 0},
         )
@@ -128,7 +128,7 @@ class TestHeights:
         assert middle_mm(made.surface, 1) < middle_mm(made.surface, 3) < middle_mm(made.surface, 2)
         assert float(made.relief.height_m.max()) <= 0.006 + 1e-9
         for by in ("given", "depth", "guess"):
-            found = part_heights(pipeline(heights=by, parts={2: {"height_m": 0.0007}}, depth=Ramp()).engine)
+            found = part_heights(pipeline(heights=by, parts={3: {"height_m": 0.0007}}, depth=Ramp()).engine)
             assert found is not None
             assert (found.heights_m[2], found.reasons[2]) == (0.0007, "given")
             assert found.heights_m == tuple(round(each, 5) for each in found.heights_m)
@@ -142,10 +142,10 @@ class TestHeights:
         (warning,) = [each for each in notes(made, "relief") if each.kind == "warning"]
         assert warning.text.startswith("the heights of all 4 parts are guessed, as a picture does not show")
         assert [each.levelname for each in caplog.records if "guessed" in each.message] == ["WARNING"]
-        made = pipeline(heights="guess", parts={0: {"height_m": 0}, 2: {"height_m": 0}})
+        made = pipeline(heights="guess", parts={1: {"height_m": 0}, 3: {"height_m": 0}})
         made.make("relief")
         assert notes(made, "relief")[-1].text.startswith("the heights of parts 2 and 4 are guessed")
-        made = pipeline(heights="guess", parts={number: {"height_m": 0} for number in range(4)})
+        made = pipeline(heights="guess", parts={number: {"height_m": 0} for number in range(1, 5)})
         made.make("relief")
         assert [each.kind for each in notes(made, "relief")] == ["decision"]
 
@@ -237,14 +237,14 @@ class TestCached:
 class TestMaterials:
     def test_material_of_a_part_goes_before_rules_and_the_choice(self):
         made = pipeline(
-            parts={0: "wall", 1: {"name": "left box", "material": "glass"}},
+            parts={1: "wall", 2: {"name": "left box", "material": "glass"}},
             materials={
                 "rules": [
                     {"part": "wall", "material": "ice"},
-                    {"segment": 1, "material": "wood"},
-                    {"part": 2, "material": "stone"},
+                    {"segment": 2, "material": "wood"},
+                    {"part": 3, "material": "stone"},
                 ],
-                "by": {0: "leather", 1: "sand", 2: "cloth"},
+                "by": {1: "leather", 2: "sand", 3: "cloth"},
             },
             depth=Ramp(),
         )
@@ -269,14 +269,14 @@ class TestMaterials:
         assert made.materials.reasons[1] == "part 2: rule 2, 100 % of it red -> brick"
 
     def test_rule_for_an_unknown_segment_is_refused(self):
-        for choice in ({"by": "rules", "rules": [{"segment": 7, "material": "ice"}]}, {7: "ice"}):
-            with pytest.raises(MaterialError, match="no segment has the key 7: the keys of the 3 segments are 0 to 2"):
+        for choice in ({"by": "rules", "rules": [{"segment": 8, "material": "ice"}]}, {8: "ice"}):
+            with pytest.raises(MaterialError, match="there is no segment 8: the 3 segments are numbered from 1 to 3"):
                 pipeline(parts={}, materials=choice, depth=Ramp()).make("materials")
 
     def test_materials_on_a_map_of_heights_are_by_parts(self):
         heights = Scene.heights(PICTURE, segments=LABELS)
         made = Pipeline(
-            heights, parts={1: {"name": "lake", "material": "water"}}, materials={"by": "rules"}, cached=False
+            heights, parts={2: {"name": "lake", "material": "water"}}, materials={"by": "rules"}, cached=False
         )
         surface = made.surface
         assert surface.materials is not None and surface.names is not None
@@ -299,27 +299,27 @@ class TestComplaints:
     @pytest.mark.parametrize(
         ("text", "location", "line", "column"),
         [
-            ("parts:\n  0: wall\n  9: {name: ghost}\nheights: given\n", ("parts", 9), 4, 3),
-            ("parts: {}\nmaterials: {rules: [{part: 4, material: ice}]}\n", ("materials", "rules", 0, "part"), 3, 22),
+            ("parts:\n  1: wall\n  10: {name: ghost}\nheights: given\n", ("parts", 10), 4, 3),
+            ("parts: {}\nmaterials: {rules: [{part: 5, material: ice}]}\n", ("materials", "rules", 0, "part"), 3, 22),
         ],
     )
     def test_unknown_part_is_refused_with_its_place(
         self, folder: Path, text: str, location: tuple, line: int, column: int
     ):
         error = self.complaints(folder, text)
-        assert "the keys of the 4 parts are 0 to 3" in str(error)
+        assert "the 4 parts are numbered from 1 to 4" in str(error)
         (complaint,) = error.complaints
         assert (complaint.location, complaint.line, complaint.column) == (location, line, column)
         with pytest.raises(ConfigError) as error:
-            pipeline(parts={9: "ghost", 1: {"height_m": 1}}, heights="given").make("relief")
-        assert [each.location for each in error.value.complaints] == [("parts", 9), ("parts", 1, "height_m")]
+            pipeline(parts={10: "ghost", 2: {"height_m": 1}}, heights="given").make("relief")
+        assert [each.location for each in error.value.complaints] == [("parts", 10), ("parts", 2, "height_m")]
         assert {each.line for each in error.value.complaints} == {None}
 
     def test_height_above_the_workspace_is_refused_with_the_cure(self, folder: Path):
         error = self.complaints(folder, f"{SAID.replace('3 mm', '4.3 mm')}heights: given\n")
-        assert ":2:72: parts.3.height_m: part 4 (chest), at [32, 27] of the picture, is 4.3 mm high" in str(error)
+        assert ":2:72: parts.4.height_m: part 4 (chest), at [32, 27] of the picture, is 4.3 mm high" in str(error)
         assert str(error).endswith("workspace.relief_m 6.1 mm")
-        assert error.complaints[0].location == ("parts", 3, "height_m")
+        assert error.complaints[0].location == ("parts", 4, "height_m")
         made = load_pipeline(
             write_pipeline(folder, f"{SAID.replace('3 mm', '4.3 mm')}heights: given\n"), ["workspace.relief_m=6.1 mm"]
         )
@@ -328,13 +328,13 @@ class TestComplaints:
 
     @pytest.mark.parametrize("parts", [{}, {"heights": "depth"}], ids=["materials alone", "heights"])
     def test_unknown_part_is_refused_before_depth_runs(self, parts: dict):
-        made = pipeline(None, parts={9: "ghost"}, depth=Ramp(), texture=Same(), **parts)
-        with pytest.raises(ConfigError, match="no part has the key 9"):
+        made = pipeline(None, parts={10: "ghost"}, depth=Ramp(), texture=Same(), **parts)
+        with pytest.raises(ConfigError, match="there is no part 10"):
             made.make("surface")
         assert ran == ["segments"]
         assert outcome_kinds(made)["parts"] == "failed"
 
-    @pytest.mark.parametrize("key", ["heights: given", "parts: {0: wall}"])
+    @pytest.mark.parametrize("key", ["heights: given", "parts: {1: wall}"])
     def test_parts_without_segments_are_refused_with_the_cure(self, folder: Path, key: str):
         path = folder / "p.yaml"
         path.write_text(f"scene: {{photo: photo.npy}}\ndepth: luminance\n{key}\n")
@@ -365,7 +365,7 @@ class TestComplaints:
 
 class TestWritten:
     def test_run_with_guessed_heights_writes_an_equal_file_to_correct(self, folder: Path):
-        parts = "{0: Wand, 3: {name: Truhe, material: glass}}"
+        parts = "{1: Wand, 4: {name: Truhe, material: glass}}"
         text = f"title: Boxes\nlanguage: de\nparts: {parts}\nheights: {{by: guess, bulge_m: 1 mm}}\n"
         first = load_pipeline(write_pipeline(folder, text), cache=Cache(folder / "cache"))
         run = first.run(folder / "out")
@@ -378,8 +378,8 @@ class TestWritten:
         assert (again.config.title, again.config.language) == ("Boxes", "de")
         assert again.surface.digest() == first.surface.digest()
         np.testing.assert_array_equal(again.surface.height_m, first.surface.height_m)
-        line = next(each for each in file.read_text(encoding="utf-8").splitlines() if each.startswith("  3: "))
-        assert line.startswith("  3: {name: Truhe, height_m: 0.00") and "material: glass}   # part 4: guessed, " in line
+        line = next(each for each in file.read_text(encoding="utf-8").splitlines() if each.startswith("  4: "))
+        assert line.startswith("  4: {name: Truhe, height_m: 0.00") and "material: glass}   # part 4: guessed, " in line
         rerun = again.run(folder / "out")
         assert not file.exists() and file not in rerun.files
 

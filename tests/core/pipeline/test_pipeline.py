@@ -146,7 +146,7 @@ class TestThereAndBack:
             scene,
             depth=Zncc(window_px=5, max_disparity_px=8),
             texture=Histogram(segments=2),
-            materials={"by": {0: "ice", 1: "wood"}, "rules": [{"segment": 1, "material": "sand"}]},
+            materials={"by": {1: "ice", 2: "wood"}, "rules": [{"segment": 2, "material": "sand"}]},
             workspace={"width_m": 0.05, "smooth_m": 0.0005},
             render=Penalty(stiffness_n_per_m=500.0),
             device=Mock(path="raster"),

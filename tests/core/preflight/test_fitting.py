@@ -80,7 +80,7 @@ class TestPipeline:
     def pipeline(self, **changes: Any) -> Pipeline:
         labels = np.repeat(np.int32([[0, 1]]), 16, axis=1).repeat(32, axis=0)
         scene = Scene.photo(np.linspace(0, 1, 1024).reshape(32, 32), segments=labels)
-        materials = {"by": {0: "brick", 1: "stone"}, **changes.pop("materials", {})}
+        materials = {"by": {1: "brick", 2: "stone"}, **changes.pop("materials", {})}
         render = Proxy()
         return Pipeline(
             scene,

@@ -120,7 +120,7 @@ def test_recording_has_the_names_of_parts(tmp_path: Path, suffix: str):
 @pytest.mark.parametrize(
     ("text", "names"),
     [
-        ("parts: {0: wall, '6': {name: helmet}, 2: {height_m: 1 mm}, 3: '', 4: null}", {0: "wall", 6: "helmet"}),
+        ("parts: {1: wall, '7': {name: helmet}, 3: {height_m: 1 mm}, 4: '', 5: null}", {0: "wall", 6: "helmet"}),
         ("scene: builtin/coins", None),
         ("parts: [wall]", None),
         ("parts: {wall: 0}", None),

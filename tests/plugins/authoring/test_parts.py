@@ -144,8 +144,8 @@ def test_painted_parts_are_renumbered_on_request(folder: Path):
     """A person gives names, splits the wall, reads that numbers changed, lets the file follow, and goes on."""
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"
-    named = file.read_text().replace('0: {name: ""', "0: {name: wall").replace('1: {name: ""', "1: {name: vase")
-    file.write_text(named.replace('2: {name: ""', '2: {name: "floor [old]"'))
+    named = file.read_text().replace('1: {name: ""', "1: {name: wall").replace('2: {name: ""', "2: {name: vase")
+    file.write_text(named.replace('3: {name: ""', '3: {name: "floor [old]"'))
     shown = well(tangible("parts", "still.yaml", cwd=folder))
     assert "vase" in shown.stdout and "floor [old]" in shown.stdout and "written: parts-numbered.png" in shown.stdout
     drawn = (folder / "parts-numbered.png").read_bytes()
@@ -172,12 +172,12 @@ def test_painted_parts_are_renumbered_on_request(folder: Path):
 def test_rule_by_an_old_number_is_refused(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"
-    rules = "materials: {rules: [{part: 1, material: glass}]}"
+    rules = "materials: {rules: [{part: 2, material: glass}]}"
     file.write_text(file.read_text().replace("materials: {by: rules}", rules))
     paint(folder / "parts.png", (110, 0, 160, 40), 20)
     before = file.read_text()
     done = tangible("parts", "still.yaml", "--renumber", cwd=folder)
-    assert done.returncode == 2 and "a rule of materials.rules is for part 2 by its key 1" in done.stderr
+    assert done.returncode == 2 and "a rule of materials.rules is for part 2 by its number" in done.stderr
     assert file.read_text() == before
 
 
@@ -185,8 +185,8 @@ def test_parts_on_one_line_are_not_renumbered(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"
     head, _, rest = file.read_text().partition("parts:\n")
-    rest = "\n".join(line for line in rest.splitlines() if not line.startswith(("  0", "  1", "  2")))
-    file.write_text(f"{head}parts: {{0: wall,\n1: vase,\n2: floor}}\n{rest}\n")
+    rest = "\n".join(line for line in rest.splitlines() if not line.startswith(("  1", "  2", "  3")))
+    file.write_text(f"{head}parts: {{1: wall,\n2: vase,\n3: floor}}\n{rest}\n")
     paint(folder / "parts.png", (110, 0, 160, 40), 20)
     before, drawn = file.read_text(), (folder / "parts-numbered.png").read_bytes()
     done = tangible("parts", "still.yaml", "--renumber", cwd=folder)
@@ -204,7 +204,7 @@ def test_full_disk_leaves_whole_files_or_none(folder: Path):
 
     found.write(force=True)
     file = folder / "still.yaml"
-    file.write_text(file.read_text().replace('1: {name: ""', "1: {name: vase"))
+    file.write_text(file.read_text().replace('2: {name: ""', "2: {name: vase"))
     paint(folder / "parts.png", (110, 0, 160, 40), 20)
     before = {name: (folder / name).read_bytes() for name in HERE}
     room = file.stat().st_size + 4096
@@ -219,7 +219,7 @@ def test_names_of_parts_reach_recording_and_replay(folder: Path):
     file = folder / "still.yaml"
     file.write_text(
         file.read_text()
-        .replace('0: {name: ""', "0: {material: glass, name: '[wall]'")
+        .replace('1: {name: ""', "1: {material: glass, name: '[wall]'")
         .replace("path: raster", "path: press")
     )
     felt = well(tangible("feel", "still.yaml", "--seconds", 0.8, "--record", "hand.nc", "--json", cwd=folder))

@@ -18,7 +18,7 @@ def folder(tmp_path):
     (tmp_path / "parts.png").write_bytes(label_picture(labels))
     write_png(tmp_path / "photo.png", np.full((100, 150, 3), 128, np.uint8))
     scene = "scene: {photo: photo.png, segments: parts.png}\nworkspace: {width_m: 60 mm}\ndepth: luminance\n"
-    drawn = "parts: {2: window}\nexport: [{use: swell, width_m: 60 mm}]\n"
+    drawn = "parts: {3: window}\nexport: [{use: swell, width_m: 60 mm}]\n"
     (tmp_path / "house.yaml").write_text(f"{scene}{drawn}simplify: {{gap_m: 0, part_m: 0}}\n")
     (tmp_path / "drawn.yaml").write_text(f"{scene}{drawn}")
     return tmp_path

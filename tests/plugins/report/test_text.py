@@ -125,7 +125,7 @@ def test_pipeline_exports_text(tmp_path: Path):
     scene = Scene.photo(picture, segments=np.repeat(np.arange(2), 32)[:, None].repeat(96, axis=1))
     pipeline = Pipeline(
         scene, depth=Luminance(), workspace=Workspace(width_m=0.08), title="Rampe", language="de",
-        parts={0: "oben", 1: "unten"},
+        parts={1: "oben", 2: "unten"},
     )  # fmt: skip
     export = pipeline.export(tmp_path, [Text(width_m=0.24)])
     [[text, _]] = [each.files for each in export.exports]

@@ -124,7 +124,7 @@ class TestLegible:
 
 class TestBeacon:
     def test_touch_is_announced_with_part_and_material(self, show: Callable[..., "Page"]) -> None:
-        page = show("parts: {0: {name: wall, material: ice}}\nmaterials: {by: {1: ice}, default: ice}\n")
+        page = show("parts: {1: {name: wall, material: ice}}\nmaterials: {by: {2: ice}, default: ice}\n")
         page.locator("#terrain").focus()
         page.keyboard.press("Home")
         page.keyboard.press(" ")

@@ -43,7 +43,7 @@ comparisons:
 - {name: parts, question: name, conditions: [plain], names: [cup, plate], repetitions: 1}
 """
 """A comparison of each kind of question; order and answers are those of the file, so that a right answer is known."""
-PARTS = "materials: {by: rules}\nparts: {0: cup, 1: plate}\n"
+PARTS = "materials: {by: rules}\nparts: {1: cup, 2: plate}\n"
 
 
 ENTER = ("Press Enter to begin.", "Enter")

@@ -66,7 +66,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (at / "p.yaml").write_text(
         "scene: {left: left.png, right: right.png, disparity: disparity.npy, truth: truth.npy,"
         " segments: segments.png}\n"
-        "materials: {by: {0: wood, 1: cloth}}\n"
+        "materials: {by: {1: wood, 2: cloth}}\n"
         "workspace: {width_m: 0.08, relief_m: 0.004, smooth_m: 0}\n"
         "relief: {slope: 0, spread: 0, accent_m: 0, grain_m: 0}\n"
         "render: {use: penalty}\n"

@@ -28,11 +28,11 @@ async def test_change_of_a_key_leaves_the_rest(small: SmallSession, ask: Any):
 
 
 async def test_change_takes_a_value_in_yaml(small: SmallSession, ask: Any):
-    await ask("set", written={"materials.by": "{0: ice, 1: sand, 2: brick}"})
-    assert small.tab.last("document")["values"]["materials"]["by"] == {"0": "ice", "1": "sand", "2": "brick"}
+    await ask("set", written={"materials.by": "{1: ice, 2: sand, 3: brick}"})
+    assert small.tab.last("document")["values"]["materials"]["by"] == {"1": "ice", "2": "sand", "3": "brick"}
     before = small.session.document.text
     with pytest.raises(ConfigError) as refused:
-        await ask("set", written={"materials.by": "{0: ice"})
+        await ask("set", written={"materials.by": "{1: ice"})
     assert refused.value.complaints[0].location == ("materials", "by")
     assert small.session.document.text == before
 
@@ -52,7 +52,7 @@ async def test_complaint_names_its_field_and_leaves_the_text(small: SmallSession
 
 
 async def test_document_tells_what_its_scene_is_and_what_its_relief_is_made_of(small: SmallSession, ask: Any):
-    parts = "scene: {photo: p.png, segments: s.png}\nheights: {by: given}\nparts: {0: {name: wall, height_m: 0.001}}\n"
+    parts = "scene: {photo: p.png, segments: s.png}\nheights: {by: given}\nparts: {1: {name: wall, height_m: 0.001}}\n"
     for text, kinds in (
         ("scene: {photo: p.png}\n", ("photograph", "photograph")),
         ("scene: {photo: p.png}\nrelief: edges\n", ("photograph", "edges")),

@@ -137,19 +137,19 @@ class TestText:
         parts = {0: {"name": "wall"}, 2: {"name": "hat", "height_m": 0.0042, "material": "glass"}, 3: {}}
         found = self.said(TEXT, tmp_path / "mine.yaml", parts, by="given")
         assert found == TEXT.replace("photo: mine.png", "photo: mine.png, segments: parts.png") + (
-            "heights: {by: given}\nparts:\n  0: wall\n  2: {name: hat, height_m: 0.0042, material: glass}\n"
+            "heights: {by: given}\nparts:\n  1: wall\n  3: {name: hat, height_m: 0.0042, material: glass}\n"
         )
 
     def test_document_keeps_comments_next_to_parts(self, tmp_path: Path) -> None:
-        text = "scene: {photo: a.png}\nparts:\n  0: wall  # grey\n  1: hat\n  4: gone\n# the end\n"
+        text = "scene: {photo: a.png}\nparts:\n  1: wall  # grey\n  2: hat\n  5: gone\n# the end\n"
         found = self.said(text, tmp_path / "mine.yaml", {0: {"name": "wall"}, 1: {"name": "cap"}, 2: {"name": "bag"}})
-        assert "  0: wall  # grey\n  1: cap\n  2: bag\n# the end\n" in found
+        assert "  1: wall  # grey\n  2: cap\n  3: bag\n# the end\n" in found
 
     def test_part_names_survive_writing_and_reading(self, tmp_path: Path) -> None:
         path = tmp_path / "mine.yaml"
         for name in ("a: b", '"', "\\", "# no comment", "- x", "{}", "null", "007", "é ✂ 𝄞", "a\nb", "\x07", " a "):
             found = self.said(TEXT, path, {0: {"name": name}, 1: {"name": name + "x", "height_m": 0.001}})
-            assert read_values(found, path)["parts"] == {"0": name, "1": {"name": name + "x", "height_m": 0.001}}
+            assert read_values(found, path)["parts"] == {"1": name, "2": {"name": name + "x", "height_m": 0.001}}
 
     def test_document_of_a_built_in_scene_names_its_files(self, tmp_path: Path) -> None:
         path = tmp_path / "mine.yaml"
@@ -306,7 +306,7 @@ class TestSaving:
 
     @pytest.mark.parametrize(
         ("said", "kept"),
-        [("", "rules"), ("materials: {by: roughness}\n", "rules"), ("materials: {by: {0: ice}}\n", {0: "ice"})],
+        [("", "rules"), ("materials: {by: roughness}\n", "rules"), ("materials: {by: {1: ice}}\n", {1: "ice"})],
     )
     async def test_saved_parts_get_no_material_by_the_rank_of_their_roughness(
         self, small: SmallSession, ask: Any, tmp_path: Path, said: str, kept: Any
@@ -320,19 +320,19 @@ class TestSaving:
             chosen = pipeline.materials
             assert chosen is not None and [each.name for each in chosen.materials] == ["plain", "glass", "plain"]
 
-    @pytest.mark.parametrize(("key", "warned"), [("2", True), ("hat", False)])
+    @pytest.mark.parametrize(("key", "warned"), [("3", True), ("hat", False)])
     async def test_materials_by_a_number_that_moved_are_warned_of(
         self, small: SmallSession, ask: Any, caplog: pytest.LogCaptureFixture, key: str, warned: bool
     ) -> None:
         await saved(small, ask)
         await ask("set", written={"materials": f"{{rules: [{{part: {key}, material: ice}}]}}"})
         await saved(small, ask)
-        assert "by the keys" not in caplog.text  # as they were
+        assert "by the numbers" not in caplog.text  # as they were
         moved = drawn()
         moved[moved == 3] = 0
         moved[0, 1] = 3  # the third part is the second now
         await saved(small, ask, upload=await sent(small, ask, packed(moved)))
-        assert ("by the keys 2" in caplog.text) == warned
+        assert ("by the numbers 3" in caplog.text) == warned
 
     async def test_labels_overwrite_no_foreign_file(self, small: SmallSession, ask: Any, tmp_path: Path) -> None:
         (tmp_path / "parts.png").write_bytes(b"of somebody else")
@@ -412,7 +412,7 @@ async def test_scene_event_has_the_names_of_parts(small: SmallSession, ask: Any,
     labels = drawn() % 5
     labels[0:2, 0:2] = 2  # another piece of the hat's segment
     Image.fromarray(labels.astype(np.uint8)).save(tmp_path / "drawn.png")
-    said = "parts: {0: corner, 1: wall, 2: {name: hat, material: ice}}\nheights: {by: given}\n"
+    said = "parts: {1: corner, 2: wall, 3: {name: hat, material: ice}}\nheights: {by: given}\n"
     text = TEXT.replace("photo: mine.png", "photo: mine.png, segments: drawn.png") + said
     await ask("edit", text=text)
     await ask("make", want="materials")

@@ -227,7 +227,7 @@ class TestSee:
     def test_materials_of_a_view_are_limited_to_the_device(self):
         segments = np.repeat([[0, 1]], 8, 0).repeat(8, 1).astype(np.int32)
         scene = Scene.heights(np.zeros((8, 16)), segments=segments)
-        by, law = {"by": {0: "brick", 1: "ice"}}, made("render", "proxy")
+        by, law = {"by": {1: "brick", 2: "ice"}}, made("render", "proxy")
         bare = view_of(Pipeline(scene, materials=by, render=law, cached=False), "surface").materials
         device = made("device", "mock")
         held = view_of(Pipeline(scene, materials=by, render=law, device=device, cached=False), "surface").materials
@@ -302,7 +302,7 @@ def test_parts_that_were_simplified_away_are_not_shown():
     labels = np.zeros((60, 80), np.int32)
     labels[10:40, 10:40], labels[20:24, 60:64] = 1, 2
     scene = Scene.photo(labels.astype(np.uint8), segments=labels)
-    said = {"parts": {0: "ground", 1: "box"}, "heights": "given", "cached": False}
+    said = {"parts": {1: "ground", 2: "box"}, "heights": "given", "cached": False}
     for more, there in (({}, [0, 1, 2]), ({"simplify": {}}, [0, 1])):
         pipeline = Pipeline(scene, **said, **more)
         pipeline.make("surface")

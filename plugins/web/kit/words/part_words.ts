@@ -1,2 +1,2 @@
-/** The number by which people know a part or a segment: counted from 1, where labels and keys of files are from 0. */
+/** The number by which people know a part or a segment: counted from 1, as in files; labels are from 0. */
 export const shownNumber = (label: number): number => label + 1;

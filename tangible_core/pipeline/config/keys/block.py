@@ -87,5 +87,5 @@ class Block(Key):
 
 
 def by_number(value: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the JSON Schema of a map from whole numbers to such values."""
-    return {"type": "object", "patternProperties": {"^[0-9]+$": dict(value)}, "additionalProperties": False}
+    """Return the JSON Schema of a map from whole numbers, from 1, to such values."""
+    return {"type": "object", "patternProperties": {"^[1-9][0-9]*$": dict(value)}, "additionalProperties": False}

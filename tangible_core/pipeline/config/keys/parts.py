@@ -4,12 +4,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, cast
 
+from ....data.part_words import FROM_ONE
 from ....errors import MOST_QUOTED, quoted
 from ....parts import PartChoice
 from .block import by_number
 from .key import Forms, Key, Reading, Unchecked
 
-EXAMPLE = "{0: wall, 6: {name: helmet, height_m: 4 mm}}"
+EXAMPLE = "{1: wall, 7: {name: helmet, height_m: 4 mm}}"
 
 
 @dataclass(frozen=True)
@@ -68,11 +69,13 @@ class PartsBlock(Key, Unchecked):
 
 
 def _no_number(key: Any) -> str:
-    return f"the number of a part is a whole number from 0, not {quoted(key)}; such as {EXAMPLE}"
+    if quoted(key).strip("'") == "0":
+        return f"numbers of parts are {FROM_ONE}, not 0"
+    return f"the number of a part is a whole number from 1, not {quoted(key)}; such as {EXAMPLE}"
 
 
 def _number(key: Any) -> int | None:
     """Return the number of a part, which JSON has as a word; None for any other key."""
     if isinstance(key, str) and key.isdecimal() and len(key) < MOST_QUOTED:
-        return int(key)
-    return int(key) if isinstance(key, int) and not isinstance(key, bool) and key >= 0 else None
+        key = int(key)
+    return int(key) if isinstance(key, int) and not isinstance(key, bool) and key > 0 else None

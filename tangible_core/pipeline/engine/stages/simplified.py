@@ -32,7 +32,7 @@ class SimplifiedStage(OfPartsStage):
 
     def make(self, inputs: Inputs) -> PartMap:
         parts: PartMap = inputs["parts"]
-        names = names_of(self.config.parts or {}, parts.count)
+        names = names_of(self.config, parts.count)
         picture = self.grid.views.left if self.grid.views else None
         simplify = simplify_function(self.context.registry)
         front = {"front": inputs["figure"].front_parts(parts)} if "figure" in self.needs else {}

@@ -94,7 +94,7 @@ RULES = "scene: builtin/brick\nmaterials:\n  rules:\n    - "
         ("{B}materials: {by: colour}\n", ("materials", "by"), (2, 13), "roughness"),
         ("{B}materials: {by: {1: sandd}}\n", ("materials", "by", 1), (2, 18), "'sand'?"),
         ("{B}materials: {1: sandd}\n", ("materials", 1), (2, 13), "'sand'?"),
-        ("{B}materials: {0: ice, one: sand}\n", ("materials", "by", "one"), (2, 21), "valid integer"),
+        ("{B}materials: {1: ice, one: sand}\n", ("materials", "by", "one"), (2, 21), "valid integer"),
         ("{B}materials: {default: wod}\n", ("materials", "default"), (2, 13), "'wood'?"),
         ("{B}materials: {rules: ice}\n", ("materials", "rules"), (2, 13), ""),
         ("{R}{colour: blue}\n", ("materials", "rules", 0, "material"), (4, 7), "required"),
@@ -126,13 +126,13 @@ def test_mistake_has_location_line_and_column(text: str, location: tuple, mark: 
 
 
 def test_materials_are_read_and_completed(tmp_path: Path):
-    rules = "{at: [1, 2.5], material: ice}, {segment: 0, material: sand}"
+    rules = "{at: [1, 2.5], material: ice}, {segment: 1, material: sand}"
     choice = parse(f"scene: builtin/brick\nmaterials: {{rules: [{rules}], by: rules}}\n").materials
     assert [(rule.at, rule.segment, rule.material) for rule in choice.rules] == [
-        ((1, 2.5), None, "ice"), (None, 0, "sand"),
+        ((1, 2.5), None, "ice"), (None, 1, "sand"),
     ]  # fmt: skip
     assert (choice.by, choice.default) == ("rules", "plain")
-    assert parse("scene: builtin/brick\nmaterials: {0: ice, 2: sand}\n").materials.by == {0: "ice", 2: "sand"}
+    assert parse("scene: builtin/brick\nmaterials: {1: ice, 3: sand}\n").materials.by == {1: "ice", 3: "sand"}
     text = "scene: builtin/brick\nmaterials: {rules: [{colour: blue, material: water}]}"
     assert parse(text).as_data()["materials"] == {
         "rules": [{"colour": "blue", "material": "water"}], "by": "roughness", "default": "plain", "fit": "device",
@@ -145,7 +145,7 @@ def test_override_wins_over_the_file_and_complains_alike():
     assert parse(text, "render.stiffness_n_per_m=1e3").render.method.stiffness_n_per_m == 1000.0
     assert parse(text, "depth.use=zncc").depth.name == "zncc"
     assert parse(text, "workspace.width_m=0.1", "workspace.width_m=0.2").workspace.width_m == 0.2
-    assert parse(text, "materials.1=ice", "materials.0=sand").materials.by == {1: "ice", 0: "sand"}
+    assert parse(text, "materials.2=ice", "materials.1=sand").materials.by == {2: "ice", 1: "sand"}
     grey = parse(text, "render.stiffness_n_per_m=5", "render.use=grey-level", "render.force_at_white_n=2").render
     assert (grey.name, grey.method.force_at_white_n) == ("grey-level", 2)
     for override, word in (
@@ -166,13 +166,13 @@ def test_files_are_relative_to_the_pipeline_file(tmp_path: Path):
     )
     (tmp_path / "feel.yaml").write_text(
         "scene: {left: a.png, right: off, focal_px: 900, baseline_m: 1e-1}\n"
-        "materials: {library: mine.yaml, by: {0: mud}}\ndevice: {use: mock, path: csv, csv_file: hand.csv}\n"
+        "materials: {library: mine.yaml, by: {1: mud}}\ndevice: {use: mock, path: csv, csv_file: hand.csv}\n"
     )
     config = load_config(tmp_path / "feel.yaml", default_registry())
     assert isinstance(config.scene, SceneFiles)
     assert (config.scene.left, config.scene.right) == (tmp_path / "a.png", tmp_path / "off")
     assert config.scene.baseline_m == 0.1
-    assert (config.materials.library, config.materials.by) == (tmp_path / "mine.yaml", {0: "mud"})
+    assert (config.materials.library, config.materials.by) == (tmp_path / "mine.yaml", {1: "mud"})
     assert config.device.method.csv_file == tmp_path / "hand.csv"
     with pytest.raises(ConfigError, match=r"did you mean 'feel\.yaml'"):
         load_config(tmp_path / "feeel.yaml", default_registry())

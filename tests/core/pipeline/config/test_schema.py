@@ -48,8 +48,8 @@ def test_schema_accepts_the_sample_configurations(validator: Draft202012Validato
         {"scene": "builtin/brick", "workspace": {"width_m": 0}},
         {"scene": "builtin/brick", "parts": ["wall"]},
         {"scene": "builtin/brick", "parts": {"one": "wall"}},
-        {"scene": "builtin/brick", "parts": {"0": {"nam": "wall"}}},
-        {"scene": "builtin/brick", "parts": {"0": {"height_m": -1}}},
+        {"scene": "builtin/brick", "parts": {"1": {"nam": "wall"}}},
+        {"scene": "builtin/brick", "parts": {"1": {"height_m": -1}}},
         {"scene": "builtin/brick", "heights": {"round_m": 0.001}},
         {"scene": "builtin/brick", "heights": "gess"},
         {"scene": "builtin/brick", "title": ["a"]},
@@ -63,12 +63,12 @@ def test_schema_refuses_what_the_program_refuses(validator: Draft202012Validator
 @pytest.mark.parametrize(
     "right",
     [
-        {"parts": {"0": "wall", "6": {"name": "helmet", "height_m": "4.2 mm", "material": "glass"}, "7": None}},
+        {"parts": {"1": "wall", "7": {"name": "helmet", "height_m": "4.2 mm", "material": "glass"}, "8": None}},
         {"heights": {"by": "given", "round_m": "6 mm", "detail_m": 0}, "title": "Astronaut", "language": "pt-BR"},
         {"heights": "guess", "parts": None},
         {
             "heights": None,
-            "materials": {"rules": [{"part": "helmet", "material": "ice"}, {"part": 3, "material": "ice"}]},
+            "materials": {"rules": [{"part": "helmet", "material": "ice"}, {"part": 4, "material": "ice"}]},
         },
     ],
 )

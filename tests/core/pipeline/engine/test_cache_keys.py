@@ -181,9 +181,9 @@ class TestKeys:
     @pytest.mark.parametrize(
         "choice",
         [
-            {"by": {0: "sand"}},
+            {"by": {1: "sand"}},
             {"by": "rules"},
-            {"rules": (MaterialRule.model_validate({"segment": 0, "material": "ice"}),)},
+            {"rules": (MaterialRule.model_validate({"segment": 1, "material": "ice"}),)},
             {"by": "rules", "default": "sand"},
         ],
         ids=["by", "by rules", "rules", "default"],
@@ -195,7 +195,7 @@ class TestKeys:
     def test_keys_differ_for_the_library(self, folder: Path):
         def mine(stiffness: int) -> Engine:
             (folder / "mine.yaml").write_text(FELT.format(stiffness))
-            return pipeline(folder, materials=MaterialChoice(by={0: "felt", 1: "felt"}, library=folder / "mine.yaml"))
+            return pipeline(folder, materials=MaterialChoice(by={1: "felt", 2: "felt"}, library=folder / "mine.yaml"))
 
         one = mine(200)
         one.make("materials")

@@ -150,7 +150,7 @@ def pipeline(folder: Path, cached: bool = True, plugins: pluggy.PluginManager | 
         "want": "touch",
         "depth": name_method(Ramp()),
         "texture": name_method(Halves()),
-        "materials": MaterialChoice(by={0: "ice", 1: "sand"}),
+        "materials": MaterialChoice(by={1: "ice", 2: "sand"}),
         "render": name_method(Feel()),
     } | parts
     plugins = plugins or hooks.manager()
@@ -297,7 +297,7 @@ class Warns(Ramp):
 
 
 def test_outcome_of_a_cached_product_repeats_its_notes(folder: Path, caplog: pytest.LogCaptureFixture):
-    parts = {"depth": name_method(Warns()), "texture": name_method(Says()), "materials": MaterialChoice(by={0: "ice"})}
+    parts = {"depth": name_method(Warns()), "texture": name_method(Says()), "materials": MaterialChoice(by={1: "ice"})}
     noticed = [Note("every row is strange", "warning"), Note("hardly worth it", "doubt")]
     first = pipeline(folder, **parts)
     first.make("disparity")
@@ -337,7 +337,7 @@ def test_second_run_takes_the_surface_from_the_cache(folder: Path, monkeypatch: 
     assert again.make("disparity") is not None
     assert outcome_kinds(again)["disparity"] == "cached"
     assert {each.seconds for each in again.outcomes if each.outcome in ("ran", "cached")} == {1}
-    other = pipeline(folder, materials=MaterialChoice(by={0: "sand", 1: "ice"}))
+    other = pipeline(folder, materials=MaterialChoice(by={1: "sand", 2: "ice"}))
     other.make()
     assert ran == ["touch"] * 2
     assert (outcome_kinds(other)["relief"], outcome_kinds(other)["surface"]) == ("cached", "ran")
@@ -464,7 +464,7 @@ class TestWorkingGrid:
             scene=SceneFiles(photo=Path("left.png"), **files),
             workspace=self.COARSE,
             relief=ReliefChoice(slope=0, spread=0, accent_m=0, grain_m=0),
-            materials=MaterialChoice(rules=[{"at": [4, 3], "material": "sand"}], by={0: "ice", 2: "wood"}),
+            materials=MaterialChoice(rules=[{"at": [4, 3], "material": "sand"}], by={1: "ice", 3: "wood"}),
         )
         surface = pipe.make("surface")
         assert [each.name for each in surface.materials] == ["ice", "sand", "wood"]

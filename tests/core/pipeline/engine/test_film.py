@@ -97,7 +97,7 @@ def test_exchanged_views_stay_exchanged_in_later_frames(walk, tmp_path, monkeypa
 
 def test_film_runs_by_the_clock_of_a_simulated_device(film_pipeline):
     reports = []
-    pipeline = film_pipeline(texture=Histogram(segments=2), parts={0: "ground"})
+    pipeline = film_pipeline(texture=Histogram(segments=2), parts={1: "ground"})
     recording = pipeline.feel(Mock(path="circle"), 0.6, in_real_time=False, beacon="ground", on_report=reports.append)
     frames = recording.frame
     assert np.array_equal(np.unique(frames[np.isfinite(frames)]), np.arange(COUNT))

@@ -30,7 +30,7 @@ from tangible_core.plugins.registry import default_registry
 LABELS = np.kron(np.int32([[0, 1, 1], [0, 2, 2]]), np.ones((24, 24), np.int32))
 PHOTO = (LABELS * 90).astype(np.uint8)
 LABELLED = Scene.photo(PHOTO, segments=LABELS, name="still life")
-SAID: Any = {"parts": {0: "wall", 1: {"name": "box", "height_m": 0.004}, 2: {"height_m": 0.002}}, "heights": "given"}
+SAID: Any = {"parts": {1: "wall", 2: {"name": "box", "height_m": 0.004}, 3: {"height_m": 0.002}}, "heights": "given"}
 
 
 class Report(Exporter):
@@ -203,7 +203,7 @@ class TestSimplify:
     def test_simplify_applies_to_relief_labels_and_materials(self):
         labels = np.zeros((60, 80), np.int32)
         labels[10:40, 10:40], labels[20:24, 60:64] = 1, 2
-        said = {"parts": {0: "ground", 1: {"height_m": 0.004}, 2: {"height_m": 0.003}}, "heights": "given"}
+        said = {"parts": {1: "ground", 2: {"height_m": 0.004}, 3: {"height_m": 0.003}}, "heights": "given"}
         scene = Scene.photo(labels.astype(np.uint8), segments=labels)
         plain, simple = (Pipeline(scene, cached=False, **said, **more) for more in ({}, {"simplify": {}}))
         assert np.unique(plain.surface.labels).tolist() == [0, 1, 2]

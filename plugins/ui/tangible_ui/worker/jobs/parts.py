@@ -66,7 +66,7 @@ def parts_open(
         "picture": f"{at}/picture.jpg",
         "labels": f"{at}/labels.u16",
         "digest": opening.digest(edited.parts, config),
-        "parts": opening.part_entries(edited.parts, config.parts or {}),
+        "parts": opening.part_entries(edited.parts, config.choices),
         "divided": edited.scene.segments is not None or edited.parts.count > 1,
         "heights": config_heights(config).model_dump(mode="json"),
         "top_m": max(0.0, by_parts.top_m),

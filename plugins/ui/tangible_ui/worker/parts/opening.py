@@ -73,7 +73,7 @@ def digest(parts: PartMap, config: PipelineConfig) -> str:
 
 
 def part_entries(parts: PartMap, choices: Mapping[int, PartChoice]) -> list[dict[str, Any]]:
-    """Return every part with its entry, its number of pixels, and a pixel well inside it."""
+    """Return every part with its entry, by label, its number of pixels, and a pixel well inside it."""
     places = _places(parts)
     said = [choices.get(number, PartChoice()).model_dump(mode="json") for number in range(parts.count)]
     sizes = part_sizes(parts).tolist()

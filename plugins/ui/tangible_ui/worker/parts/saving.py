@@ -11,7 +11,7 @@ from typing import Any, cast
 import numpy as np
 from jaxtyping import Int32, Shaped, UInt16
 
-from tangible_core.data import PartMap
+from tangible_core.data import PartMap, label_of_number, shown_number
 from tangible_core.errors import ConfigError, quoted
 from tangible_core.files import atomic_write, sole_writer, write_text
 from tangible_core.files.yaml import read_text, with_parts
@@ -30,20 +30,20 @@ SAID = ("name", "height_m", "material")
 def warn_of_numbers(config: PipelineConfig, before: Opened, found: PartMap) -> None:
     """Warn of materials that are chosen by the number of a segment or part that has moved."""
     rules, by = config.materials.rules, config.materials.by
-    segments = {each.segment for each in rules if each.segment is not None} | set(by if isinstance(by, dict) else ())
-    named = {each.part for each in rules if isinstance(each.part, int)}
+    segments = {rule.segment for rule in rules if rule.segment is not None} | set(by if isinstance(by, dict) else ())
+    named = {rule.part for rule in rules if isinstance(rule.part, int)}
     labels = np.array(before.parts.segments)[before.parts.labels]
     there = before.scene.segments is not None  # otherwise a method computes the segments
 
     def is_elsewhere(number: int, before: Int32[np.ndarray, "h w"]) -> bool:
-        now = found.labels[before == number]  # a slightly moved border does not make it another part
-        return not now.size or int(np.bincount(now).argmax()) != number
+        now = found.labels[before == label_of_number(number)]  # a slightly moved border does not make it another part
+        return not now.size or shown_number(int(np.bincount(now).argmax())) != number
 
     moved = {each for each in segments if not there or is_elsewhere(each, labels)}
     moved |= {each for each in named if is_elsewhere(each, before.parts.labels)}
     if moved:
         log.warning(
-            "materials: are chosen by the keys %s, which is now another part or none; name the parts, and choose by "
+            "materials: are chosen by the numbers %s, which is now another part or none; name the parts, and choose by "
             "name ({part: NAME, material: ...})",
             ", ".join(map(str, sorted(moved))),
         )
@@ -92,7 +92,7 @@ def document_with_parts(
     changes: dict[Any, Any] = dict(_scene(now, path, place))
     changes |= {("heights", key): value for key, value in (heights or {}).items()}
     changes |= {(key,): value or REMOVE for key, value in words.items() if value is not None}
-    short = {number: _short(each) for number, each in sorted(choices.items()) if each}
+    short = {shown_number(label): _short(each) for label, each in sorted(choices.items()) if each}
     before = now.get("parts")
     before = before if isinstance(before, dict) else {}
     if not before or len(short.keys() | before.keys()) > MOST_EDITED:

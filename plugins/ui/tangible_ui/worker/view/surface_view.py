@@ -131,7 +131,7 @@ def _names(pipeline: Pipeline) -> tuple[str, ...] | None:
     """Return the names of the parts; None if nothing is by parts."""
     config = pipeline.config
     parts: PartMap | None = product_at_hand(pipeline.engine, config.felt_parts) if config.by_parts else None
-    return None if parts is None else names_of(config.parts or {}, parts.count)
+    return None if parts is None else names_of(config, parts.count)
 
 
 def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h w"] | None:

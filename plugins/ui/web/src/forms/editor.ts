@@ -54,7 +54,7 @@ export class DocumentEditor {
   }
 }
 
-/** Return an edit of materials in short form (`materials: {0: ice}`) with the block expanded first, so that other keys fit. */
+/** Return an edit of materials in short form (`materials: {1: ice}`) with the block expanded first, so that other keys fit. */
 export function expandMaterials(edit: Edit, document: Document | null): Edit {
   const labels = at(document?.said, ["materials"]);
   const keys = [...Object.keys(edit.changes ?? {}), ...Object.keys(edit.written ?? {})];

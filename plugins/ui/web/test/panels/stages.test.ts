@@ -60,13 +60,13 @@ test("why is told without the notes behind it", () => {
 
 test("a segment becomes another material by the smallest change", () => {
   const why = "segment 2: number 1 of 3 from smooth to rough";
-  const rule = { changes: { "materials.rules": [{ segment: 2, material: "ice" }] } };
+  const rule = { changes: { "materials.rules": [{ segment: 3, material: "ice" }] } };
   assert.deepEqual(materialEdit({ materials: { by: "roughness" } }, 2, "ice", why), rule);
   assert.deepEqual(materialEdit({}, 2, "ice", why), rule);
-  assert.deepEqual(materialEdit({ materials: { "0": "sand" } }, 2, "ice", why), { changes: { "materials.2": "ice" } });
-  assert.deepEqual(materialEdit({ materials: { by: { "0": "sand" } } }, 2, "ice", why), { changes: { "materials.by.2": "ice" } });
-  const rules = [{ segment: 2, material: "sand" }, { colour: "red", material: "brick" }];
+  assert.deepEqual(materialEdit({ materials: { "1": "sand" } }, 2, "ice", why), { changes: { "materials.3": "ice" } });
+  assert.deepEqual(materialEdit({ materials: { by: { "1": "sand" } } }, 2, "ice", why), { changes: { "materials.by.3": "ice" } });
+  const rules = [{ segment: 3, material: "sand" }, { colour: "red", material: "brick" }];
   assert.deepEqual(materialEdit({ materials: { rules, by: { "0": "sand" } } }, 2, "ice", "segment 2: rule 1, named -> sand"), {
-    changes: { "materials.rules": [{ segment: 2, material: "ice" }, rules[1]] },
+    changes: { "materials.rules": [{ segment: 3, material: "ice" }, rules[1]] },
   });
 });

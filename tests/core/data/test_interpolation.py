@@ -44,3 +44,15 @@ def test_height_beyond_the_extent_is_unknown_and_level_to_the_edge():
     for outside in ((WIDTH_M / 2 + 1e-6, 0.0), (0.0, -LENGTH_M), (np.nan, 0.0), (0.0, np.inf)):
         assert np.isnan(surface.height_at(*outside))
         assert np.isnan(surface.normal_at(*outside)).all()
+
+
+@pytest.mark.parametrize(("rows", "columns"), [(1, 1), (1, 4), (5, 1), (ROWS, COLUMNS)])
+def test_one_point_has_the_bits_of_many(rows: int, columns: int):
+    """A law that asks tick by tick feels what a whole path is judged by."""
+    rng = np.random.default_rng(5)
+    surface = HapticSurface.from_heights(rng.random((rows, columns)) * 0.01, WIDTH_M)
+    x, y = rng.uniform(-0.6, 0.6, (2, 400)) * np.array(surface.extent_m)[:, None]
+    x[:5], y[5:10] = (WIDTH_M / 2, -WIDTH_M / 2, 0, np.inf, np.nan), surface.extent_m[1] / 2
+    pairs = [*zip(x.tolist(), y.tolist(), strict=True)]
+    np.testing.assert_array_equal([surface.height_at(*point) for point in pairs], surface.height_at(x, y))
+    np.testing.assert_array_equal([surface.normal_at(*point) for point in pairs], surface.normal_at(x, y))

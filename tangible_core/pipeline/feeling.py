@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 from os import PathLike
 from threading import Event
-from typing import TypeVar, final
+from typing import TypeVar, cast, final
 
 import numpy as np
 
@@ -39,8 +39,14 @@ NO_ROWS = np.empty((0, len(TICK_COLUMNS)))
 class Feeling:
     """The surface of a pipeline on the given device, or on the configured one."""
 
-    def __init__(self, pipeline: Felt, device: HapticDevice | None = None) -> None:
-        """Keep both; nothing runs, and no device is opened yet. Raises: ConfigError for an object of another kind."""
+    def __init__(self, pipeline: Felt, device: HapticDevice | str | None = None) -> None:
+        """Keep both; nothing runs, and no device is opened yet.
+
+        device: an object, or the name of an installed device with its default options.
+        Raises: ConfigError for an object of another kind; UnknownMethod, BrokenMethod.
+        """
+        if isinstance(device, str):
+            device = cast("HapticDevice", pipeline.engine.registry.load("device", device)())
         if device is not None:
             check_kind("device", device)
         self.pipeline = pipeline
@@ -180,7 +186,7 @@ class Feeling:
         """
         return session.parts_felt(seen, self.pipeline.make("surface"))
 
-    def legible(self, medium: Medium, width_m: float | None = None) -> Legibility:
+    def legible(self, medium: Medium = "force", width_m: float | None = None) -> Legibility:
         """Check whether fingers can read the parts: on swell paper, as a print, on pins, or on a force device.
 
         width_m: of the whole picture; by default as export draws it, `width_on`. The simplified parts are judged where

@@ -3,12 +3,13 @@
 from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike
 from threading import Event
-from typing import Any, Literal, Self, Unpack, cast, final
+from typing import Any, Literal, Self, Unpack, final
+
+import numpy as np
 
 from ..data import DisparityMap, HapticSurface, MaterialMap, Outcomes, Plan, Relief, SegmentMap
 from ..data.arguments import named_options
 from ..data.products import Product
-from ..errors import wrong_argument
 from ..files.paths import as_path
 from ..files.writing import write_text
 from ..mapping import WorkspaceMapping
@@ -32,7 +33,10 @@ from .feeling import Feeling
 from .output.export_result import Export
 from .output.exporting import chosen_exporters, export
 from .output.runs import Run, Sheet, make_run
+from .starter import suited_config
 
+Named = Mapping[str, Any] | str
+"""The name of an installed method, or the block of a file with its options: `{"use": "proxy", ...}`."""
 Materials = MaterialChoice | Mapping[Any, Any] | str
 """The key `materials:`: a rule's name, a map from label to material, or a block of options."""
 Parts = Mapping[int, PartChoice | Mapping[str, Any] | str]
@@ -58,25 +62,25 @@ class Pipeline:
         self,
         scene: Scene,
         *,
-        depth: DepthEstimator | None = None,
-        texture: Segmenter | None = None,
+        depth: DepthEstimator | Named | None = None,
+        texture: Segmenter | Named | None = None,
         materials: Materials | None = None,
         workspace: Workspace | Mapping[str, Any] | None = None,
         mapping: WorkspaceMapping | Mapping[str, Any] | None = None,
-        render: ForceRenderer | None = None,
-        device: HapticDevice | None = None,
+        render: ForceRenderer | Named | None = None,
+        device: HapticDevice | Named | None = None,
         safety: Safety | Mapping[str, Any] | None = None,
         parts: Parts | None = None,
         heights: Heights | None = None,
         simplify: SimplifyChoice | Mapping[str, Any] | None = None,
-        export: Sequence[Exporter] = (),
+        export: Sequence[Exporter | Named] = (),
         title: str = "",
         language: str = "en",
         cached: bool = True,
         threads: int | None = None,
         **others: Any,
     ) -> None:
-        """Make a pipeline of methods as objects, of installed plugins or custom classes; blocks may be mappings.
+        """Make a pipeline of methods: names as in a file, or objects, custom ones too; blocks may be mappings.
 
         parts: names, heights and materials of the parts of the segments, by number.
         heights: makes the relief of these parts. simplify: makes the parts legible first; `{}` by the usual rules.
@@ -85,28 +89,12 @@ class Pipeline:
         others: other keys of the pipeline file.
         Raises: ConfigError with every complaint about these; ArgumentError for an unknown key.
         """
-        if not isinstance(scene, cast(Any, Scene)):
-            raise wrong_argument("scene", scene, "a Scene, such as Scene.photo(...) makes")
         registry = default_registry()
         config = config_of(
-            scene,
-            registry,
-            depth=depth,
-            texture=texture,
-            materials=materials,
-            workspace=workspace,
-            mapping=mapping,
-            render=render,
-            device=device,
-            safety=safety,
-            parts=parts,
-            heights=heights,
-            simplify=simplify,
-            export=export,
-            title=title,
-            language=language,
-            **{"want": "surface" if render is None else "touch", **others},
-        )
+            scene, registry, depth=depth, texture=texture, materials=materials, workspace=workspace, mapping=mapping,
+            render=render, device=device, safety=safety, parts=parts, heights=heights, simplify=simplify, export=export,
+            title=title, language=language, **others,
+        )  # fmt: skip
         self.engine: Engine = Engine(config, registry, Cache() if cached else None, threads)
 
     @classmethod
@@ -145,6 +133,32 @@ class Pipeline:
         else:
             pipeline.engine = like.engine.with_config(config)
         return pipeline
+
+    @classmethod
+    def suited(cls, *pictures: Scene | str | PathLike[str] | np.ndarray, cached: bool = True) -> Self:
+        """Make the pipeline that the command line makes without a file: methods and sizes suit the pictures.
+
+        pictures: a scene, or files or arrays: one picture, or left and right. cached: as in `Pipeline`.
+        Raises: ConfigError for other pictures; PictureError for one that cannot be read.
+        """
+        registry = default_registry()
+        return cls.from_config(suited_config(pictures, registry), registry, Cache() if cached else None)
+
+    def with_(self, **changes: Any) -> Self:
+        """Return another pipeline with these arguments of `Pipeline` changed; equal products are not made again.
+
+        >>> Pipeline(Scene.heights([[0, 1]]), title="one").with_(title="two")
+        Pipeline('array', want='surface')
+
+        Raises: as `Pipeline`.
+        """
+        config = config_of(changes.pop("scene", None), self.engine.registry, self.config, **changes)
+        return self.from_config(config, like=self)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name != "engine":
+            raise AttributeError(f"a pipeline does not change; `pipeline.with_({name}=...)` returns another one")
+        super().__setattr__(name, value)
 
     def to_yaml(self, path: str | PathLike[str]) -> None:
         """Write an equal pipeline file, with all defaults filled in and absolute paths.
@@ -256,7 +270,7 @@ class Pipeline:
         return export(self.engine, as_path(out, "out"), chosen, progress, stop, force=force, cut=cut_out)
 
     def feel(
-        self, device: HapticDevice | None = None, seconds: float | None = 8.0, **options: Unpack[FeelOptions]
+        self, device: HapticDevice | str | None = None, seconds: float | None = 8.0, **options: Unpack[FeelOptions]
     ) -> Recording:
         """Run a session on a device, by default the configured one, and return its recording.
 
@@ -266,7 +280,7 @@ class Pipeline:
         return Feeling(self, device).run(seconds, **options)
 
     def preflight(
-        self, device: HapticDevice | None = None, hand: Hand | None = None, loop: Loop | None = None
+        self, device: HapticDevice | str | None = None, hand: Hand | None = None, loop: Loop | None = None
     ) -> Preflight:
         """Judge the safety and the quality of the surface on a device, by default the configured one; none is opened.
 
@@ -282,11 +296,5 @@ class Pipeline:
         return self.plan()._repr_html_()  # pyright: ignore[reportPrivateUsage] - the name is the notebook's
 
 
-def load_pipeline(
-    path: str | PathLike[str],
-    overrides: Iterable[str] = (),
-    registry: Registry | None = None,
-    cache: Cache | None = None,
-) -> Pipeline:
-    """Read a pipeline from a YAML file, as `Pipeline.from_yaml`. Raises: ConfigError with every complaint."""
-    return Pipeline.from_yaml(path, overrides, registry, cache)
+load_pipeline = Pipeline.from_yaml
+"""Read a pipeline from a YAML file."""

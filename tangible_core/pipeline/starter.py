@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from importlib.resources import files
 from math import floor
+from os import PathLike
 from pathlib import Path
 from string import Template
 from typing import Any, Literal, NamedTuple
@@ -12,10 +13,11 @@ from jaxtyping import Float32
 
 from ..data.pictures import to_grey
 from ..errors import ConfigError
-from ..files.paths import plain_line
+from ..files.paths import as_path, plain_line
 from ..files.yaml.editing import on_one_line
+from ..files.yaml.source import plain_tree
 from ..plugins.interfaces import DepthEstimator
-from ..plugins.registry import default_registry
+from ..plugins.registry import Registry, default_registry
 from ..runtime.opencv import plain_opencv
 from ..scene.formats.height_maps import read_heights_metadata
 from ..scene.formats.kinds import file_kind
@@ -23,10 +25,9 @@ from ..scene.formats.pairs import holds_two_views
 from ..scene.formats.rigs import find_rig
 from ..scene.scene import Scene
 from ..scene.scene_files import SceneFiles
-from .config.parsing import parse_config
-from .engine.cache import Cache
+from .config.model import PipelineConfig
+from .config.parsing import config_of, parse_config
 from .engine.networks import networks_identity
-from .pipeline import Pipeline
 
 SIDE_MM = 80
 """The longer side of the surface, mm: the reach of a small desktop device."""
@@ -82,9 +83,9 @@ def starter(pictures: Sequence[Path], file: Path) -> Starter:
     file: the place for the text, to which its paths are relative.
     Raises: ConfigError for more pictures; PictureError for an unreadable one, or for two of different size.
     """
-    if len(pictures) > 2:
+    if not 0 < len(pictures) <= 2:
         raise ConfigError(
-            f"{len(pictures)} pictures: name one, or left and right; of more, each is a pipeline of its own"
+            f"{len(pictures)} pictures: name one, or left and right; `tangible batch` takes many, each on its own"
         )
     parts = _parts(pictures)
     absolute = {part: path.absolute() for part, path in parts.items()}
@@ -92,28 +93,43 @@ def starter(pictures: Sequence[Path], file: Path) -> Starter:
     if "right" in parts and (rig := find_rig(absolute["left"], absolute["right"], scene.shape)):
         parts, absolute = {**parts, "rig": rig}, {**absolute, "rig": rig}
         scene = Scene.read(SceneFiles.model_validate(absolute), Path())
-    kind: Kind = "heights" if scene.views is None else "pair" if scene.views.right is not None else "photo"
     block = ", ".join(f"{part}: {_path_in_yaml(path, file.parent)}" for part, path in parts.items())
     values = {
         "scene": f"{{{block}}}" if parts else scene.name,
         "name": " and ".join(plain_line(path.name) for path in pictures),
+        "file": plain_line(str(file)),
     }
     if scene.frames is not None:
         values["name"] += ", its first frame"
         values["scene"] += "   # with layout: side-by-side, if each frame holds the two views of a pair"
+    return Starter(_text(scene, values), scene)
+
+
+def _text(scene: Scene, values: Mapping[str, str]) -> str:
+    """Return the text for a scene. values: those of the template that do not depend on what the scene shows."""
+    kind: Kind = "heights" if scene.views is None else "pair" if scene.views.right is not None else "photo"
     template = "measured" if scene.own_size else kind
     text = files("tangible_core.pipeline").joinpath(f"starter_{template}.yaml").read_text(encoding="utf-8")
-    return Starter(Template(text).substitute(values, file=plain_line(str(file)), **_size(scene, kind)), scene)
+    return Template(text).substitute(values, **_size(scene, kind))
 
 
-def pipeline_of(pictures: Sequence[Path], overrides: Sequence[str] = ()) -> Pipeline:
-    """Make the pipeline of a starter without writing it. Raises: as `starter`, and ConfigError for the overrides."""
-    registry, path = default_registry(), pictures[0]
-    text, scene = starter(pictures, path)
-    config = parse_config(text, path, registry, overrides)
-    if not any(each.lstrip().startswith("scene") for each in overrides):
+def suited_config(pictures: Sequence[Any], registry: Registry, overrides: Sequence[str] = ()) -> PipelineConfig:
+    """Make the configuration of a starter without writing it.
+
+    pictures: files as for `starter`, arrays, or one scene. Raises: as `starter`, and ConfigError for the overrides.
+    """
+    if len(pictures) in (1, 2) and not all(isinstance(picture, str | PathLike) for picture in pictures):
+        of_arrays = Scene.photo if len(pictures) == 1 else Scene.pair
+        scene = pictures[0] if isinstance(pictures[0], Scene) else of_arrays(*pictures)
+        values = plain_tree(_text(scene, {"scene": scene.name, "name": "", "file": ""}), Path())
+        return config_of(scene, registry, **{name: value for name, value in values.items() if name != "scene"})
+    files = [as_path(picture, "picture") for picture in pictures]
+    file = files[0] if files else Path()
+    text, scene = starter(files, file)
+    config = parse_config(text, file, registry, overrides)
+    if not any(override.lstrip().startswith("scene") for override in overrides):
         config = config.with_values(scene=scene)  # it need not be read again
-    return Pipeline.from_config(config, registry, Cache())
+    return config
 
 
 def _is_builtin(path: Path) -> bool:

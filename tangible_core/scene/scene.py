@@ -1,8 +1,9 @@
 """Scenes: a pair of views, a photo, a height map or a video, from files, from arrays or builtin."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from types import NoneType
 from typing import Any, Self, Unpack
 
 import numpy as np
@@ -38,7 +39,7 @@ class Scene:
     """Disparity that the scene provides: no depth is estimated."""
     segments: SegmentMap | None = None
     """Segments that the scene provides: no texture is segmented."""
-    height: Float32[np.ndarray, "h w"] | None = None
+    height: Float32[np.ndarray, "h w"] | None = field(default_factory=NoneType)  # `Scene.height(...)` is a mistake
     """Heights in any unit, NaN where unknown: no depth is estimated."""
     relief_m: float | None = None
     """Height of the relief that `height` becomes; None for that of the workspace."""
@@ -60,6 +61,10 @@ class Scene:
     """Those of the remarks by which the scene may be another than was meant."""
     files: str | SceneFiles | None = None
     """The builtin name, or the files with absolute paths, from which it was read; None if a part was an array."""
+
+    def __post_init__(self) -> None:
+        if Path(self.name).suffix and self.views is None and self.height is None:
+            raise ConfigError(f"{self.name}: files are read by Scene.photo(...), pair(...), heights(...) or video(...)")
 
     def __repr__(self) -> str:
         return short_repr(self)

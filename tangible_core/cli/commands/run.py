@@ -116,14 +116,16 @@ def plan(config: ConfigOrPictures, sets: Sets = None, as_json: Json = False, no_
 def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bool) -> Pipeline:
     """Open the pipeline of a file, or of pictures without one; cached: with the user's cache."""
     from ...errors import ConfigError
-    from ...pipeline.pipeline import load_pipeline
-    from ...pipeline.starter import are_pictures, not_pictures, pipeline_of
+    from ...pipeline.engine.cache import Cache
+    from ...pipeline.pipeline import Pipeline, load_pipeline
+    from ...pipeline.starter import are_pictures, not_pictures, suited_config
+    from ...plugins.registry import default_registry
     from ...scene.formats.kinds import is_binary
     from .. import show
 
     files = [config] if isinstance(config, Path) else config
     if are_pictures(files):
-        pipeline = pipeline_of(files, sets)
+        pipeline = Pipeline.from_config(suited_config(files, default_registry(), sets), cache=Cache())
         if not is_quiet():
             command = shlex.join(["tangible", "new", *map(str, files)])
             show.note(f"without a pipeline file, values that suit the picture are used: `{command}` writes them down")

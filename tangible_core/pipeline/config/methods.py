@@ -66,9 +66,4 @@ def check_kind(kind: str, method: object) -> None:
     """Refuse a method of another kind. Raises: ConfigError."""
     wanted = KINDS[cast(Any, kind)]
     if not isinstance(method, wanted):
-        if isinstance(method, str):
-            raise ConfigError(
-                f"{kind}: takes an object, not the name {quoted(method)}; "
-                f"`load_method({kind!r}, {method!r})()` makes one"
-            )
-        raise ConfigError(f"{kind}: takes an object of a class of {wanted.__name__}, not {quoted(method)}")
+        raise ConfigError(f"{kind}: takes a name, or an object of a class of {wanted.__name__}, not {quoted(method)}")

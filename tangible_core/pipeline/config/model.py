@@ -100,7 +100,7 @@ class PipelineConfig(BaseModel):
     ] = "en"
     """The language of the title and of the names of parts, as a tag: `en`, `de`, `pt-BR`."""
     want: Annotated[Product, Word()] = "surface"
-    """The product to make."""
+    """The product to make: by default the touch where there is a `render:`, else the surface."""
     parts: Annotated[
         Mapping[int, PartChoice] | None,
         PartsBlock("A word alone is a name (`{1: wall, 7: helmet}`), or ([more](parts.md)):"),

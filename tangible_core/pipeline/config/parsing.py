@@ -6,7 +6,7 @@ from typing import Any, cast
 
 from ruamel.yaml.comments import CommentedSeq
 
-from ...errors import ArgumentError, PictureError, did_you_mean
+from ...errors import ArgumentError, PictureError, did_you_mean, wrong_argument
 from ...files.yaml.source import Location, Source, parse_override, parse_source, read_text
 from ...plugins.registry import Registry
 from ...scene.framing import measured_size
@@ -45,7 +45,7 @@ def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[
         elif key.missing:
             source.complain((), key.missing)
     values["measured"] = _size_of_heights(source, values.get("scene"))
-    values = {name: value for name, value in values.items() if value is not None}
+    values = _with_want({name: value for name, value in values.items() if value is not None})
     if "scene" in values:
         config = PipelineConfig(path=path, source=source, **values)
         of_scale = () if source.complaints else wrong_of_scale(config)
@@ -55,11 +55,16 @@ def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[
     return PipelineConfig(path=path, source=source, **values)
 
 
-def config_of(scene: Scene, registry: Registry, /, **arguments: Any) -> PipelineConfig:
+def config_of(
+    scene: Scene | None, registry: Registry, /, before: PipelineConfig | None = None, **arguments: Any
+) -> PipelineConfig:
     """Check arguments in Python, by the names of keys: objects, or what a file may have; None for the default.
 
-    Raises: ConfigError with every complaint; ArgumentError for what is not a key.
+    before: a configuration that keeps its other keys, and its scene if none is given.
+    Raises: ConfigError with every complaint; ArgumentError for what is not a key, or a scene that is none.
     """
+    if not (isinstance(scene, Scene) or (scene is None and before)):
+        raise wrong_argument("scene", scene, "a Scene, such as Scene.photo(...) makes")
     source = Source(Path(), {})
     reading = Reading(source, registry)
     if unknown := next((name for name in arguments if name not in KEYS), None):
@@ -67,10 +72,23 @@ def config_of(scene: Scene, registry: Registry, /, **arguments: Any) -> Pipeline
     taken = {name: KEYS[name].take(reading, each) for name, each in arguments.items() if each is not None}
     if source.complaints:
         raise without_places(source)
-    config = PipelineConfig(scene=scene, measured=scene.measured, **taken)
+    seen = {} if scene is None else {"scene": scene, "measured": scene.measured}
+    if before is None:
+        config = PipelineConfig(**seen, **_with_want(taken))
+    else:
+        unset = {name: PipelineConfig.model_fields[name].get_default() for name in arguments if name not in taken}
+        values = {"render": before.render, **unset, **taken, **seen}
+        if _with_want({"render": before.render})["want"] == before.want:
+            values = _with_want(values)
+        config = before.with_values(**values, source=None)
     if wrong := [*wrong_of_parts(config), *wrong_of_scale(config)]:
         raise config.error_at(*wrong)
     return config
+
+
+def _with_want(values: dict[str, Any]) -> dict[str, Any]:
+    """Return the values of keys with the product that they ask for, where they do not name it."""
+    return {"want": "surface" if values.get("render") is None else "touch", **values}
 
 
 def shorthand(place: Location) -> str:

@@ -62,7 +62,8 @@ def chosen_exporters(
         chosen = tuple(method for each in to for method in _find_exporters(config, each, registry))
     if not chosen:
         known = ", ".join(registry.names("export"))
-        raise ConfigError(f"no exporter is named; name some, `--to NAMES` or `export: [NAMES]`; installed: {known}")
+        cure = "`export(folder, to=[NAMES])`" if config.path is None else "`--to NAMES` or `export: [NAMES]`"
+        raise ConfigError(f"no exporter is named; write {cure}; installed: {known}")
     return chosen
 
 

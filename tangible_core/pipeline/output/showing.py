@@ -19,6 +19,7 @@ from ...plugins.interfaces import Drawing, Exporter
 from ...plugins.notes import note
 from ...plugins.registry import Registry, default_registry
 from ...session import Recording
+from ..feel_options import Felt
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,15 +50,16 @@ def drawing(**options: Any) -> Drawing:
     return sheet(**options)
 
 
-def show(product: Record, axes: Axes | None = None, **others: Any) -> Axes:
+def show(product: Record | Felt, axes: Axes | None = None, **others: Any) -> Axes:
     """Draw a product as its panel on the sheet of a run, with units and a title, and return the axes.
 
+    product: of a pipeline, its surface is drawn.
     axes: the axes to draw into; None makes a pyplot figure of the panel's proportions.
     others: further products for the panel, by name: `views` and `materials` with segments, `views` and `surface` with
     parts, `relief` with a recording.
     Raises: OutputError for a product without a picture, such as materials without segments.
     """
-    return drawing().show(product, axes, **others)
+    return drawing().show(product.make("surface") if isinstance(product, Felt) else product, axes, **others)
 
 
 def as_html(record: Record) -> str:

@@ -1,8 +1,9 @@
 """A recording of a session, tick by tick."""
 
 from dataclasses import dataclass
+from importlib import import_module
 from os import PathLike
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from jaxtyping import Float64, Int64
@@ -146,6 +147,18 @@ class Recording(Record):
             "force_limited": self.force_limited,
             "not_finite": self.not_finite,
         }
+
+    def to_pandas(self) -> Any:
+        """Return a pandas.DataFrame with a row for each tick: `TICK_COLUMNS`, and the part of the beacon, else -1.
+
+        Raises: OutputError without pandas.
+        """
+        try:
+            pandas: Any = import_module("pandas")
+        except ImportError as error:
+            raise OutputError("a table of ticks needs pandas: pip install pandas") from error
+        whole = {"flags": self.flags & ((1 << BEACON_SHIFT) - 1), "buttons": self.buttons, "beacon": self.beacon}
+        return pandas.DataFrame(self.rows, columns=TICK_COLUMNS).assign(**whole)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write .nc (as a `Writer`), .npz (for `numpy.load`) or .csv (the ticks alone); the whole file or nothing.

@@ -5,8 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
-from tangible_core import Calibration, DisparityMap, Pipeline, Recording, Scene, Views, Workspace, show
+from tangible_core import Calibration, DisparityMap, Pipeline, Recording, Scene, Views, Workspace, load_method, show
+from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import (
     ArgumentError,
     ConfigError,
@@ -15,7 +17,9 @@ from tangible_core.errors import (
 )
 from tangible_core.pipeline.engine.stage import StageEvent
 from tangible_core.pipeline.feeling import Feeling
+from tangible_core.pipeline.starter import suited_config
 from tangible_core.plugins import DepthEstimator
+from tangible_core.plugins.registry import default_registry
 from tangible_core.session import STOPPED, compare_replay
 from tangible_depth import Luminance, SemiGlobal, Zncc
 from tangible_devices import Mock
@@ -103,10 +107,16 @@ class TestMethods:
         with pytest.raises(ConfigError, match="no device"):
             pipeline.feel()
 
+    def test_method_by_name_is_the_object_of_its_class(self):
+        scene = Scene.photo(pair()[0])
+        named = Pipeline(scene, depth="luminance", render={"use": "proxy", "radius_m": "1 mm"}, export=["stl"])
+        made = Pipeline(scene, depth=Luminance(), render=Proxy(radius_m=0.001), export=[load_method("export", "stl")()])
+        assert named.config == made.config
+
     @pytest.mark.usefixtures("unchecked_shapes")
-    @pytest.mark.parametrize("wrong", ["semi-global", SemiGlobal, Gabor()])
+    @pytest.mark.parametrize("wrong", [3, SemiGlobal, Gabor()])
     def test_method_of_another_kind_is_refused(self, wrong: object):
-        with pytest.raises(ConfigError, match=r"depth: takes an object(, not the name| of a class of DepthEst)"):
+        with pytest.raises(ConfigError, match="depth: takes a name, or an object of a class of DepthEst"):
             Pipeline(Scene.builtin("coins"), depth=wrong)  # pyright: ignore[reportArgumentType]
 
     @pytest.mark.usefixtures("unchecked_shapes")
@@ -133,6 +143,40 @@ class TestMethods:
         for name in ("wants", "registry"):
             with pytest.raises(ArgumentError, match=f"{name}: is not a key of the pipeline file"):
                 Pipeline(scene, **{name: "parts"})
+
+
+class TestOthers:
+    """A person who compares: the same pipeline with one thing changed, and what suits a picture."""
+
+    def test_pipeline_with_another_law_shares_its_surface(self):
+        scene = Scene.photo(pair()[0])
+        first = Pipeline(scene, depth="luminance", workspace={"width_m": 0.04}, title="one", cached=False)
+        disparity = first.disparity
+        other = first.with_(render="penalty", title=None)
+        assert (other.config.want, other.config.title, first.config.render) == ("touch", "", None)
+        assert other.config.workspace == first.config.workspace and other.disparity is disparity
+        assert other.with_(render=None).config.want == "surface"
+        assert first.with_(scene=Scene.heights(np.ones((2, 3)))).relief.height_m.shape == (2, 3)
+        with pytest.raises(AttributeError, match=r"`pipeline.with_\(render=...\)` returns another one"):
+            first.render = Penalty()  # pyright: ignore[reportAttributeAccessIssue]
+
+    def test_suited_pipeline_is_that_of_the_command_line(self, tmp_path: Path):
+        left, _ = pair()
+        file = tmp_path / "left.png"
+        Image.fromarray(left).save(file)
+        typed = Pipeline.from_config(suited_config([file], default_registry()))
+        for suited in (Pipeline.suited(file), Pipeline.suited(left), Pipeline.suited(Scene.photo(left))):
+            keys = typed.config.as_data().keys() - {"scene"}
+            assert all(getattr(suited.config, key) == getattr(typed.config, key) for key in keys)
+            assert suited.plan().refusal == typed.plan().refusal == ""
+
+    def test_pipeline_and_recording_are_seen_as_people_expect(self):
+        pipeline = Pipeline(Scene.heights(np.eye(8)), render="penalty", cached=False)
+        assert show(pipeline).get_title() == show(pipeline.surface).get_title()
+        recording = pipeline.feel("mock", 0.05, in_real_time=False)
+        table = recording.to_pandas()
+        assert list(table.columns) == [*TICK_COLUMNS, "beacon"] and len(table) == len(recording.rows)
+        assert (table["fz_n"] == recording.force_n[:, 2]).all() and (table["beacon"] == -1).all()
 
 
 class TestThereAndBack:

@@ -25,8 +25,8 @@ class MethodBlock(Key, Unchecked):
         return choose(reading.source, (self.name,), self.name, block, reading.registry)
 
     def take(self, reading: Reading, value: Any) -> Any:
-        """Check the kind of a method that was made in Python."""
-        return _name_method(self.name, reading, value)
+        """Check the kind of a method that was made in Python, or make the one that is named."""
+        return _take_method((self.name,), self.name, reading, value)
 
     def write(self, value: NamedMethod[Any]) -> Any:
         """Write the name and all options."""
@@ -71,8 +71,9 @@ class MethodList(Key, Unchecked):
         return tuple(each for each in found if each is not None)
 
     def take(self, reading: Reading, value: Any) -> Any:
-        """Check the kinds of methods that were made in Python."""
-        return tuple(_name_method(self.name, reading, each) for each in value)
+        """Check the kinds of methods that were made in Python, or make those that are named."""
+        listed = [value] if isinstance(value, str) else value
+        return tuple(_take_method((self.name, at), self.name, reading, method) for at, method in enumerate(listed))
 
     def write(self, value: Iterable[NamedMethod[Any]]) -> Any:
         """Write the name and all options of each."""
@@ -91,12 +92,15 @@ class MethodList(Key, Unchecked):
         return {"anyOf": [{"type": "array", "items": forms.of_kind(self.name)}, {"type": "null"}]}
 
 
-def _name_method(kind: str, reading: Reading, method: Any) -> NamedMethod[Any] | None:
-    """Return a method that was made in Python with its name; None after a complaint."""
+def _take_method(place: Location, kind: str, reading: Reading, method: Any) -> NamedMethod[Any] | None:
+    """Return a method with its name, from an object or from what a file may have; None after a complaint."""
+    if isinstance(method, str | Mapping):
+        block = dict(cast("Mapping[str, Any]", method)) if isinstance(method, Mapping) else method
+        return choose(reading.source, place, kind, block, reading.registry)
     try:
         return named_method(kind, method, reading.registry)
     except ConfigError as error:
-        return reading.source.complain((kind,), str(error))
+        return reading.source.complain(place, str(error))
 
 
 def _plural(kind: str) -> str:

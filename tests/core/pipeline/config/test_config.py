@@ -125,6 +125,11 @@ def test_mistake_has_location_line_and_column(text: str, location: tuple, mark: 
     assert json.loads(json.dumps(found._asdict()))["location"] == list(location)
 
 
+def test_file_with_a_law_wants_the_touch_unless_it_says_otherwise():
+    for text, want in (("", "surface"), ("render: proxy\n", "touch"), ("render: proxy\nwant: relief\n", "relief")):
+        assert parse(f"scene: builtin/brick\n{text}").want == want
+
+
 def test_materials_are_read_and_completed(tmp_path: Path):
     rules = "{at: [1, 2.5], material: ice}, {segment: 1, material: sand}"
     choice = parse(f"scene: builtin/brick\nmaterials: {{rules: [{rules}], by: rules}}\n").materials

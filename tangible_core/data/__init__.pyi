@@ -7,6 +7,10 @@ from .device import Unit as Unit
 from .device import Vector as Vector
 from .device import limited as limited
 from .figure import Figure as Figure
+from .options import default_in_code as default_in_code
+from .options import name_of_block as name_of_block
+from .options import options_in as options_in
+from .options import values_in_code as values_in_code
 from .outcome import Kind as Kind
 from .outcome import Note as Note
 from .outcome import NoteKind as NoteKind

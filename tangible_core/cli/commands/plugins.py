@@ -67,8 +67,8 @@ def show_one(kind: Kind, name: Name, as_json: Json = False) -> None:
     """
     import inspect
 
+    from ...data.options import options_of
     from ...metrics.measured import load_measured
-    from ...pipeline.config.options import options_of
     from ...plugins.registry import default_registry
     from ...translation import localise
     from .. import show

@@ -9,10 +9,6 @@ from .methods import NamedMethod as NamedMethod
 from .methods import choose as choose
 from .model import KEYS as KEYS
 from .model import PipelineConfig as PipelineConfig
-from .options import default_in_code as default_in_code
-from .options import name_of_block as name_of_block
-from .options import options_in as options_in
-from .options import values_in_code as values_in_code
 from .parsing import load_config as load_config
 from .parsing import parse_config as parse_config
 from .part_checks import names_of as names_of

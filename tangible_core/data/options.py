@@ -5,9 +5,7 @@ from typing import Any, NamedTuple, cast
 
 from pydantic import BaseModel
 
-from ...data.quantities import unit_of
-from ...plugins.registry import default_registry
-from .keys.key import Forms
+from .quantities import unit_of
 
 BOUNDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
 
@@ -25,14 +23,13 @@ class Option(NamedTuple):
 
 def options_of(model: type[BaseModel]) -> list[Option]:
     """Describe all options of a method, those of a block below it as `block.option`."""
-    forms = Forms(default_registry(), None)
-    form = forms.of(model)
+    form = model.model_json_schema(ref_template="#/$defs/{model}")
     return [
         Option(
             name, unit_of(name), values_in_code(option).replace("`", ""), default_in_code(option).strip("`"),
             " ".join(option.get("description", "").split()),
         )
-        for name, option in options_in(form, forms.definitions)
+        for name, option in options_in(form, form.get("$defs", {}))
     ]  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """The options of a method in words, from its JSON Schema: values, bounds, defaults."""
 
 from collections.abc import Iterable, Mapping
+from textwrap import fill
 from typing import Any, NamedTuple, cast
 
 from pydantic import BaseModel
@@ -20,6 +21,11 @@ class Option(NamedTuple):
     default: str
     meaning: str
 
+    @property
+    def bounds(self) -> str:
+        """The unit and the values."""
+        return ", ".join(filter(None, (self.unit, self.values)))
+
 
 def options_of(model: type[BaseModel]) -> list[Option]:
     """Describe all options of a method, those of a block below it as `block.option`."""
@@ -31,6 +37,17 @@ def options_of(model: type[BaseModel]) -> list[Option]:
         )
         for name, option in options_in(form, form.get("$defs", {}))
     ]  # fmt: skip
+
+
+def options_as_text(model: type[BaseModel]) -> str:
+    """Return a paragraph for each option, with its default, unit, bounds and meaning; empty without options."""
+    options = options_of(model)
+    heads = (f"{option.name} = {option.default or None}   ({option.bounds})" for option in options)
+    lines = (
+        f"{head}\n{fill(option.meaning, 100, initial_indent='    ', subsequent_indent='    ')}"
+        for head, option in zip(heads, options, strict=True)
+    )
+    return "\n".join(("Options:", *lines)) if options else ""
 
 
 def options_in(

@@ -3,9 +3,11 @@
 import re
 from collections.abc import Mapping
 from decimal import Decimal
+from inspect import cleandoc, getdoc
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, cast, get_args, get_origin
+from weakref import WeakKeyDictionary
 
 from pydantic import BaseModel, GetJsonSchemaHandler, ValidationError, ValidationInfo, field_validator
 from pydantic.json_schema import JsonSchemaValue
@@ -38,8 +40,19 @@ _QUANTITY = re.compile(rf"\s*((?>{_DIGITS}))\s*(\D.*?)\s*")
 class _Blocks(type(BaseModel)):
     """The class of all blocks of options: what is wrong with the options of a new one is an OptionError.
 
-    Only a call of the class is caught, so that a file's reader gets pydantic's errors with their places.
+    Only a call of the class is caught, so that a file's reader gets pydantic's errors with their places. `__doc__`, and
+    so `help`, ends with the options.
     """
+
+    @property
+    def __doc__(cls) -> str | None:  # pyright: ignore[reportIncompatibleVariableOverride]
+        model = cast("type[BaseModel]", cls)
+        if cls not in _TEXTS and model.__pydantic_complete__:
+            from .options import options_as_text
+
+            _TEXTS[cls] = vars(cls).get("__doc__")  # which the schema of the options asks for
+            _TEXTS[cls] = "\n\n".join(filter(None, (getdoc(cls), options_as_text(model))))
+        return _TEXTS.get(cls, vars(cls).get("__doc__"))
 
     if not TYPE_CHECKING:  # the signature of each block is that of its fields
 
@@ -54,6 +67,8 @@ class _Blocks(type(BaseModel)):
             raise OptionError(*(f"{cls.__name__}: {each}" for each in sentences))
 
 
+_TEXTS = WeakKeyDictionary[type, str | None]()
+"""The documentation of classes with that of their options, once it was asked for."""
 MOST_NAMED = 3
 """The most options that a message about their names quotes."""
 
@@ -90,6 +105,8 @@ class Quantities(BaseModel, metaclass=_Blocks):
     def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler, /) -> JsonSchemaValue:
         schema = handler(core)
         block = handler.resolve_ref_schema(schema)
+        if text := vars(cls).get("__doc__"):
+            block["description"] = cleandoc(text)
         block["title"] = title_of(re.sub(r"(?<=[a-z])(?=[A-Z])", "_", cls.__name__).lower())
         for name, option in block.get("properties", {}).items():
             option["title"] = title_of(name)

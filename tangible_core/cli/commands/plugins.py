@@ -75,7 +75,7 @@ def show_one(kind: Kind, name: Name, as_json: Json = False) -> None:
 
     registry = default_registry()
     listing, cls = registry.find(kind, name), registry.load(kind, name)
-    text, options = inspect.getdoc(cls) or "", options_of(cls)
+    text, options = inspect.cleandoc(vars(cls).get("__doc__") or ""), options_of(cls)
     measurements = load_measured().get(kind) if listing.distribution == OURS else None
     if as_json:
         figures = None if measurements is None else _figures(measurements, listing.name)

@@ -18,6 +18,7 @@ from tangible_core import (
     Scene,
     SegmentMap,
     Views,
+    load_method,
 )
 from tangible_core.data.arguments import as_array, as_force, as_state, named_options
 from tangible_core.data.device import Force, HapticState
@@ -116,3 +117,10 @@ def test_three_numbers_become_a_state_or_a_force():
         assert as_force(other) is None
         with pytest.raises(ArgumentError, match=r"state: is .*three numbers"):
             as_state(other)
+
+
+def test_help_of_a_method_lists_its_options_and_its_schema_does_not():
+    proxy = load_method("render", "proxy")
+    line = "stiffness_n_per_m = 800.0   (N/m, number > 0 or 6 N/m)\n    Stiffness between proxy and hand,"
+    assert f"\n\nOptions:\n{line}" in str(proxy.__doc__)
+    assert proxy.model_json_schema()["description"].endswith("Eurohaptics 2002.")

@@ -35,7 +35,6 @@ from .products import PRODUCTS as PRODUCTS
 from .products import Product as Product
 from .products import Work as Work
 from .quantities import Quantities as Quantities
-from .quantities import unit_of as unit_of
 from .records import Record as Record
 from .records import digest_of as digest_of
 from .surface import TEXTURES as TEXTURES
@@ -52,6 +51,7 @@ from .ticks import ServoReport as ServoReport
 from .ticks import Spread as Spread
 from .ticks import TickFlag as TickFlag
 from .ticks import beacon_part as beacon_part
+from .units import unit_of as unit_of
 from .views import Calibration as Calibration
 from .views import DisparityMap as DisparityMap
 from .views import PartMap as PartMap

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, cast
 
 from pydantic import BaseModel
 
-from .quantities import unit_of
+from .units import unit_of
 
 BOUNDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ...data.quantities import title_of
+from ...data.units import title_of
 from ...errors import UnknownName
 from ...materials.assignment import library
 from ...materials.files import MaterialBlock

@@ -4,6 +4,7 @@ from .commands.run import device_of as device_of
 from .commands.run import open_pipeline as open_pipeline
 from .options import FAILED as FAILED
 from .options import Config as Config
+from .options import ConfigOrPictures as ConfigOrPictures
 from .options import Json as Json
 from .options import NoCache as NoCache
 from .options import Sets as Sets

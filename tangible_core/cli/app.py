@@ -32,7 +32,7 @@ app: typer.Typer = typer.Typer(
     cls=LazyGroup,
     help="Turn pictures into something one can feel: `tangible demo` shows all of it.",
     epilog="Anywhere: --log-level [LOGGER=]LEVEL (debug, info, warning, error; for all or one logger); "
-    "-q, --quiet (only requested output, warnings and errors); "
+    "-q, --quiet (only requested output, warnings and errors); --plain (no progress line, no colours); "
     "--lang (en, de, fr; by default that of the environment).",
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -152,7 +152,8 @@ def _report_unexpected(error: BaseException) -> int:
         return _report(better, MISTAKE)
     if (show := getattr(error, "show", None)) is not None:
         show(text := StringIO())
-        return _report(text.getvalue().rstrip(), MISTAKE)
+        plain = text.getvalue().replace("Value error, ", "").replace(", unable to parse string as a number", "")
+        return _report(plain.rstrip(), MISTAKE)
     from ..plugins import failures
 
     explained = failures.place_of(error) or failures.missing_package(error) or failures.lacks_memory(error)

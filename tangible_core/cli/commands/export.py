@@ -9,7 +9,7 @@ import typer
 
 from .. import completing
 from ..options import FAILED, MISTAKE, ConfigOrPictures, Json, NoCache, Sets, Verbose
-from ..verbosity import is_quiet
+from ..verbosity import is_quiet, named_language
 from .run import default_place, open_pipeline
 
 if TYPE_CHECKING:
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from ...pipeline.output.export_result import Export, Exported
 
 
+TEXT = "text"
+"""The exporter of descriptions."""
 CSV = "csv"
 """The format in which a recording is written; not the name of an exporter."""
 
@@ -46,7 +48,8 @@ def export(
 ) -> None:
     """Write files for others: a printer, swell paper, pins, a reader.
 
-    `--set export.NAME.OPTION=VALUE` sets an option of an exporter. `--to csv` writes a recording (.nc, .npz) as text.
+    `--set export.NAME.OPTION=VALUE` sets an option of an exporter, `--lang` the language of a description. `--to csv`
+    writes a recording (.nc, .npz) as text.
     Exit 2 if an exporter cannot write this, 1 if one failed; the others still write their files.
     """
     from .. import show
@@ -55,8 +58,10 @@ def export(
     if names == [CSV]:
         _print_recording(_as_csv(config, out or Path("out") / config[0].stem, force), as_json)
         return
-    pipeline = open_pipeline(config, sets or [], not no_cache)
-    done = pipeline.export(out or default_place(config[0]), names or None, force=force, cut_out=cut_out)
+    spoken = [f"export.{TEXT}.language={named_language()}"] if named_language() and TEXT in names else []
+    pipeline = open_pipeline(config, [*spoken, *(sets or [])], not no_cache)
+    place = out or default_place(config[0], config[1:])
+    done = pipeline.export(place, names or None, force=force, cut_out=cut_out)
     if as_json:
         show.print_json(done.document())
     elif not is_quiet():

@@ -49,7 +49,7 @@ def _show(text: str) -> None:
     if _shown:
         _shown[0].update(Text(text))  # the name of a part may have brackets
     else:
-        _shown.append(Console(stderr=True).status(Text(text)))
+        _shown.append(Console(stderr=True).status(Text(text), spinner="line"))  # not in cells of braille
         _shown[0].start()
 
 

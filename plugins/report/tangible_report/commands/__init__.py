@@ -1,4 +1,4 @@
-"""The command that shows materials. It is imported at each start of `tangible`, so it imports next to nothing."""
+"""The commands for materials and descriptions, imported at each start of `tangible`, so it imports next to nothing."""
 
 from __future__ import annotations
 
@@ -12,7 +12,14 @@ if TYPE_CHECKING:
 
 @hookimpl
 def tangible_commands(app: Typer) -> None:
-    """Add `tangible materials`."""
+    """Add `tangible materials` and `tangible describe`."""
     from tangible_core.cli import add
 
-    add("materials", "tangible_report.commands.materials:app", "List the materials; show or draw some.")
+    add(
+        "describe", f"{__package__}.describe:describe", "Print the surface in words.",
+        "Make", "tangible describe photo.jpg --lang de",
+    )  # fmt: skip
+    add(
+        "materials", "tangible_report.commands.materials:app", "List the materials; show or draw some.",
+        "Make", "tangible materials show sand",
+    )  # fmt: skip

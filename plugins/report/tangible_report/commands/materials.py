@@ -71,6 +71,7 @@ def show_one(
     name: Annotated[
         str,
         typer.Argument(
+            metavar="NAME",
             help="The material, as `tangible materials` lists it.",
             show_default=False,
             autocompletion=completing.materials,
@@ -104,7 +105,12 @@ def show_one(
 def draw(
     names: Annotated[
         list[str] | None,
-        typer.Argument(help="The materials [default: all].", show_default=False, autocompletion=completing.materials),
+        typer.Argument(
+            metavar="NAME...",
+            help="The materials [default: all].",
+            show_default=False,
+            autocompletion=completing.materials,
+        ),
     ] = None,
     out: Annotated[Path, typer.Option("--out", help="Folder for the pictures.")] = Path("out/materials"),
     library: Library = None,

@@ -185,7 +185,7 @@ def test_check_of_a_declared_failure_reports_it_and_succeeds(monkeypatch: pytest
         ("scene.left=cut.png", "cut.png"),
         ("scene.left=wide.png", "one size"),
         ("scene={height: nan.npy}", "only NaN"),
-        ("materials={8: ice}", "7"),
+        ("materials={8: ice}", "no segment 8"),
         ("materials.rules=[{at: [500, 1], material: ice}]", "outside the picture of 96 x 64 pixels"),
     ],
 )
@@ -241,7 +241,7 @@ def test_recording_is_replayed_through_any_force_law(folder: Path):
 
 
 def test_recording_missing_or_cut_off_is_reported(folder: Path):
-    assert "cannot be read" in mistake("replay", "none.nc", "p.yaml", cwd=folder)
+    assert "there is no such file" in mistake("replay", "none.nc", "p.yaml", cwd=folder)
     assert "end of the name" in mistake("replay", "p.yaml", "p.yaml", "--record", "b.txt", cwd=folder)
     Recording(np.zeros((3, 17)), "the cable is out").save(folder / "cut.nc")
     done = tangible("replay", "cut.nc", "p.yaml", cwd=folder)

@@ -14,6 +14,7 @@ from typer.core import TyperGroup
 
 from ..files.paths import as_path
 from ..runtime import standard_output
+from ..translation import localise
 
 if TYPE_CHECKING:
     from typer.models import CommandInfo, TyperInfo
@@ -26,28 +27,62 @@ class Command(NamedTuple):
     """`package.module:name` of its function, or of its group of commands."""
     summary: str
     """The first line of its help."""
+    group: str = "More"
+    """The heading below which it is listed."""
+    example: str = ""
+    """A call as a person would type it."""
 
 
+GROUPS = ("Begin", "Make", "Feel", "Compare", "The program", "More")
+"""The headings of the list of commands, in their order."""
 ROOM = f"{__package__}.commands"
 COMMANDS = {
-    "demo": Command(f"{ROOM}.run:demo", "Run the built-in example from picture to force."),
-    "run": Command(f"{ROOM}.run:run", "Run a pipeline file, or a picture, and write a report."),
-    "plan": Command(f"{ROOM}.run:plan", "Show what `run` would do, and why; run nothing."),
-    "export": Command(f"{ROOM}.export:export", "Write files for others: a printer, swell paper, pins, a reader."),
-    "feel": Command(f"{ROOM}.feel:feel", "Feel the surface on the configured device, in real time."),
-    "replay": Command(f"{ROOM}.replay:replay", "Re-run a recorded hand path with another force law."),
-    "plugins": Command(f"{ROOM}.plugins:app", "List the installed methods and devices; show one of them."),
-    "check": Command(f"{ROOM}.plugins:check", "Test an installed method with the conformance kit."),
-    "cache": Command(f"{ROOM}.cache:app", "Print the size of the cache of results; clear it."),
-}
+    "demo": Command(
+        f"{ROOM}.run:demo", "Run the built-in example from picture to force.",
+        GROUPS[0], "tangible demo -v",
+    ),
+    "run": Command(
+        f"{ROOM}.run:run", "Run a pipeline file, or a picture, and write a report.",
+        GROUPS[1], "tangible run photo.jpg",
+    ),
+    "plan": Command(
+        f"{ROOM}.run:plan", "Show what `run` would do, and why; run nothing.",
+        GROUPS[1], "tangible plan mine.yaml",
+    ),
+    "export": Command(
+        f"{ROOM}.export:export", "Write files for others: a printer, swell paper, pins, a reader.",
+        GROUPS[1], "tangible export photo.jpg --to swell,stl",
+    ),
+    "feel": Command(
+        f"{ROOM}.feel:feel", "Feel the surface on the configured device, in real time.",
+        GROUPS[2], "tangible feel mine.yaml --seconds 30 --record hand.nc",
+    ),
+    "replay": Command(
+        f"{ROOM}.replay:replay", "Re-run a recorded hand path with another force law.",
+        GROUPS[2], "tangible replay hand.nc mine.yaml --set render.use=penalty",
+    ),
+    "plugins": Command(
+        f"{ROOM}.plugins:app", "List the installed methods and devices; show one of them.",
+        GROUPS[4], "tangible plugins show proxy",
+    ),
+    "check": Command(
+        f"{ROOM}.plugins:check", "Test an installed method with the conformance kit.",
+        GROUPS[4], "tangible check zncc",
+    ),
+    "cache": Command(
+        f"{ROOM}.cache:app", "Print the size of the cache of results; clear it.",
+        GROUPS[4], "tangible cache clear",
+    ),
+}  # fmt: skip
 
 
-def add(name: str, place: str, summary: str) -> None:
+def add(name: str, place: str, summary: str, group: str = GROUPS[-1], example: str = "") -> None:
     """Add a command that is imported when it is called; a name that is taken stays with its first owner.
 
     place: `package.module:name` of its function, or of its group of commands. summary: the first line of its help.
+    group: one of GROUPS. example: a call, for its help.
     """
-    COMMANDS.setdefault(name, Command(place, summary))
+    COMMANDS.setdefault(name, Command(place, summary, group, example))
 
 
 _checked: WeakSet[Callable[..., Any]] = WeakSet()
@@ -67,9 +102,11 @@ class LazyGroup(TyperGroup):
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write the summaries in full, however narrow the terminal is."""
-        rows = [(name, _summary(name, self.commands)) for name in self.commands]
-        with formatter.section("Commands"):
-            formatter.write_dl(rows)
+        groups = {name: COMMANDS[name].group if name in COMMANDS else GROUPS[-1] for name in self.commands}
+        for group in GROUPS:
+            if rows := [(name, _summary(name, self.commands)) for name in groups if groups[name] == group]:
+                with formatter.section(group):
+                    formatter.write_dl(rows)
 
 
 class _Commands(MutableMapping[str, Any]):
@@ -106,7 +143,9 @@ def load(name: str) -> Any:
     check_paths(app)
     for each in _all_commands(app):
         each.callback = each.callback and standard_output.protect()(each.callback)
-    return typer.main.get_command(app)
+    made = typer.main.get_command(app)
+    made.epilog = COMMANDS[name].example and f"{localise('Example:')} {COMMANDS[name].example}"
+    return made
 
 
 def check_paths(app: typer.Typer) -> None:

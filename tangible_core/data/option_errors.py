@@ -69,6 +69,8 @@ def _sentence(error: dict[str, Any], model: type[BaseModel], location: Location)
     given, hint = "" if is_clear else f", not {quoted(error['input'])}", ""
     if isinstance(error["input"], str) and DECIMAL_COMMA.match(error["input"]):
         hint = f"; with a decimal point it is {shown(error['input'].replace(',', '.'))}"
+    if name.endswith("_m") and error["type"].startswith("less_than"):
+        hint = f"; for millimetres write {cast(float, error['input']):g} mm"
     if error["type"] == "literal_error":
         hint = did_you_mean(f"{error['input']}", re.findall(r"'([^']*)'", error["msg"]))
     return where, f"{name}: {error['msg']}{given}{hint}".removeprefix(": ")

@@ -66,7 +66,8 @@ def not_pictures(paths: Iterable[Path]) -> ConfigError:
     """Return the error for files that a surface cannot be made of, such as a PDF."""
     names = ", ".join(map(str, paths))
     return ConfigError(
-        f"{names}: name a picture (.png, .jpg, ...), left and right, a video, or a map of heights (.npy)"
+        f"{names}: name a picture (.png, .jpg, ...), left and right, a video, or a map of heights (.npy); "
+        "save pages and drawings as PNG first"
     )
 
 

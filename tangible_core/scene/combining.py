@@ -85,7 +85,8 @@ def _check_sizes(files: SceneFiles, parts: Mapping[str, np.ndarray]) -> None:
             cure = "by its nearest neighbours, which mixes no labels" if other == "segments" else "or crop one of them"
             raise PictureError(
                 f"{getattr(files, other)} ({other}) is {its[0]} x {its[1]} and {getattr(files, main)} ({main}) is "
-                f"{size[0]} x {size[1]}; all parts of a scene must be of one size; resize {cure}"
+                f"{size[0]} x {size[1]}; all parts of a scene must be of one size; if they belong "
+                f"together, resize {cure}"
             )
 
 

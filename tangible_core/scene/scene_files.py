@@ -158,7 +158,10 @@ class SceneFiles(Quantities):
             raise ValueError(f"stereo already gives both views; leave out {', '.join(idle)}")
         if len(kinds) != 1 or not set(kinds[0]) <= set(given):
             named = ", ".join(given) or "nothing"
-            raise ValueError(f"a scene is either left and right, or photo, or height, or video; this one gives {named}")
+            cure = f"; {'right' if 'left' in given else 'left'} is missing" if kinds == [("left", "right")] else ""
+            raise ValueError(
+                f"a scene is either left and right, or photo, or height, or video; this one gives {named}{cure}"
+            )
         self._check_needs(given)
         if "layout" in given and (not self.stereo or self.layout == "mono"):
             raise ValueError("layout needs stereo or video; mono is for a video")

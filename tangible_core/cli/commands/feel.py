@@ -24,7 +24,9 @@ ALONE_S = 1.5
 
 
 def feel(
-    configs: Annotated[list[Path], typer.Argument(metavar="CONFIG", help="Pipeline files (YAML).", show_default=False)],
+    configs: Annotated[
+        list[Path], typer.Argument(metavar="FILE...", help="Pipeline files (YAML).", show_default=False)
+    ],
     sets: Sets = None,
     seconds: Annotated[
         float | None, typer.Option(help="Duration, s; inf: without end.  [default: 8; for several files, one round]")

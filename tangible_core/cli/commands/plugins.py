@@ -20,13 +20,42 @@ if TYPE_CHECKING:
     from ...testing import CheckResult
 
 COLUMNS = ("kind", "name", "origin", "summary")
-Kind = Annotated[str, typer.Argument(help=" | ".join(KIND_NAMES), show_default=False, autocompletion=completing.kinds)]
-Name = Annotated[
+Kind = Annotated[
     str,
     typer.Argument(
-        help="The method, as `tangible plugins` lists it.", show_default=False, autocompletion=completing.methods
+        metavar="[KIND]",
+        help=f"{' | '.join(KIND_NAMES)}; needed where two kinds have the name.",
+        show_default=False,
+        autocompletion=completing.kinds,
     ),
 ]
+Name = Annotated[
+    str | None,
+    typer.Argument(
+        metavar="NAME",
+        help="The method, as `tangible plugins` lists it.",
+        show_default=False,
+        autocompletion=completing.methods,
+    ),
+]
+
+
+def _kind_and_name(kind: str, name: str | None) -> tuple[str, str]:
+    """Return the kind and the name of a method that is named with or without its kind. Raises: ConfigError."""
+    from ...errors import ConfigError, UnknownName
+    from ...plugins.registry import default_registry
+
+    if name is not None:
+        return kind, name
+    named = {listing.kind for listing in default_registry().listings if listing.name == kind}
+    if not named:
+        raise UnknownName("method", kind, (listing.name for listing in default_registry().listings))
+    if len(named) > 1:
+        raise ConfigError(
+            f"{kind}: is a name of several kinds; write one of them before it: {', '.join(sorted(named))}"
+        )
+    return named.pop(), kind
+
 
 app: typer.Typer = typer.Typer(name="plugins", rich_markup_mode=None, add_completion=False)
 
@@ -60,7 +89,7 @@ def plugins(context: typer.Context, as_json: Json = False) -> None:
 
 
 @app.command("show")
-def show_one(kind: Kind, name: Name, as_json: Json = False) -> None:
+def show_one(kind: Kind, name: Name = None, as_json: Json = False) -> None:
     """Show one method or device.
 
     What it does and by which source; each option with its unit, bounds and default; how fast and how exact it was.
@@ -73,7 +102,7 @@ def show_one(kind: Kind, name: Name, as_json: Json = False) -> None:
     from ...translation import localise
     from .. import show
 
-    registry = default_registry()
+    registry, (kind, name) = default_registry(), _kind_and_name(kind, name)
     listing, cls = registry.find(kind, name), registry.load(kind, name)
     text, options = inspect.cleandoc(vars(cls).get("__doc__") or ""), options_of(cls)
     measurements = load_measured().get(kind) if listing.distribution == OURS else None
@@ -128,7 +157,7 @@ def _speed_and_accuracy(listing: Listing, measured: Measured | None) -> str:
     return f"{where}: {figures}. The most exact of {len(measured.methods)} is {best}."
 
 
-def check(kind: Kind, name: Name, as_json: Json = False) -> None:
+def check(kind: Kind, name: Name = None, as_json: Json = False) -> None:
     """Test an installed method with the conformance kit.
 
     Exit 1 if a check fails that the method does not declare to fail, or passes that it declares to fail.
@@ -138,6 +167,7 @@ def check(kind: Kind, name: Name, as_json: Json = False) -> None:
     from ...testing import run_checks
     from .. import sentences, show
 
+    kind, name = _kind_and_name(kind, name)
     results = list(run_checks(kind, name))
     if as_json:
         show.print_json([each._asdict() for each in results])

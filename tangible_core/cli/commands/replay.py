@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 
 def replay(
-    recording: Annotated[Path, typer.Argument(help="Recording (.nc, .npz or .csv).", show_default=False)],
+    recording: Annotated[
+        Path, typer.Argument(metavar="RECORDING", help="Recording (.nc, .npz or .csv).", show_default=False)
+    ],
     config: Config,
     sets: Sets = None,
     record: Record = None,

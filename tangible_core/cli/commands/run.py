@@ -81,7 +81,7 @@ def run(
     from .. import show
 
     pipeline = open_pipeline(config, sets or [], not no_cache)
-    done = pipeline.run(out or default_place(config[0]), seconds=seconds, sheet=sheet)
+    done = pipeline.run(out or default_place(config[0], config[1:]), seconds=seconds, sheet=sheet)
     _print(done, as_json, verbose)
     _check_complete(done)
     if not (as_json or is_quiet()):
@@ -129,6 +129,8 @@ def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bo
         if not is_quiet():
             command = shlex.join(["tangible", "new", *map(str, files)])
             show.note(f"without a pipeline file, values that suit the picture are used: `{command}` writes them down")
+    elif folder := next((file for file in files if file.is_dir() or file.suffix.lower() in TABLES), None):
+        raise ConfigError(f"{folder}: its pictures or rows are run by `tangible batch mine.yaml --over {folder}`")
     elif any(file.suffix.lower() in OTHER_FILES for file in files) or (len(files) == 1 and is_binary(files[0])):
         raise not_pictures(files)
     elif len(files) > 1:
@@ -137,7 +139,15 @@ def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bo
         pipeline = load_pipeline(files[0], sets)
     if not cached:
         pipeline.engine.cache = None
+    if (width_m := pipeline.config.size.width_m) > MAX_HAND_M:
+        show.note(f"the surface is {width_m:g} m wide; if {width_m:g} cm are meant, write `width_m: {width_m:g} cm`")
     return pipeline
+
+
+MAX_HAND_M = 1.0
+"""The width of a surface from which on a unit was more likely forgotten than meant, m."""
+TABLES = (".csv", ".parquet")
+"""Suffixes of tables of settings."""
 
 
 OTHER_FILES = frozenset(
@@ -156,13 +166,14 @@ def device_of(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
     return replace(device, method=felt)
 
 
-def default_place(source: Path) -> Path:
-    """Return the folder for results if the user named none."""
+def default_place(source: Path, others: Sequence[Path] = ()) -> Path:
+    """Return the folder for results if the user named none. others: a right view, which stands beside the source."""
     from ...pipeline.output.run_folder import default_folder, default_name
     from .. import show
 
-    folder = default_folder(source)
-    if folder.name != (first := default_name(source)):
+    first = default_name(source, *others)
+    folder = default_folder(source, name=first)
+    if folder.name != first:
         show.note(
             f"{folder.parent / first} holds other results, and is left as it is; these go to {folder} (`--out` chooses)"
         )

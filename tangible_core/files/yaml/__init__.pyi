@@ -8,4 +8,5 @@ from .source import parse_override as parse_override
 from .source import parse_source as parse_source
 from .source import parse_value as parse_value
 from .source import plain as plain
+from .source import plain_tree as plain_tree
 from .source import read_text as read_text

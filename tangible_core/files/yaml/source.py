@@ -28,7 +28,7 @@ CURES = {
     "undefined alias": "{text}; a text that begins with * stands in quotes",
     "unexpected end of stream": "{text}; end what was opened, such as quotes",
     "duplicate key": "{text}; remove one of them",
-    "expected <block end>": "{text}; indent lines of one block alike",
+    "expected <block end>": "this line is indented unlike those above it; begin all lines of a block in one column",
 }
 """Cures by a part of what the parser says; the first one counts."""
 Tree = dict[Any, Any]
@@ -184,6 +184,7 @@ def parse_source(
         raise ConfigError(f"{place}: {problem}", complaints=[Complaint((), problem, *mark)]) from error
     if tree is None and empty:
         tree = CommentedMap()
+    what = f"the file is empty; {what}" if tree is None else what
     if not isinstance(tree, dict):
         raise ConfigError(f"{path}:1:1: {what}", complaints=[Complaint((), what, 1, 1)])
     source = Source(path, cast(Tree, tree))

@@ -33,6 +33,10 @@ NAMES = (*CLAIMS, *(f"{product}.npz" for product in PRODUCTS), RECORDING, GUESSE
 """The names of all files that a run may write."""
 
 
+LEFT = ("left", "l", "im0", "im2", "view0", "view1")
+"""Names that the left views of all pairs have."""
+
+
 @dataclass(frozen=True)
 class Manifest:
     """The list of the files that a run wrote into a folder."""
@@ -61,15 +65,21 @@ def read_manifest(folder: Path) -> Manifest | None:
         return None
 
 
-def default_folder(source: Path, parent: Path = Path("out")) -> Path:
+def default_folder(source: Path, parent: Path = Path("out"), name: str = "") -> Path:
     """Return `parent`/NAME for the results of this pipeline file, or NAME-2, NAME-3 where that has other files."""
-    name = default_name(source)
+    name = name or default_name(source)
     numbered = (parent / (name if number == 1 else f"{name}-{number}") for number in count(1))
     return next(folder for folder in numbered if _is_free_for(folder, source))
 
 
-def default_name(source: Path) -> str:
-    """Return the name of the pipeline file; for the completed configuration of a run, the name of its folder."""
+def default_name(source: Path, *others: Path) -> str:
+    """Return the name of a pipeline file or picture without its ending.
+
+    The completed configuration of a run, and two views whose names say no more than which one is left, have that of
+    their folder. others: the right view.
+    """
+    if others and source.stem.casefold() in LEFT:
+        return source.resolve().parent.name or source.stem
     ran = source.name == CONFIG and (source.parent / OUTCOMES).exists()
     return source.resolve().parent.name if ran else source.stem
 

@@ -66,7 +66,9 @@ def read(path: Path) -> RecordingContents:
             contents = READERS[path.suffix](path)
         _check_bits(contents.rows)
     except OSError as error:
-        raise OutputError(f"{path}: cannot be read: {error.strerror or error}") from error
+        gone = isinstance(error, FileNotFoundError)
+        why = "there is no such file" if gone else f"cannot be read: {error.strerror or error}"
+        raise OutputError(f"{path}: {why}") from error
     except ImportError:  # a package is missing, which is not the file's fault
         raise
     except Exception as error:  # a damaged file can provoke any

@@ -15,9 +15,14 @@ import pytest
 from command_line import tangible
 from pictures import write_png
 from tangible_core.cli import completing, sentences
+from tangible_core.cli.app import app
+from tangible_core.cli.command_table import COMMANDS, GROUPS, load
 from tangible_core.data import DisparityMap, Views
 from tangible_core.pipeline.engine.cache import Cache
+from tangible_core.pipeline.output import default_name
+from tangible_core.plugins import hooks
 from tangible_core.plugins.notes import note
+from tangible_core.plugins.registry import default_registry
 from tangible_depth import Luminance
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
@@ -53,14 +58,51 @@ def test_version_option_prints_the_version(tmp_path: Path):
         ("run leaflet.pdf", "leaflet.pdf: name a picture"),
         ("new leaflet.pdf", "leaflet.pdf: name a picture"),
         ("plugins show depth semi-globl", "'semi-global'?"),
+        ("plugins show semi-globl", "'semi-global'?"),
+        ("check report", "write one of them before it: depth, texture"),
+        ("compare semi-globl zncc", "'semi-global'?"),
+        ("compare semi-global gabor", "are methods of several kinds"),
+        ("batch p.yaml", "p.yaml: has nothing to run over"),
+        ("run .", "`tangible batch mine.yaml --over .`"),
+        ("run empty.yaml", "the file is empty"),
+        ("plan dot.png --set workspace.width_m=80", "for millimetres write 80 mm"),
+        ("replay hand.nc p.yaml", "hand.nc: there is no such file"),
+        ("legible dot.png --for paper", "'--for': 'paper' is not one of"),
+        ("run left.yaml", "this one gives left; right is missing"),
     ],
 )
 def test_mistake_on_the_command_line_is_refused_with_the_cure(words: str, said: str, folder: Path):
     (folder / "leaflet.pdf").write_bytes(b"%PDF-1.7")
+    (folder / "empty.yaml").touch()
+    (folder / "left.yaml").write_text("scene: {left: dot.png}\n")
     done = tangible(*words.split(), cwd=folder)
     assert (done.returncode, done.stdout) == (2, "")
     assert said in done.stderr
-    assert ("a key of the pipeline file" in done.stderr) == ("--set" in said)
+    assert ("a key of the pipeline file" in done.stderr) == (said.startswith("`") and "--set" in said)
+
+
+def test_surface_wider_than_a_table_is_asked_about(folder: Path):
+    for width, asked in (("8", True), ("0.08", False)):
+        done = tangible("plan", "p.yaml", "--set", f"workspace.width_m={width}", cwd=folder)
+        assert ("if 8 cm are meant, write `width_m: 8 cm`" in done.stderr) == asked
+
+
+def test_two_views_are_named_by_their_folder(folder: Path):
+    assert default_name(Path("cones/left.png"), Path("cones/right.png")) == "cones"
+    assert default_name(Path("cones/left.png")) == "left"
+    assert default_name(Path("a.png"), Path("b.png")) == "a"
+
+
+def test_every_command_of_the_program_has_an_example_and_a_place():
+    hooks.tell(default_registry().plugins, "tangible_commands", app=app)
+    for name, command in COMMANDS.items():
+        assert command.example.startswith(f"tangible {name}") and command.group in GROUPS[:-1], name
+        assert load(name).epilog == f"Example: {command.example}"
+
+
+def test_description_is_printed_in_the_language_of_the_terminal(folder: Path):
+    said = [tangible(*lang, "describe", "p.yaml", cwd=folder).stdout for lang in ((), ("--lang", "de"))]
+    assert ["A surface 80 mm wide" in said[0], "Eine Fläche, 80 mm breit" in said[1]] == [True, True]
 
 
 def test_command_that_cannot_be_imported_is_told_in_one_line(tmp_path: Path):

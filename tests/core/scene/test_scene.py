@@ -37,7 +37,9 @@ def complaint(**files):
 
 @pytest.mark.parametrize("names", ["", "left", "right", "left photo", "left right height", "photo height", "disparity"])
 def test_scene_is_exactly_one_of_pair_photo_and_height(names):
-    assert complaint(**dict.fromkeys(names.split(), "a")).endswith(f"gives {', '.join(names.split()) or 'nothing'}")
+    missing = {"left": "; right is missing", "right": "; left is missing"}.get(names, "")
+    says = f"gives {', '.join(names.split()) or 'nothing'}{missing}"
+    assert complaint(**dict.fromkeys(names.split(), "a")).endswith(says)
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,19 @@ def tangible_commands(app: Typer) -> None:
     from tangible_core.cli import add
 
     room = __package__
-    add("new", f"{room}.new:new", "Write a pipeline file for your pictures.")
-    add("parts", f"{room}.parts:parts", "Divide a picture into parts, which get names and heights.")
-    add("preflight", f"{room}.preflight:preflight", "Check, before a motor moves, what is safe.")
-    add("schema", f"{room}.schema:schema", "Print the JSON Schema of pipeline files.")
+    add(
+        "new", f"{room}.new:new", "Write a pipeline file for your pictures.",
+        "Begin", "tangible new photo.jpg",
+    )  # fmt: skip
+    add(
+        "parts", f"{room}.parts:parts", "Divide a picture into parts, which get names and heights.",
+        "Make", "tangible parts photo.jpg",
+    )  # fmt: skip
+    add(
+        "preflight", f"{room}.preflight:preflight", "Check, before a motor moves, what is safe.",
+        "Feel", "tangible preflight mine.yaml --set device.use=falcon",
+    )  # fmt: skip
+    add(
+        "schema", f"{room}.schema:schema", "Print the JSON Schema of pipeline files.",
+        "The program", "tangible schema mine.yaml",
+    )  # fmt: skip

@@ -14,7 +14,10 @@ from .schema import LINE
 
 def new(
     pictures: Annotated[
-        list[Path], typer.Argument(help="A picture, left and right, a map of heights, or a video.", show_default=False)
+        list[Path],
+        typer.Argument(
+            metavar="FILE...", help="A picture, left and right, a map of heights, or a video.", show_default=False
+        ),
     ],
     out: Annotated[Path | None, typer.Option("--out", help="The file to write [default: NAME.yaml].")] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")] = False,
@@ -27,11 +30,12 @@ def new(
     from tangible_core.errors import OutputError
     from tangible_core.files import write_text
     from tangible_core.pipeline import are_pictures, not_pictures
+    from tangible_core.pipeline.output import default_name
     from tangible_core.pipeline.starter import starter
 
     if not are_pictures(pictures):
         raise not_pictures(pictures)
-    file = out or Path(f"{pictures[0].stem}.yaml")
+    file = out or Path(f"{default_name(*pictures)}.yaml")
     if file.exists() and not force:
         raise OutputError(f"{file}: is there already; --out FILE writes another one, --force writes over it")
     schema = file.with_name("tangible.schema.json")
@@ -42,3 +46,4 @@ def new(
     show.plain(f"  tangible ui {file}         shows it on a page in the browser, to be felt with the mouse")
     show.plain(f"  tangible run {file}        makes what can be felt, and draws it")
     show.plain(f"  tangible preflight {file}  says whether it is safe on its device")
+    show.plain(f"  tangible schema {file}     lets editors complete and check it")

@@ -11,7 +11,8 @@ LINE = "# yaml-language-server: $schema="
 
 def schema(
     file: Annotated[
-        Path | None, typer.Argument(help="A pipeline file, beside which the schema is written.", show_default=False)
+        Path | None,
+        typer.Argument(metavar="FILE", help="A pipeline file, beside which the schema is written.", show_default=False),
     ] = None,
     markdown: Annotated[bool, typer.Option("--markdown", help="A reference page instead of JSON Schema.")] = False,
     installed: Annotated[bool, typer.Option("--installed", help="Include the methods of other plugins.")] = False,

@@ -16,7 +16,7 @@ def tangible_commands(app: Typer) -> None:
     from tangible_core.cli import add
 
     add(
-        "batch",
-        "tangible_batch.commands.batch:batch",
+        "batch", "tangible_batch.commands.batch:batch",
         "Run many pictures, or many settings, through one pipeline file.",
-    )
+        "Make", "tangible batch mine.yaml --over pictures/*.jpg",
+    )  # fmt: skip

@@ -22,20 +22,20 @@ def batch(
         list[Path],
         typer.Argument(
             metavar="FILE...",
-            help="Pipeline file (YAML), or a picture; further pictures belong to --over.",
+            help="Pipeline file (YAML) and pictures; pictures alone get values that suit the first.",
             show_default=False,
             autocompletion=completing.scenes,
         ),
     ],
     over: Annotated[
-        list[str],
+        list[str] | None,
         typer.Option(
             "--over",
             metavar="PICTURES | GLOB | FOLDER | rows.csv | rows.parquet",
             help="Pictures and pairs, or rows of settings.",
             show_default=False,
         ),
-    ],
+    ] = None,
     sets: Sets = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for the results [default: out/NAME-batch].")] = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes [default: one a core].")] = None,
@@ -63,7 +63,6 @@ def batch(
     """
     from tangible_core.cli import show
     from tangible_core.errors import check_positive
-    from tangible_core.files.yaml import read_text
     from tangible_core.pipeline.config import with_overrides
     from tangible_core.pipeline.output import default_name
 
@@ -73,12 +72,12 @@ def batch(
     from ..results import ROWS, write_gallery, write_index
     from ..running import Tally, Workforce, run_batch
 
-    config, pictures = _divide(files, over)
+    config, text, pictures = _divide(files, over or [])
     timeout_s = LONGEST_S if timeout is None else timeout
     check_positive("--timeout", timeout_s)
     name = default_name(config)
     place = out or Path("out", f"{name}-batch")
-    text = with_overrides(read_text(config), config, sets or [])
+    text = with_overrides(text, config, sets or [])
     tally, workforce = Tally(), Workforce(workers, threads, scheduler)
     options = BatchOptions(retry, sheets, cache, chunk, timeout_s)
     scenes = list(rows_of(pictures, besides=place))
@@ -97,10 +96,24 @@ def batch(
         raise typer.Exit(FAILED)
 
 
-def _divide(files: Sequence[Path], over: Sequence[str]) -> tuple[Path, list[str]]:
-    """Return the pipeline file, and what it runs over: a shell makes many words of `--over *.jpg`."""
-    configs = [each for each in files if each.suffix.lower() in (".yaml", ".yml")] or list(files[:1])
-    return configs[0], [*over, *(str(each) for each in files if each != configs[0])]
+def _divide(files: Sequence[Path], over: Sequence[str]) -> tuple[Path, str, list[str]]:
+    """Return the pipeline file, its text, and what it runs over: a shell makes many words of `--over *.jpg`.
+
+    Pictures alone run through the file that `tangible new` would write for the first of them.
+    Raises: ConfigError if there is nothing to run over; as `starter`.
+    """
+    from tangible_core.errors import ConfigError
+    from tangible_core.files.yaml import read_text
+    from tangible_core.pipeline import are_pictures
+    from tangible_core.pipeline.starter import starter
+
+    config = next((file for file in files if file.suffix.lower() in (".yaml", ".yml")), files[0])
+    others = [*over, *(str(file) for file in files if file != config)]
+    if not are_pictures([config]):
+        if not others:
+            raise ConfigError(f"{config}: has nothing to run over; name pictures behind it, or rows: --over rows.csv")
+        return config, read_text(config), others
+    return config, starter([config], config).text, [str(config), *others]
 
 
 def _show_progress(rows: Iterator[Row], tally: Tally, name: str) -> Iterator[Row]:

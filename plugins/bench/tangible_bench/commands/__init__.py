@@ -15,4 +15,7 @@ def tangible_commands(app: Typer) -> None:
     """Add `tangible compare`."""
     from tangible_core.cli import add
 
-    add("compare", "tangible_bench.commands.compare:compare", "Compare methods by time, memory and error.")
+    add(
+        "compare", "tangible_bench.commands.compare:compare", "Compare methods by time, memory and error.",
+        "Compare", "tangible compare semi-global zncc",
+    )  # fmt: skip

@@ -23,10 +23,12 @@ def _complete_sets(incomplete: str) -> list[tuple[str, str]]:
 
 
 def compare(
-    config: Annotated[
-        Path,
+    configs: Annotated[
+        list[Path],
         typer.Argument(
-            help="Comparison file (YAML), results (.jsonl) to show again, or a standard set, such as kitti-2015.",
+            metavar="FILE...",
+            help="Comparison file (YAML), results (.jsonl) to show again, a standard set, such as kitti-2015, or the "
+            "names of methods.",
             show_default=False,
             autocompletion=_complete_sets,
         ),
@@ -78,15 +80,16 @@ def compare(
 
     if workers is not None and not errors:
         raise ArgumentError("--workers: goes with --errors-only; side by side, methods would spoil each other's times")
+    config = configs[0] if len(configs) == 1 else Path("-".join(map(str, configs)))
     _check_options(config, folder, table, submission, as_json)
     if submission is not None:
-        write_submissions(_read(config, folder, sets or []), submission, as_json)
+        write_submissions(_read(configs, folder, sets or []), submission, as_json)
         return
     earlier = None if against is None else list(read_rows(against).values())
     if config.suffix == ".jsonl":
         found = read_comparison(config, earlier)
     else:
-        comparison = _read(config, folder, sets or [])
+        comparison = _read(configs, folder, sets or [])
         comparison = shorten(comparison) if quick else comparison
         comparison = errors_only(comparison) if errors else comparison
         comparison = replace(comparison, out=out or comparison.out)
@@ -131,12 +134,21 @@ def _check_options(config: Path, folder: Path | None, table: str | None, submiss
         raise ConfigError("--table: decides what is printed, as do --json and --submission; leave one of them out")
 
 
-def _read(config: Path, folder: Path | None, sets: Sequence[str]) -> Comparison:
-    """Read a comparison file, or write one for the name of a standard set."""
+def _read(configs: Sequence[Path], folder: Path | None, sets: Sequence[str]) -> Comparison:
+    """Read a comparison file or a shipped one, or write one for a standard set or for methods."""
+    from dataclasses import replace
+
     from tangible_core.plugins.registry import default_registry
 
-    from ..config.reading import comparison_of_set, load_comparison, parse_comparison
+    from ..config.reading import comparison_of_methods, comparison_of_set, load_comparison, parse_comparison, preset
 
-    if not _is_set(config):
-        return load_comparison(config, default_registry(), sets)
-    return parse_comparison(comparison_of_set(str(config), folder), config, default_registry(), sets)
+    config, registry = configs[0], default_registry()
+    if _is_set(config):
+        return parse_comparison(comparison_of_set(str(config), folder), config, registry, sets)
+    if len(configs) == 1 and (config.exists() or config.suffix):
+        return load_comparison(config, registry, sets)
+    if len(configs) == 1 and (file := preset(str(config))):
+        return replace(load_comparison(file, registry, sets), out=Path("out", file.stem))
+    names = list(map(str, configs))
+    name = Path(f"compare-{'-'.join(name.replace('/', '-') for name in names)}")
+    return parse_comparison(comparison_of_methods(names, registry), name, registry, sets)

@@ -1,7 +1,7 @@
 """Comparison files: methods, scenes and perturbations; all mistakes are reported at once, each with its place."""
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from os.path import normpath
 from pathlib import Path
@@ -10,7 +10,7 @@ from typing import Annotated, Any, cast
 from pydantic import Field
 
 from tangible_core.errors import ConfigError, TangibleError, did_you_mean, quoted
-from tangible_core.files.yaml import Source, parse_source, read_text
+from tangible_core.files.yaml import Source, parse_source, plain_tree, read_text
 from tangible_core.plugins.registry import Registry
 from tangible_core.scene import Section
 
@@ -111,6 +111,31 @@ def comparison_of_set(name: str, folder: Path | None = None) -> str:
     folder = (folder or Path(options["set"])).absolute()
     pairs(options["set"], folder, **{key: value for key, value in options.items() if key != "set"})
     return SET_TEMPLATE.format(scene=json.dumps({**options, "folder": str(folder)}))
+
+
+def preset(name: str) -> Path | None:
+    """Return the shipped comparison file of this name, such as compare-depth; None if there is none."""
+    folders = Path(__file__).parents[1] / "presets", Path(__file__).parents[4] / "configs"  # installed, in a checkout
+    return next((file for folder in folders if (file := folder / f"{name}.yaml").is_file()), None)
+
+
+def comparison_of_methods(names: Sequence[str], registry: Registry) -> str:
+    """Return the text of a comparison of these methods with their defaults, on the scenes of the shipped file.
+
+    Raises: ConfigError for names that no kind of comparable methods has together.
+    """
+    kinds = {kind: registry.names(kind) for kind in TASKS}
+    kind = next((kind for kind, known in kinds.items() if set(names) <= set(known)), None)
+    file = kind and preset(f"compare-{kind}")
+    if not file:
+        known = [name for some in kinds.values() for name in some]
+        wrong = next((name for name in names if name not in known), "")
+        if not wrong:
+            raise ConfigError(f"{' and '.join(names)}: are methods of several kinds; compare those of one")
+        hint = did_you_mean(wrong, known) or "; `tangible plugins` lists these"
+        raise ConfigError(f"{wrong}: is neither a file, nor a standard set, nor the name of a method{hint}")
+    scenes = plain_tree(read_text(file), file)["scenes"]
+    return json.dumps({"compare": kind, "methods": list(names), "scenes": scenes})
 
 
 def load_comparison(path: Path, registry: Registry, overrides: Iterable[str] = ()) -> Comparison:

@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 COLOURS = {"fine": "green", "failed": "red", "not asked": "dim"}
 Device = Annotated[
     str,
-    typer.Argument(help="As `tangible devices` lists it.", show_default=False, autocompletion=completing.devices),
+    typer.Argument(
+        metavar="NAME", help="As `tangible devices` lists it.", show_default=False, autocompletion=completing.devices
+    ),
 ]
 DeviceSets = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Set an option of the device; repeatable.")
@@ -54,7 +56,9 @@ def devices(context: typer.Context, as_json: Json = False) -> None:
 def doctor(
     name: Annotated[
         str | None,
-        typer.Argument(help="The device [default: all].", show_default=False, autocompletion=completing.devices),
+        typer.Argument(
+            metavar="NAME", help="The device [default: all].", show_default=False, autocompletion=completing.devices
+        ),
     ] = None,
     sets: DeviceSets = None,
     as_json: Json = False,

@@ -29,4 +29,5 @@ def tangible_commands(app: Typer) -> None:
     add(
         "legible", f"{__package__}.legible:legible",
         "Check whether fingers can read a picture on paper, print, pins or a device.",
+        "Make", "tangible legible mine.yaml --for swell",
     )  # fmt: skip

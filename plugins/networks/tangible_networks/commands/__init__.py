@@ -24,6 +24,6 @@ def tangible_commands(app: Typer) -> None:
     from tangible_core.cli import add
 
     add(
-        "networks", f"{__package__}.networks:app",
-        "List the networks that the program can use; add or remove them.",
+        "networks", f"{__package__}.networks:app", "List the networks that the program can use; add or remove them.",
+        "The program", "tangible networks",
     )  # fmt: skip

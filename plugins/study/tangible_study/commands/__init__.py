@@ -17,7 +17,10 @@ def tangible_commands(app: Typer) -> None:
     """Add `tangible study`."""
     from tangible_core.cli import add
 
-    add("study", "tangible_study.commands.study:app", "Run an experiment with people from a file; check it first.")
+    add(
+        "study", "tangible_study.commands.study:app", "Run an experiment with people from a file; check it first.",
+        "Compare", "tangible study check mine.yaml",
+    )  # fmt: skip
 
 
 @hookimpl

@@ -15,4 +15,7 @@ def tangible_commands(app: Typer) -> None:
     """Add `tangible ui`."""
     from tangible_core.cli import add
 
-    add("ui", f"{__package__}.ui:ui", "See, hear and feel a surface in the browser.")
+    add(
+        "ui", f"{__package__}.ui:ui", "See, hear and feel a surface in the browser.",
+        "Begin", "tangible ui photo.jpg",
+    )  # fmt: skip

@@ -9,8 +9,8 @@ HELP = "A pipeline file, a picture, left and right, or a recording; without one,
 
 
 def ui(
-    files: Annotated[list[Path] | None, typer.Argument(metavar="[FILE]...", help=HELP, show_default=False)] = None,
-    sets: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one value.")] = None,
+    files: Annotated[list[Path] | None, typer.Argument(metavar="FILE...", help=HELP, show_default=False)] = None,
+    sets: Annotated[list[str] | None, typer.Option("--set", metavar="KEY.KEY=VALUE", help="Change one value.")] = None,
     port: Annotated[
         int | None, typer.Option(min=0, max=65535, help="Port of this machine; by default, and for 0, a free one.")
     ] = None,

@@ -62,7 +62,7 @@ def named_fields(cls: C) -> C:
         try:
             takes.bind(self, *values, **fields)
         except TypeError as error:
-            what = _misnamed(takes, known, len(values), fields)
+            what = _field_mistake(takes, known, len(values), fields)
             raise ArgumentError(f"{cls.__name__}: {what}; its fields: {', '.join(known)}") from error
         build(self, *values, **fields)
 
@@ -70,7 +70,7 @@ def named_fields(cls: C) -> C:
     return cls
 
 
-def _misnamed(takes: Signature, known: Sequence[str], values: int, fields: Mapping[str, Any]) -> str:
+def _field_mistake(takes: Signature, known: Sequence[str], values: int, fields: Mapping[str, Any]) -> str:
     """Return what is wrong with the arguments of a dataclass, of which `values` are given by place."""
     if unknown := next((name for name in fields if name not in known), None):
         return f"{unknown}: unknown field{did_you_mean(unknown, known)}"

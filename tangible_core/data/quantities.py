@@ -51,7 +51,7 @@ class _Blocks(type(BaseModel)):
 
 
 _TEXTS = WeakKeyDictionary[type, str | None]()
-"""The documentation of classes with that of their options, once it was asked for."""
+"""The documentation of classes with that of their options, once it was requested."""
 MOST_NAMED = 3
 """The most options that a message about their names quotes."""
 

@@ -296,5 +296,6 @@ class Pipeline:
         return self.plan()._repr_html_()  # pyright: ignore[reportPrivateUsage] - the name is the notebook's
 
 
-load_pipeline = Pipeline.from_yaml
-"""Read a pipeline from a YAML file."""
+def load_pipeline(path: str | PathLike[str], *others: Any, **named: Any) -> Pipeline:
+    """Read a pipeline from a YAML file, as `Pipeline.from_yaml`. Raises: ConfigError with every complaint."""
+    return Pipeline.from_yaml(path, *others, **named)

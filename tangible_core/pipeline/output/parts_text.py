@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from ...data import DisparityMap, PartMap
-from ...data.part_words import shown_number
+from ...data.part_words import name_part, shown_number
 from ...errors import ConfigError, shown
 from ...files.yaml.editing import on_one_line
 from ...files.yaml.parts_block import with_parts
@@ -52,7 +52,7 @@ def to_correct(engine: Engine) -> str:
         rest = ""
     head = f"# {SOURCES[config.heights.by]} Correct what is wrong, and give names.\n"
     given = config.heights.model_copy(update={"by": "given"}).model_dump(mode="json")
-    reasons = {number: f"part {number}: {shown(why, MOST_REASON)}" for number, why in enumerate(heights.reasons, 1)}
+    reasons = {n: f"{name_part(n - 1)}: {shown(why, MOST_REASON)}" for n, why in enumerate(heights.reasons, 1)}
     parts = with_parts(rest, Path(), _blocks(config, heights), reasons)
     return f"{head}{parts}heights: {on_one_line(given)}\n"
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..data import Calibration, DisparityMap, SegmentMap, Views
 from ..data.pictures import fill_non_finite, used_range
+from ..drawing import PictureKind
 from ..errors import PictureError
 from .formats.multi_picture import Notify
 from .formats.pictures import without
@@ -55,6 +56,7 @@ def combine_parts(
             each.flags.writeable = False
     return {
         "views": views,
+        "stated_kind": None if files.kind is None else PictureKind(files.kind),
         "disparity": _disparity(parts, files, camera),
         "segments": SegmentMap(parts["segments"]) if "segments" in parts else None,
         "height": parts.get("height"),

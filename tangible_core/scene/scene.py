@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from types import NoneType
 from typing import Any, Self, Unpack
@@ -12,6 +13,7 @@ from jaxtyping import Bool, Float32
 from ..data import DisparityMap, Record, Relief, SegmentMap, Views
 from ..data.arguments import named_options
 from ..data.records import short_repr
+from ..drawing import KindFound, PictureKind, picture_kind
 from ..errors import ConfigError, GeometryError, PictureError
 from .formats.height_maps import MeasuredSize
 from .formats.multi_picture import Notify, ignore
@@ -53,6 +55,8 @@ class Scene:
     """Mask of the known pixels of the left view or the photo; None if all are known."""
     shown: Bool[np.ndarray, "h w"] | None = None
     """Mask of the opaque pixels of the left view or the photo, None if all are; the others become flat ground."""
+    stated_kind: PictureKind | None = None
+    """The kind of the picture, where it is given and not measured."""
     frames: Video | None = None
     """The frames of a video, of which the views are the first."""
     notes: tuple[str, ...] = ()
@@ -134,6 +138,15 @@ class Scene:
         if scene not in BUILTINS:
             raise ConfigError(unknown_scene(scene))
         return cls(**SceneSource(scene, BUILTINS[scene], scikit_image_data(), origin=scene).load())
+
+    @cached_property
+    def kind(self) -> KindFound:
+        """The kind of the picture: as given, else as measured; a photograph, if it is not a single still picture."""
+        if self.stated_kind is not None:
+            return KindFound(self.stated_kind, 1.0)
+        if self.views is None or self.views.right is not None or self.frames is not None:
+            return KindFound(PictureKind.photograph, 1.0)
+        return picture_kind(self.views.left)
 
     @property
     def shape(self) -> tuple[int, int]:

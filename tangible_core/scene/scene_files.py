@@ -24,7 +24,7 @@ Number = Annotated[float, Field(allow_inf_nan=False)]
 _NEEDS = {
     **{"focal_px": "baseline_m", "baseline_m": "focal_px", "offset_px": "focal_px"},
     **{"relief_m": "height", "cell_m": "height", "nodata": "height or depth or disparity"},
-    **{"rig": "left", "rig_unit_m": "rig", "fps": "video", "repeat": "video"},
+    **{"kind": "photo", "rig": "left", "rig_unit_m": "rig", "fps": "video", "repeat": "video"},
     **{"truth_scale": "truth", "disparity_scale": "disparity"},
     **{"depth_unit_m": "depth", "near_m": "depth", "far_m": "depth"},
 }
@@ -77,6 +77,9 @@ class SceneFiles(Quantities):
     cross-eyed; a video: mono)."""
     photo: Path | None = None
     """A single picture."""
+    kind: Literal["photograph", "drawing", "lines", "text"] | None = None
+    """What the photo shows: a `photograph`; a flat `drawing`, with areas of one colour, such as a map or a chart; line
+    art, `lines`; or a page of `text`. When left out, the likeliest by its colours, lines and ground."""
     photo_depth: bool = True
     """Use the depth map that a phone stored in the photo, if there is one; no depth is estimated then."""
     height: Path | None = None

@@ -1,3 +1,4 @@
+from .flat import Flat as Flat
 from .gabor import Gabor as Gabor
 from .gradient import Gradient as Gradient
 from .hierarchy import Hierarchy as Hierarchy

@@ -1,0 +1,14 @@
+"""Drawings: whether a picture is one, its areas, its lines, and the places of its texts."""
+
+from .areas import Areas as Areas
+from .areas import find_areas as find_areas
+from .ink import Ink as Ink
+from .ink import find_ink as find_ink
+from .kind import KindFound as KindFound
+from .kind import PictureKind as PictureKind
+from .kind import kind_sentence as kind_sentence
+from .kind import picture_kind as picture_kind
+from .lines import Lines as Lines
+from .lines import find_lines as find_lines
+from .text import Text as Text
+from .text import find_texts as find_texts

@@ -1,0 +1,126 @@
+"""The areas of a flat drawing: each of one colour, with the blur of their edges, noise and JPEG undone."""
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float32, Int32
+
+from ..runtime.opencv import plain_opencv
+from .ink import eight_bits, find_ink, noise_level
+
+ALIKE = 9.0
+"""The greatest difference within an area from a pixel to its neighbours, of 255: more than the noise of JPEG."""
+NOISY = 3.5
+"""The same in standard deviations of the noise that a blur leaves."""
+SAME = 14.0
+"""The greatest difference of two areas of one colour, of 255."""
+LEAST_SIDE = 1 / 110
+"""The side of a square as large as the least area, as a share of the longer side; less is a speck."""
+REACH_PX = 3
+"""How far a pixel on an edge looks for the areas on both sides of the edge, px."""
+PAPER_SHARE = 0.3
+"""The least share of the picture's rim that paper takes."""
+
+
+class Areas(NamedTuple):
+    """The areas of a drawing by colour."""
+
+    labels: Int32[np.ndarray, "h w"]
+    """The colour of each pixel, by number; strokes count as the area next to them."""
+    colours: Float32[np.ndarray, "n 3"]
+    """The palette, 0 to 255."""
+    paper: int | None
+    """The colour that most of the rim has; None if none has much of it."""
+
+
+def find_areas(picture: np.ndarray) -> Areas:
+    """Find the areas of one colour, the largest first in the palette.
+
+    The insides of areas are connected pixels that differ little from their neighbours. A pixel on an edge is of the
+    area nearby whose colour is nearest to its own, so that an edge lies where half of the change is done; a stroke is
+    of the area that is nearest. Light may change slowly over the picture.
+    """
+    import cv2
+
+    colours = eight_bits(picture)
+    noise, longer = noise_level(colours), max(colours.shape[:2])
+    with plain_opencv():
+        sigma = 0.8 if noise < 2 else 1.6
+        calm = np.asarray(cv2.GaussianBlur(colours, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE))
+        window = np.ones((3, 3), np.uint8)
+        change = np.asarray(cv2.dilate(calm, window) - cv2.erode(calm, window)).max(axis=2)
+        ink = cv2.resize(find_ink(colours).mask.astype(np.uint8), colours.shape[1::-1], interpolation=cv2.INTER_NEAREST)
+        stroke = np.asarray(cv2.dilate(ink, np.ones((5, 5), np.uint8))) > 0
+        inside: Bool[np.ndarray, "h w"] = (change <= max(ALIKE, NOISY * noise / sigma)) & ~stroke
+        _, found, about, _ = cv2.connectedComponentsWithStats(np.asarray(inside, np.uint8), connectivity=4)
+        large = np.asarray(about, np.int64)[:, cv2.CC_STAT_AREA] >= max(9.0, (LEAST_SIDE * longer) ** 2)
+    large[0] = False
+    pieces = np.asarray(found, np.int32)
+    if not large.any():
+        return Areas(np.zeros(pieces.shape, np.int32), colours.reshape(-1, 3).mean(axis=0, keepdims=True), None)
+    pieces = np.where(large[pieces], pieces, 0)
+    of_piece, palette = _palette(pieces, calm, max(SAME, 2 * noise))
+    labels = _divide_edges(of_piece[pieces], calm, colours if noise < 2 else calm, stroke)
+    rim = np.concatenate([labels[0], labels[-1], labels[:, 0], labels[:, -1]])
+    count = np.bincount(rim, minlength=len(palette))
+    paper = int(count.argmax()) if count.max() >= PAPER_SHARE * rim.size else None
+    return Areas(labels, palette, paper)
+
+
+def _palette(
+    pieces: Int32[np.ndarray, "h w"], calm: np.ndarray, same: float
+) -> tuple[Int32[np.ndarray, "n"], Float32[np.ndarray, "m 3"]]:
+    """Return the number of each piece's colour, -1 for none, and the colours; the largest pieces decide."""
+    flat, count = pieces.reshape(-1), int(pieces.max()) + 1
+    size = np.bincount(flat, minlength=count)
+    size[0] = 0
+    means = (
+        np.stack([np.bincount(flat, each, count) for each in calm.reshape(-1, 3).T], axis=1)
+        / np.maximum(size, 1)[:, None]
+    )
+    numbers, palette = np.full(count, -1, np.int32), list[np.ndarray]()
+    for piece in np.argsort(-size, kind="stable")[: np.count_nonzero(size)].tolist():
+        away = [float(np.abs(means[piece] - each).max()) for each in palette]
+        if not away or min(away) > same:
+            numbers[piece] = len(palette)
+            palette.append(means[piece])
+        else:
+            numbers[piece] = int(np.argmin(away))
+    return numbers, np.array(palette, np.float32)
+
+
+def _divide_edges(
+    inside: Int32[np.ndarray, "h w"], calm: np.ndarray, colours: np.ndarray, stroke: Bool[np.ndarray, "h w"]
+) -> Int32[np.ndarray, "h w"]:
+    """Give each pixel of an edge the area nearby that is nearest in colour, and of a stroke the nearest one.
+
+    inside: the area of each pixel inside of one, -1 elsewhere.
+    """
+    import cv2
+
+    with plain_opencv():
+        _, nearest = cv2.distanceTransformWithLabels(
+            (inside < 0).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
+        )
+    nearest, known = np.asarray(nearest, np.int32), inside >= 0
+    at = np.zeros(int(nearest.max()) + 1, np.int64)
+    at[nearest[known]] = np.flatnonzero(known)
+    source = at[nearest]
+    labels = inside.reshape(-1)[source]
+    rows, columns = np.nonzero(~known & ~stroke)
+    own, shades = colours[rows, columns].astype(np.float32), calm.reshape(-1, 3)
+    best, least = labels[rows, columns], np.full(rows.size, np.inf, np.float32)
+    for down in (-REACH_PX, 0, REACH_PX):
+        for right in (-REACH_PX, 0, REACH_PX):
+            there = source[
+                np.clip(rows + down, 0, labels.shape[0] - 1), np.clip(columns + right, 0, labels.shape[1] - 1)
+            ]
+            away = np.abs(own - shades[there]).sum(axis=1)
+            best = np.where(away < least, inside.reshape(-1)[there], best)
+            least = np.minimum(away, least)
+    labels[rows, columns] = best
+    if labels.max() > 255:
+        return labels
+    with plain_opencv():
+        smooth = np.asarray(cv2.medianBlur(labels.astype(np.uint8), 5), np.int32)  # at a border of two, the majority
+    return np.where(known, labels, smooth)

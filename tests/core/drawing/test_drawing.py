@@ -1,0 +1,78 @@
+import numpy as np
+import pytest
+
+from drawings import COLOURS, countries, house, page, scanned
+from tangible_core import Scene
+from tangible_core.drawing import PictureKind, find_areas, find_ink, find_lines, find_texts, picture_kind
+
+PICTURES = {"lines": house()[0], "drawing": countries()[0], "text": page()}
+
+
+@pytest.mark.parametrize("kind", PICTURES)
+@pytest.mark.parametrize("copy", [{}, {"shadow": 0}, {"quality": 60}])
+def test_picture_kind_copied_drawings(kind, copy):
+    found = picture_kind(scanned(PICTURES[kind], **copy) if copy else PICTURES[kind])
+    assert (found.kind, found.confidence > 0.5) == (kind, True)
+
+
+@pytest.mark.parametrize("name", ["coins", "brick", "grass", "gravel", "motorcycle"])
+def test_picture_kind_photographs(name):
+    found = picture_kind(Scene.builtin(name).views.left)
+    assert found.kind == "photograph" and found.confidence > 0.5
+
+
+@pytest.mark.parametrize(
+    "picture", [np.zeros((1, 1)), np.full((30, 40, 3), 7, np.uint16), np.full((9, 9), np.nan), np.zeros((2, 90, 4))]
+)
+def test_picture_kind_nothing_drawn_is_photograph(picture):
+    assert picture_kind(picture) == (PictureKind.photograph, 0.5)
+    assert not find_ink(picture).mask.any() and find_areas(picture).labels.max() == 0
+
+
+def test_scene_kind_given_or_measured():
+    drawing = PICTURES["lines"]
+    assert Scene.photo(drawing).kind.kind == "lines"
+    assert Scene.photo(drawing, kind="drawing").kind == ("drawing", 1.0)
+    assert Scene.pair(drawing, drawing).kind.kind == "photograph"
+
+
+@pytest.mark.parametrize("copy", [{"noise": 0, "shadow": 0}, {}, {"noise": 2, "shadow": 0.5}])
+def test_ink_of_scan_is_that_of_drawing(copy):
+    picture, mask = house()
+    found = find_ink(scanned(picture, **copy)).mask
+    assert (found & mask).sum() / (found | mask).sum() > 0.8
+
+
+def test_ink_lighter_than_its_ground_is_inverted():
+    picture, mask = house()
+    ink = find_ink(255 - picture)
+    assert ink.inverted and (ink.mask & mask).sum() / (ink.mask | mask).sum() > 0.8
+
+
+def test_lines_have_their_width_and_no_specks():
+    picture, _ = house()
+    picture[20:22, 20:22] = 0
+    ink = find_ink(picture)
+    lines = find_lines(ink, np.zeros_like(ink.mask))
+    assert not lines.mask[:40, :40].any()
+    assert 2.5 <= np.median(lines.width_px[lines.centre]) <= 3.5
+
+
+def test_texts_places_and_nothing_else():
+    texts = find_texts(find_ink(PICTURES["text"]))
+    assert len(texts.boxes) == 9
+    assert all(box.left < 0.06 and box.letters > 10 for box in texts.boxes)
+    assert find_texts(find_ink(PICTURES["lines"])).boxes == ()
+
+
+@pytest.mark.parametrize(
+    ("copy", "off"), [(None, 0.3), ({"shadow": 0}, 0.5), ({"noise": 1, "shadow": 0, "quality": 70}, 0.5)]
+)
+def test_areas_are_colours_with_edges_in_place(copy, off):
+    picture, truth = countries()
+    areas = find_areas(scanned(picture, **copy) if copy else picture)
+    assert len(areas.colours) == 4 and areas.paper == areas.labels[0, 0]
+    for number, colour in COLOURS.items():
+        match = areas.labels == np.abs(areas.colours - colour).sum(axis=1).argmin()
+        rim = np.count_nonzero(truth[:, 1:] != truth[:, :-1])
+        assert np.count_nonzero(match != (truth == number)) < 2 * off * rim

@@ -224,7 +224,7 @@ class Feeling:
             exaggeration=None if config.workspace.scale is None else config.workspace.exaggeration,
             of_parts=config.heights is not None,
             smoothed=self.engine.scene.height is None,
-            slope=config.relief.slope if config.relief_kind in ("depth", "edges", "figure") else None,
+            slope=config.relief.slope if config.relief_kind in ("depth", "edges", "figure", "lines") else None,
             law_name=law.name,
             fitted=config.materials.fit == "device",
         )

@@ -12,6 +12,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from ..data.pictures import to_grey
+from ..drawing import PictureKind, kind_sentence
 from ..errors import ConfigError
 from ..files.paths import as_path, plain_line
 from ..files.yaml.editing import on_one_line
@@ -31,18 +32,30 @@ from .engine.networks import networks_identity
 
 SIDE_MM = 80
 """The longer side of the surface, mm: the reach of a small desktop device."""
+TEXTURES: Mapping[bool, str] = {
+    False: "texture: {use: hierarchy, segments: 12} # hierarchy: regions such as people would draw; segments: the "
+    "most, or auto\nmaterials: {by: roughness}         # roughness: the rougher a part looks, the rougher it feels; or "
+    "{1: ice, 2: sand, ...}",
+    True: "texture: {use: flat}               # flat: each area of one colour\n"
+    "materials: {by: rules}             # rules: one plain material; or {1: ice, 2: sand, ...}",
+}
+"""Lines for the segments of one picture and their materials, by whether it is a drawing."""
 SMOOTH_MM: Mapping[str, float] = {"photo": 1.5, "heights": 0.0}
 """The smoothing of a relief of brightness, and of a map of heights, mm."""
 PHOTOS: Mapping[str, str] = {
     "edges": "relief: edges                      # edges: raised lines, on low steps from dark to light; disparity: "
     "lighter is higher",
     "figure": "relief: figure                     # figure: what networks see stands out; edges: raised lines alone",
+    "lines": "relief: lines                      # lines: raised, areas of one colour as steps below them; "
+    "edges: raised edges",
     "depth": "relief: {slope: 1.1}               # slope: nowhere steeper; less is gentler, 0 keeps cliffs",
     "brightness": "  relief_m: $relief_mm mm            # from the lowest point to the highest; more is steeper\n"
     "  smooth_m: $smooth_mm mm            # less keeps finer detail, and makes steeper edges",
 }
 """Lines for one picture: felt by its edges, what networks see, its depth or its brightness; each comment stays true
 when values change."""
+SURE = 0.5
+"""The least confidence with which a picture is taken for a drawing."""
 STEEPEST = 0.6
 """The slope that at most a twentieth of the relief exceeds: from 1 on, 45 degrees, the sideways force is larger than
 the force down."""
@@ -177,12 +190,20 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
     relief_mm = max(least, min(most, floor(2 * STEEPEST / slope) / 2)) if slope > 0 else most
     size |= {"relief_mm": f"{relief_mm:g}", "smooth_mm": f"{SMOOTH_MM[kind]:g}"}
     if kind == "photo":
+        size["texture"] = TEXTURES[_is_drawing(scene)]
+        size["kind"] = f"   # {kind_sentence(scene.kind)}" if _is_drawing(scene) else ""
         size["relief"] = Template(PHOTOS[_felt_of(scene)]).substitute(size)
     return size
 
 
+def _is_drawing(scene: Scene) -> bool:
+    return scene.frames is None and scene.kind.kind != PictureKind.photograph and scene.kind.confidence >= SURE
+
+
 def _felt_of(scene: Scene) -> str:
-    """Return the key of PHOTOS for one picture: what networks find, depth first, else edges; brightness if it moves."""
+    """Return the key of PHOTOS for one picture: a drawing's lines, what networks find, or edges; light if it moves."""
+    if _is_drawing(scene):
+        return "lines"
     registry = default_registry()
     method = registry.load("depth", "auto")()
     if isinstance(method, DepthEstimator) and method.finds_depth:

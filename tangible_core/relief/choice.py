@@ -21,13 +21,14 @@ Length = Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)]
 class ReliefChoice(Section):
     """How depth, or a picture, becomes height. A word alone is `by`: `relief: depth` keeps true proportions."""
 
-    by: Literal["disparity", "depth", "edges", "figure"] = "disparity"
+    by: Literal["disparity", "depth", "edges", "figure", "lines"] = "disparity"
     """The source of heights. `disparity`: near things get more of the height, as in a bas-relief. `depth`: heights to
     scale, where the calibration of the cameras is known. `edges`: for one photograph without depth, raised lines on low
     steps from dark to light: at the borders that people would draw, if the texture method knows these, as `hierarchy`
     does, or a network of borders, and at the edges of the picture otherwise. `figure`: for one photograph, what
     networks see in it: what stands out from its ground is raised and rounded, borders are grooves, and faces have their
-    shape (`tangible networks`)."""
+    shape (`tangible networks`). `lines`: for a drawing, all its lines as ridges of one height, and its areas of one
+    colour as even steps below them; paper is flat, and letters are left out."""
     slope: Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)] = 1.1
     """The greatest slope, rise over run; steeper places become ramps. A hand that presses down climbs it with at most
     this many times its press sideways. 0 keeps cliffs. By figure it is 0.8 if it is left out."""

@@ -20,13 +20,14 @@ from .scene_files import BUILTINS, SceneFiles
 
 SceneKind = Literal["photograph", "depth", "heights"]
 """Source of a relief: the brightness of one picture, depth (of a pair, or a depth map), or a height map."""
-ReliefKind = SceneKind | Literal["edges", "figure", "parts"]
-"""Source of a relief, or the edges of a picture, or what networks see in it, or parts, each with a height."""
+ReliefKind = SceneKind | Literal["edges", "figure", "lines", "parts"]
+"""Source of a relief, or a picture's edges, what networks see in it, a drawing's lines, or parts with heights."""
 
 SUITS: dict[ReliefKind, tuple[float, float]] = {
     "photograph": (0.004, 0.0015),
     "edges": (0.002, 0.00025),
     "figure": (0.007, 0.0001),
+    "lines": (0.002, 0.00025),
     "depth": (0.005, 0.00025),
     "heights": (0.02, 0.0),
     "parts": (0.006, 0.0005),
@@ -40,6 +41,7 @@ FLAT: dict[ReliefKind, str] = {
     "photograph": "all of the picture is equally light; use one with light and dark",
     "edges": "the picture has no edges; `relief: disparity` takes its light and dark",
     "figure": "no network sees anything in the picture; `relief: edges` raises its edges",
+    "lines": "the picture has no lines and no areas; `relief: edges` raises its edges",
     "depth": "all of it is equally far; check the map of depth, or that left and right are two views of one scene",
     "heights": "all heights are equal; check the file, and `nodata`, `clip`, `crop`, `low_m` and `high_m`",
     "parts": "all parts are equally high; give them heights, `heights: {by: given}` and `height_m` under `parts:`",

@@ -208,7 +208,7 @@ class PipelineConfig(BaseModel):
         if self.heights:
             return "parts"
         kind = kind_of(self.scene)
-        if self.relief.by in ("edges", "figure") and kind != "heights":
+        if self.relief.by in ("edges", "figure", "lines") and kind != "heights":
             return self.relief.by
         return "depth" if kind == "photograph" and self.depth and self.depth.method.finds_depth else kind
 

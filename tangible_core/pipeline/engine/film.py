@@ -76,7 +76,7 @@ def reliefs_of(config: PipelineConfig, scene: Scene) -> Reliefs:
     """Return the frames of a video scene as reliefs. Raises: ConfigError for a scene that does not move."""
     if scene.frames is None:
         raise ConfigError(f"the scene {scene.name} does not move; give it a `video:`")
-    if config.relief_kind in ("edges", "figure"):
+    if config.relief_kind in ("edges", "figure", "lines"):
         by = config.relief_kind
         why = f"the relief of a video is made from the depth of each frame, and not of {by}; leave `by: {by}` out"
         raise config.error_at((("relief", "by"), why))

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float32, Int32
 
 from ....data import Calibration, DisparityMap, PartMap, Relief
+from ....drawing import PictureKind, kind_sentence
 from ....parts import Layering, PartHeights
 from ....plugins.interfaces import Hierarchical
 from ....plugins.notes import note
@@ -17,6 +18,8 @@ from ....relief import (
     edges,
     figure,
     figure_relief,
+    line_relief,
+    lines,
     relief_scale,
     shape_relief,
     shaping,
@@ -68,6 +71,9 @@ class ReliefStage(Stage):
         if config.heights is None:
             if config.relief_kind == "figure":
                 return f"{self.code(figure.__name__)} {size!r} {self.choice!r}{self.reduction}"
+            if config.relief_kind == "lines":
+                kind = self.context.scene.stated_kind
+                return f"{self.code(lines.__name__)} {size!r} {self.choice!r}{self.reduction} {kind}"
             if config.relief_kind != "edges":
                 return f"{self.code(shaping.__name__)} {size!r} {self.choice!r}{self.reduction}"
             source = method_identity(config.texture)[1] if self._divider else self._network
@@ -91,6 +97,8 @@ class ReliefStage(Stage):
             if self._takes_depth:
                 return "the figure is raised, and its depth shapes it"
             return "no depth is needed: the figure is raised and rounded"
+        if heights is None and self.config.relief_kind == "lines":
+            return "no depth is needed: lines are raised"
         if heights is None or heights.by == "depth":
             return ""
         return f"no depth is needed: heights are {'given' if heights.by == 'given' else 'guessed'}"
@@ -107,6 +115,8 @@ class ReliefStage(Stage):
         if self.config.relief_kind == "edges":
             relief = edge_relief(self.views, self.size, self.choice, self._regions(), self._borders())
             return flatten_transparent(relief, self.grid.opaque_mask)
+        if self.config.relief_kind == "lines":
+            return self._from_lines()
         if self.config.relief_kind == "figure":
             disparity = inputs.get("disparity")
             if disparity is not None:
@@ -119,6 +129,15 @@ class ReliefStage(Stage):
         if self.choice.spread_share or self.choice.most_accent_m:
             note(log, SPREAD)
         return self.from_disparity(scaling.reduced_disparity(disparity, self.grid.shape))
+
+    def _from_lines(self) -> Relief:
+        found = self.context.scene.kind
+        areas = found.kind not in (PictureKind.lines, PictureKind.text)
+        relief, texts = line_relief(self.views, self.size, self.choice, areas=areas)
+        note(log, kind_sentence(found))
+        if texts:
+            note(log, f"letters are left out of the relief, at {texts} places")
+        return flatten_transparent(relief, self.grid.opaque_mask)
 
     def from_disparity(self, disparity: DisparityMap, scale: ReliefScale | None = None) -> Relief:
         """Return the relief of a disparity map on the working grid. scale: as `shape_relief`."""
@@ -145,7 +164,7 @@ class ReliefStage(Stage):
     def _takes_depth(self) -> bool:
         """True if the relief is made of depth: that of a figure is where a method finds it."""
         kind, depth = self.config.relief_kind, self.config.depth
-        return kind != "edges" and (kind != "figure" or (depth is not None and depth.method.finds_depth))
+        return kind not in ("edges", "lines") and (kind != "figure" or (depth is not None and depth.method.finds_depth))
 
     @property
     def _divider(self) -> Hierarchical | None:

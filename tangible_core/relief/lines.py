@@ -1,0 +1,93 @@
+"""The relief of a drawing: its lines as ridges of one height, its areas as even steps below them, its paper flat."""
+# scipy has no types.
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
+
+from typing import Any
+
+import numpy as np
+from jaxtyping import Bool, Float32, Int32
+
+from ..data import Relief, Views
+from ..drawing import Areas, find_areas, find_ink, find_lines, find_texts
+from ..runtime.opencv import plain_opencv
+from ..scene import geometry, scaling
+from ..scene.workspace import FeltSize
+from .choice import ReliefChoice
+from .slope_limit import limit_slopes
+
+CELL_M = 1e-4
+"""The cells on which lines are found, m."""
+LINE_M = 0.001
+"""The least width of the top of a line, m, as in tactile graphics; a wider stroke keeps its width."""
+AREAS = 0.6
+"""The share of the height that the highest area has; lines have all of it."""
+
+
+def line_relief(views: Views, size: FeltSize, choice: ReliefChoice, *, areas: bool) -> tuple[Relief, int]:
+    """Make the relief of the left view's lines, pixels square; and return the number of texts left out of it.
+
+    Every line is raised to `size.relief_m`, and nothing is sunk. Letters are left out. Slopes fall from the line's edge
+    by `choice.slope`, so that all lines are of one height, however close.
+    areas: True for a flat drawing, whose areas of one colour are levels: neighbours differ, and paper is at 0.
+    """
+    factor = scaling.felt_factor(views.shape[1], size.width_m, CELL_M)
+    picture = scaling.reduce_views(Views(views.left), factor).left
+    pitch_m = size.width_m / picture.shape[1]
+    ink = find_ink(picture)
+    texts = find_texts(ink)
+    lines = find_lines(ink, texts.ink)
+    base_m = np.zeros(picture.shape[:2], np.float32)
+    if areas:
+        found = find_areas(picture)
+        levels = _levels(found)
+        top_m = AREAS * size.relief_m if lines.mask.any() else size.relief_m
+        base_m = limit_slopes(top_m * levels[found.labels] / max(1, levels.max()), pitch_m, choice.slope)
+    line_pitch_m = size.width_m / lines.mask.shape[1]
+    ridges_m = _ridges(lines.centre, lines.width_px * line_pitch_m, line_pitch_m, size.relief_m, choice.slope)
+    height_m = np.maximum(_enlarge(ridges_m, views.shape), _enlarge(base_m, views.shape))
+    relief = Relief(np.maximum(height_m, np.float32(0)), geometry.extent_of(views.shape, size.width_m))
+    return geometry.smooth(relief, size.smooth_m), len(texts.boxes)
+
+
+def _ridges(
+    centre: Bool[np.ndarray, "r c"], width_m: Float32[np.ndarray, "r c"], pitch_m: float, top_m: float, slope: float
+) -> Float32[np.ndarray, "r c"]:
+    """Return ridges about centre lines: level over the width of the stroke, then falling by this slope."""
+    from scipy.ndimage import distance_transform_edt
+
+    if not centre.any():
+        return np.zeros(centre.shape, np.float32)
+    found: Any = distance_transform_edt(~centre, return_indices=True)
+    distance, rows, columns = np.asarray(found[0], np.float32), *np.asarray(found[1], np.int64)
+    beyond_m = np.maximum(distance * pitch_m - np.maximum(width_m, LINE_M)[rows, columns] / 2, 0)
+    return (top_m - slope * beyond_m if slope else np.where(beyond_m > 0, 0, top_m)).astype(np.float32)
+
+
+def _levels(areas: Areas) -> Float32[np.ndarray, "n"]:
+    """Return a level for each colour: 0 for paper, for the others the lowest from 1 that no larger neighbour has."""
+    neighbours = _neighbours(areas.labels, len(areas.colours))
+    levels = np.full(len(areas.colours), -1, np.int32)
+    if areas.paper is not None:
+        levels[areas.paper] = 0
+    for colour in range(levels.size):
+        if levels[colour] < 0:
+            taken = {0, *levels[neighbours[colour]].tolist()}
+            levels[colour] = next(level for level in range(1, levels.size + 2) if level not in taken)
+    return (levels - levels.min()).astype(np.float32)
+
+
+def _neighbours(labels: Int32[np.ndarray, "h w"], count: int) -> Bool[np.ndarray, "n n"]:
+    """Return which colours share a border."""
+    touch = np.zeros((count, count), np.bool_)
+    for one, other in ((labels[1:], labels[:-1]), (labels[:, 1:], labels[:, :-1])):
+        touch[one.reshape(-1), other.reshape(-1)] = True
+    touch |= touch.T
+    np.fill_diagonal(touch, val=False)
+    return touch
+
+
+def _enlarge(values: Float32[np.ndarray, "r c"], shape: tuple[int, int]) -> Float32[np.ndarray, "h w"]:
+    import cv2
+
+    with plain_opencv():
+        return np.asarray(cv2.resize(values, shape[::-1], interpolation=cv2.INTER_LINEAR), np.float32)

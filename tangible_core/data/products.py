@@ -64,6 +64,8 @@ class Work:
     extras: Mapping[str, Any] = field(default_factory=dict[str, Any])
     """Further things that a sheet shows, where they exist: `views`, the `truth` of the disparity (h, w) in px, the
     `recording` of a run, and the `figure` that networks see, where the relief is made of it."""
+    kind: str = "photograph"
+    """The kind of the picture, as `kind` of a scene: `photograph`, `drawing`, `lines` or `text`."""
     film: bool = False
     """True for a film, of which the products show the first frame."""
 

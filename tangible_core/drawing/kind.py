@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float64
 
+from ..data import PartMap
 from ..runtime.opencv import plain_opencv
 from .ink import eight_bits, find_ink, noise_level, reduce_to_side
 from .text import find_texts
@@ -43,6 +44,10 @@ WEIGHTS = np.array([
 """The weights of each measure of `measure_kind` in the score of each kind; the last row is constants."""
 
 
+LIKELY = 0.5
+"""The least confidence with which a picture is taken for a drawing."""
+
+
 class PictureKind(StrEnum):
     """Kinds of pictures."""
 
@@ -57,6 +62,22 @@ class KindFound(NamedTuple):
 
     kind: PictureKind
     confidence: float
+
+    @property
+    def likely(self) -> PictureKind:
+        """The kind if it is more likely than all others together, else a photograph."""
+        return self.kind if self.confidence >= LIKELY else PictureKind.photograph
+
+
+class DrawnPicture(NamedTuple):
+    """A drawing, and what a medium shows of it."""
+
+    kind: PictureKind
+    picture: np.ndarray
+    lines: bool
+    """True where its lines are drawn or raised as lines."""
+    whole: PartMap | None = None
+    """All its parts, before any was left out."""
 
 
 def measure_kind(picture: np.ndarray) -> Float64[np.ndarray, "n"]:

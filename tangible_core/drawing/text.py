@@ -91,12 +91,12 @@ def find_texts(ink: Ink) -> Texts:
 
 def _neighbours(left: np.ndarray, top: np.ndarray, wide: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the pairs of pieces that stand next to each other in a row."""
-    order = np.argsort(left)
+    order: np.ndarray = np.argsort(left)
     pairs = list[tuple[np.ndarray, np.ndarray]]()
     reach = left + wide + APART * high.max()
-    ends: list[int] = np.searchsorted(left[order], reach[order], side="right").tolist()
-    for place, end in enumerate(ends):
-        here, there = order[place], order[place + 1 : end]
+    ends = np.searchsorted(left[order], reach[order], side="right")
+    for place in range(order.size):
+        here, there = order[place], order[place + 1 : ends[place]]
         higher, lower = np.maximum(high[here], high[there]), np.minimum(high[here], high[there])
         overlap = np.minimum(top[here] + high[here], top[there] + high[there]) - np.maximum(top[here], top[there])
         near = (left[there] - left[here] - wide[here] <= APART * higher) & (overlap >= lower / 2)

@@ -54,8 +54,6 @@ PHOTOS: Mapping[str, str] = {
 }
 """Lines for one picture: felt by its edges, what networks see, its depth or its brightness; each comment stays true
 when values change."""
-SURE = 0.5
-"""The least confidence with which a picture is taken for a drawing."""
 STEEPEST = 0.6
 """The slope that at most a twentieth of the relief exceeds: from 1 on, 45 degrees, the sideways force is larger than
 the force down."""
@@ -197,7 +195,7 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
 
 
 def _is_drawing(scene: Scene) -> bool:
-    return scene.frames is None and scene.kind.kind != PictureKind.photograph and scene.kind.confidence >= SURE
+    return scene.kind.likely != PictureKind.photograph
 
 
 def _felt_of(scene: Scene) -> str:

@@ -91,11 +91,20 @@ class Swell(Exporter, Previewing):
         """Return the page and the pages of its key. Raises: as `write`."""
         try:
             from .paper.opening import open_parts
-            from .paper.page import drawn_pages
+            from .paper.page import drawn_lines, drawn_pages
         except ImportError as error:
             if missing_package(error) not in (None, "shapely"):
                 raise
             raise BrokenMethod(f"pages need shapely ({error}); pip install shapely") from error
+        if work.kind == "text":
+            raise PictureError(
+                "this is a page of text, which fingers cannot read as a picture; write it in braille, or give "
+                "`scene: {kind: drawing}` if it is another picture"
+            )
+        if work.kind == "lines" and not any(work.names) and work.picture is not None:
+            sheet = sheet_for(self.page, work.picture.shape[1] / work.picture.shape[0], self.width_m)
+            check_readable(self.page, sheet)
+            return [drawn_lines(work, work.picture, sheet)]
         if (parts := work.simplified) is None:
             raise PictureError("this scene has no parts to outline; it needs a picture, or its own `parts:`")
         sheet = sheet_for(self.page, _aspect(work, parts), self.width_m)

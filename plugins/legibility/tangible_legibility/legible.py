@@ -3,11 +3,13 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from tangible_core.data import MaterialMap, PartMap, Relief
+from tangible_core.drawing import DrawnPicture, PictureKind
 from tangible_core.errors import GeometryError
 from tangible_core.plugins import Medium
 from tangible_core.preflight import Grade, Legibility, Verdict, check_bound
 
 from .checks import CHECKS, height
+from .drawings import judge_drawing
 from .grid import on_grid
 from .legibility_input import LegibilityInput
 from .rules import PROFILES, Rule
@@ -23,6 +25,7 @@ def legibility(
     materials: MaterialMap | None = None,
     names: Sequence[str] = (),
     textures: int | None = None,
+    drawing: DrawnPicture | None = None,
 ) -> Legibility:
     """Check by the rules of a medium whether fingers can read these parts; return a verdict a rule.
 
@@ -30,16 +33,22 @@ def legibility(
     such as steps without a relief, are left out.
     parts: None for a picture that is not divided. width_m: of the whole. relief, materials: of the whole, on any grid;
     one material a part or a segment. names: of parts, by number. textures: their number, if it is not one a segment.
+    drawing: a picture that is a drawing, of which what matters must be left; line art drawn as lines needs no parts.
     Raises: GeometryError if width_m is not positive.
     """
     profile = PROFILES[medium]
+    left = list[Verdict]()
+    if drawing is not None:
+        if drawing.kind == PictureKind.text or (drawing.kind == PictureKind.lines and drawing.lines):
+            return Legibility.of(judge_drawing(drawing, profile, None, width_m, names))
+        left += judge_drawing(drawing, profile, parts, width_m, names)
     if parts is None:
         if not width_m > 0:
             raise GeometryError(f"width_m must be a positive length in metres, not {width_m}")
-        return Legibility.of(_judge_undivided(medium, relief, width_m))
+        return Legibility.of([*left, *_judge_undivided(medium, relief, width_m)])
     grid = on_grid(parts, width_m)
     data = LegibilityInput(profile, grid.parts, grid.pitch_m, width_m, relief, materials, names, textures)
-    return Legibility.of(verdict for check in CHECKS[medium] for verdict in check(data))
+    return Legibility.of([*left, *(verdict for check in CHECKS[medium] for verdict in check(data))])
 
 
 def _judge_undivided(medium: Medium, relief: Relief | None, width_m: float) -> Iterator[Verdict]:

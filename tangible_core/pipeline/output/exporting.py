@@ -164,7 +164,7 @@ class _ExportRun:
         outcome = Outcome(product, kind, why, chosen.name, seconds, tuple(notes))
         self.progress(StageEvent(product, chosen.name, outcome))
         hooks.tell(self.engine.registry.plugins, "tangible_stage_finished", outcome=outcome)
-        return Exported(name, outcome, files, made, legible)
+        return Exported(name, outcome, files, made, legible if kind == "ran" else None)
 
     def _engine(self, chosen: NamedMethod[Exporter]) -> Engine:
         """Return the engine for the width at which this exporter writes, and for its slopes."""
@@ -218,6 +218,7 @@ def work_for(engine: Engine, exporter: Exporter, *, cut: bool = False) -> Work:
         None if views is None else views.left,
         names_of_parts(engine.config, products),
         extras,
+        kind=engine.scene.kind.likely,
         film=engine.scene.frames is not None,
     )
 

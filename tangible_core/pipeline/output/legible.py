@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any, Literal, cast, get_args
 
 from ...data import PartMap, Record
+from ...drawing import DrawnPicture, PictureKind
 from ...errors import ConfigError, TangibleError, did_you_mean, quoted
 from ...plugins.interfaces import Exporter, Medium
 from ...preflight import Legibility
@@ -22,6 +23,8 @@ WIDTH = "workspace.width_m"
 """The key by which cures enlarge a picture."""
 ROUNDING = 1e-9
 """A share above the rounding error of a product of floating-point numbers."""
+MAX_FILLS = 5
+"""The most kinds of fills on a page: neighbours differ, and others may be alike."""
 JUDGED: Mapping[Medium, tuple[str, ...]] = {"print": ("relief",), "force": ("relief", "materials")}
 """Products that the rules of a medium judge next to the parts."""
 
@@ -101,9 +104,24 @@ def judge_products(engine: Engine, medium: Medium, parts: str, judged: Collectio
     products: dict[str, Any] = {name: engine.make_on_grid(name) for name in names}
     others = {name: products[name] for name in JUDGED.get(medium, ()) if name in products}
     part_map: PartMap | None = products.get(parts)
+    if (drawing := _drawing(engine, medium, part_map)) is not None:
+        others["drawing"] = drawing
+        if medium == "swell" and part_map is not None:
+            others["textures"] = min(MAX_FILLS, len(set(part_map.segments)))
     width_m = engine.config.size.width_m
     judge = judge_function(engine.registry)
     return judge(medium, part_map, width_m, names=names_of_parts(engine.config, products), **others)
+
+
+def _drawing(engine: Engine, medium: Medium, parts: PartMap | None) -> DrawnPicture | None:
+    """Return the picture if it is a drawing, and what this medium shows of it; None for a photograph."""
+    kind, views, config = engine.scene.kind.likely, engine.scene.views, engine.config
+    if kind == PictureKind.photograph or views is None:
+        return None
+    on_page = medium == "swell" and (kind == PictureKind.drawing or not config.part_names)
+    raised = medium in ("print", "force") and config.relief_kind == "lines"
+    whole = None if parts is None else cast("PartMap | None", engine.make_on_grid("parts"))
+    return DrawnPicture(kind, views.left, on_page or raised, whole)
 
 
 def with_width(engine: Engine, width_m: float | None) -> Engine:

@@ -26,8 +26,9 @@ from .marks.reading import read
 from .marks.svg import NO_DOTS, Area, Braille, Drawing, svg
 from .named_parts import LETTERS, MOST_NAMES, NamedParts, first_labels, group_by_name, key_letters
 from .opening import open_at
-from .sheet import CLEAR_MM, GAP_MM, Page, Sheet
+from .sheet import CLEAR_MM, GAP_MM, LINE_MM, Page, Sheet
 from .smoothing import smooth_borders
+from .strokes import strokes_on
 
 log: logging.Logger = logging.getLogger(__name__)
 
@@ -47,6 +48,8 @@ class Symbols:
     """Braille of the letter."""
     kind: str
     """Kind of the fill."""
+    is_paper: bool = False
+    """True for the paper of a drawing, which stays empty."""
 
 
 def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[Drawing]:
@@ -65,13 +68,43 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[Dr
             f"{len(groups)} parts are more than anybody can tell apart on a page, which takes {MOST_NAMES}; have "
             "fewer, by a texture method with fewer segments or by one name for several in `parts:`"
         )
+    blank, title = _blank_page(work, sheet)
+    drawn = work.picture if work.kind == "drawing" else None
+    figure: Figure = work.extras.get("figure") or Figure()
+    symbols, picture = _draw_readable(blank, parts, groups, figure.front_parts(parts), drawn)
+    _note_left_out(symbols, picture)
+    keys = key_pages(_entries(symbols, picture), title, work.language, page, blank.sheet)
+    for key in keys:
+        _check_key(key)
+    return [picture, *keys]
+
+
+def drawn_lines(work: Work, picture: np.ndarray, sheet: Sheet) -> Drawing:
+    """Return the page of a line drawing: its lines, and nothing where there is paper.
+
+    Raises: PictureError for a drawing without lines; BrailleError for its title.
+    """
+    blank, _ = _blank_page(work, sheet)
+    strokes, texts = strokes_on(picture, blank.sheet)
+    if not strokes:
+        raise PictureError("the drawing has no lines; give `scene: {kind: photograph}` to outline its parts")
+    _note_texts(texts)
+    return replace(blank, description=shown_text(work.title), strokes=strokes)
+
+
+def _note_texts(texts: int) -> None:
+    if texts:
+        note(log, f"letters are left out of the page, at {texts} places; write them as names of parts", logging.WARNING)
+
+
+def _blank_page(work: Work, sheet: Sheet) -> tuple[Drawing, str]:
+    """Return an empty page with the title in braille, and the title."""
     title = title_in_braille(work.title, work.language)
     lines, whole = title_lines(title, work.language, sheet)
-    sheet = sheet.below(1000 * height_m(len(lines)))
     if not whole:
         note(log, f"only {len(lines)} lines of the title's braille have room above the picture; the key has all")
     blank = Drawing(
-        sheet=sheet,
+        sheet=sheet.below(1000 * height_m(len(lines))),
         title=shown_text(work.title),
         description="",
         language=work.language,
@@ -79,21 +112,16 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[Dr
         areas=(),
         texts=(title_at(title, lines),),
     )
-    seen: Figure = work.extras.get("figure") or Figure()
-    symbols, picture = _draw_readable(blank, parts, groups, seen.front_parts(parts))
-    _note_left_out(symbols, picture)
-    keys = key_pages(_entries(symbols, picture), title, work.language, page, sheet)
-    for key in keys:
-        _check_key(key)
-    return [picture, *keys]
+    return blank, title
 
 
 def _draw_readable(
-    blank: Drawing, parts: PartMap, groups: Sequence[NamedParts], front: Sequence[int]
+    blank: Drawing, parts: PartMap, groups: Sequence[NamedParts], front: Sequence[int], drawn: np.ndarray | None
 ) -> tuple[list[Symbols], Drawing]:
     """Draw the page; open the parts where their outlines run too near to each other, until none do.
 
-    front: numbers of the parts of the figure, whose common outline is heavier if that has room.
+    front: numbers of the parts of the figure, whose common outline is heavier if that has room. drawn: the picture of a
+    flat drawing, whose lines are drawn as well, and whose paper stays empty; None for another.
     Raises: PictureError if that does not help.
     """
     near, sheet, given = list[Near](), blank.sheet, parts
@@ -103,15 +131,32 @@ def _draw_readable(
         blank = replace(blank, figure=shapely.union_all([shapes[number] for number in front]) if front else None)
         outlines = [Area(group.name, shapes[number]) for group in groups for number in group.numbers]
         if not (near := narrow_places(read(svg(replace(blank, areas=tuple(outlines), texts=()))))):
+            strokes, texts = ((), 0) if drawn is None else strokes_on(drawn, sheet, _all_outlines(shapes))
             symbols = _choose_symbols(groups, shapes, _neighbours(parts, groups), blank.language)
+            if drawn is not None:
+                symbols = [
+                    replace(each, kind=BLANK, is_paper=True) if _is_paper(each.group, parts) else each
+                    for each in symbols
+                ]
             description = "; ".join(f"{each.letter} {each.group.name}" for each in symbols)
-            drawing, near = _draw_clear(replace(blank, description=description), symbols, shapes)
+            drawing, near = _draw_clear(replace(blank, description=description), symbols, shapes, strokes)
             if not near:
-                return symbols, drawing
+                _note_texts(texts)
+                return symbols, replace(drawing, strokes=strokes)
         parts = open_at(parts, _on_picture([each.place_mm for each in near], sheet), wide_mm / 1000, turn + 1)
     if front:  # a thinner line may have the room
-        return _draw_readable(replace(blank, figure=None), given, groups, ())
+        return _draw_readable(replace(blank, figure=None), given, groups, (), drawn)
     raise PictureError(f"{near[0]}, and {GAP_MM} mm must be between them; make the picture larger or simpler")
+
+
+def _all_outlines(shapes: Sequence[Any]) -> Any:
+    return shapely.union_all([shape.boundary for shape in shapes])
+
+
+def _is_paper(group: NamedParts, parts: PartMap) -> bool:
+    """Tell whether these parts have most of the picture's rim."""
+    rim = np.concatenate([parts.labels[0], parts.labels[-1], parts.labels[:, 0], parts.labels[:, -1]])
+    return 2 * np.isin(rim, group.numbers).sum() > rim.size
 
 
 def _on_picture(places_mm: Sequence[tuple[float, float]], sheet: Sheet) -> Float64[np.ndarray, "n 2"]:
@@ -178,23 +223,27 @@ def _has_room(symbols: Symbols, shapes: Sequence[Any]) -> bool:
     return bool(_area(symbols, shapes[largest]).fill)
 
 
-def _area(symbols: Symbols, shape: Any, clear_mm: float = CLEAR_MM) -> Area:
-    """Return a part with its symbols. clear_mm: distance around the letter; infinite to leave it out."""
-    dots = place_letter(symbols.cells, shape, clear_mm) if clear_mm < np.inf else None
-    fill = fill_shape(shape, symbols.kind, None if dots is None else around(dots))
+def _area(symbols: Symbols, shape: Any, clear_mm: float = CLEAR_MM, strokes: Any = None) -> Area:
+    """Return a part with its symbols, clear of strokes. clear_mm: distance around the letter; infinite for none."""
+    free = shape if strokes is None else shape.difference(strokes)
+    dots = place_letter(symbols.cells, free, clear_mm) if clear_mm < np.inf else None
+    fill = fill_shape(free, symbols.kind, None if dots is None else around(dots))
     return Area(symbols.group.name, shape, fill, None if dots is None else Braille(symbols.letter, dots))
 
 
-def _draw_clear(blank: Drawing, symbols: Sequence[Symbols], shapes: Sequence[Any]) -> tuple[Drawing, list[Near]]:
+def _draw_clear(
+    blank: Drawing, symbols: Sequence[Symbols], shapes: Sequence[Any], strokes: Sequence[Any]
+) -> tuple[Drawing, list[Near]]:
     """Draw the page; move or leave out letters, and leave out elements of fills, until no marks are too near.
 
     Returns: the page, and the pairs of marks that are still too near.
     """
     pieces = [(each, shapes[number]) for each in symbols for number in each.group.numbers]
-    away, clear_mm = NO_DOTS, [CLEAR_MM] * len(pieces)
+    inked = shapely.union_all(strokes).buffer(LINE_MM / 2) if strokes else None
+    away, clear_mm = NO_DOTS, [np.inf if each.is_paper else CLEAR_MM for each, _ in pieces]
     drawing, near = blank, list[Near]()
     for turn in range(ROUNDS):
-        areas = [_area(each, shape, clear) for (each, shape), clear in zip(pieces, clear_mm, strict=True)]
+        areas = [_area(each, shape, clear, inked) for (each, shape), clear in zip(pieces, clear_mm, strict=True)]
         areas = [replace(area, fill=area.fill.without(away)) if len(away) else area for area in areas]
         drawing = replace(blank, areas=tuple(areas))
         near = too_near(read(svg(drawing)))
@@ -236,14 +285,15 @@ def _entries(symbols: Sequence[Symbols], picture: Drawing) -> list[Entry]:
             each.kind if each.group.name in has_fill else BLANK,
         )
         for each in symbols
+        if not each.is_paper
     ]
 
 
 def _note_left_out(symbols: Sequence[Symbols], picture: Drawing) -> None:
     """Note the parts without a letter or a fill, by their names."""
     note(log, f"braille by {written_by(picture.language)}")
-    if bare := [area.label for area in picture.areas if area.letter is None]:
+    kinds = {each.group.name: each.kind for each in symbols if not each.is_paper}
+    if bare := [area.label for area in picture.areas if area.letter is None and area.label in kinds]:
         note(log, f"no room for a letter in {first_labels(bare)}")
-    kinds = {each.group.name: each.kind for each in symbols}
-    if bare := [area.label for area in picture.areas if kinds[area.label] != BLANK and not area.fill]:
+    if bare := [area.label for area in picture.areas if kinds.get(area.label, BLANK) != BLANK and not area.fill]:
         note(log, f"no room for a fill in {first_labels(bare)}")

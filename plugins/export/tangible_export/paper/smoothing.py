@@ -48,8 +48,8 @@ def _smooth(line: Any, pitch_mm: float, sigma: float) -> Any:
     )
     closed = bool(line.is_closed)
     at = at if closed else np.concatenate([ends[:1], at, ends[-1:]])
-    once = _blur(at, sigma, closed)
-    twice = once + _blur(at - once, sigma, closed)
+    once = blur(at, sigma, closed)
+    twice = once + blur(at - once, sigma, closed)
     if closed:
         twice = np.concatenate([twice, twice[:1]])
     else:
@@ -64,7 +64,7 @@ def _middles(
     return one + ((np.arange(count) + 0.5) / count)[:, None] * (other - one)
 
 
-def _blur(at: Float64[np.ndarray, "n 2"], sigma: float, closed: bool) -> Float64[np.ndarray, "n 2"]:
+def blur(at: Float64[np.ndarray, "n 2"], sigma: float, closed: bool) -> Float64[np.ndarray, "n 2"]:
     """Return points blurred along their line; the ends of an open one stay, as it goes on mirrored in them."""
     if closed:
         return gaussian_filter1d(at, sigma, axis=0, mode="wrap")

@@ -3,12 +3,16 @@
 from functools import cached_property
 
 from ....data import PartMap
+from ....drawing import PictureKind
 from ....parts import SimplifyChoice
 from ...config.part_checks import names_of
 from ..legibility import legibility_point, simplify_function
 from ..networks import has_figure
 from ..stage import Inputs
 from .parts import OfPartsStage
+
+MAX_COLOURS = 100
+"""The most colours of a flat drawing that stay apart, as many as have letters on a page."""
 
 
 class SimplifiedStage(OfPartsStage):
@@ -22,7 +26,10 @@ class SimplifiedStage(OfPartsStage):
 
     @property
     def _choice(self) -> SimplifyChoice:
-        return self.config.simplify or SimplifyChoice()
+        if self.config.simplify is not None:
+            return self.config.simplify
+        drawing = self.context.scene.kind.likely == PictureKind.drawing  # no two of its colours become one
+        return SimplifyChoice(textures=MAX_COLOURS) if drawing else SimplifyChoice()
 
     @cached_property
     def key(self) -> str:

@@ -54,6 +54,8 @@ class Drawing:
     texts: tuple[Braille, ...]
     figure: Any = None
     """The shape of the figure, whose outline is heavier; None without one."""
+    strokes: tuple[Any, ...] = ()
+    """Lines of shapely, of a drawing."""
 
 
 def svg(drawing: Drawing, colour: str = BLACK, over: Sequence[str] = ()) -> str:
@@ -74,6 +76,7 @@ def svg(drawing: Drawing, colour: str = BLACK, over: Sequence[str] = ()) -> str:
         _corner(drawing),
         *(_area(area, colour) for area in drawing.areas),
         *([] if drawing.figure is None else [_outline(drawing.figure, colour, HEAVY_MM)]),
+        *_strokes(drawing.strokes, colour),
         *over,
         "</svg>",
     ]
@@ -100,6 +103,14 @@ def _outline(shape: Any, colour: str, width_mm: float) -> str:
         f'<path data-mark="outline" fill="none" stroke="{colour}" stroke-width="{width_mm:g}" stroke-linejoin="round" '
         f'd="{line}"/>'
     )
+
+
+def _strokes(strokes: Iterable[Any], colour: str) -> Iterable[str]:
+    if lines := "".join(_line(shapely.get_coordinates(each)) for each in strokes):
+        yield (
+            f'<path data-mark="line" fill="none" stroke="{colour}" stroke-width="{LINE_MM:g}" stroke-linecap="round" '
+            f'stroke-linejoin="round" d="{lines}"/>'
+        )
 
 
 def _fill(fill: Fill, colour: str) -> str:

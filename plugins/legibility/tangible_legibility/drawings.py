@@ -1,0 +1,99 @@
+"""The verdicts on what is left of a drawing on a medium: its lines, its parts and its texts."""
+# scipy has no types.
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from tangible_core.data import PartMap
+from tangible_core.drawing import DrawnPicture, Lines, PictureKind, find_ink, find_lines, find_texts
+from tangible_core.preflight import Verdict, check_bound
+
+from .rules import GRAPHICS, OURS, Profile
+from .words.texts import describe_part, describe_place, join_texts
+
+MAX_LOST = 0.1
+"""The greatest share of the lines' length that may be lost before the picture is."""
+MAX_CLOSE = 0.3
+"""The greatest share of the lines' length that may lie too near to another line for a finger."""
+NOTICED, IMPORTANT = 0.001, 0.02
+"""The least shares of the picture of a part that is named when it is lost, and without which the picture is lost."""
+
+
+def judge_drawing(
+    drawing: DrawnPicture, profile: Profile, parts: PartMap | None, width_m: float, names: Sequence[str]
+) -> Iterator[Verdict]:
+    """Yield the verdicts on what is left. parts: as they are drawn; None if only lines are."""
+    if drawing.kind == PictureKind.text:
+        yield check_bound(
+            *("page of text", "the picture", 1.0, "<=", 0.0, "share", OURS),
+            says="this is a page of text, which fingers cannot read as a picture", worse="illegible",
+            cure="write it in braille, or have it read aloud; `scene: {kind: drawing}` if it is another picture",
+        )  # fmt: skip
+        return
+    ink = find_ink(drawing.picture)
+    texts = find_texts(ink)
+    yield from _judge_lines(drawing, find_lines(ink, texts.ink), profile, parts, width_m)
+    if drawing.whole is not None and parts is not None:
+        yield from _judge_parts(drawing.whole, parts, names)
+    middles = [((box.left + box.right) / 2, (box.top + box.bottom) / 2) for box in texts.boxes]
+    places = list(dict.fromkeys(describe_place(*middle) for middle in middles))
+    yield check_bound(
+        *("texts", "the letters", float(len(middles)), "<=", 0.0, "parts", OURS),
+        says=f"texts are left out ({len(middles)}: {join_texts(places)})" if places else "",
+        cure="write them as names of parts, or in the description",
+    )  # fmt: skip
+
+
+def _judge_lines(
+    drawing: DrawnPicture, lines: Lines, profile: Profile, parts: PartMap | None, width_m: float
+) -> Iterator[Verdict]:
+    """Yield the verdict on lines that are lost, or that lie too close to each other where they are drawn."""
+    gap = profile.rules.get("gap")
+    gap_m = 0.0032 if gap is None else gap.bound
+    pitch_m = width_m / lines.centre.shape[1]
+    if drawing.lines:
+        close = lines.share_near(gap_m / pitch_m)
+        yield check_bound(
+            *("close lines", "the lines", close, "<=", MAX_CLOSE, "share", f"{OURS}; for the distance {GRAPHICS}"),
+            says="many lines run so close to each other that a finger takes them for one", worse="illegible",
+            cure="make the picture larger, or have fewer lines",
+        )  # fmt: skip
+    elif lines.centre.any():
+        lost = 1.0 if parts is None else _share_away(lines, parts, gap_m / pitch_m)
+        yield check_bound(
+            *("kept lines", "the lines", lost, "<=", MAX_LOST, "share", OURS),
+            says=f"{100 * lost:.0f} % of the length of the drawing's lines is left out", worse="illegible",
+            cure="`relief: lines` raises them, and a page for swell paper has them",
+        )  # fmt: skip
+
+
+def _share_away(lines: Lines, parts: PartMap, reach: float) -> float:
+    """Return the share of the lines' length that is farther than this from a border of parts, in cells of the lines."""
+    from scipy.ndimage import distance_transform_edt
+
+    labels, rows = parts.labels, np.nonzero(lines.centre)
+    at = [n * new // old for n, new, old in zip(rows, labels.shape, lines.centre.shape, strict=True)]
+    border = np.zeros(labels.shape, np.bool_)
+    border[:-1] |= labels[1:] != labels[:-1]
+    border[:, :-1] |= labels[:, 1:] != labels[:, :-1]
+    if not border.any():
+        return 1.0
+    away = np.asarray(distance_transform_edt(~border))[at[0], at[1]]
+    return float((away > reach * labels.shape[1] / lines.centre.shape[1]).mean())
+
+
+def _judge_parts(whole: PartMap, parts: PartMap, names: Sequence[str]) -> Iterator[Verdict]:
+    """Yield the verdict on parts of which nothing is left, by area and by name."""
+    before, after = (np.bincount(each.labels.reshape(-1), minlength=whole.count) for each in (whole, parts))
+    share = before / before.sum()
+    lost = np.flatnonzero((share >= NOTICED) & (after[: whole.count] == 0))
+    lost = lost[np.argsort(-share[lost])]
+    gone = float(share[lost].sum())
+    named = [describe_part(number, names) for number in lost.tolist()]
+    yield check_bound(
+        *("kept parts", "the parts", float(lost.size), "<=", 0.0, "parts", OURS),
+        says=f"parts are left out ({join_texts(named)}; {100 * gone:.1f} % of the picture)" if named else "",
+        cure="make the picture larger, or have fewer parts", worse="illegible" if gone >= IMPORTANT else "warn",
+    )  # fmt: skip

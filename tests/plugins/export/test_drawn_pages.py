@@ -1,0 +1,76 @@
+import numpy as np
+import pytest
+import shapely
+
+from drawings import countries, house, page
+from tangible_core import Pipeline, Scene
+from tangible_core.data import PartMap
+from tangible_core.drawing import DrawnPicture, PictureKind
+from tangible_core.pipeline import Feeling
+from tangible_export.paper.marks.reading import read
+from tangible_export.paper.marks.rendering import black
+from tangible_export.paper.sheet import sheet_for
+from tangible_export.paper.strokes import strokes_on
+from tangible_legibility.legible import legibility
+from tangible_texture import Flat
+
+
+def exported(picture, folder, **options):
+    pipeline = Pipeline(Scene.photo(picture), texture=Flat(), title="House", **options)
+    return pipeline.export(folder, ["swell"]).exports[0]
+
+
+def test_strokes_lie_on_the_lines_of_the_drawing():
+    picture, mask = house()
+    sheet = sheet_for("a4", 4 / 3, None)
+    strokes, texts = strokes_on(picture, sheet)
+    at = np.concatenate([shapely.get_coordinates(stroke.segmentize(0.2)) for stroke in strokes])
+    px = (at - (sheet.left_mm, sheet.top_mm)) / sheet.picture_mm * (480, 360)
+    columns, rows = np.clip(px.astype(int).T, 0, [[479], [359]])
+    assert texts == 0 and mask[rows, columns].mean() > 0.98
+    length_px = shapely.length(strokes).sum() / sheet.picture_mm[0] * 480
+    assert abs(length_px / (680 + 268 + 440 - 180 + 157) - 1) < 0.03  # the wall stands on the ground
+
+
+def test_page_of_line_art_has_its_lines_and_empty_paper(tmp_path):
+    done = exported(house()[0], tmp_path)
+    svg = next(path for path in done.files if path.name.endswith("swell.svg")).read_text()
+    assert 'data-mark="line"' in svg and 'data-mark="outline"' not in svg and 'data-mark="fill"' not in svg
+    assert done.legible.readable and black(read(svg), 2).mean() < 0.03
+
+
+def test_page_of_flat_drawing_keeps_all_areas_and_paper_is_empty(tmp_path):
+    done = exported(countries()[0], tmp_path)
+    svg = next(path for path in done.files if path.name.endswith("swell.svg")).read_text()
+    assert svg.count('data-mark="outline"') == 4 and svg.count('data-mark="fill"') <= 3
+    assert len([mark for mark in read(svg).marks if mark.what == "braille" and "part 1" in mark.label]) == 0
+    assert done.legible.readable
+
+
+def test_page_of_text_is_refused_and_has_no_verdict(tmp_path):
+    done = exported(page(), tmp_path)
+    assert (done.outcome.outcome, done.files, done.legible) == ("refused", (), None)
+    assert "fingers cannot read as a picture" in done.outcome.why
+
+
+@pytest.mark.parametrize(("medium", "readable"), [("swell", True), ("force", True), ("pins", False)])
+def test_line_art_is_legible_where_its_lines_are(medium, readable):
+    found = Feeling(Pipeline(Scene.photo(house()[0]), texture=Flat(), relief="lines")).legible(medium)
+    assert found.readable == readable, found.sentence
+    assert readable or "% of the length of the drawing's lines is left out" in found.sentence
+
+
+def test_page_of_text_is_never_legible():
+    found = Feeling(Pipeline(Scene.photo(page()), texture=Flat(), relief="lines")).legible("print")
+    assert not found.readable and "page of text" in found.sentence
+
+
+def test_lost_parts_and_texts_are_named():
+    picture, labels = countries()
+    picture[320:345, 20:200] = page()[20:45, 20:200]
+    whole, left = (PartMap(each.astype(np.int32), (0, 1, 2, 3)) for each in (labels, np.where(labels == 3, 0, labels)))
+    drawing = DrawnPicture(PictureKind.drawing, picture, lines=True, whole=whole)
+    found = legibility("swell", left, 0.25, names=["", "", "", "lake"], drawing=drawing)
+    says = " ".join(each.says for each in found)
+    assert "parts are left out (part 4 (lake); 2.9 % of the picture)" in says, says
+    assert "texts are left out (1: at the lower left)" in says and not found.readable, says

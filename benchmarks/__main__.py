@@ -18,6 +18,7 @@ SECTIONS = {
     "texture": "Texture",
     "regions": "Regions that people draw",
     "photos": "Photographs",
+    "drawings": "Drawings",
     "recognition": "Recognised by touch",
     "relief": "The relief of depth",
     "parts": "Parts of a picture",

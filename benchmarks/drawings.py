@@ -1,0 +1,186 @@
+"""Drawings: kinds told apart, areas, lines and texts found, on drawings made by code in styles that chose nothing.
+
+`python -m benchmarks.drawings FOLDER` draws the pictures of docs/drawings.md.
+"""
+
+import os
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from time import process_time
+
+import cv2
+import numpy as np
+
+from tangible_core import Pipeline, Scene
+from tangible_core.data import Views
+from tangible_core.drawing import find_areas, find_ink, find_lines, find_texts, picture_kind
+from tangible_core.relief import ReliefChoice, edge_relief, line_relief
+from tangible_core.scene.workspace import Workspace
+
+from .drawings_made import Made, made_drawings
+from .figures import Figure, judged, part
+
+COUNT = int(os.environ.get("TANGIBLE_DRAWINGS", "200"))
+"""How many drawings of each kind."""
+PHOTOS = os.environ.get("TANGIBLE_PHOTOGRAPHS", "")
+"""A folder of photographs."""
+CHUNK = 20
+"""How many drawings a process makes at a time."""
+FEW = 48
+"""How many drawings are measured area by area and line by line."""
+OVERLAP = 0.7
+
+
+def section() -> str:
+    """Return the section as Markdown."""
+    head = (
+        f"Drawings made by code: {COUNT} of each kind for kinds, {FEW} for all else; JPEG, noise, tint, blur, shadow "
+        "and tilt. Weights and bounds were chosen on other contents and copies (`benchmarks/drawings_made.py`)."
+    )
+    figures = [
+        *part("kinds", lambda: list(_kinds())),
+        *part("areas", lambda: list(_areas())),
+        *part("lines", lambda: list(_lines())),
+        *part("texts", lambda: list(_texts())),
+    ]
+    return "\n".join([head, "", *judged(figures)])
+
+
+def _kinds() -> Iterator[Figure]:
+    kinds, seeds = ("drawing", "lines", "text"), range(COUNT // CHUNK)
+    with ProcessPoolExecutor(2 * (os.cpu_count() or 1)) as pool:
+        found = {kind: pool.map(_count_right, [kind] * len(seeds), seeds) for kind in kinds}
+        counted = {kind: np.sum(list(each), axis=0) for kind, each in found.items()}
+    for kind, (right, _) in counted.items():
+        share = right / COUNT
+        yield Figure(f"kind right: {kind}", ">= 0.97", f"{share:.3f}", share >= 0.97)
+    seconds = sum(each[1] for each in counted.values()) / (COUNT * len(kinds))
+    yield Figure("processor time for a kind", "<= 0.3 s", f"{seconds:.2f} s", seconds <= 0.3)
+    photos = [each for end in ("jpg", "png") for each in Path(PHOTOS).rglob(f"*.{end}")] if PHOTOS else []
+    if photos:
+        taken = [picture_kind(cv2.imread(str(each))[..., ::-1]).likely != "photograph" for each in photos]
+        text = f"{sum(taken)} of {len(taken)}"
+        yield Figure("photographs taken for a drawing", "<= 1 %", text, np.mean(taken) <= 0.01)
+
+
+def _count_right(kind: str, seed: int) -> tuple[int, float]:
+    """Return how many drawings of a chunk have the right kind, and the seconds that took."""
+    cv2.setNumThreads(1)
+    right, seconds = 0, 0.0
+    for made in made_drawings("told", kind, CHUNK, seed):
+        start = process_time()
+        right += picture_kind(made.picture).likely == kind
+        seconds += process_time() - start
+    return right, seconds
+
+
+def _areas() -> Iterator[Figure]:
+    sums = np.zeros(6)
+    for made in made_drawings("told", "drawing", FEW):
+        sums += score_areas(made)
+    found, true, edge = sums[0] / sums[1], sums[2] / sums[3], sums[4] / sums[5]
+    yield Figure("areas found, overlap over 0.7", ">= 0.97", f"{found:.3f}", found >= 0.97)
+    yield Figure("areas true", ">= 0.97", f"{true:.3f}", true >= 0.97)
+    yield Figure("edges off, mean", "<= 0.3 px", f"{edge:.2f} px", edge <= 0.3)
+
+
+def score_areas(made: Made) -> np.ndarray:
+    """Return areas found and all, true and all found ones, and pixels on a wrong side of edges and all along edges."""
+    known = made.labels >= 0
+    unknown, by_pixel = (~known).astype(np.uint8), cv2.DIST_LABEL_PIXEL
+    _, nearest = cv2.distanceTransformWithLabels(unknown, cv2.DIST_L2, 5, labelType=by_pixel)
+    at = np.zeros(int(nearest.max()) + 1, np.int64)
+    at[nearest[known]] = np.flatnonzero(known)
+    truth = made.labels.reshape(-1)[at[nearest]]
+    areas = find_areas(made.picture)
+    true, found = _pieces(truth), _pieces(areas.labels)
+    both = np.zeros((true.max() + 1, found.max() + 1))
+    np.add.at(both, (true[known], found[known]), 1)
+    overlap = (both / np.maximum(both.sum(1, keepdims=True) + both.sum(0, keepdims=True) - both, 1))[1:, 1:] > OVERLAP
+    change = truth[:, 1:] != truth[:, :-1]
+    bare = known[:, 1:] & known[:, :-1] & change  # an edge without a line on it
+    matched = np.argmax(both, axis=1)[true]
+    near = cv2.dilate(np.pad(bare, ((0, 0), (0, 1))).astype(np.uint8), np.ones((1, 9))) > 0
+    wrong = near & known & (matched != found) & np.isin(true, 1 + np.flatnonzero(overlap.any(1)))
+    matches = overlap.any(1).sum(), len(overlap), overlap.any(0).sum(), overlap.shape[1]
+    return np.array([*matches, wrong.sum(), bare.sum()])
+
+
+def _pieces(labels: np.ndarray) -> np.ndarray:
+    """Return the connected pieces by number from 1, 0 for specks."""
+    pieces, count = np.zeros(labels.shape, np.int32), 0
+    for label in np.unique(labels):
+        number, of, about, _ = cv2.connectedComponentsWithStats((labels == label).astype(np.uint8), connectivity=4)
+        for each in range(1, number):
+            if about[each, cv2.CC_STAT_AREA] >= (max(labels.shape) / 60) ** 2:
+                count += 1
+                pieces[of == each] = count
+    return pieces
+
+
+def _lines() -> Iterator[Figure]:
+    sums, raised = np.zeros(4), np.zeros(3)
+    for number, made in enumerate(made_drawings("told", "lines", FEW)):
+        ink = find_ink(made.picture)
+        lines = find_lines(ink, find_texts(ink).ink)
+        reach = max(1.5, 0.0005 * made.picture.shape[1] / 0.16)  # 0.5 mm of 160 mm
+        drawn = np.zeros(lines.centre.shape, np.uint8)
+        for line in made.lines:
+            cv2.polylines(drawn, [np.rint(line).astype(np.int32)], False, 1)
+        for first, one, other in ((0, drawn > 0, lines.centre), (2, lines.centre, drawn > 0)):
+            away = cv2.distanceTransform((~other).astype(np.uint8), cv2.DIST_L2, 5)
+            sums[first : first + 2] += (one & (away <= reach)).sum(), one.sum()
+        if number < 8:
+            raised += _raised(made, drawn > 0)
+    found, true = sums[0] / sums[1], sums[2] / sums[3]
+    yield Figure("length of lines found within 0.5 mm", ">= 0.95", f"{found:.3f}", found >= 0.95)
+    yield Figure("length of lines true", ">= 0.95", f"{true:.3f}", true >= 0.95)
+    before, now = raised[1] / raised[0], raised[2] / raised[0]
+    yield Figure("lines raised by 1 mm; before, by edges", ">= 0.95", f"{now:.3f}; {before:.3f}", now >= 0.95)
+
+
+def _raised(made: Made, drawn: np.ndarray) -> np.ndarray:
+    """Return the pixels of lines, and those raised by half the height: by edges, and by lines."""
+    views, size = Views(made.picture), Workspace().size("lines")
+    edges = edge_relief(views, size, ReliefChoice(by="edges")).height_m
+    lines, _ = line_relief(views, size, ReliefChoice(by="lines"), areas=False)
+    up = [(height_m[drawn] > np.median(height_m) + 0.001).sum() for height_m in (edges, lines.height_m)]
+    return np.array([drawn.sum(), *up])
+
+
+def _texts() -> Iterator[Figure]:
+    found = count = 0
+    for kind in ("drawing", "lines"):
+        for made in made_drawings("told", kind, FEW):
+            ink = find_ink(made.picture)
+            letters = find_texts(ink).ink
+            for box in made.texts:
+                left, top, right, bottom = (max(0, round(edge)) for edge in box)
+                own = ink.mask[top:bottom, left:right]
+                found += bool(own.any()) and letters[top:bottom, left:right][own].mean() > OVERLAP
+                count += 1
+    yield Figure("labels found", ">= 0.95", f"{found / count:.3f}", found / count >= 0.95)
+
+
+def pictures(folder: Path) -> None:
+    """Write a drawing of each kind beside its relief by edges, as before, and by lines, as now."""
+    from tangible_texture import Flat
+
+    folder.mkdir(exist_ok=True)
+    for kind, number in (("lines", 0), ("drawing", 1), ("drawing", 2)):
+        made = list(made_drawings("chosen", kind, number + 1))[number]
+        scene, shown = Scene.photo(made.picture, kind=kind), [made.picture]
+        for by in ("edges", "lines"):
+            relief = Pipeline(scene, relief=by, texture=Flat()).relief
+            slopes = np.gradient(relief.height_m, relief.pitch_m[0])
+            light = np.clip((0.7 + 0.45 * (slopes[0] + slopes[1])) * 200, 0, 255).astype(np.uint8)
+            shown.append(light[..., None].repeat(3, 2))
+        small = [cv2.resize(each, (400, round(400 * each.shape[0] / each.shape[1]))) for each in shown]
+        name = made.style.split(",")[0]
+        cv2.imwrite(str(folder / f"{name}.png"), np.concatenate(small, axis=1)[..., ::-1])
+
+
+if __name__ == "__main__":
+    pictures(Path(sys.argv[1]))

@@ -55,7 +55,7 @@ class Haply(HapticDevice, Serviceable):
 
         session = Session(self.uri, self.timeout_s)
         try:
-            return tuple(arm.unit() for arm in session.arms)
+            return session.arms
         finally:
             session.close()
 

@@ -28,19 +28,6 @@ PROBLEMS = {
 """Problems by the status flags that the service reports as false; a missing flag is not a problem."""
 
 
-class Arm(NamedTuple):
-    """An Inverse3, as the service describes it on connecting."""
-
-    device_id: str
-    kind: str
-    port: str
-    problem: str
-
-    def unit(self) -> Unit:
-        """Return the arm as an entry of `tangible devices`."""
-        return Unit(self.kind, self.device_id, self.port, self.problem)
-
-
 class Answer(NamedTuple):
     """The state of an arm from an answer."""
 
@@ -61,14 +48,14 @@ class Session:
         self._connection = _connect(self._open, uri, timeout_s)
         self._owed = 1  # the snapshot comes without a message
         try:
-            self.arms: tuple[Arm, ...] = tuple(_arm(each) for each in _devices(self._receive(), "inverse3"))
+            self.arms: tuple[Unit, ...] = tuple(_arm(each) for each in _devices(self._receive(), "inverse3"))
         except BaseException:
             self.close()
             raise
 
     def choose(self, device_id: str | None) -> str:
         """Return the id of the arm to use. Raises: DeviceAbsent if there is none, DeviceError if not this one."""
-        connected = [arm.device_id for arm in self.arms]
+        connected = [arm.serial for arm in self.arms]
         if not connected:
             self.close()
             raise DeviceAbsent(f"{self.uri}: no Inverse3 is connected; plug in its USB cable and its power supply")
@@ -203,11 +190,12 @@ def _connect(until: ExitStack, uri: str, timeout_s: float) -> "ClientConnection"
         raise DeviceError(f"{uri}: is not a Haply service ({error}); {START}") from error
 
 
-def _arm(device: Mapping[str, Any]) -> Arm:
+def _arm(device: Mapping[str, Any]) -> Unit:
+    """Return an Inverse3 as the service describes it on connecting."""
     config, status = device.get("config", {}), device.get("status", {})
     problems = [words for flag, words in PROBLEMS.items() if status.get(flag) is False]
     kind, port = str(config.get("type", "inverse3")), str(config.get("port", ""))
-    return Arm(str(device.get("device_id", "")), kind, port, "; ".join(problems))
+    return Unit(kind, str(device.get("device_id", "")), port, "; ".join(problems))
 
 
 def _devices(message: Mapping[str, Any], kind: str) -> list[dict[str, Any]]:

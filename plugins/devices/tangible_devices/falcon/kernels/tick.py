@@ -3,12 +3,12 @@
 Both kernels take the arrays of `Buffers` first. Imports numba: a method imports this module inside its verb.
 """
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 
 from typing import NamedTuple
 
 import numpy as np
-from numba import boolean, float64, int64, void
+from numba import boolean, float64, int64, types, void
 
 from tangible_core.compiled import KERNEL, njit
 
@@ -16,7 +16,6 @@ from . import framing
 from .framing import DOUBTFUL, FRESH
 from .kinematics import CENTRE_M, POINT, RAD_PER_COUNT, ROWS, forward, jacobian, solve, torques
 from .packet import BYTES, HOMED, decode, encode, saturate
-from .velocity import rates
 
 ARMS, KNOWN, HEAD, SAMPLES, SUSPECTED, REFUSED, SEEKING, RUNNING, PRESSED = range(framing.COUNTS, framing.COUNTS + 9)
 COUNTS = framing.COUNTS + 9
@@ -36,6 +35,8 @@ NEAR_COUNTS, BEND_COUNTS_PER_S2, STRAY_COUNTS = 8.0, 1e7, 24.0
 answer farther away waits until the next one confirms it, as there is no checksum."""
 FAST_COUNTS_PER_S, SHORT_S, FAR_COUNTS = 5e4, 0.001, 128.0
 """Limits of the confirming answer's distance: 1.7 m/s of the tip, over at least 1 ms, and a limit in any case."""
+BAND_COUNTS = 1.0
+"""Largest distance of a sample from the line, as an encoder rounds to whole counts."""
 
 
 class Buffers(NamedTuple):
@@ -94,6 +95,37 @@ def remember(counts, history, now, first, second, third):
     head = counts[HEAD] + 1 if counts[HEAD] + 1 < history.shape[0] else 0
     history[head, 0], history[head, 1], history[head, 2], history[head, 3] = now, first, second, third
     counts[HEAD], counts[SAMPLES] = head, min(counts[SAMPLES] + 1, history.shape[0])
+
+
+@njit(float64(float64[:, ::1], int64, int64, int64), **KERNEL)
+def _rate(history, head, samples, encoder):
+    """Return the slope of one encoder over its window."""
+    low, high, found, at = -np.inf, np.inf, 0.0, head
+    for _ in range(samples - 1):
+        at = at - 1 if at else history.shape[0] - 1
+        since = history[head, 0] - history[at, 0]
+        if not since > 0.0:
+            break
+        per_second = 1.0 / since
+        slope, band = (history[head, encoder] - history[at, encoder]) * per_second, BAND_COUNTS * per_second
+        if not low <= slope <= high:
+            break
+        low, high, found = max(low, slope - band), min(high, slope + band), slope
+    return found
+
+
+@njit(types.UniTuple(float64, 3)(float64[:, ::1], int64, int64), **KERNEL)
+def rates(history, head, samples):
+    """Return the counts per second of three encoders at the newest sample: the slope over the longest straight window.
+
+    history: a ring of rows (time in seconds, counts of three encoders); head: the newest row; samples: their number.
+    Slow motion is averaged over many samples, which reduces the noise of single counts; fast motion over few, which
+    avoids delay. Every sample between the ends of the window is within one count of the line through them; the range
+    of slopes for which this holds is narrowed sample by sample.
+    Source: Janabi-Sharifi, Hayward & Chen, Discrete-time adaptive windowing for velocity estimation, IEEE Trans.
+    Control Systems Technology 8(6), 2000, sec. III (end-fit).
+    """
+    return _rate(history, head, samples, 1), _rate(history, head, samples, 2), _rate(history, head, samples, 3)
 
 
 @njit(boolean(int64[::1], float64[::1], float64[:, ::1], boolean, int64, int64, int64), **KERNEL)

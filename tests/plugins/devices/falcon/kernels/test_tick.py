@@ -11,7 +11,7 @@ from falcon_streams import buffers
 from tangible_devices.falcon.calibration import LEVER_M, Calibration
 from tangible_devices.falcon.kernels import kinematics, packet, tick
 from tangible_devices.falcon.kernels.framing import DOUBTFUL, FRESH, NEW
-from tangible_devices.falcon.kernels.velocity import rates
+from tangible_devices.falcon.kernels.tick import rates
 
 
 class Falcon:

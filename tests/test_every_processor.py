@@ -51,7 +51,7 @@ MAY = {
     "pictures.py": "adds whole numbers",
     "kornia_gabor_kernels.py": "is torch's, compared within a tolerance",
     "calibration.py": "has one term",
-    "scripted_hand.py": "is a simulated hand, and no result",
+    "falcons.py": "is a simulated hand, and no result",
     "block.py": "draws",
     "nearest.py": "knows the exact answer on a scene that is made up, and is compared with within a tolerance",
 }

@@ -15,9 +15,8 @@ from tangible_core.errors import DeviceError
 from .kernels import tick
 from .kernels.framing import ANSWERS, DROPPED, receive
 from .kernels.packet import GREEN, HOMED, HOMING, RED, SIZE
-from .usb.errors import REPLUG
 from .usb.firmware import NULL
-from .usb.port import READ_BYTES, Port
+from .usb.port import READ_BYTES, REPLUG, Port
 
 log: logging.Logger = logging.getLogger(__name__)
 FRAME_S = 0.0009

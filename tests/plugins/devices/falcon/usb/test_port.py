@@ -12,8 +12,7 @@ from falcon_bus import held_bus
 from tangible_core.errors import DeviceAbsent, DeviceError
 from tangible_devices.falcon.simulator.bus import Bus
 from tangible_devices.falcon.usb import port
-from tangible_devices.falcon.usb.errors import UDEV_RULE, device_error
-from tangible_devices.falcon.usb.port import connected_devices, open_port, run_time
+from tangible_devices.falcon.usb.port import UDEV_RULE, connected_devices, device_error, open_port, run_time
 
 LATENCY_1, BAUD, PURGES = (9, 1), (3, 0x0002), [(0, 1), (0, 2)]
 

@@ -11,8 +11,7 @@ from tangible_devices.falcon.link import FalconLink
 from tangible_devices.falcon.opening import open_falcon
 from tangible_devices.falcon.simulator.body import Body
 from tangible_devices.falcon.simulator.bus import Bus, Unit
-from tangible_devices.falcon.simulator.chip import Chip
-from tangible_devices.falcon.simulator.clock import SimulatedClock
+from tangible_devices.falcon.simulator.chip import Chip, SimulatedClock
 from tangible_devices.falcon.simulator.falcons import simulated_falcon, synthetic_image
 from tangible_devices.falcon.simulator.faults import Fault
 from tangible_devices.falcon.simulator.processor import Processor

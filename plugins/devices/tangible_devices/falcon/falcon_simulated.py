@@ -68,7 +68,7 @@ class FalconSimulated(HapticDevice, Scripted):
         """
         from .opening import open_falcon
         from .simulator.bus import Bus
-        from .simulator.clock import RealClock, SimulatedClock
+        from .simulator.chip import RealClock, SimulatedClock
         from .simulator.falcons import simulated_falcon, synthetic_image
 
         clock = RealClock() if self.real_time else SimulatedClock()

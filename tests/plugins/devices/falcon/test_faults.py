@@ -9,7 +9,7 @@ from falcon_bus import held_bus, open_on
 from tangible_core.data import NO_FORCE, Force
 from tangible_core.errors import DeviceError
 from tangible_devices.falcon.simulator.bus import Bus
-from tangible_devices.falcon.simulator.clock import SimulatedClock
+from tangible_devices.falcon.simulator.chip import SimulatedClock
 from tangible_devices.falcon.simulator.faults import ERRORS, Fault
 
 WORDS = {

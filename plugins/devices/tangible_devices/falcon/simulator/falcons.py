@@ -12,8 +12,7 @@ from ..calibration import Calibration
 from ..usb.image import KEY, RESERVED_WORDS
 from .body import PERIOD_S, Body
 from .bus import Unit
-from .chip import Chip
-from .clock import SimulatedClock
+from .chip import Chip, SimulatedClock
 from .processor import Processor
 
 TIP_KG, VISCOUS_N_S_PER_M, COULOMB_N = 0.2, 1.0, 0.4

@@ -5,8 +5,6 @@ As `sgm.aggregation`, but all rows fit into memory, so that costs are computed o
 
 # ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
 
-from typing import NamedTuple
-
 import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import uint8
@@ -23,19 +21,6 @@ from ..simd.lanes import Lanes, load, maximum, minimum, saturating_add, shift_do
 
 FEWEST_LANES = 64
 """Fewest lanes; more are a power of two, so that few kernels are compiled, and larger disparities fill them."""
-
-
-class _Scratch(NamedTuple):
-    """Scratch memory of a sweep, for m matched columns and n lanes."""
-
-    costs: UInt8[np.ndarray, "even_rows m*n"]
-    total: UInt8[np.ndarray, "even_rows m*n"]
-    p2: UInt8[np.ndarray, "2 m+1"]
-    path: UInt8[np.ndarray, "1 m*n"]
-    path_lowest: UInt8[np.ndarray, "m"]
-    codes: UInt8[np.ndarray, "planes w+n-1"]
-    bounds: UInt8[np.ndarray, "2 w+n-1"]
-    right_sums: UInt8[np.ndarray, "w+n+stride"]
 
 
 def sweep_columns(
@@ -56,16 +41,9 @@ def sweep_columns(
     w = out.shape[1]
     n = max(FEWEST_LANES, 1 << (span.size - 1).bit_length())
     span = Span(span.low, span.low + n - 1)
-    scratch = _Scratch(
-        np.empty((rows + rows % 2, m * n), np.uint8),
-        np.empty((rows + rows % 2, m * n), np.uint8),
-        np.empty((2, m + 1), np.uint8),
-        np.empty((1, m * n), np.uint8),
-        np.empty(m, np.uint8),
-        np.empty((PLANES, w + n - 1), np.uint8),
-        np.empty((2, w + n - 1), np.uint8),
-        np.empty(w + n + stride, np.uint8),
-    )
+    even, beyond = rows + rows % 2, w + n - 1
+    shapes = (even, m * n), (even, m * n), (2, m + 1), (1, m * n), m, (PLANES, beyond), (2, beyond), beyond + 1 + stride
+    scratch = tuple(np.empty(shape, np.uint8) for shape in shapes)
     _sweep(Lanes(n, PLANES), left, right, grey, span, penalties, stride, scratch, out)
 
 

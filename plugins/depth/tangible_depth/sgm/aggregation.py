@@ -13,10 +13,7 @@ codes[x], a row of w + n - 1 codes of which codes[i] is the right view's column 
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- numba infers the types of kernels; their docstrings give them
 
-from typing import NamedTuple
-
 import numpy as np
-from jaxtyping import Int32, UInt8
 from numba import uint8, uint64
 
 from tangible_core.compiled import KERNEL, inner, njit
@@ -30,24 +27,9 @@ WORST = np.uint8(255)
 """Sum of a disparity that is never accepted."""
 
 
-class Scratch(NamedTuple):
-    """Scratch memory of one sweep."""
-
-    total: UInt8[np.ndarray, "rows w*n"]
-    paths: UInt8[np.ndarray, "2 w*n"]
-    path_lowest: UInt8[np.ndarray, "w"]
-    costs: UInt8[np.ndarray, "2 w*n"]
-    p2: UInt8[np.ndarray, "3 w+1"]
-    codes: UInt8[np.ndarray, "planes w+n-1"]
-    best: Int32[np.ndarray, "w"]
-    right_sums: UInt8[np.ndarray, "w+n"]
-    beside: UInt8[np.ndarray, "2 w"]
-    confirmed: UInt8[np.ndarray, "w"]
-
-
-def scratch(rows: int, w: int, n: int, planes: int) -> Scratch:
+def scratch(rows: int, w: int, n: int, planes: int) -> tuple[np.ndarray, ...]:
     """Allocate scratch memory for strips of at most `rows` rows of w columns, n lanes, and codes of `planes` planes."""
-    return Scratch(
+    return (
         np.empty((rows + rows % 2, w * n), np.uint8),
         np.empty((2, w * n), np.uint8),
         np.empty(w, np.uint8),

@@ -6,10 +6,8 @@ crossed on the path from it, and at the left border the geodesic candidate; `can
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- numba infers the types of kernels; their docstrings give them
 
-from typing import NamedTuple
-
 import numpy as np
-from jaxtyping import Bool, Int16, Int32, Int64, UInt8
+from jaxtyping import Int16, UInt8
 from numba import int32
 
 from tangible_core.compiled import KERNEL, in_blocks, inner, njit
@@ -54,25 +52,14 @@ def _fill_once(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w
     return out, sum(left_over)
 
 
-class _Scratch(NamedTuple):
-    """Scratch memory for filling a block of rows."""
-
-    sides: Int16[np.ndarray, "5 w"]
-    paths: Int32[np.ndarray, "5 w"]
-    below: Int16[np.ndarray, "rows w"]
-    below_path: Int32[np.ndarray, "rows w"]
-    seen: Int16[np.ndarray, "w+2"]
-    columns: Int32[np.ndarray, "w"]
-    edges: Int64[np.ndarray, "w+1"]
-    missing: Bool[np.ndarray, "w"]
-
-
-def _scratch(rows: int, w: int) -> _Scratch:
-    return _Scratch(
-        np.empty((GEODESIC + 1, w), np.int16),
-        np.empty((GEODESIC + 1, w), np.int32),
-        np.empty((rows, w), np.int16),
-        np.empty((rows, w), np.int32),
+def _scratch(rows: int, w: int) -> tuple[np.ndarray, ...]:
+    """Return scratch memory for filling a block of rows."""
+    of_sides, of_below = (GEODESIC + 1, w), (rows, w)
+    return (
+        np.empty(of_sides, np.int16),
+        np.empty(of_sides, np.int32),
+        np.empty(of_below, np.int16),
+        np.empty(of_below, np.int32),
         np.empty(w + 2, np.int16),
         np.empty(w, np.int32),
         np.empty(w + 1, np.int64),

@@ -15,9 +15,9 @@ from ..dense.span import UNKNOWN, Span
 from ..sgm.aggregation import WORST, begin_path, equiangular, shift_codes
 from ..sgm.census import PLANES
 from ..sgm.costs import Penalties
-from ..sgm.paths import add_horizontal_paths, jump_penalties, jump_penalties_along, step
-from ..simd.lane_reductions import differences, first_equal, first_lane, lowest
-from ..simd.lanes import Lanes, load, maximum, minimum, saturating_add, shift_down, splat, store, width
+from ..sgm.paths import add_horizontal_paths, jump_penalties, jump_penalties_along, limited_cost, row_limits, step
+from ..simd.lane_reductions import first_equal, first_lane, lowest
+from ..simd.lanes import Lanes, load, minimum, saturating_add, shift_down, splat, store, width
 
 FEWEST_LANES = 64
 """Fewest lanes; more are a power of two, so that few kernels are compiled, and larger disparities fill them."""
@@ -41,22 +41,24 @@ def sweep_columns(
     w = out.shape[1]
     n = max(FEWEST_LANES, 1 << (span.size - 1).bit_length())
     span = Span(span.low, span.low + n - 1)
-    even, beyond = rows + rows % 2, w + n - 1
-    shapes = (even, m * n), (even, m * n), (2, m + 1), (1, m * n), m, (PLANES, beyond), (2, beyond), beyond + 1 + stride
+    even = rows + rows % 2
+    shapes = (even, m * n), (even, m * n), (2, m + 1), (1, m * n), m, (PLANES, w + n - 1), w + n + stride
     scratch = tuple(np.empty(shape, np.uint8) for shape in shapes)
-    _sweep(Lanes(n, PLANES), left, right, grey, span, penalties, stride, scratch, out)
+    limits = row_limits(n, w, span, penalties.neutral)
+    _sweep(Lanes(n, PLANES), left, right, grey, span, limits, penalties, stride, scratch, out)
 
 
 @njit(**KERNEL)
-def _sweep(lanes, left, right, grey, span, penalties, stride, scratch, out):
+def _sweep(lanes, left, right, grey, span, limits, penalties, stride, scratch, out):
     rows, w = out.shape
-    costs, total, p2, path, path_lowest, codes, bounds, right_sums = scratch
+    n = width(lanes)
+    costs, total, p2, path, path_lowest, codes, right_sums = scratch
     p1 = penalties.p1
-    _bounds(w, span.high, penalties.neutral, bounds)
     begin_path(path, path_lowest)
     for y in range(rows):
         shift_codes(right[y], w, span.high, codes)
-        _differing_bits(lanes, left[y], codes, bounds, stride, costs[y])
+        for i in range(path_lowest.size):
+            store(costs[y], i * n, limited_cost(lanes, left[y], codes, i * stride, limits))
         jump_penalties(penalties, grey[y], grey[max(y - 1, 0)], p2[0])
         _vertical(lanes, p1, p2[0], costs[y], path[0], path_lowest, total[y], True)
     for y in range(0, rows, 2):
@@ -70,26 +72,7 @@ def _sweep(lanes, left, right, grey, span, penalties, stride, scratch, out):
         jump_penalties(penalties, grey[y], grey[min(y + 1, rows - 1)], p2[0])
         _vertical(lanes, p1, p2[0], costs[y], path[0], path_lowest, total[y], False)
         _best_right_sums(lanes, total[y], stride, right_sums)
-        _accept(lanes, total[y], span, stride, bounds, right_sums, out[y])
-
-
-@inner()
-def _bounds(w, top, neutral, bounds):
-    """Write the most and the least that a column of the right view costs: neutral beyond the picture."""
-    for i in range(bounds.shape[1]):
-        beyond = (i < top) | (i >= top + w)
-        bounds[0, i] = uint8(0) if beyond else uint8(255)
-        bounds[1, i] = neutral if beyond else uint8(0)
-
-
-@inner()
-def _differing_bits(lanes, left, codes, bounds, stride, costs):
-    """Count the differing bits of codes; neutral if a disparity leads out of the right view."""
-    n = width(lanes)
-    for i in range(costs.size // n):
-        x = i * stride
-        cost = minimum(differences(lanes, left, codes, x), load(lanes, bounds[0], x))
-        store(costs, i * n, maximum(cost, load(lanes, bounds[1], x)))
+        _accept(lanes, total[y], span, stride, limits.most, right_sums, out[y])
 
 
 @inner()
@@ -122,7 +105,7 @@ def _best_right_sums(lanes, total, stride, right_sums):
 
 
 @inner()
-def _accept(lanes, sums, span, stride, bounds, right_sums, disparity):
+def _accept(lanes, sums, span, stride, most, right_sums, disparity):
     """Accept mutual best matches that fit better than both neighbouring disparities.
 
     Written without branches, as acceptance is unpredictable.
@@ -136,7 +119,7 @@ def _accept(lanes, sums, span, stride, bounds, right_sums, disparity):
         before, after = np.float32(sums[i * n + max(k - 1, 0)]), np.float32(sums[i * n + min(k + 1, n - 1)])
         inner = (k > 0) & (k < n - 1)
         flat = inner & (before == at) & (after == at)
-        fits = (bounds[0, x + k] != 0) & (at < WORST) & (at <= right_sums[x + k])
+        fits = (most[x + k] != 0) & (at < WORST) & (at <= right_sums[x + k])
         offset = equiangular(before, np.float32(at), after) if inner else np.float32(0)
         sixteenths = np.int16(np.floor(16 * (np.float32(span.high - k) - offset) + np.float32(0.5)))
         for j in range(x, min(x + stride, disparity.size)):

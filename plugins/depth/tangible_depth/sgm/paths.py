@@ -65,7 +65,7 @@ def step(lanes, before, before_lowest, cost, p1, p2):
 
 
 @inner()
-def _limited_cost(lanes, left, codes, x, limits):
+def limited_cost(lanes, left, codes, x, limits):
     """Count the differing bits of codes; neutral if a disparity leads out of the right view, 255 for unused lanes."""
     cost = minimum(differences(lanes, left, codes, x), load(lanes, limits.most, x))
     return maximum(maximum(cost, load(lanes, limits.least, x)), load(lanes, limits.barred, 0))
@@ -94,7 +94,7 @@ def _step_columns(lanes, left, codes, limits, barred, columns, p1, p2, before, p
         if limits is None:  # a compile-time constant: the other branch is removed
             cost = maximum(differences(lanes, left, codes, x), never)
         else:
-            cost = _limited_cost(lanes, left, codes, x, limits)
+            cost = limited_cost(lanes, left, codes, x, limits)
         store(costs, x * n, cost)
         i = uint64(x)  # never negative, which spares numba a test
         here = step(lanes, load(lanes, before, x * n), path_lowest[i], cost, p1, p2[i])

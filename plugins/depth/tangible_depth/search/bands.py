@@ -70,7 +70,8 @@ def match_bands(pair: Pair, span: Span, width: int = FINE_WIDTH) -> Bands:
     _encode_bands(pair.left, pair.right, factor, OFFSETS, stride, total, band, rows, codes, grey, flat)
     disparity = np.empty((COUNT, columns), np.int16)
     sweep_columns(codes[0], codes[1], grey, span.downsample(factor).within(columns), SHARP.penalties, stride, disparity)
-    found = _remove_flat(flat, disparity)
+    disparity[flat] = UNKNOWN
+    found = int(np.count_nonzero(disparity != UNKNOWN))
     lost = remove_speckles(disparity, LARGEST_SPECK)
     return Bands(rows, disparity, factor, found - lost, lost / max(1, found))
 
@@ -133,15 +134,3 @@ def _find_flat_columns(band, flat):
             for k in range(1, 2 * FLAT_REACH + 1):
                 level &= line[x] == line[x + k]
             flat[x] &= level
-
-
-@njit(**KERNEL)
-def _remove_flat(flat, disparity):
-    """Make flat pixels UNKNOWN; return the number of known ones."""
-    known = 0
-    for y in range(disparity.shape[0]):
-        for x in range(disparity.shape[1]):
-            value = UNKNOWN if flat[y, x] else disparity[y, x]
-            disparity[y, x] = value
-            known += value != UNKNOWN
-    return known

@@ -1,14 +1,11 @@
 """The search range of a pair: the disparities that were requested, or those that occur."""
 
-# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
-
 import logging
 from math import ceil, floor
 from typing import Literal, NamedTuple
 
 import numpy as np
 
-from tangible_core.compiled import KERNEL, njit
 from tangible_core.errors import PictureError
 from tangible_core.plugins import note
 
@@ -32,8 +29,6 @@ NOISY = 0.6
 """Loss (share of speckles) from which the first copy, which averages noise away, counts as well."""
 FIRST_MARGIN, MARGIN = 1, 2
 """Margins added to the range of the first and second copy at either end, in pixels of the copy."""
-LARGEST = np.int16(32767)
-"""Disparity above every real one."""
 
 
 class RangeEstimate(NamedTuple):
@@ -87,32 +82,12 @@ def _range_of_bands(pair: Pair, span: Span, width: int, margin: int) -> RangeEst
     factor = bands.factor
     if bands.known == 0:
         return None
-    extremes = np.empty((2, 1 + int(FRINGE * bands.known)), np.int16)
-    _find_extremes(bands.disparity, *extremes)
-    low, high = (int(each[-1]) * factor / 16 for each in extremes)
+    dropped = int(FRINGE * bands.known)
+    ends = dropped, bands.known - 1 - dropped
+    known = np.partition(bands.disparity[bands.disparity != UNKNOWN], ends)
+    low, high = (known[[*ends]] * (factor / 16)).tolist()
     span = Span(floor(low) - margin * factor, ceil(high) + margin * factor)
     return RangeEstimate(span, bands, low < -2 and high <= 1)
-
-
-@njit(**KERNEL)
-def _find_extremes(disparity, lowest, highest):
-    """Find the lowest known disparities, in rising order, and the highest, in falling order."""
-    lowest[:], highest[:] = LARGEST, UNKNOWN
-    for y in range(disparity.shape[0]):
-        for x in range(disparity.shape[1]):
-            value = disparity[y, x]
-            if value != UNKNOWN and value < lowest[-1]:
-                i = lowest.size - 1
-                while i > 0 and lowest[i - 1] > value:
-                    lowest[i] = lowest[i - 1]
-                    i -= 1
-                lowest[i] = value
-            if value > highest[-1]:
-                i = highest.size - 1
-                while i > 0 and highest[i - 1] < value:
-                    highest[i] = highest[i - 1]
-                    i -= 1
-                highest[i] = value
 
 
 log: logging.Logger = logging.getLogger(__name__)

@@ -104,19 +104,6 @@ def bands_in_sixteenths(sixteenths: np.ndarray, factor: int = 1, loss: float = 0
     return Bands(np.arange(len(sixteenths)), sixteenths.astype(np.int16), factor, known, loss)
 
 
-@pytest.mark.parametrize("count", [1, 2, 7])
-def test_extremes_are_the_lowest_and_highest_known_values_with_equal_ones(count: int):
-    random = np.random.default_rng(0)
-    for _ in range(50):
-        values = random.integers(-4, 5, (5, 9)).astype(np.int16)
-        values[random.random((5, 9)) < 0.3] = UNKNOWN
-        known = np.sort(values[values != UNKNOWN])
-        lowest, highest = np.empty((2, count), np.int16)
-        module._find_extremes(values, lowest, highest)
-        assert lowest.tolist() == known[:count].tolist()
-        assert highest.tolist() == known[::-1][:count].tolist()
-
-
 @pytest.mark.parametrize(("factor", "span"), [(1, Span(1 - 2, 7 + 2)), (3, Span(3 - 6, 19 + 6))])
 def test_range_leaves_out_stray_matches_and_has_a_margin_in_pixels_of_the_copy(factor: int, span: Span, monkeypatch):
     """Of 4000 matches two at either end; those left are at 1.0625 to 6.25 px of the copy."""

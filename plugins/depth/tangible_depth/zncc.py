@@ -1,34 +1,20 @@
 """Dense zero-mean normalised cross-correlation."""
 
-from typing import TYPE_CHECKING
-
-from tangible_core.data import DisparityMap, Views
+from typing import Any
 
 from .matching.methods import WindowMatcher
-
-if TYPE_CHECKING:
-    from .matching.chain import Matcher, Search
 
 
 class Zncc(WindowMatcher):
     """Window matching by normalised cross-correlation, with sub-pixel refinement, left-right check and filling.
 
     Local, so that it does not guess without texture; independent of gain and offset of the exposure.
-    Colour is reduced to grey.
+    Colour is reduced to grey. Confidence of a match: the correlation.
     Memory above the pictures: about 25 bytes a pixel, and 8 bytes a column and disparity for each thread.
     Source: the report "Tangible Images", ch. 2, matching value (2.14).
     """
 
-    def estimate(self, views: Views) -> DisparityMap:
-        """Estimate disparity in pixels, float32 (h, w), and its confidence; a filled map is finite if anything matched.
-
-        Confidence: 0.2 up to the correlation where a match was found; 0 up to 0.1 where the value was filled or decided
-        by a neighbour; less in either range next to depth steps and in gaps; 0 where nothing changes along the rows.
-        Raises: PictureError if there is no right view or the range is empty.
-        """
-        return self._estimate(views)
-
-    def _named_search_and_matcher(self) -> "tuple[str, Search, Matcher]":
+    def _named_measure(self) -> tuple[str, Any]:
         from .matching.window_matching import match_by_correlation
 
-        return self._named("zncc", match_by_correlation)
+        return "zncc", match_by_correlation

@@ -39,7 +39,14 @@ class WindowMatcher(DepthEstimator, Following):
     """Fill pixels without a match with the disparity that both views and the picture's edges suggest; if false they are
     NaN."""
 
-    def _estimate(self, views: Views) -> DisparityMap:
+    def estimate(self, views: Views) -> DisparityMap:
+        """Estimate disparity in pixels, float32 (h, w), and its confidence; a filled map is finite if anything matched.
+
+        Confidence: 0.2 up to the measure's own where a match was found; 0 up to 0.1 where the value was filled or
+        decided by a neighbour; less in either range next to depth steps and in gaps; 0 where nothing changes along the
+        rows.
+        Raises: PictureError if there is no right view or the range is empty.
+        """
         from .chain import disparity_map
 
         return disparity_map(views, *self._named_search_and_matcher())
@@ -51,11 +58,12 @@ class WindowMatcher(DepthEstimator, Following):
         return FilmMatcher(views, *self._named_search_and_matcher())
 
     @abstractmethod
-    def _named_search_and_matcher(self) -> "tuple[str, Search, Matcher]":
-        """Return the method's name, the options of the chain, and the matcher."""
+    def _named_measure(self) -> "tuple[str, Callable[[Pair, Span, int], DenseMatches]]":
+        """Return the method's name, and the matching by its measure of windows of some width."""
 
-    def _named(self, name: str, match: "Callable[[Pair, Span, int], DenseMatches]") -> "tuple[str, Search, Matcher]":
+    def _named_search_and_matcher(self) -> "tuple[str, Search, Matcher]":
         from .chain import Search
 
+        name, match = self._named_measure()
         search = Search(self.min_disparity_px, self.max_disparity_px, self.rectify, self.fill)
         return name, search, lambda pair, span: match(pair, span, self.window_px)

@@ -39,8 +39,9 @@ def _entry(coefficients, across_per_m, down_per_m, from_x, from_y, from_z, x, y,
 
 
 @inner(forceinline=True)
-def approach(coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, memory, x, y, z, speed):
+def approach(shape, tiles_m, memory, x, y, z, speed):
     """Return True if the hand is in the surface; write its phase and the proxy's starting point to the memory."""
+    coefficients, width_m, length_m, across_per_m, down_per_m = shape
     phase, px, py, was_x, was_y, was_z = memory[7], memory[0], memory[1], memory[3], memory[4], memory[5]
     memory[7], memory[2], memory[3], memory[4], memory[5] = LOST, np.nan, x, y, z
     if not np.isfinite(x + y + z + speed):

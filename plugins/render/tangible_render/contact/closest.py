@@ -32,26 +32,13 @@ STEEP = 0.1
 
 
 @inner(forceinline=True)
-def settle(
-    coefficients,
-    width_m,
-    length_m,
-    across_per_m,
-    down_per_m,
-    px,
-    py,
-    x,
-    y,
-    z,
-    static_friction,
-    dynamic_friction,
-    slides,
-):
+def settle(shape, px, py, x, y, z, static_friction, dynamic_friction, slides):
     """Return the proxy (x, y, height, slope_x, slope_y, slides) of a hand at (x, y, z), from the last one (px, py).
 
     With friction the proxy stays in place while the force is within the static cone (the dynamic one if it slides
     already), and otherwise moves until the force is on the dynamic cone.
     """
+    coefficients, width_m, length_m, across_per_m, down_per_m = shape
     half, cell_m = (0.5 * width_m, 0.5 * length_m), 1.0 / max(across_per_m, down_per_m)
     near_m = max(NEAR_CELLS * cell_m, min(NEAR_M, NEAR_FINE_CELLS * cell_m))
     expansion = bend(coefficients, across_per_m, down_per_m, px, py)

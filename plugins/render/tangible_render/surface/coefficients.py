@@ -1,12 +1,16 @@
-"""Coefficients of a C2 surface: a cubic B-spline through the heights at the cells' centres, except near jumps."""
+"""Coefficients of a C2 surface: a cubic B-spline through the heights at the cells' centres, except near jumps.
+
+For a blunt fingertip, the heights are first those of a ball that rolls over the surface.
+"""
+
+from collections.abc import Iterator
+from itertools import pairwise, product
 
 import numpy as np
 from jaxtyping import Bool, Float32, Float64
 
 from tangible_core.data import HapticSurface
 
-from .b_spline import spline_filter
-from .ball import roll_ball
 from .dequantise import Filter, dequantise
 from .jumps import ease, jumps
 
@@ -14,6 +18,10 @@ BORDER = 2
 """The rows and columns of coefficients beyond the heights on each side, for the outermost half cell."""
 _RUN_IN = 32
 """The cells added for the recursive filter: the effect of its start has faded by (2 - sqrt 3)^32, 1e-18."""
+POLE = -0.267949192431122706472553658494127633
+"""Pole of the cubic B-spline's filter, sqrt(3) - 2. Source: Unser, Aldroubi & Eden (1993), as below."""
+GAIN = (1 - POLE) * (1 - 1 / POLE)
+"""Factor on every value, 6 but for rounding: the filter leaves a constant as it is."""
 
 
 def spline_coefficients(height_m: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h4 w4"]:
@@ -48,6 +56,35 @@ def _extend(height_m: Float32[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -
     return values
 
 
+def spline_filter(values: Float64[np.ndarray, "h w"]) -> None:
+    """Replace each column's values by the coefficients of the cubic B-spline through them, in place.
+
+    values: 3 rows or more, finite; beyond the outermost rows they go on as their mirror image.
+    The same bits as SciPy's `spline_filter1d(values, 3, axis=0, mode="mirror")`, without the import of `scipy.ndimage`,
+    which takes longer than the filter itself on any surface that one touches.
+    """
+    values *= GAIN
+    rows, last, part = [*values], len(values) - 1, np.empty_like(values[0])
+    across, weight = POLE**last, POLE
+    rows[0] += across * rows[last]
+    for row in range(1, last):
+        np.multiply(rows[last - row], across, out=part)
+        part += rows[row]
+        part *= weight
+        rows[0] += part
+        weight *= POLE
+        if not weight:  # too small for a double: all further ones are as well
+            break
+    rows[0] /= 1 - across * across
+    for before, here in pairwise(rows):
+        np.multiply(before, POLE, out=part)
+        here += part
+    rows[last][:] = (POLE * rows[last - 1] + rows[last]) * POLE / (POLE * POLE - 1)
+    for after, here in zip(rows[:0:-1], rows[-2::-1], strict=True):
+        np.subtract(after, here, out=here)
+        here *= POLE
+
+
 def spline_surface(
     surface: HapticSurface, cells: Filter, radius_m: float = 0.0
 ) -> tuple[Float32[np.ndarray, "h4 w4"], float, float, float, float]:
@@ -58,3 +95,50 @@ def spline_surface(
     (rows, columns), (width_m, length_m) = surface.height_m.shape, surface.extent_m
     height_m = roll_ball(dequantise(surface.height_m, cells), surface.extent_m, radius_m)
     return spline_coefficients(height_m), float(width_m), float(length_m), columns / width_m, rows / length_m
+
+
+def roll_ball(
+    height_m: Float32[np.ndarray, "h w"], extent_m: tuple[float, float], radius_m: float
+) -> Float32[np.ndarray, "h w"]:
+    """Return the height of the lowest point of a ball that lies on the surface, at each cell (the offset surface).
+
+    h_r(x) = max over |d| <= r of h(x + d) + sqrt(r^2 - |d|^2) - r: a dilation by the ball. The radius of curvature of
+    every bump grows by r, and a groove narrower than 2 r is shallower or gone. Beyond the border there is no surface.
+    The ball may touch cells' centres and the middles between them, where heights are means. On slopes of s, h_r is too
+    low by up to cell^2 ((1 + s^2)^(3/2) / r + 5 curvature) / 32.
+    extent_m: width and length. radius_m: not negative; 0 returns the heights.
+    Source: Serra, Image Analysis and Mathematical Morphology (1982), the dilation of a function by a ball.
+    """
+    if radius_m == 0:
+        return height_m
+    (rows, columns), (width_m, length_m) = height_m.shape, extent_m
+    rolled = height_m.copy()
+    for beside, beneath in product((0, 1), (0, 1)):  # half cells
+        touched_m = _means(_means(height_m, beneath).T, beside).T
+        for dy, dy_m in _steps(beneath, radius_m, length_m / rows, rows):
+            across_m = (radius_m**2 - dy_m**2) ** 0.5
+            for dx, dx_m in _steps(beside, across_m, width_m / columns, columns):
+                lift_m = np.float32((across_m**2 - dx_m**2) ** 0.5 - radius_m)
+                (to_y, from_y), (to_x, from_x) = _overlap(dy, rows, beneath), _overlap(dx, columns, beside)
+                there = rolled[to_y, to_x]
+                np.maximum(there, touched_m[from_y, from_x] + lift_m, out=there)
+    return rolled
+
+
+def _means(height_m: Float32[np.ndarray, "n m"], half: int) -> Float32[np.ndarray, "k m"]:
+    """Return the heights, or with `half` those in the middle between each row and the next."""
+    return (height_m[:-1] + height_m[1:]) / 2 if half else height_m
+
+
+def _steps(half: int, reach_m: float, cell_m: float, cells: int) -> Iterator[tuple[int, float]]:
+    """Yield the shifts, in whole cells, to places within reach, each with its distance."""
+    whole = min(cells - 1, int(reach_m / cell_m) + 1)
+    for shift in range(-whole, whole + 1 - half):
+        if abs(distance_m := (shift + half / 2) * cell_m) <= reach_m:
+            yield shift, distance_m
+
+
+def _overlap(shift: int, cells: int, half: int) -> tuple[slice, slice]:
+    """Return the cells that have a place at this shift, and the places."""
+    first, last = max(0, -shift), min(cells, cells - half - shift)
+    return slice(first, last), slice(first + shift, last + shift)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import spline_filter1d
 
-from tangible_render.surface.b_spline import spline_filter
+from tangible_render.surface.coefficients import spline_filter
 
 
 @pytest.mark.parametrize("shape", [(3, 5), (4, 1), (64, 90), (700, 30)])

@@ -6,7 +6,7 @@ import pytest
 from tangible_core.data import HapticState, HapticSurface, Relief
 from tangible_core.errors import ConfigError
 from tangible_render.proxy import Proxy
-from tangible_render.surface.ball import roll_ball
+from tangible_render.surface.coefficients import roll_ball
 
 WIDE_M = 0.04
 CELLS = 300

@@ -8,12 +8,20 @@ Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal P
 """
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
+# pyright: reportCallIssue=false
 
-from numba import types
+from typing import Any
+
+from llvmlite import ir
+from numba import int64, types
+from numba.extending import intrinsic
 
 from tangible_core.compiled import KERNEL, inner, inner_by_type, njit
 
-from .prefetch import prefetch_line
+BYTE: Any = ir.IntType(8).as_pointer()
+FLAG: Any = ir.IntType(32)
+READ, KEEP, DATA = 0, 3, 1
+"""The flags of LLVM's prefetch: for reading, into all levels of the cache, data rather than instructions."""
 
 
 @njit(**KERNEL)
@@ -104,6 +112,21 @@ def _dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 
 
+@intrinsic
+def _prefetch_line(context: Any, array: Any, offset: Any) -> Any:
+    """Prefetch the cache line at a byte offset into an array; it neither waits nor fails."""
+
+    def generate(context, builder, signature, arguments):
+        data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
+        at = builder.gep(builder.bitcast(data, BYTE), [arguments[1]])
+        kind = ir.FunctionType(ir.VoidType(), [BYTE, FLAG, FLAG, FLAG])
+        prefetch = builder.module.declare_intrinsic("llvm.prefetch", [BYTE], kind)
+        builder.call(prefetch, [at, *(ir.Constant(FLAG, each) for each in (READ, KEEP, DATA))])
+        return context.get_dummy_value()
+
+    return types.void(array, int64), generate
+
+
 def _shape_of_one(coefficients):
     return coefficients.shape
 
@@ -113,12 +136,12 @@ def _shape_of_two(coefficients):
 
 
 def _fetch_of_one(coefficients, row, column):
-    prefetch_line(coefficients, row * coefficients.strides[0] + column * coefficients.strides[1])  # pyright: ignore[reportCallIssue]
+    _prefetch_line(coefficients, row * coefficients.strides[0] + column * coefficients.strides[1])
 
 
 def _fetch_of_two(coefficients, row, column):
     pairs, _, _ = coefficients
-    prefetch_line(pairs, row * pairs.strides[0] + column * pairs.strides[1])  # pyright: ignore[reportCallIssue]
+    _prefetch_line(pairs, row * pairs.strides[0] + column * pairs.strides[1])
 
 
 def _column_of_one(coefficients, row, column, weights):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rough_surfaces import rough_surfaces
-from tangible_render.film.coefficients import HIGHEST_M, quick_coefficients
+from tangible_render.film.film import HIGHEST_M, quick_coefficients
 from tangible_render.film.scratch import MARGIN, RING, Scratch
 from tangible_render.surface.coefficients import spline_coefficients
 from tangible_render.surface.jumps import jumps

@@ -72,7 +72,7 @@ class Pins(Exporter, Previewing):
         pins, place, most, labels = self._raised(work)
         rows, columns = most.shape
         title = shown(work.title)
-        svg = formats.svg(pins, array.levels, raising.parts_on_display(array, most, place), labels, title)
+        svg = formats.svg(pins, array.levels, raising.on_display(array, most, place, -1), labels, title)
         head = {"title": title, "language": work.language, "display": self._name, **array.model_dump()}
         texts = {
             ".json": formats.numbers(pins, {**head, "parts": list(labels.values())}),
@@ -105,8 +105,9 @@ class Pins(Exporter, Previewing):
             )
         most = raising.most_of(parts, rows, columns)
         labels = _visible_labels(work, parts, most)
-        area = raising.heights(work.relief, rows, columns, array.levels - 1) if array.levels > 1 else None
-        pins = raising.pin_heights(array, raising.borders(most), area, place)
+        area = raising.heights(work.relief, rows, columns, array.levels - 1) if array.levels > 1 else 0
+        picture = np.where(raising.borders(most), array.levels, area).astype(np.uint8)
+        pins = raising.on_display(array, picture, place, 0)
         if not pins.any():
             raise PictureError("no pin would rise, as one part fills the display; have more parts, and larger ones")
         return Raised(pins, place, most, labels)

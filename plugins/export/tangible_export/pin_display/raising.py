@@ -1,7 +1,7 @@
 """The raised pins: borders of parts, sought on the grid of the pins, so that none is lost; and heights between them."""
 
 import numpy as np
-from jaxtyping import Bool, Float32, Int32, UInt8
+from jaxtyping import Bool, Float32, Int32, Integer, UInt8
 
 from tangible_core.data import PartMap, Relief
 
@@ -63,19 +63,10 @@ def heights(relief: Relief, rows: int, columns: int, top: int) -> UInt8[np.ndarr
     return np.rint(mean * (top / highest) if highest > 0 else mean * 0).astype(np.uint8)
 
 
-def pin_heights(
-    display: Display, border: Bool[np.ndarray, "r c"], area: UInt8[np.ndarray, "r c"] | None, place: Place
-) -> UInt8[np.ndarray, "rows columns"]:
-    """Return the heights of all pins: borders at the top, areas below them."""
-    pins = np.zeros((display.rows, display.columns), np.uint8)
-    pins[place] = np.where(border, display.levels, 0 if area is None else area)
+def on_display(
+    display: Display, picture: Integer[np.ndarray, "r c"], place: Place, outside: int
+) -> Integer[np.ndarray, "rows columns"]:
+    """Return a value for each pin of the display: those of the picture at its place, `outside` around it."""
+    pins = np.full((display.rows, display.columns), outside, picture.dtype)
+    pins[place] = picture
     return pins
-
-
-def parts_on_display(
-    display: Display, parts: Int32[np.ndarray, "h w"], place: Place
-) -> Int32[np.ndarray, "rows columns"]:
-    """Return the part of each pin of the display; -1 outside of the picture."""
-    padded = np.full((display.rows, display.columns), -1, np.int32)
-    padded[place] = parts
-    return padded

@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 
 from label_maps import rand_index
 from tangible_texture import Hierarchy
-from tangible_texture.clusters.otsu import OtsuClasses
 from tangible_texture.gradient import Gradient
-from tangible_texture.histogram import MOST_LEVELS, Histogram
+from tangible_texture.histogram import MOST_LEVELS, Histogram, OtsuClasses
 from tangible_texture.regions.basins import MOST_SEGMENTS
 from tangible_texture.regions.small_parts import remove_small_parts
 from wavy_cells import cells, smooth_scene

@@ -19,7 +19,7 @@ from tangible_core.compiled import in_turns, njit, thread_count
 from tangible_core.data import check_finite
 from tangible_core.errors import PictureError
 
-from .gabor_bank import Gabor, bank, kernel
+from .gabor_bank import Gabor, kernel
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -135,27 +135,6 @@ class Spectrum(NamedTuple):
     pad_px: int
 
 
-def local_energy(
-    grey: Float32[np.ndarray, "h w"],
-    wavelengths_px: Sequence[float],
-    orientations: int = 6,
-    step_px: int = 4,
-    sigma_px: float = 4.0,
-) -> Float32[np.ndarray, "filters rows columns"]:
-    """Compute smoothed energy |z|^2 in each filter of `gabor_bank.bank`, one value every step_px pixels, rounded up.
-
-    A wave of amplitude a at a filter's own frequency has the energy a^2 / v, v being the variance of the picture: gain
-    and offset have no effect. A flat picture has none. Outside of the picture is its mirror image.
-
-    grey: finite, of any scale. Value (i, j) is the Gaussian mean round pixel ((i + 0.5) step_px - 0.5, ...), with a
-    standard deviation of sigma_px, or RELATIVE_SIGMA wavelengths if that is more.
-    Memory: about 30 bytes a pixel, the result of 6 among them, with two threads on wavelengths of 2.8 px.
-    Raises: PictureError naming the first place that is NaN or infinite.
-    """
-    filters = bank(wavelengths_px, orientations)
-    return energy_planes(spectrum_of(grey, padding(filters, sigma_px)), filters, grey.shape, step_px, sigma_px)
-
-
 def padding(filters: Sequence[Gabor], sigma_px: float) -> int:
     """Return the width of the mirrored frame in px: the reach of the widest smoothing and two sigma of its filter."""
     return ceil(max((REACH * smoothing_px(each, sigma_px) + 2 * each.sigma_px for each in filters), default=0.0))
@@ -199,7 +178,15 @@ def energy_planes(
     sigma_px: float,
     out: Float32[np.ndarray, "filters rows columns"] | None = None,
 ) -> Float32[np.ndarray, "filters rows columns"]:
-    """Compute `local_energy` in these filters, for a picture of this shape; written to `out` if given."""
+    """Compute smoothed energy |z|^2 in these filters, one value every step_px pixels, rounded up; to `out` if given.
+
+    A wave of amplitude a at a filter's own frequency has the energy a^2 / v, v being the variance of the picture: gain
+    and offset have no effect. A flat picture has none. Outside of the picture is its mirror image.
+
+    spectrum: with a `padding` for these filters; shape: that of the picture. Value (i, j) is the Gaussian mean round
+    pixel ((i + 0.5) step_px - 0.5, ...), with a standard deviation of sigma_px, or RELATIVE_SIGMA wavelengths if that
+    is more. Memory: about 30 bytes a pixel, the result of 6 among them, with two threads on wavelengths of 2.8 px.
+    """
     cells = tuple(-(-side // step_px) for side in shape)
     planes = np.empty((len(filters), *cells), np.float32) if out is None else out
 

@@ -38,8 +38,8 @@ def pattern_frequencies(
 ) -> Float32[np.ndarray, "counters rows columns"]:
     """Compute the frequency, 0..1, of each class and agreement in each cell, for every radius of RADII in turn.
 
-    grey: of standard deviation 1. Cells lie as those of `local_energy` with step_px = 4; the last may be cut. A flip or
-    a quarter turn of the picture flips or turns the planes and exchanges some of them. out: the array to write to.
+    grey: of standard deviation 1. Cells lie as those of `energy_planes` with step_px = 4; the last may be cut. A flip
+    or a quarter turn of the picture flips or turns the planes and exchanges some of them. out: the array to write to.
     """
     import cv2
 

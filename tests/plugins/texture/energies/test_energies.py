@@ -17,7 +17,7 @@ from tangible_texture.energies.gabor_bank import (
 )
 from tangible_texture.energies.local_energy import (
     REACH,
-    local_energy,
+    energy_planes,
     mean_energies,
     padding,
     smoothing_px,
@@ -69,6 +69,11 @@ def direct(grey, filters, step_px, sigma_px):
             tables.append(table / table.sum(axis=1, keepdims=True))
         planes.append(tables[0] @ energy @ tables[1].T)
     return np.array(planes)
+
+
+def local_energy(grey, wavelengths_px, orientations=6, step_px=4, sigma_px=4.0):
+    filters = bank(wavelengths_px, orientations)
+    return energy_planes(spectrum_of(grey, padding(filters, sigma_px)), filters, grey.shape, step_px, sigma_px)
 
 
 def worst(found, expected):

@@ -1,7 +1,7 @@
 """A label map from features, by k-means, and an estimate of the number of textures."""
 
 import logging
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from jaxtyping import Float32, Int32
@@ -17,24 +17,15 @@ APART = 0.25
 """The least mean silhouette that indicates structure (Kaufman & Rousseeuw, Finding groups in data, 1990, sec. 2.2)."""
 
 
-class Count(NamedTuple):
-    """An estimated number of segments, its confidence in 0..1, and the reason in words."""
-
-    segments: int
-    confidence: float
-    reason: str
-
-
-def choose_count(features: Float32[np.ndarray, "n d"], most: int, seed: int = 0) -> Count:
+def choose_count(features: Float32[np.ndarray, "n d"], most: int, seed: int = 0) -> tuple[int, float, str]:
     """Choose the number of clusters up to `most` with the greatest mean silhouette; one if that is under APART.
 
-    Confidence: the position of that silhouette between APART and 1, or between APART and 0 for one cluster. No known
-    rule transfers from one set of textures to another: on mosaics of natural textures this one is right in 3 of 10
-    cases, and off by one at most in 7 of 10; its confidence there is 0.15, right or wrong.
+    No known rule transfers from one set of textures to another: on mosaics of natural textures this one is right in 3
+    of 10 cases, and off by one at most in 7 of 10; its confidence there is 0.15, right or wrong.
+    Returns: the number, the confidence in it, and the reason in words. Confidence is the position of that silhouette
+    between APART and 1, or between APART and 0 for one cluster.
     Source: Rousseeuw, Silhouettes, J. Comput. Appl. Math. 20 (1987).
     """
-    from .lloyd import kmeans
-
     rows = features[np.random.default_rng(seed).permutation(len(features))[:SAMPLE]]
     scores: dict[int, float] = {}
     for count in range(2, most + 1):
@@ -45,8 +36,8 @@ def choose_count(features: Float32[np.ndarray, "n d"], most: int, seed: int = 0)
     best = max(scores, key=lambda count: scores[count], default=1)
     score = scores.get(best, 0.0)
     if score < APART:
-        return Count(1, 1 - max(score, 0) / APART, "the features do not separate into groups")
-    return Count(best, (score - APART) / (1 - APART), f"{best} groups have the greatest mean silhouette, {score:.2f}")
+        return 1, 1 - max(score, 0) / APART, "the features do not separate into groups"
+    return best, (score - APART) / (1 - APART), f"{best} groups have the greatest mean silhouette, {score:.2f}"
 
 
 def _silhouette(rows: Float32[np.ndarray, "n d"], labels: np.ndarray) -> float:
@@ -75,9 +66,9 @@ def choose_segments(rows: Float32[np.ndarray, "n d"], segments: int | Literal["a
     """Return the requested number, or for `auto` an estimate, reported with its confidence."""
     if segments != "auto":
         return segments
-    estimate = choose_count(rows, MOST_SEGMENTS, seed)
-    note(log, f"segments: {estimate.segments}, estimated with confidence {estimate.confidence:.2f}: {estimate.reason}")
-    return estimate.segments
+    number, confidence, reason = choose_count(rows, MOST_SEGMENTS, seed)
+    note(log, f"segments: {number}, estimated with confidence {confidence:.2f}: {reason}")
+    return number
 
 
 def segment_by_kmeans(

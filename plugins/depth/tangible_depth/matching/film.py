@@ -15,7 +15,7 @@ from ..rectify.rectifying_rotation import RectificationError
 from ..row_alignment.common_rows import align_rows, common_row_offset, shift_rows
 from ..search.bands import match_bands
 from ..search.disparity_range import find_disparity_range
-from ..search.pairs import Pair, grey_pair
+from ..search.pairs import grey_pair
 from .chain import MOST_LOW_CONFIDENCE, Matcher, Search, low_confidence_share, match_in_order
 
 SEARCH_EVERY = 30
@@ -64,8 +64,10 @@ class FilmMatcher:
             return zero_disparity(pair.left, self._search.fill)
         if self._row_offset_px:
             pair = shift_rows(pair, self._row_offset_px)
-        if self._frames % SEARCH_EVERY == SEARCH_EVERY - 1:
-            self._update_range(pair)
+        if self._frames % SEARCH_EVERY == SEARCH_EVERY - 1 and self._search.most == "auto":
+            estimate = find_disparity_range(pair, self._search.least, "auto")
+            if estimate.bands is not None:  # a frame without matches is ignored
+                self._spans.append(estimate.span)
         disparity = match_in_order(pair, self._span.within(pair.width), self._search.fill, self._match)
         return disparity if rectified is None else rectified.to_original(disparity)
 
@@ -74,14 +76,6 @@ class FilmMatcher:
         whole = Span(min(each.low for each in self._spans), max(each.high for each in self._spans))
         # A range that was given stays as it is.
         return whole.widen() if self._search.most == "auto" and whole.high > 0 else whole
-
-    def _update_range(self, pair: Pair) -> None:
-        """Estimate the range anew unless it was given; a frame without matches is ignored."""
-        if self._search.most != "auto":
-            return
-        estimate = find_disparity_range(pair, self._search.least, self._search.most)
-        if estimate.bands is not None:
-            self._spans.append(estimate.span)
 
     def _rectify(self, views: Views) -> None:
         rectified = rectify(views, quick=False)

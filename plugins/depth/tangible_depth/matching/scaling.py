@@ -4,7 +4,7 @@ import logging
 from typing import Literal, NamedTuple
 
 import numpy as np
-from jaxtyping import Float, Int16, UInt8
+from jaxtyping import UInt8
 
 from tangible_core.plugins import note
 
@@ -15,7 +15,7 @@ from ..dense.span import UNKNOWN, Span
 from ..search.pairs import Pair
 from ..sgm.costs import COSTS, SHARP, Penalties, p2_by_grey_step
 from ..sgm.strips import MOST_LANES, strips
-from .adaptive import Fixed, MatchedView, match
+from .adaptive import Fixed, match
 
 log: logging.Logger = logging.getLogger(__name__)
 CHECK_TOLERANCE = {"soft": 1.08, "strict": 1.0}
@@ -78,13 +78,8 @@ def _match(pair: Pair, span: Span, options: Scaling, factor: int) -> DenseMatche
     found = match(pair, span, rows, Fixed(cost, CHECK_TOLERANCE[options.check], realign_rows, options.effort))
     by_sum = np.maximum(1 - np.arange(256) / (4 * found.cost.bits), LEAST_MATCHED)
     cleaning = Cleaning(not preview, found.cost.specks, factor, options.effort)
-    from_right = None if found.mirrored_right is None else _from_right(found.mirrored_right, by_sum, cleaning)
+    from_right = None
+    if (mirrored := found.mirrored_right) is not None:  # its matches at its own pixels, cleaned as the default does it
+        dense = complete(*mirrored.matches, by_sum, mirrored.grey, cleaning._replace(effort="balanced"))
+        from_right = np.where(dense.confidence > FILLED, dense.disparity, UNKNOWN)[:, ::-1].copy()
     return complete(*found.left.matches, by_sum, found.left.grey, cleaning, from_right)
-
-
-def _from_right(
-    mirrored: MatchedView, by_sum: Float[np.ndarray, "256"], cleaning: Cleaning
-) -> Int16[np.ndarray, "h w"]:
-    """Return the matches of the right view at its own pixels, cleaned as the default does it."""
-    dense = complete(*mirrored.matches, by_sum, mirrored.grey, cleaning._replace(effort="balanced"))
-    return np.where(dense.confidence > FILLED, dense.disparity, UNKNOWN)[:, ::-1].copy()

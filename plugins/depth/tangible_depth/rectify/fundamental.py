@@ -63,14 +63,9 @@ def check_matches(matches: Matches) -> None:
             "duplicate", f"{different} different points in {len(pairs)} matches, but {FEWEST} are needed"
         )
     for side, points in zip(("left", "right"), matches, strict=True):
-        if _is_line(points):
+        along, across = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+        if across < 0.005 * along:  # noise then hides any geometry
             raise DegenerateMatches("collinear", f"the {side} points are collinear; add matches off that line")
-
-
-def _is_line(points: np.ndarray) -> bool:
-    """Test whether the spread across is under half a percent of the spread along: noise then hides any geometry."""
-    along, across = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-    return bool(across < 0.005 * along)
 
 
 def normalise(points_px: np.ndarray) -> tuple[Float64[np.ndarray, "n 3"], Float64[np.ndarray, "3 3"]]:

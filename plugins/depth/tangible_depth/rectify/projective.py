@@ -110,16 +110,12 @@ def is_pure_rotation(plane: Plane, matches: Matches, shape: tuple[int, int]) -> 
     spread = np.array([FOCAL_SPREAD, ZOOM_SPREAD, TURN_SPREAD, TURN_SPREAD, TURN_SPREAD])
 
     def cost(values: np.ndarray) -> np.ndarray:
-        away = transform(_rotation_homography(values, shape), right) - left
+        """values: log focal length, log zoom, pitch, yaw and roll."""
+        focal_px = max(shape) * exp(values[0])
+        of_left, of_right = camera_matrix(focal_px, shape), camera_matrix(focal_px * exp(values[1]), shape)
+        away = transform(product(product(of_left, rotation(*values[2:])), inverse(of_right)), right) - left
         return np.concatenate([robust_pull(away.ravel()), values / spread])
 
     turned = np.square(cost(least_squares(cost, np.zeros(5), spread))).sum()
     flat = np.square(robust_pull((transform(plane.matrix, right) - left).ravel())).sum()
     return bool(turned <= flat + FREE_NUMBERS * log(len(left)))
-
-
-def _rotation_homography(values: np.ndarray, shape: tuple[int, int]) -> Float64[np.ndarray, "3 3"]:
-    """Return the homography from right to left for log focal length, log zoom, pitch, yaw and roll."""
-    focal_px = max(shape) * exp(values[0])
-    right = camera_matrix(focal_px * exp(values[1]), shape)
-    return product(product(camera_matrix(focal_px, shape), rotation(*values[2:])), inverse(right))

@@ -138,9 +138,15 @@ def _fit_rotation(matches: Matches, shape: tuple[int, int], fit: Fit) -> Rotatio
 
 
 def _fit_lenses(rotation: Rotation, matches: Matches, shape: tuple[int, int], fit: Fit) -> Rotation:
-    """Return the rotation with lens distortion; unchanged if no distortion explains more of the matches."""
+    """Return the rotation with lens distortion; unchanged if no distortion explains more of the matches.
+
+    Tries the coefficient of RADIALS that explains most matches; none if weak ones explain hardly more than 0.
+    """
     few = matches.select(slice(None, None, 1 + len(matches.left_px) // MOST_FITTED))
-    radial = _best_radial(few, shape, fit)
+    none, *weak = (_count_explained(few, each, shape, fit) for each in RADIALS[:3])
+    if max(weak) <= (1 + LEAST_MORE) * none:
+        return rotation
+    radial = max(RADIALS, key=lambda each: _count_explained(few, each, shape, fit))
     found = _fit_straight(matches, radial, shape, threshold_px(shape), fit) if radial else None
     if found is None:
         return rotation
@@ -155,14 +161,6 @@ def _fit_lenses(rotation: Rotation, matches: Matches, shape: tuple[int, int], fi
         if np.count_nonzero(trusted) < np.count_nonzero(rotation.trusted) / 2:
             return rotation
     return lenses._replace(trusted=trusted)
-
-
-def _best_radial(matches: Matches, shape: tuple[int, int], fit: Fit) -> float:
-    """Return the coefficient of RADIALS that explains most matches; 0 if weak ones explain hardly more than 0."""
-    none, *weak = (_count_explained(matches, each, shape, fit) for each in RADIALS[:3])
-    if max(weak) <= (1 + LEAST_MORE) * none:
-        return 0.0
-    return max(RADIALS, key=lambda each: _count_explained(matches, each, shape, fit))
 
 
 def _count_explained(matches: Matches, radial: float, shape: tuple[int, int], fit: Fit) -> int:
@@ -246,9 +244,11 @@ def _homographies(
     found: np.ndarray, matches: Matches, shape: tuple[int, int]
 ) -> tuple[Float64[np.ndarray, "3 3"], Float64[np.ndarray, "3 3"]]:
     left, right = _pair(found, shape)
-    if abs(found[0]) > np.pi / 4 and _runs_backwards(left, right, matches):
-        # Both rotated by 180 degrees: parameters along the axes change their sign.
-        left, right = _pair(found * [1, -1, 1, -1, -1, 1, -1] + np.pi * np.array([1, 0, 1, 0, 0, 0, 0]), shape)
+    if abs(found[0]) > np.pi / 4:
+        shift = transform(left, matches.left_px)[:, 0] - transform(right, matches.right_px)[:, 0]
+        if np.median(shift) < 0:  # near points shift to the wrong side, as when one camera stood above the other
+            # Both rotated by 180 degrees: parameters along the axes change their sign.
+            left, right = _pair(found * [1, -1, 1, -1, -1, 1, -1] + np.pi * np.array([1, 0, 1, 0, 0, 0, 0]), shape)
     return left, right
 
 
@@ -290,9 +290,3 @@ def _similarity_and_tilt(roll: float, tilt: tuple[float, float], scale: float, s
 
 def _round_to(value: float, step: float) -> float:
     return round(value / step) * step
-
-
-def _runs_backwards(left: np.ndarray, right: np.ndarray, matches: Matches) -> bool:
-    """Test whether near points shift to the wrong side, as when one camera stood above the other."""
-    shift = transform(left, matches.left_px)[:, 0] - transform(right, matches.right_px)[:, 0]
-    return float(np.median(shift)) < 0

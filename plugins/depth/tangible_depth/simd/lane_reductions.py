@@ -29,12 +29,6 @@ def _in_words(b: Any, vec: Vec, value: Any) -> list[tuple[int, Any]]:
     return pieces
 
 
-def _first_set(b: Any, mask: Any) -> Any:
-    """Return the index of the first set bit, as a 64-bit integer."""
-    index = emit_call(b, f"llvm.cttz.{mask.type}", mask.type, [mask, ir.Constant(ir.IntType(1), 1)])
-    return b.zext(index, WORD) if mask.type.width < 64 else index
-
-
 def _fold(b: Any, vec: Vec, value: Any, of_two: Callable[[Any, Vec, Any, Any], Any]) -> tuple[Any, Vec]:
     """Fold the parts of lanes into one vector: halve the wider until it is as wide as the next, then combine both."""
     whole, width = None, 0
@@ -109,7 +103,8 @@ def first_equal(typing: Any, vec: Vec, scalar: Any) -> Any:
         for first, value in reversed(_in_words(b, vec, a[0])):
             mask = ir.IntType(value.type.count)
             hits = b.bitcast(compare("==", value, emit_splat(b, a[1], value.type.count)), mask)
-            here = b.add(_first_set(b, hits), ir.Constant(WORD, first))
+            bit = emit_call(b, f"llvm.cttz.{mask}", mask, [hits, ir.Constant(ir.IntType(1), 1)])
+            here = b.add(b.zext(bit, WORD) if mask.width < 64 else bit, ir.Constant(WORD, first))
             found = b.icmp_unsigned("!=", hits, ir.Constant(mask, 0))
             index = here if index is None else b.select(found, here, index)
         return index

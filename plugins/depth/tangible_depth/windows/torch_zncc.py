@@ -86,7 +86,9 @@ def best_shifts(volume: Tensor, low: int) -> BestMatches:
     before = volume.gather(1, (at - 1).clamp(0)[:, None])[:, 0]
     after = volume.gather(1, (at + 1).clamp(max=count - 1)[:, None])[:, 0]
     level = torch.minimum(before, after) >= value - SAME_SCORE if count > 1 else torch.zeros_like(mutual)
-    move = torch.where((at > 0) & (at < count - 1), _parabola(before, value, after), 0.0)
+    bend = 2 * value - before - after
+    bent = (at > 0) & (at < count - 1) & (before > OUTSIDE) & (after > OUTSIDE) & (bend > 0)
+    move = torch.where(bent, 0.5 * (after - before) / torch.where(bent, bend, 1.0), 0.0)
     known = mutual & (value > 0) & ~level
     return BestMatches(torch.where(known, at + low + move, torch.nan), torch.where(known, value.clamp(0, 1), 0.0))
 
@@ -102,12 +104,6 @@ def _right_best(volume: Tensor, low: int) -> Tensor:
             part = best[..., first - d : last - d]
             part.copy_(torch.maximum(part, scores_at[..., first:last]))
     return best
-
-
-def _parabola(before: Tensor, value: Tensor, after: Tensor) -> Tensor:
-    bend = 2 * value - before - after
-    bent = (before > OUTSIDE) & (after > OUTSIDE) & (bend > 0)
-    return torch.where(bent, 0.5 * (after - before) / torch.where(bent, bend, 1.0), 0.0)
 
 
 def match(left: Tensor, right: Tensor, low: int, high: int, window_px: int, memory_mb: int = 64) -> BestMatches:

@@ -74,7 +74,9 @@ def _fill_rows(disparity, grey, y0, y1, found, scratch, out):
     left_over = 0
     sides, paths, below, below_path, seen, columns, edges, missing = scratch
     _scan_up(disparity, grey, y0, y1, below, below_path, sides[ABOVE], paths[ABOVE], missing)
-    _start_above(disparity, grey, y0, sides[ABOVE], paths[ABOVE], missing)
+    _start(sides[ABOVE], paths[ABOVE])
+    for y in range(max(_reach(disparity, y0 - 1, -1, missing), 0), y0 - 1):
+        _carry(disparity[y], grey[y], grey[y + 1], sides[ABOVE], paths[ABOVE])
     for y in range(y0, y1):
         if y > 0:
             _carry(disparity[y - 1], grey[y - 1], grey[y], sides[ABOVE], paths[ABOVE])
@@ -88,7 +90,7 @@ def _fill_rows(disparity, grey, y0, y1, found, scratch, out):
                 stop - start <= SHORT
                 and start > 0
                 and stop < w
-                and _same_surface(disparity[y, start - 1], disparity[y, stop])
+                and abs(int32(disparity[y, start - 1]) - int32(disparity[y, stop])) <= SAME_SURFACE
             ):
                 for x in range(start, stop):  # one of the many gaps between whole disparities
                     out[y, x] = min(disparity[y, start - 1], disparity[y, stop])
@@ -99,12 +101,6 @@ def _fill_rows(disparity, grey, y0, y1, found, scratch, out):
                     out[y, x] = choose_of_four(sides, paths, x, seen)
                     left_over += out[y, x] == UNKNOWN
     return left_over
-
-
-@inner()
-def _same_surface(a, b):
-    """Test whether two known disparities may belong to one surface."""
-    return abs(int32(a) - int32(b)) <= SAME_SURFACE
 
 
 @inner()
@@ -178,14 +174,6 @@ def _scan_up(disparity, grey, y0, y1, below, path, carried, steps, missing):
         if y < y1:
             _copy(carried, below[y - y0])
             _copy(steps, path[y - y0])
-
-
-@inner()
-def _start_above(disparity, grey, y0, carried, path, missing):
-    """Bring a downward scan to row y0 - 1."""
-    _start(carried, path)
-    for y in range(max(_reach(disparity, y0 - 1, -1, missing), 0), y0 - 1):
-        _carry(disparity[y], grey[y], grey[y + 1], carried, path)
 
 
 @inner()

@@ -97,9 +97,9 @@ class KorniaGabor(Dividing):
         features, clusters = rows.cpu().numpy(), count
         most = count if self.segments == "auto" else count + MORE
         while True:
-            clustering = kmeans(rows, clusters, self.restarts, self.seed)
-            each = clustering.labels.cpu().numpy().astype(np.int32).reshape(shape)
+            clustered, centres, _ = kmeans(rows, clusters, self.restarts, self.seed)
+            each = clustered.cpu().numpy().astype(np.int32).reshape(shape)
             labels, same = remove_seams(each, radius)
             if labels.max() + 1 >= count or clusters == most:
-                return labels, np.where(same.ravel(), margins(features, clustering.centres.cpu().numpy()), 0)
+                return labels, np.where(same.ravel(), margins(features, centres.cpu().numpy()), 0)
             clusters += 1

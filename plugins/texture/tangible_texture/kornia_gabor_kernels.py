@@ -4,7 +4,6 @@ kornia has no Gabor kernels; its `fft_conv` applies ours. This module imports to
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -61,18 +60,14 @@ def standardise_roots(planes: Tensor) -> Tensor:
     return rows / torch.where(deviation > 0, deviation, 1.0)
 
 
-class TorchClusters(NamedTuple):
-    """The tensors of `lloyd.Clusters`; labels are int64."""
-
-    labels: Tensor
-    centres: Tensor
-    cost: float
+Clustered = tuple[Tensor, Tensor, float]
+"""The label of each row, int64, the centres (k, d), and the cost, as `lloyd.Clusters`."""
 
 
-def kmeans(rows: Tensor, clusters: int, restarts: int = 1, seed: int = 0, rounds: int = 1000) -> TorchClusters:
+def kmeans(rows: Tensor, clusters: int, restarts: int = 1, seed: int = 0, rounds: int = 1000) -> Clustered:
     """Run `lloyd.kmeans` in torch from a k-means++ start; the CPU draws, so that every device starts alike."""
     uniform = np.random.default_rng(seed).random((restarts, clusters))
-    return min((_settle(rows, _start(rows, each.tolist()), rounds) for each in uniform), key=lambda run: run.cost)
+    return min((_settle(rows, _start(rows, each.tolist()), rounds) for each in uniform), key=lambda run: run[2])
 
 
 def _start(rows: Tensor, uniform: list[float]) -> Tensor:
@@ -88,7 +83,7 @@ def _start(rows: Tensor, uniform: list[float]) -> Tensor:
     return torch.stack(centres)
 
 
-def _settle(rows: Tensor, centres: Tensor, rounds: int) -> TorchClusters:
+def _settle(rows: Tensor, centres: Tensor, rounds: int) -> Clustered:
     labels = torch.full((len(rows),), -1, device=rows.device)
     away = torch.empty_like(rows[:, 0])
     for _ in range(rounds):
@@ -101,4 +96,4 @@ def _settle(rows: Tensor, centres: Tensor, rounds: int) -> TorchClusters:
         means = (members.T @ rows) / counts.clamp(min=1)[:, None]
         centres = torch.where(counts[:, None] > 0, means, centres)
     used, labels = torch.unique(labels, return_inverse=True)
-    return TorchClusters(labels, centres[used], float(away.square().sum()))
+    return labels, centres[used], float(away.square().sum())

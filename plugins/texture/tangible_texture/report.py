@@ -62,29 +62,23 @@ class Report(Dividing):
         Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1. Raises: PictureError as `check_picture`.
         """
         from .energies.filter_choice import is_flat, is_one_texture, needed_filters
+        from .energies.gabor_bank import bank, octaves, printed_wavelengths
         from .kmeans.labelling import segment_by_kmeans
 
         grey = to_grey(picture)
         if is_flat(grey):
             return one_segment(grey.shape)
-        filters = needed_filters(grey, self._filters(grey.shape[1]), self.skip_weak, self.skip_octaves)
-        step_px = self._step_px(grey.size, len(filters))
+        printed = self.frequencies == "printed"
+        wavelengths = printed_wavelengths(grey.shape[1]) if printed else octaves(self.longest_px)
+        every = bank(wavelengths, 6, self.bandwidth, self.gamma)
+        filters = needed_filters(grey, every, self.skip_weak, self.skip_octaves)
+        step_px = ceil((4 * grey.size * len(filters) / (self.memory_mb << 20)) ** 0.5)
+        if step_px > 1:
+            note(log, f"features every {step_px} pixels only: at every pixel they would exceed {self.memory_mb} MB")
         features = self._features(grey, filters, step_px)
         if is_one_texture(features.transpose(2, 0, 1), self.widest_px / step_px, grey):
             return one_segment(grey.shape)
         return segment_by_kmeans(features, step_px, grey.shape, self.segments, self.seed, start="random")
-
-    def _filters(self, width_px: int) -> "list[Gabor]":
-        from .energies.gabor_bank import bank, octaves, printed_wavelengths
-
-        wavelengths = printed_wavelengths(width_px) if self.frequencies == "printed" else octaves(self.longest_px)
-        return bank(wavelengths, 6, self.bandwidth, self.gamma)
-
-    def _step_px(self, pixels: int, filters: int) -> int:
-        step_px = ceil((4 * pixels * filters / (self.memory_mb << 20)) ** 0.5)
-        if step_px > 1:
-            note(log, f"features every {step_px} pixels only: at every pixel they would exceed {self.memory_mb} MB")
-        return step_px
 
     def _features(
         self, grey: Float32[np.ndarray, "h w"], filters: "list[Gabor]", step_px: int

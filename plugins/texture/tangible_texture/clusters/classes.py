@@ -51,7 +51,9 @@ def classes(
     spent, (planes, shape) = EFFORTS[effort], features.middle
     most = largest_number(planes.shape[1]) if segments == "auto" else segments
     rotated = combine_planes(principal_axes(features.wide.planes, PRINCIPAL_AXES, HALF_WHITE), features.wide.planes)
-    labels = _resample_labels(divide(rotated, spent.each * most + spent.besides), features.wide.shape, shape)
+    wide = divide(rotated, spent.each * most + spent.besides).reshape(features.wide.shape)
+    rows, columns = (((np.arange(n) + 0.5) * side / n).astype(int) for side, n in zip(wide.shape, shape, strict=True))
+    labels = wide[np.ix_(rows, columns)].ravel()
     power = MANY_POWER if segments == "auto" or segments >= MANY else FEW_POWER
     sets = [planes] if learned is None else [planes, learned.planes]
     steps = join_clusters(sets, labels, shape, most + spent.last, power)
@@ -65,11 +67,3 @@ def classes(
     if not len(axes[0]):
         return labels * 0, axes[0]
     return refit_labels(project(axes, sets)[0], labels, shape, FINAL_ROUNDS, 1), axes[0]
-
-
-def _resample_labels(
-    labels: Int32[np.ndarray, "l"], shape: tuple[int, int], to: tuple[int, int]
-) -> Int32[np.ndarray, "m"]:
-    """Sample labels of a coarse grid on a finer one."""
-    rows, columns = (((np.arange(n) + 0.5) * side / n).astype(int) for side, n in zip(shape, to, strict=True))
-    return labels.reshape(shape)[np.ix_(rows, columns)].ravel()

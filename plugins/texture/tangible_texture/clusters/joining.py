@@ -41,7 +41,8 @@ class Pairs(NamedTuple):
         count = len(self.sizes)
         higher, lower = np.tril_indices(count, -1)
         a, b = self.sizes[higher], self.sizes[lower]
-        powers = _powers(a * b / (a + b) * count / self.sizes.sum(), power)
+        shares = a * b / (a + b) * count / self.sizes.sum()
+        powers = [share**power for share in shares.tolist()]  # NumPy's of an array have other last bits with AVX-512
         costs = np.full((count, count), np.inf)
         costs[higher, lower] = self.distances[higher, lower] * powers
         return costs
@@ -92,11 +93,6 @@ def measure_pairs(
 
 def _weights(shares: Float32[np.ndarray, "m"]) -> Float32[np.ndarray, "m"]:
     return shares**2 + np.float32(LEAST_WEIGHT)
-
-
-def _powers(values: Float64[np.ndarray, "p"], power: float) -> Float64[np.ndarray, "p"]:
-    """Raise one value after another: NumPy's powers of an array have other last bits where AVX-512 is."""
-    return np.array([value**power for value in values.tolist()])
 
 
 @njit(cache=True, nogil=True)
@@ -171,7 +167,9 @@ def join_clusters(
             if not projected:
                 break
             pairs = [measure_pairs(each, labels, shares) for each in projected]
-        costs = _mean_costs(pairs, power)
+        costs = pairs[0].joining_costs(power)
+        if len(pairs) == 2:
+            costs = np.sqrt(costs * pairs[1].joining_costs(power))
         other, one = np.unravel_index(costs.argmin(), costs.shape)
         yield _step(labels, count, costs[other, one], labels == one, labels == other, power)
         names = np.arange(count, dtype=np.int32)
@@ -203,12 +201,6 @@ def project(
     for one, planes, out in zip(axes, sets, each, strict=True):
         add_planes(one, planes, out)
     return together, each
-
-
-def _mean_costs(pairs: Sequence[Pairs], power: float) -> Float64[np.ndarray, "k k"]:
-    """Return the geometric means of the costs in one set, or in two."""
-    costs = pairs[0].joining_costs(power)
-    return costs if len(pairs) == 1 else np.sqrt(costs * pairs[1].joining_costs(power))
 
 
 def _step(

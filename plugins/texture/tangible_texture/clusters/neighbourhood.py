@@ -10,7 +10,7 @@ from jaxtyping import Float32, Int32
 from tangible_core.compiled import exponential, njit
 from tangible_core.runtime import plain_opencv
 
-from .discriminants import Scatters, evidence, scatters
+from .discriminants import evidence, scatters
 from .dividing import one_hot
 
 PULL = 4.0
@@ -62,13 +62,6 @@ def mean_field(
     return memberships
 
 
-def interior_scatters(
-    planes: Float32[np.ndarray, "d n"], memberships: Float32[np.ndarray, "k n"], shape: tuple[int, int]
-) -> Scatters:
-    """Compute the scatters of cells well inside their classes: cells on borders are mixtures."""
-    return scatters(planes, memberships * smooth_memberships(memberships, shape, INSIDE_CELLS) ** 2)
-
-
 def interior_shares(labels: Int32[np.ndarray, "n"], shape: tuple[int, int]) -> Float32[np.ndarray, "n"]:
     """Return the share of a cell's own class in the window around it: 1 well inside, about 1/2 on borders."""
     shares = smooth_memberships(one_hot(labels, int(labels.max()) + 1), shape, INSIDE_CELLS)
@@ -84,7 +77,8 @@ def refit_labels(
     """
     memberships = one_hot(labels, int(labels.max()) + 1)
     for _ in range(rounds):
-        towards = evidence(planes, interior_scatters(planes, memberships, shape))
+        inside = memberships * smooth_memberships(memberships, shape, INSIDE_CELLS) ** 2  # borders are mixtures
+        towards = evidence(planes, scatters(planes, inside))
         memberships = mean_field(EVIDENCE * towards, memberships, shape, 1.5, votes)
         before, labels = labels, memberships.argmax(axis=0)
         if np.mean(before != labels) < 1e-3:

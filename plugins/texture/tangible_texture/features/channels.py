@@ -16,7 +16,8 @@ def channels(picture: np.ndarray, colour: bool) -> Float32[np.ndarray, "h w c"]:
     picture = check_picture(picture)
     white = full_scale(picture)
     paint = np.atleast_3d(picture)[..., :3]
-    values = _share(paint if _has_colour(paint) else paint[..., :1], white)
+    has_colour = any(np.any(paint[..., 0] != paint[..., other]) for other in range(1, paint.shape[2]))
+    values = _share(paint if has_colour else paint[..., :1], white)
     if picture.ndim == 3 and picture.shape[2] == 4:
         opaque = _share(picture[..., 3:], white)
         values = values * opaque + (1 - opaque)
@@ -24,10 +25,6 @@ def channels(picture: np.ndarray, colour: bool) -> Float32[np.ndarray, "h w c"]:
         values = luma(values)[..., None]
     top = max(float(values.max()), -float(values.min()))
     return np.ascontiguousarray(values / top if top else values, np.float32)
-
-
-def _has_colour(paint: np.ndarray) -> bool:
-    return any(np.any(paint[..., 0] != paint[..., other]) for other in range(1, paint.shape[2]))
 
 
 def _share(values: np.ndarray, white: float) -> Float32[np.ndarray, "h w c"]:

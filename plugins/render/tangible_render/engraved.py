@@ -63,7 +63,13 @@ class Engraved(ForceRenderer, Reshaping):
         if labels is None or (labels == labels[0, 0]).all():
             note(log, "no groove is engraved: the surface has no borders between parts or segments")
             return surface
-        self._warn_if_coarse(max(surface.relief.pitch_m))
+        if self.width_m < FEWEST_CELLS * (pitch_m := max(surface.relief.pitch_m)):
+            note(
+                log,
+                f"a groove of {1000 * self.width_m:.2g} mm is {self.width_m / pitch_m:.2g} cells wide and will feel "
+                f"shallower than specified; this grid holds {1000 * FEWEST_CELLS * pitch_m:.2g} mm or more",
+                logging.WARNING,
+            )
         lower_m = self.section(border_distance(labels, surface.relief.pitch_m, self.width_m / 2))
         height_m = surface.height_m - lower_m
         lift_m = max(0.0, -float(height_m.min()))
@@ -76,12 +82,3 @@ class Engraved(ForceRenderer, Reshaping):
         """Return the depth of the groove, m, at these distances from a border."""
         turn = 2 * np.pi * np.minimum(distance_m / self.width_m, 0.5)
         return np.float32(0.5 * self.depth_m) * (1 + np.cos(turn, dtype=np.float32))
-
-    def _warn_if_coarse(self, pitch_m: float) -> None:
-        if self.width_m < FEWEST_CELLS * pitch_m:
-            note(
-                log,
-                f"a groove of {1000 * self.width_m:.2g} mm is {self.width_m / pitch_m:.2g} cells wide and will feel "
-                f"shallower than specified; this grid holds {1000 * FEWEST_CELLS * pitch_m:.2g} mm or more",
-                logging.WARNING,
-            )

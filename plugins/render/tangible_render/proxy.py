@@ -13,7 +13,7 @@ from tangible_core.plugins import Film, Filming, ForceRenderer, Touch
 from tangible_render.haptic_textures.table import bristle_stiffness
 
 from .effects.effects_table import split_textures
-from .effects.material_table import Row, material_table
+from .effects.material_table import material_table
 from .surface.coefficients import spline_surface
 from .surface.dequantise import Filter
 from .surface.tiles import tile_bounds
@@ -120,15 +120,13 @@ class Proxy(ForceRenderer, Filming):
             labels, table, textures, state = tables
             stiffness = max(float(table[:, 0].max()), bristle_stiffness(textures))
             return _Law("textures", (labels, table, memory, textures, state), memory, stiffness)
-        labels, table = material_table(surface, self._default_row())
+        plain = self.stiffness_n_per_m, self.damping_n_s_per_m, self.static_friction, self.dynamic_friction
+        labels, table = material_table(surface, plain)
         if not self.friction:
             table[:, 2:] = 0
         if len(table) == 1 and not table[0, 1:].any():
             return _Law("spring", (float(table[0, 0]), memory), memory, float(table[0, 0]))
         return _Law("materials", (labels, table, memory), memory, float(table[:, 0].max()))
-
-    def _default_row(self) -> Row:
-        return self.stiffness_n_per_m, self.damping_n_s_per_m, self.static_friction, self.dynamic_friction
 
 
 def _still_tick(kind: str) -> Tick:

@@ -78,7 +78,10 @@ class WithMaterials(ForceRenderer):
             return touch
         if isinstance(touch, CompiledTouch):
             return _wrap(touch, surface, labels, table, law.is_lateral)
-        return MaterialsAdapter(touch, _wrap(_stub_touch(touch), surface, labels, table, law.is_lateral))
+        from .effects.stub_law import stub_law
+
+        stub = CompiledTouch(stub_law, (np.zeros(6), np.zeros(3)), stiffness=touch.stiffness_n_per_m)
+        return MaterialsAdapter(touch, _wrap(stub, surface, labels, table, law.is_lateral))
 
     def _with_material(self, surface: HapticSurface) -> HapticSurface:
         if self.material is None or (surface.labels is not None and surface.materials):
@@ -108,12 +111,6 @@ class MaterialsAdapter(PlainTouch):
         x, y, z, vx, vy, vz = state_of_law.tolist()
         force_of_law[:] = self._law.force(HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons))
         return self._wrapped.force(state)
-
-
-def _stub_touch(law: Touch) -> CompiledTouch:
-    from .effects.stub_law import stub_law
-
-    return CompiledTouch(stub_law, (np.zeros(6), np.zeros(3)), stiffness=law.stiffness_n_per_m)
 
 
 def _wrap(

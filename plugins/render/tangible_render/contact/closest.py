@@ -57,8 +57,9 @@ def settle(shape, px, py, x, y, z, static_friction, dynamic_friction, slides):
                 break
         sx, sy, newton = _step(half, px, py, away, expansion, share)
         if newton and sx * sx + sy * sy <= near_m * near_m:
-            h, hx, hy = _taylor(expansion, sx, sy)
-            return px + sx, py + sy, h, hx, hy, slides
+            h, hx, hy, hxx, hxy, hyy = expansion
+            rise = hx * sx + hy * sy + 0.5 * (hxx * sx * sx + hyy * sy * sy) + hxy * sx * sy
+            return px + sx, py + sy, h + rise, hx + hxx * sx + hxy * sy, hy + hxy * sx + hyy * sy, slides
         sx, sy, there, nearer = _accept(coefficients, across_per_m, down_per_m, px, py, sx, sy, x, y, z, away)
         if not nearer:
             break
@@ -119,11 +120,3 @@ def _accept(coefficients, across_per_m, down_per_m, px, py, sx, sy, x, y, z, awa
 @inner()
 def _square(dx, dy, dz):
     return dx * dx + dy * dy + dz * dz
-
-
-@inner()
-def _taylor(expansion, sx, sy):
-    """Return height and slopes a small step away."""
-    h, hx, hy, hxx, hxy, hyy = expansion
-    rise = hx * sx + hy * sy + 0.5 * (hxx * sx * sx + hyy * sy * sy) + hxy * sx * sy
-    return h + rise, hx + hxx * sx + hxy * sy, hy + hxy * sx + hyy * sy

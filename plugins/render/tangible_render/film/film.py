@@ -118,11 +118,8 @@ def quick_coefficients(height_m: Float32[np.ndarray, "h w"], scratch: Scratch) -
     from .filter_kernels import filter_coefficients, mark_jumps
 
     mark_jumps(height_m, highest_m * ROUNDING, *scratch[:3])
-    filter_coefficients(height_m, scratch.near, _taps(), scratch.values, scratch.eased, scratch.coefficients)
-    return scratch.coefficients
-
-
-def _taps() -> Float32[np.ndarray, "t"]:
-    """Return the weights of a height in the coefficients of its own cell and of its neighbours; their sum is 1."""
+    # Of a height in the coefficients of its own cell and of its neighbours; their sum is 1.
     weights = (np.sqrt(3) - 2) ** np.arange(TAPS + 1)
-    return np.asarray(weights / (2 * weights.sum() - 1), np.float32)
+    taps = np.asarray(weights / (2 * weights.sum() - 1), np.float32)
+    filter_coefficients(height_m, scratch.near, taps, scratch.values, scratch.eased, scratch.coefficients)
+    return scratch.coefficients

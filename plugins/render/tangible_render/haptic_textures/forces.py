@@ -38,13 +38,6 @@ def _sawtooth(phase, turns):
 
 
 @inner()
-def _attach(state, material, level, x, y):
-    """Start a contact: the bristle is upright, and friction at its static level."""
-    state[_X], state[_Y], state[_LEVEL], state[_OWNER] = x, y, level, material + 1.0
-    state[_BRISTLE_X] = state[_BRISTLE_Y] = state[_PHASE] = 0.0
-
-
-@inner()
 def _stretch(row, state, x, y, normal_n):
     """Stretch the bristle, and let it slip beyond its greatest length.
 
@@ -87,7 +80,8 @@ def texture_force(textures, material, state, x, y, vx, vy, normal_n):
         state[_OWNER] = 0.0
     else:
         if state[_OWNER] != material + 1.0:
-            _attach(state, material, 1.0 + row[SWING], x, y)
+            state[_X], state[_Y], state[_LEVEL], state[_OWNER] = x, y, 1.0 + row[SWING], material + 1.0
+            state[_BRISTLE_X] = state[_BRISTLE_Y] = state[_PHASE] = 0.0
         _stretch(row, state, x, y, normal_n)
         pull = row[STIFFNESS] * state[_LEVEL]
         fx -= pull * state[_BRISTLE_X]

@@ -40,7 +40,8 @@ def waves(material: Material) -> Waves:
     For every model, the squares of the amplitudes sum up to that of the roughness, and the power is greatest at the
     wavelength of the grain. The same name and seed give the same waves on every machine.
     """
-    octaves, rotation_deg, share, phase = _MAKE[material.texture](material, _random(material))
+    random = np.random.default_rng([material.seed, *material.name.encode()])
+    octaves, rotation_deg, share, phase = _MAKE[material.texture](material, random)
     per_m = powers_of_two(octaves) / material.grain_m
     way = np.deg2rad(material.direction_deg + 90 + rotation_deg)  # a wave runs across its lines
     across, along = directions(way)
@@ -121,10 +122,6 @@ def _lines(irregularity: float, random: np.random.Generator) -> Spread:
         np.append(1 - irregularity, np.full(STRAY, irregularity / STRAY)),
         np.append(0, random.random(STRAY)),
     )
-
-
-def _random(material: Material) -> np.random.Generator:
-    return np.random.default_rng([material.seed, *material.name.encode()])
 
 
 _MAKE: dict[Texture, Callable[[Material, np.random.Generator], Spread]] = {

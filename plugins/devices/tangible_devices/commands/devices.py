@@ -134,7 +134,8 @@ def stress(
         show.print_json(figures)
     else:
         texts = [(key, f"{value:.1f}" if isinstance(value, float) else str(value)) for key, value in figures.items()]
-        show.sentence(_stress_summary(figures))
+        rate = f"{name} can be read and written {figures['rate_hz']:.0f} times a second"
+        show.sentence(f"{rate}; a force loop does so 1000 times.")
         show.table(("figure", "value"), texts)
 
 
@@ -222,12 +223,6 @@ def _doctor_summary(name: str | None, verdicts: Sequence[str]) -> str:
         return f"{_number(failed, 'check')} failed; each has its cure below."
     text = f"Nothing was found that keeps {name or 'a device'} from working"
     return f"{text}, but {_number(unasked, 'check')} could not be made." if unasked else f"{text}."
-
-
-def _stress_summary(figures: Mapping[str, Any]) -> str:
-    """Return the rate at which a device can be read and written, next to that of a force loop."""
-    rate = f"{figures['device']} can be read and written {figures['rate_hz']:.0f} times a second"
-    return f"{rate}; a force loop does so 1000 times."
 
 
 def _number(count: int, noun: str) -> str:

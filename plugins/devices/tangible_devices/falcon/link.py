@@ -156,10 +156,13 @@ class FalconLink(CompiledLink):
             raise self._give_up(error) from error
 
     def _release(self) -> None:
-        """Send null packets and close the port."""
-        health = self.health()
+        """Send null packets, wait for the answer to each, so that none is left in flight, and close the port."""
+        health, self._in_flight = self.health(), 1
         try:
-            self._say_goodbye()
+            for _ in range(GOODBYES):
+                self._port.write(array("B", NULL))
+                self._pending += 1
+                self._receive()
         except DeviceError as error:
             log.warning("its force could not be made zero, turn off its power: %s", error)
         self._let_go()
@@ -189,15 +192,6 @@ class FalconLink(CompiledLink):
             self._held[tick.NOW] = self._clock()
             self._pending = max(self._pending - answers, 0)
         return answers
-
-    def _say_goodbye(self) -> None:
-        """Send null packets and wait for the answer to each, so that none is left in flight."""
-        null = array("B", NULL)
-        self._in_flight = 1
-        for _ in range(GOODBYES):
-            self._port.write(null)
-            self._pending += 1
-            self._receive()
 
     def _give_up(self, error: DeviceError) -> DeviceError:
         """Stop the motors, if they still listen, and close the port; return the error."""

@@ -72,7 +72,12 @@ def _device_findings(
             run_time(port, settings.event_character)
             yield Finding(f"{place}: in use", "fine", "by nobody else")
             if not firmware_answers(port):
-                yield _without_firmware(place, firmware)
+                if firmware is not None:
+                    yield Finding(f"{place}: firmware", "fine", "has none yet; the file is sent when it is opened")
+                    return
+                fault = "has none since it was powered, and no file is given"
+                cure = f"--set firmware=FILE, or option firmware; {WHENCE}"
+                yield Finding(f"{place}: firmware", "failed", fault, cure)
                 return
             yield Finding(f"{place}: firmware", "fine", "answers")
             yield _rate(place, port, settings, clock)
@@ -109,13 +114,6 @@ def _driver(device: Any) -> str:
     except OSError as error:
         return f"cannot be queried ({error})"
     return "no other driver has it"
-
-
-def _without_firmware(place: str, firmware: Path | None) -> Finding:
-    if firmware is not None:
-        return Finding(f"{place}: firmware", "fine", "has none yet; the file is sent when it is opened")
-    fault = "has none since it was powered, and no file is given"
-    return Finding(f"{place}: firmware", "failed", fault, f"--set firmware=FILE, or option firmware; {WHENCE}")
 
 
 def _rate(place: str, port: Port, settings: Settings, clock: Callable[[], float]) -> Finding:

@@ -80,12 +80,6 @@ def checksum(words: tuple[int, ...]) -> int:
     return total
 
 
-def pack_block(number: int, values: tuple[float, ...]) -> bytes:
-    """Return a block with its checksum."""
-    body = struct.pack(f"=Q{len(values)}d", number & MASK, *values)
-    return body + struct.pack("=Q", checksum(struct.unpack(f"={len(values) + 1}Q", body)))
-
-
 def unpack_block(block: bytes) -> tuple[int, tuple[float, ...]] | None:
     """Return the number and the values of a block; None if it is torn."""
     *words, claimed = struct.unpack(f"={len(block) // 8}Q", block)
@@ -123,8 +117,9 @@ class Channel:
         self.memory[word * 8 : word * 8 + 8] = struct.pack("=Q", on)
 
     def put(self, start: int, number: int, values: tuple[float, ...]) -> None:
-        """Write a block."""
-        block = pack_block(number, values)
+        """Write a block with its checksum."""
+        block = struct.pack(f"=Q{len(values)}d", number & MASK, *values)
+        block += struct.pack("=Q", checksum(struct.unpack(f"={len(values) + 1}Q", block)))
         self.memory[start * 8 : start * 8 + len(block)] = block
 
     def take(self, start: int, words: int) -> tuple[int, tuple[float, ...]] | None:

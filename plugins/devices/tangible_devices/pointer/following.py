@@ -79,7 +79,13 @@ def _typed_steps(lines: Iterable[str], complain: Callable[[str], None]) -> Itera
     if isinstance(lines, io.TextIOWrapper):
         lines.reconfigure(errors="replace")  # bytes that are not text are an invalid position, not an end
     typed: Queue[str | None] = Queue()
-    Thread(target=_enqueue, args=(lines, typed), daemon=True).start()
+
+    def enqueue() -> None:
+        for line in lines:
+            typed.put(line.strip())
+        typed.put(None)
+
+    Thread(target=enqueue, daemon=True).start()
     step: Step = ((0.0, 0.0, 1.0), 0)
     while (line := _next(typed)) is not None:
         try:
@@ -106,12 +112,6 @@ def parse(line: str) -> Step:
         return position_m, buttons
     except (ValueError, TypeError) as error:
         raise DeviceError(f"{quoted(line)} is not a position; type x y z in millimetres, such as 10 -5 2.5") from error
-
-
-def _enqueue(lines: Iterable[str], typed: "Queue[str | None]") -> None:
-    for line in lines:
-        typed.put(line.strip())
-    typed.put(None)
 
 
 def _next(typed: "Queue[str | None]") -> str | None:

@@ -78,7 +78,9 @@ class Chip:
                 self._waiting.clear()
         elif request == 1:
             if value & 0x0100:
-                self._set_dtr(bool(value & 1))
+                before, self._dtr = self._dtr, bool(value & 1)
+                if self._dtr and not before:
+                    self.processor.reset()
         elif request == 3:
             self._divisor = value
         elif request == 6:
@@ -123,8 +125,3 @@ class Chip:
             if rest:
                 self._waiting.insert(0, (0.0, rest))
         return payload
-
-    def _set_dtr(self, high: bool) -> None:
-        if high and not self._dtr:
-            self.processor.reset()
-        self._dtr = high

@@ -36,9 +36,20 @@ class Processor:
         """Return the reply to these bytes at this rate."""
         self._heard += data
         if self.mode == "monitor" and divisor == SLOW and dtr:
-            return self._greet()
+            if HELLO not in self._heard:
+                return b""
+            self._heard = b""
+            if self._swallowed:
+                self._swallowed -= 1
+                return b""
+            self.mode = "autobaud"
+            return READY
         if self.mode == "autobaud" and divisor == LOADING and not dtr:
-            return self._lock()
+            heard, self._heard = self._heard, b""
+            if heard != b"A":
+                return b""
+            self.mode = "load"
+            return b"A"
         if self.mode == "load" and divisor == LOADING:
             if stream_ends(self._heard):
                 self.mode, self._heard = "run", b""
@@ -47,23 +58,6 @@ class Processor:
             return self._answer(now_s)
         self._heard = b""  # noise at the wrong rate
         return b""
-
-    def _greet(self) -> bytes:
-        if HELLO not in self._heard:
-            return b""
-        self._heard = b""
-        if self._swallowed:
-            self._swallowed -= 1
-            return b""
-        self.mode = "autobaud"
-        return READY
-
-    def _lock(self) -> bytes:
-        heard, self._heard = self._heard, b""
-        if heard != b"A":
-            return b""
-        self.mode = "load"
-        return b"A"
 
     def _answer(self, now_s: float) -> bytes:
         reply = b""

@@ -9,7 +9,7 @@ class Ssd(WindowMatcher):
     """Window matching by squared differences, with sub-pixel refinement, left-right check and filling.
 
     The simplest measure, for pairs of equal exposure; `zncc` allows for different ones.
-    Colour is reduced to grey. Confidence of a match: exp(-(mean squared difference of grey levels) / 400).
+    Colour is reduced to grey.
     Memory above the pictures: about 25 bytes a pixel, and 8 bytes a column and disparity for each thread.
     Source: the report "Tangible Images", ch. 2.
     """

@@ -55,10 +55,13 @@ def as_glb(solid: "Solid", layout: "Layout", title: str, picture: np.ndarray | N
     look: dict[str, Any] = {"metallicFactor": 0, "roughnessFactor": 0.9}
     attributes, more = {"POSITION": 0}, dict[str, Any]()
     if picture is not None:
+        import cv2
+
         texture, places = _texture(picture, layout, solid)
+        _, jpeg = cv2.imencode(".jpg", texture[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 90])
         parts += [
             (places.tobytes(), {"target": _ARRAY}, {"componentType": _FLOAT, "type": "VEC2"}),
-            (_jpeg(texture), {}, {}),
+            (jpeg.tobytes(), {}, {}),
         ]
         attributes["TEXCOORD_0"] = 2
         look["baseColorTexture"] = {"index": 0}
@@ -126,10 +129,3 @@ def _shrink(colours: UInt8[np.ndarray, "h w 3"], layout: "Layout") -> UInt8[np.n
     if (rows, columns) == colours.shape[:2]:
         return colours
     return cv2.resize(colours, (columns, rows), interpolation=cv2.INTER_AREA)
-
-
-def _jpeg(texture: UInt8[np.ndarray, "h w 3"]) -> bytes:
-    import cv2
-
-    _, data = cv2.imencode(".jpg", texture[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 90])
-    return data.tobytes()

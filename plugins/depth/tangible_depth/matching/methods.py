@@ -42,9 +42,9 @@ class WindowMatcher(DepthEstimator, Following):
     def estimate(self, views: Views) -> DisparityMap:
         """Estimate disparity in pixels, float32 (h, w), and its confidence; a filled map is finite if anything matched.
 
-        Confidence: 0.2 up to the measure's own where a match was found; 0 up to 0.1 where the value was filled or
-        decided by a neighbour; less in either range next to depth steps and in gaps; 0 where nothing changes along the
-        rows.
+        Confidence: 0.2 up to that of `window_matching` where a match was found; 0 up to 0.1 where the value was filled
+        or decided by a neighbour; less in either range next to depth steps and in gaps; 0 where nothing changes along
+        the rows.
         Raises: PictureError if there is no right view or the range is empty.
         """
         from .chain import disparity_map

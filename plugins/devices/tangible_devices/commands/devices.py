@@ -134,7 +134,7 @@ def stress(
         show.print_json(figures)
     else:
         texts = [(key, f"{value:.1f}" if isinstance(value, float) else str(value)) for key, value in figures.items()]
-        rate = f"{name} can be read and written {figures['rate_hz']:.0f} times a second"
+        rate = f"{figures['device']} can be read and written {figures['rate_hz']:.0f} times a second"
         show.sentence(f"{rate}; a force loop does so 1000 times.")
         show.table(("figure", "value"), texts)
 

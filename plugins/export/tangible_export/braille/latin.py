@@ -6,7 +6,7 @@ The tables are `codes/LANGUAGE.toml`, with their sources.
 import re
 import tomllib
 import unicodedata
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
@@ -141,17 +141,13 @@ def _thousands(text: str, place: int, code: Code) -> bool:
 def _sign(text: str, place: int, code: Code) -> Cells:
     each = text[place]
     if each in code.quoting:
-        return code.quotes[_closes(text, place)]
+        closes = place > 0 and (text[place - 1] not in " ([" or text[place + 1 : place + 2] in ("", " "))
+        return code.quotes[closes]
     if each == " ":
         return code.thousands if _thousands(text, place, code) else (0,)
     if (cells := _letter(each, code)) is None:
         raise BrailleError(f"{missing_character(each, place + 1, text, code.title)}, or install liblouis")
     return cells
-
-
-def _closes(text: str, place: int) -> bool:
-    """Tell whether the quotation mark at this place closes a quotation."""
-    return place > 0 and (text[place - 1] not in " ([" or text[place + 1 : place + 2] in ("", " "))
 
 
 def _letter(each: str, code: Code) -> Cells | None:
@@ -173,18 +169,12 @@ def _capitals(text: str, code: Code) -> dict[int, Cells]:
     passages = [match.span() for match in _PASSAGE.finditer(text)] if code.capital_passage else []
     for start, end in passages:
         placed[start], placed[end] = code.capital_passage, code.capital_end
-    for start, end in _runs(text):
-        if any(first <= start < last for first, last in passages):
+    for is_upper, run in groupby(range(len(text)), lambda place: text[place].isupper()):
+        places = [*run]
+        start, end = places[0], places[-1] + 1
+        if not is_upper or any(first <= start < last for first, last in passages):
             continue
         placed[start] = code.capital_word if end - start > 1 else code.capital
         if end - start > 1 and end < len(text) and text[end].isalpha():
             placed[end] = code.capital_end
     return placed
-
-
-def _runs(text: str) -> Iterator[tuple[int, int]]:
-    """Yield start and end of each run of capitals."""
-    for is_upper, run in groupby(range(len(text)), lambda place: text[place].isupper()):
-        if is_upper:
-            places = [*run]
-            yield places[0], places[-1] + 1

@@ -107,13 +107,8 @@ def _layer(name: str, label: str, shapes: list[str]) -> str:
 def _shapes(pins: Pins, levels: int, mask: Bool[np.ndarray, "r c"]) -> list[str]:
     """Return a path for each height: the higher, the more opaque."""
     paths = [(level, _path(mask & (pins == level))) for level in range(1, levels + 1)]
-    return [
-        f'<path shape-rendering="crispEdges"{_opacity(level, levels)} d="{path}"/>' for level, path in paths if path
-    ]
-
-
-def _opacity(level: int, levels: int) -> str:
-    return "" if level == levels else f' fill-opacity="{level / levels:.3g}"'
+    opacity = ["", *(f' fill-opacity="{level / levels:.3g}"' for level in range(1, levels)), ""]
+    return [f'<path shape-rendering="crispEdges"{opacity[level]} d="{path}"/>' for level, path in paths if path]
 
 
 def _path(mask: Bool[np.ndarray, "r c"]) -> str:

@@ -67,7 +67,11 @@ def make_solid(options: PlateOptions, work: Work) -> tuple[Solid, Layout]:
     a title that is too long for the plate.
     """
     relief = work.relief
-    _check_height(relief, options.error_m)
+    if (highest_m := float(relief.height_m.max())) <= options.error_m:
+        raise GeometryError(
+            f"the relief is {1000 * highest_m:.3g} mm high, and error_m is {1000 * options.error_m:.3g} mm: the print "
+            "would be flat; take a picture that is not of one shade, or give its parts heights"
+        )
     if few := find_spec("pydelatin") is not None:
         surface = sample_nodes(relief, MOST_NODES, "make the picture smaller")
     else:
@@ -93,15 +97,6 @@ def _few(surface: Relief, error_m: float) -> Triangles:
         cure = "smooth the relief with workspace.smooth_m, or make error_m larger"
         note(log, f"{fault}, as {why}; {cure}", logging.WARNING)
     return triangles
-
-
-def _check_height(relief: Relief, error_m: float) -> None:
-    highest_m = float(relief.height_m.max())
-    if highest_m <= error_m:
-        raise GeometryError(
-            f"the relief is {1000 * highest_m:.3g} mm high, and error_m is {1000 * error_m:.3g} mm: the print would be "
-            "flat; take a picture that is not of one shade, or give its parts heights"
-        )
 
 
 def _layout(options: PlateOptions, work: Work) -> Layout:

@@ -1,11 +1,20 @@
-"""Force Dimension's devices: omega, delta, sigma, and the Falcon by this maker's library."""
+"""Force Dimension's devices: omega, delta, sigma, and the Falcon by this maker's library.
 
+They are used through `forcedimension_core.dhd`, the bindings to that library.
+"""
+
+import io
+import math
+import time
 from collections.abc import Iterator
-from typing import Annotated, Any, Literal
+from contextlib import redirect_stderr
+from importlib import import_module
+from threading import Lock
+from typing import Annotated, Any, Literal, final
 
 from pydantic import Field
 
-from tangible_core.data import DeviceSpec, Finding, Unit
+from tangible_core.data import NO_FORCE, DeviceSpec, Finding, Force, HapticState, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
 from tangible_core.plugins import HapticDevice, Link, Serviceable
 
@@ -19,6 +28,14 @@ SPECS: dict[Model, tuple[float, float, float, float]] = {
 """Greatest force, greatest stiffness, greatest damping and radius of the workspace of each model, in SI units, as in
 CHAI3D's table of devices."""
 FREE_IT = "close other programs that use it, check its power, and on Linux allow its USB device by the SDK's udev rules"
+INSTALL = (
+    "install the Force Dimension SDK 3.16 or newer (forcedimension.com), then pip install "
+    "forcedimension-core with Python 3.12 or older; FDSDK in the environment may name the SDK's folder"
+)
+REPLUG = "check its plug and its power, then open it again"
+OPENED: set[int] = set()
+"""The devices that this program has open; the library itself would open the same one twice."""
+_taking = Lock()
 
 
 class ForceDimension(HapticDevice, Serviceable):
@@ -48,8 +65,6 @@ class ForceDimension(HapticDevice, Serviceable):
 
     def open(self) -> Link:
         """Open the device. Raises: DeviceAbsent if it or the library is missing, DeviceError if in use or failing."""
-        from .link import ForceDimensionLink, check_result, library, take
-
         dhd = library()
         if dhd.getDeviceCount() < 1:
             raise DeviceAbsent("Force Dimension: no device is connected; plug it in, and turn it on")
@@ -62,8 +77,6 @@ class ForceDimension(HapticDevice, Serviceable):
 
     def connected(self) -> tuple[Unit, ...]:
         """Open each device for a moment and return its name. Raises: DeviceAbsent if the library is missing."""
-        from .link import library
-
         dhd = library()
         return tuple(_unit(dhd, index) for index in range(max(0, dhd.getDeviceCount())))
 
@@ -83,8 +96,6 @@ class ForceDimension(HapticDevice, Serviceable):
 
 
 def _unit(dhd: Any, index: int) -> Unit:
-    from .link import OPENED
-
     place, number = f"index {index}", dhd.openID(index)
     if number < 0:
         return Unit("Force Dimension", place=place, problem=dhd.errorGetLastStr())
@@ -94,3 +105,74 @@ def _unit(dhd: Any, index: int) -> Unit:
     finally:
         if number not in OPENED:
             dhd.close(number)
+
+
+def library() -> Any:
+    """Return the bindings. Raises: DeviceAbsent that names what to install."""
+    try:
+        with redirect_stderr(io.StringIO()):  # its output is less specific than the message below
+            return import_module("forcedimension_core.dhd")
+    except ImportError as error:
+        first = str(error).split(". ")[0]
+        raise DeviceAbsent(f"device force-dimension: {first}; {INSTALL}") from error
+
+
+def check_result(dhd: Any, result: int, doing: str, cure: str) -> int:
+    """Return a result that is not an error. Raises: DeviceError with the library's message and the cure otherwise."""
+    if result < 0:
+        raise DeviceError(f"Force Dimension, {doing}: {dhd.errorGetLastStr()}; {cure}")
+    return result
+
+
+def take(number: int) -> bool:
+    """Mark a device as open; return False if it was open already."""
+    with _taking:
+        free = number not in OPENED
+        OPENED.add(number)
+        return free
+
+
+@final
+class ForceDimensionLink(Link):
+    """A device in use. The library's x is towards the user, its y right, its z up: our (x, y, z) is its (y, -x, z)."""
+
+    def __init__(self, dhd: Any, number: int, max_force_n: float) -> None:
+        super().__init__("this Force Dimension device", max_force_n)
+        self._dhd = dhd
+        self._number = number
+        self._applied = NO_FORCE
+        try:
+            check_result(dhd, dhd.enableForce(True, number), "enabling its force", REPLUG)
+            self._send(NO_FORCE)
+        except BaseException:
+            self.close()
+            raise
+
+    def _read(self) -> HapticState:
+        """Return the position of the tip. Raises: DeviceError if the device stopped answering."""
+        position, velocity = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
+        check_result(self._dhd, self._dhd.getPosition(position, self._number), "reading its position", REPLUG)
+        if self._dhd.getLinearVelocity(velocity, self._number) < 0:
+            velocity = [0.0, 0.0, 0.0]  # the library needs two positions within its window for a velocity
+        (x, y, z), (vx, vy, vz) = position, velocity
+        if not all(map(math.isfinite, (*position, *velocity))):
+            raise DeviceError(f"Force Dimension: its position is {position} m; {REPLUG}")
+        buttons = self._dhd.getButtonMask(self._number) & 0xFFFFFFFF
+        return HapticState((y, -x, z), (vy, -vx, vz), time.perf_counter(), buttons)
+
+    def _send(self, force: Force) -> None:
+        """Set the force. Raises: DeviceError as `_read`."""
+        self._applied = NO_FORCE
+        result = self._dhd.setForce([-force.y, force.x, force.z], self._number)
+        check_result(self._dhd, result, "setting its force", REPLUG)
+        self._applied = force
+
+    @property
+    def applied(self) -> Force:
+        """The force that was set last."""
+        return self._applied
+
+    def _release(self) -> None:
+        """Close the device."""
+        self._dhd.close(self._number)
+        OPENED.discard(self._number)

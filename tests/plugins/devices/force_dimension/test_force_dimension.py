@@ -8,8 +8,7 @@ import pytest
 from tangible_core.data import NO_FORCE, Finding, Force, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
 from tangible_core.testing import run_checks
-from tangible_devices.force_dimension.force_dimension import ForceDimension
-from tangible_devices.force_dimension.link import check_result
+from tangible_devices.force_dimension.force_dimension import ForceDimension, check_result
 
 
 class Library:

@@ -16,8 +16,7 @@ from websockets.sync.server import ServerConnection, serve
 from tangible_core.data import NO_FORCE, Finding, Force, Unit, Vector
 from tangible_core.errors import DeviceAbsent, DeviceError
 from tangible_core.testing import run_checks
-from tangible_devices.haply.haply import Haply
-from tangible_devices.haply.service import Session
+from tangible_devices.haply.haply import Haply, Session
 
 Motion = Callable[[float], tuple[Vector, Vector]]
 """A function that gives position and velocity at a time in seconds."""

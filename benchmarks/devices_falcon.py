@@ -43,13 +43,13 @@ def _ns(call: Any, *given: np.ndarray) -> float:
 
 
 @njit(nogil=True)
-def _inverse(tips, angles):  # noqa: ANN001, ANN202
+def _inverse(tips, angles):
     for i in range(len(tips)):
         angles[i, 0], angles[i, 1], angles[i, 2] = inverse(tips[i, 0], tips[i, 1], tips[i, 2])
 
 
 @njit(nogil=True)
-def _follow(angles, found):  # noqa: ANN001, ANN202
+def _follow(angles, found):
     x, y, z = 0.0, 0.0, 0.11
     for i in range(len(angles)):
         x, y, z, _ = forward(angles[i, 0], angles[i, 1], angles[i, 2], x, y, z)
@@ -69,7 +69,7 @@ def _tick_ns(way: np.ndarray) -> float:
 
 
 @njit(nogil=True)
-def _ticks(answers, chunk, begun, fixed, state):  # noqa: ANN001, ANN202
+def _ticks(answers, chunk, begun, fixed, state):
     for i in range(len(answers)):
         chunk[:18] = answers[i]
         fixed[3][tick.NOW] += 0.001

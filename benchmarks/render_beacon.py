@@ -43,7 +43,7 @@ def figures() -> Iterator[Figure]:
 
 
 @njit(nogil=True)
-def _ticks(fixed, law, settings, memory, words, numbers, field, pulls, hands, forces):  # noqa: ANN001, ANN202
+def _ticks(fixed, law, settings, memory, words, numbers, field, pulls, hands, forces):
     for i in range(hands.shape[0]):
         x, y, z = hands[i, 0], hands[i, 1], hands[i, 2]
         vx, vy, vz = step_velocity(hands, 0.001, i)

@@ -49,7 +49,7 @@ def _step(force: np.ndarray) -> float:
 
 
 @njit(nogil=True)
-def _guarded(settings, memory, hands, law, left):  # noqa: ANN001, ANN202
+def _guarded(settings, memory, hands, law, left):
     for i in range(hands.shape[0]):
         x, y, z = hands[i, 0], hands[i, 1], hands[i, 2]
         vx, vy, vz = step_velocity(hands, 0.001, i)
@@ -60,7 +60,7 @@ def _guarded(settings, memory, hands, law, left):  # noqa: ANN001, ANN202
 
 
 @njit(nogil=True)
-def _unguarded(hands, law, left):  # noqa: ANN001, ANN202
+def _unguarded(hands, law, left):
     for i in range(hands.shape[0]):
         vx, vy, vz = step_velocity(hands, 0.001, i)
         left[i, 0], left[i, 1], left[i, 2] = law[i, 0] - vx, law[i, 1] - vy, law[i, 2] - vz

@@ -1,7 +1,5 @@
 """What a whole tick costs: a Falcon's packet in, a law with friction and texture, the guard, a packet out, the ring."""
 
-# ruff: noqa: ANN001, ANN202 -- the types are those that numba infers
-
 import statistics
 from collections.abc import Iterator
 from time import thread_time

@@ -141,7 +141,7 @@ def _film(random: np.random.Generator, ticks: int) -> Worst:
 
 
 @njit(nogil=True)
-def walk(fixed, tick, moving, settings, memory, hands, first, last, stiffness, found):  # noqa: ANN001, ANN201
+def walk(fixed, tick, moving, settings, memory, hands, first, last, stiffness, found):
     """Ticks along a path of the hand, and their work: the law's by the trapezoidal rule, the guard's as it is held."""
     for i in range(first, last):
         x, y, z = hands[i, 0], hands[i, 1], hands[i, 2]

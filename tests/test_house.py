@@ -276,6 +276,16 @@ def test_packages_are_typed_and_documented(package):
     assert Path(module.__file__).with_name("py.typed").exists()
 
 
+def test_only_kernels_are_untyped():
+    """Ruff passes functions that have no annotation at all: numba finds the types of kernels, and of nothing else."""
+    for path in (path for house in ("tangible_core", "plugins") for path in (ROOT / house).rglob("*.py")):
+        if "node_modules" in path.parts or re.search(r"\b(njit|inner|intrinsic)\b", text := path.read_text("utf-8")):
+            continue
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.FunctionDef) and not node.name.startswith("__"):
+                assert node.returns or any(arg.annotation for arg in node.args.args), f"{path}: {node.name}"
+
+
 def test_dependencies_have_their_reasons():
     reasons = ROOT.joinpath("docs/decisions/0002-dependencies.md").read_text()
     for dependency in PROJECT["project"]["dependencies"]:

@@ -6,7 +6,6 @@ installed, and their results differ in the last bit. Imports numba: import this 
 Source: Moshier, Cephes mathematical library, expf, logf and tanhf: polynomials on a short interval.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- numba takes the types from the call
 # pyright: basic
 
 from typing import Any

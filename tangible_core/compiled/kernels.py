@@ -1,6 +1,5 @@
 """Compiled loops that call the kernel of a force law. Imports numba: import this module inside a verb."""
 
-# ruff: noqa: ANN001, ANN201 -- numba infers the types
 # pyright: basic
 
 from collections.abc import Callable

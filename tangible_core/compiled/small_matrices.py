@@ -4,7 +4,6 @@ LAPACK wakes threads for such matrices, which cost up to ten times what they sav
 its last bits depend on the processor.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- numba takes the types from the call
 # pyright: basic
 
 import numpy as np

@@ -1,6 +1,5 @@
 """A mapping around a device's kernels. Imports numba, when a mapped device is opened."""
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are those that numba infers
 # pyright: basic
 
 from functools import cache

@@ -1,6 +1,5 @@
 """The envelopes of heights, compiled. Imports numba: its users import it inside their verbs."""
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- numba finds the types of what it compiles; the docstrings say them
 # pyright: basic
 
 from ..compiled.compiling import KERNEL, inner, njit

@@ -5,7 +5,6 @@ there: the energy that the hand receives on the way to the part is not a debt of
 on the way back is not a credit of the force law. What sampling adds is observed like any other energy.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 # pyright: basic
 
 import numpy as np

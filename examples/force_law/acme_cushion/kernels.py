@@ -1,7 +1,5 @@
 """The cushion's kernel. Imports numba: the law imports this module inside `touch`."""
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signature that numba compiles
-
 import numpy as np
 from numba import float64, njit, types
 

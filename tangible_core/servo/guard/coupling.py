@@ -5,7 +5,6 @@ Source: Colgate, Stanley & Brown, Issues in the haptic display of tool use, IROS
 interaction with virtual environments, IEEE Trans. Robotics and Automation 15(3), 1999.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 # pyright: basic
 
 import numpy as np

@@ -4,7 +4,6 @@ A tick is `couple`, then the force law at the place it returns, then `guard`, wh
 without a fresh position is `wait` instead of all three. The arrays are those of `Safety.arrays`.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 # pyright: basic
 
 import numpy as np

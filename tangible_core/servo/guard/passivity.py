@@ -4,7 +4,6 @@ Source: Hannaford & Ryu, Time-domain passivity control of haptic interfaces, IEE
 2002.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are those that numba infers
 # pyright: basic
 
 from ...compiled.compiling import inner

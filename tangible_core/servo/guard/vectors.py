@@ -1,6 +1,5 @@
 """Vectors of any floats, infinite and NaN included, compiled. Imports numba."""
 
-# ruff: noqa: ANN001, ANN201 -- the types are those that numba infers
 # pyright: basic
 
 import numpy as np

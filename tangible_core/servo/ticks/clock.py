@@ -3,7 +3,6 @@
 Where compiled code cannot sleep, a loop calls Python to sleep.
 """
 
-# ruff: noqa: ANN001, ANN201 -- the types are those that numba infers
 # pyright: basic
 
 from typing import Any, final

@@ -4,7 +4,6 @@ A tick reads the tip's position, computes the law's force, limits it by the guar
 all of it in the ring.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are those that numba infers
 # pyright: basic, reportCallIssue=false
 
 import math

@@ -1,6 +1,5 @@
 """The kernel of the null force law. Imports numba: its users import this module inside their verbs."""
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 # pyright: basic
 
 from numba import float64, types

@@ -1,6 +1,5 @@
 """A step of the temporal filter of disparity, compiled. Imports numba: its users import it inside their verbs."""
 
-# ruff: noqa: ANN001, ANN201 -- numba finds the types of what it compiles; the docstrings say them
 # pyright: basic
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The confidence of each disparity, 0..1."""
 
-# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
-
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int16, UInt8
 from numba import int32

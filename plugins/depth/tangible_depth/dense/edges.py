@@ -6,8 +6,6 @@ This is the weighted median of Ma et al., Constant time weighted median filterin
 ICCV 2013, reduced to two candidates and to the pixels that have a choice.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
-
 import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int32, uint16

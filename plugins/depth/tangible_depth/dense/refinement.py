@@ -4,8 +4,6 @@ Filters with a reach of a few rows run block by block, all filters of a block on
 a margin, filtered like a separate picture, and its own rows are kept.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
-
 from typing import NamedTuple
 
 import numpy as np

@@ -3,8 +3,6 @@
 Like OpenCV's `filterSpeckles`, but over runs of a row instead of pixels, and on all processors.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
-
 from typing import NamedTuple
 
 import numpy as np

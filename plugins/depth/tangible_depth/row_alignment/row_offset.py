@@ -3,8 +3,6 @@
 Half a pixel of vertical offset already costs a matcher along rows a good part of its matches.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
-
 import numpy as np
 from jaxtyping import Float32, Int16, Int64
 

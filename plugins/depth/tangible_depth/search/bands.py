@@ -3,8 +3,6 @@
 Thin near objects keep their width along a row, and a band of rows averages noise and small row offsets away.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
-
 from typing import NamedTuple
 
 import numpy as np

@@ -3,8 +3,6 @@
 As `sgm.aggregation`, but all rows fit into memory, so that costs are computed once.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
-
 import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import uint8

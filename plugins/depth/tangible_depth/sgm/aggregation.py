@@ -11,8 +11,6 @@ Lane k stands for the disparity top - k, so that the right view's codes are cont
 codes[x], a row of w + n - 1 codes of which codes[i] is the right view's column i - top.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- numba infers the types of kernels; their docstrings give them
-
 import numpy as np
 from numba import uint8, uint64
 

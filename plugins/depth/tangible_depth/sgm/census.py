@@ -4,8 +4,6 @@ Source: Zabih & Woodfill, Non-parametric local transforms for computing visual c
 the order of grey values only, so that exposure, gain and gamma of the two pictures may differ.
 """
 
-# ruff: noqa: ANN001, ANN201 -- numba infers the types of kernels; their docstrings give them
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -3,8 +3,6 @@
 Every cost, path and sum is a byte a lane; lane k stands for the disparity top - k.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- numba infers the types of kernels; their docstrings give them
-
 from typing import NamedTuple
 
 import numpy as np

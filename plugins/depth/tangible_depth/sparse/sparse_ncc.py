@@ -10,7 +10,7 @@ from tangible_core.compiled import njit
 
 
 @njit(cache=True, nogil=True)
-def match_rows(left, right, left_inverse, right_inverse, points, low, high, half, disparity, score):  # noqa: ANN001, ANN201
+def match_rows(left, right, left_inverse, right_inverse, points, low, high, half, disparity, score):
     """Fill disparity[i] and score[i] for each point (column, row) of the left picture.
 
     left, right: float32 (h + 2 half, w + 2 half), padded by half a window; *_inverse: float32 (h, w), one over the
@@ -40,7 +40,7 @@ def match_rows(left, right, left_inverse, right_inverse, points, low, high, half
 
 
 @njit(cache=True, nogil=True)
-def _row_scores(anchor, other, anchor_inverse, other_inverse, x, y, first, last, half, window, scores):  # noqa: ANN001, ANN202
+def _row_scores(anchor, other, anchor_inverse, other_inverse, x, y, first, last, half, window, scores):
     """Write to scores[c] the correlations of the anchor's window at (x, y) with the other's at columns first..last."""
     first, last = max(first, 0), min(last, other_inverse.shape[1] - 1)
     count = max(last - first + 1, 0)
@@ -64,7 +64,7 @@ def _row_scores(anchor, other, anchor_inverse, other_inverse, x, y, first, last,
 
 
 @njit(cache=True, nogil=True)
-def _peak(scores, best, count):  # noqa: ANN001, ANN202
+def _peak(scores, best, count):
     """Return the peak of the parabola through the best score and its neighbours, relative to the best one."""
     if best == 0 or best == count - 1:
         return np.float32(0)

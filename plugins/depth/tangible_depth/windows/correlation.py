@@ -7,8 +7,6 @@ size. Sums of products may wrap; the covariance, their difference, fits 32 bits 
 Lane k stands for the disparity top - k, as in `sweep`: for pixel x the right view's column is x + k - top.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- numba infers the types of kernels; their docstrings give them
-
 from typing import NamedTuple
 
 import numpy as np

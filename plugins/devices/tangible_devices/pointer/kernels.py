@@ -1,6 +1,5 @@
 """Kernels that read and write a pointer's memory. Imports numba: this module is imported when a pointer is opened."""
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 # pyright: basic
 
 import numpy as np

@@ -5,8 +5,6 @@ proxy slides, 7 the phase.
 Imports numba: a method imports this module inside its verb.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
-
 import numpy as np
 
 from tangible_core.compiled import inner

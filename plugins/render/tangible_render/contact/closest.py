@@ -5,8 +5,6 @@ without them it divides by zero or diverges on noise and cliffs. Imports numba: 
 its verb.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
-
 import math
 
 from tangible_core.compiled import inner

@@ -3,8 +3,6 @@
 Imports numba: a method imports this module inside its verb.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
-
 import numpy as np
 from numba import float32, float64, types
 

@@ -10,8 +10,6 @@ sticks, -1 in free air.
 Imports numba: a method imports this module inside its verb.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
-
 import math
 
 import numpy as np

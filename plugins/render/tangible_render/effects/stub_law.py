@@ -5,8 +5,6 @@ It has its own module, so that it is compiled only where it is needed, which is 
 Imports numba: a method imports this module inside its verb.
 """
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
-
 from numba import float64
 
 from tangible_core.compiled import KERNEL, njit

@@ -4,8 +4,6 @@ These kernels do the work of `surface.jumps` and `surface.coefficients` row by r
 vector instructions. No sum has an order that the compiler might change. Imports numba: imported inside a verb.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
-
 import numpy as np
 from numba import float32, types, uint8, void
 

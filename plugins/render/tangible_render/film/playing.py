@@ -8,7 +8,6 @@ loses a race stays in its slot, and tries again in the next tick.
 Imports numba: a method imports this module inside its verb.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are those that numba infers
 # pyright: basic, reportCallIssue=false
 
 import numpy as np

@@ -8,8 +8,6 @@ energy comes from the hand and the surface alone.
 Imports numba: a method imports this module inside its verb.
 """
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
-
 import math
 
 import numpy as np

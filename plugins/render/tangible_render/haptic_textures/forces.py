@@ -1,6 +1,5 @@
 """The force of a texture at a point, compiled. Imports numba, so import this module inside the verb that needs it."""
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 # pyright: basic
 
 import math

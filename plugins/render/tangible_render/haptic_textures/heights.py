@@ -6,7 +6,6 @@ more than a third of its rate. Campion & Hayward (World Haptics 2005): a texture
 sampled at all, and 5 to 10 samples a period to feel right.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 # pyright: basic
 
 import math

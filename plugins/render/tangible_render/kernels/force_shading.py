@@ -1,7 +1,5 @@
 """The compiled kernel of `force-shading`. Imports numba: the method imports this module inside `touch`."""
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
-
 import math
 
 import numpy as np

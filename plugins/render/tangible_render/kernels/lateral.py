@@ -1,7 +1,5 @@
 """The compiled kernel of `lateral-gradient` and `lateral-shape`. Imports numba: imported inside `touch`."""
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
-
 import numpy as np
 from numba import float64
 

@@ -1,7 +1,5 @@
 """The compiled kernel of `penalty`. Imports numba: the method imports this module inside `touch`."""
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
-
 import numpy as np
 from numba import float64
 

@@ -3,8 +3,6 @@
 `contact.approach` lists the memory of a touch.
 """
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
-
 from numba import float64
 
 from tangible_core.compiled import KERNEL, njit

@@ -4,8 +4,6 @@ Cells are areas: a grid of h x w cells covers the extent, row 0 is far (the grea
 centre. Imports numba: a method imports this module inside its verb.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
-
 import numpy as np
 from numba import float64, int32, types, uint8
 

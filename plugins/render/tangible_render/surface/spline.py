@@ -7,7 +7,6 @@ numba compiles each form separately. Imports numba: a method imports this module
 Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal Processing 41 (1993).
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 # pyright: reportCallIssue=false
 
 from typing import Any

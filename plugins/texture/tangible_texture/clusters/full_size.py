@@ -1,7 +1,5 @@
 """Labels of pixels from classes of cells: evidence in wide and narrow windows, neighbours, then interpolation."""
 
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
-
 import numpy as np
 from jaxtyping import Float32, Int32
 

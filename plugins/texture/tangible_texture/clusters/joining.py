@@ -1,7 +1,5 @@
 """Joining of clusters of one texture: the least different pair first, refitting in between."""
 
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
-
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Memberships of cells from their own evidence and from their neighbours."""
 
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
-
 from functools import cache
 
 import numpy as np

@@ -3,8 +3,6 @@
 They are small and interleaved with our own threads: a BLAS that wakes threads for them costs more than it saves.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- numba takes the types from the call
-
 from collections.abc import Iterable
 
 import numpy as np

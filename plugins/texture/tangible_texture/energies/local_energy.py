@@ -4,8 +4,6 @@ A filter passes a small part of the spectrum. That part is cut out and transform
 it; that moves it to frequency 0, which keeps the magnitude. Smoothing and sampling are one table for each axis.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- numba takes the types from the call
-
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from math import ceil, cos, exp, hypot, pi, sin

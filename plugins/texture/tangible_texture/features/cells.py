@@ -1,7 +1,5 @@
 """Planes of features, one value a cell: capping, averaging in windows, standardising."""
 
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
-
 from collections.abc import Iterable
 
 import numpy as np

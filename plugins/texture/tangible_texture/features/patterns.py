@@ -7,8 +7,6 @@ The negative of a picture exchanges counters, except for neighbours of equal gre
 counter fits 5 bits (6 for quarter turns, of which each pixel has two), and two additions count a pixel.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
-
 from collections.abc import Iterable, Iterator
 
 import numpy as np

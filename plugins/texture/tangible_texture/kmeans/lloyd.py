@@ -1,7 +1,5 @@
 """k-means clustering by Lloyd's rounds. Compiled by numba."""
 
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
-
 from collections.abc import Iterable
 from typing import Literal, NamedTuple
 

@@ -1,7 +1,5 @@
 """Flat basins of a landscape, the seeds of segments. Compiled by numba where every pixel is visited."""
 
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
-
 from collections.abc import Iterable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Merging of neighbouring regions, the least separated first."""
 
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
-
 import heapq
 
 import numpy as np

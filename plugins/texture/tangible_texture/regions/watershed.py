@@ -1,7 +1,5 @@
 """Watershed by flooding, with one queue for each level. Compiled by numba."""
 
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
-
 import numpy as np
 from jaxtyping import Float32, Int32
 

@@ -1,7 +1,5 @@
 """Slopes of a smoothed picture: magnitude, direction, and the noise in them."""
 
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
-
 from math import log, sqrt
 
 import numpy as np

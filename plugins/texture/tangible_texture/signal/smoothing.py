@@ -1,7 +1,5 @@
 """Smoothing before edge detection. Compiled by numba where every pixel is visited."""
 
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
-
 import numpy as np
 from jaxtyping import Float32
 

@@ -7,8 +7,6 @@ Sources: Di Zenzo, A note on the gradient of a multi-image, CVGIP 33, 1986; Mart
 natural image boundaries, IEEE TPAMI 26, 2004 (differences of windows).
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
-
 from collections.abc import Iterable, Mapping
 
 import numpy as np

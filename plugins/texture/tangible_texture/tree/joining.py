@@ -1,7 +1,5 @@
 """Joining of neighbouring regions, the pair first that people are least likely to keep apart. Compiled by numba."""
 
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
-
 import numpy as np
 from jaxtyping import Float64, Int32
 

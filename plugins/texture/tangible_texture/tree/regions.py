@@ -2,7 +2,6 @@
 
 # scikit-image has no types.
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
-# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
 from typing import NamedTuple
 

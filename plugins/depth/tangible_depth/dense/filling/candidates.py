@@ -19,8 +19,6 @@ Middlebury pairs and twelve scenes, rounded; the error hardly depends on them ne
 Source of filling from the farther side: Hirschmueller 2008, sec. 2.7.2.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- numba infers the types of kernels; their docstrings give them
-
 from typing import NamedTuple
 
 import numpy as np

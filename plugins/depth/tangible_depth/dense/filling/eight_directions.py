@@ -1,7 +1,5 @@
 """Filling from eight directions, for `effort: best`: as `four_directions`, with the four diagonals as well."""
 
-# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
-
 from collections.abc import Iterable
 
 import numpy as np

@@ -4,8 +4,6 @@ The candidates of a pixel are its nearest known neighbours to the left, right, a
 crossed on the path from it, and at the left border the geodesic candidate; `candidates` scores them.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- numba infers the types of kernels; their docstrings give them
-
 import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int32

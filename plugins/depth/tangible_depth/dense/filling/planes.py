@@ -5,8 +5,6 @@ onto the least-squares plane through the known pixels near it that are of its su
 keeps the slopes near 0 where these pixels lie too close together to determine them.
 """
 
-# ruff: noqa: ANN001, ANN202 -- numba infers the types of kernels; their docstrings give them
-
 import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int16, int32, uint16

@@ -3,8 +3,6 @@
 Imports numba: a method imports this module inside its verb.
 """
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
-
 from numba import int64, void
 
 from tangible_core.compiled import KERNEL, njit

@@ -6,8 +6,6 @@ translational degrees of freedom, PhD thesis, University of Maryland 1997; lengt
 Imports numba: a method imports this module inside its verb.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
-
 import math
 
 import numpy as np

@@ -5,8 +5,6 @@ then lights and homing (out), or buttons and homed arms (in); then one byte of u
 Source: libnifalcon, FalconFirmwareNovintSDK.cpp. Imports numba: a method imports this module inside its verb.
 """
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
-
 from numba import boolean, float64, int64, types, uint8, void
 
 from tangible_core.compiled import KERNEL, njit

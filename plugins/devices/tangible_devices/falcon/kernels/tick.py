@@ -3,8 +3,6 @@
 Both kernels take the arrays of `Buffers` first. Imports numba: a method imports this module inside its verb.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
-
 from typing import NamedTuple
 
 import numpy as np

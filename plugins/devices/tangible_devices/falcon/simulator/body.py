@@ -3,8 +3,6 @@
 Imports numba: a method imports this module inside its verb.
 """
 
-# ruff: noqa: ANN001, ANN201 -- the types of the kernel are in the signature that numba compiles
-
 import math
 from typing import Protocol, final
 

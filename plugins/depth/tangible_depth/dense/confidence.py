@@ -1,5 +1,6 @@
 """The confidence of each disparity, 0..1."""
 
+import cv2
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int16, UInt8
 from numba import int32
@@ -66,8 +67,6 @@ def confidence(
     matched: disparity in sixteenths of a pixel, UNKNOWN without a match; final: the same after filling and sharpening.
     quality: cost or score of each match, the index into by_quality. Returns: float32 (h, w).
     """
-    import cv2
-
     window = np.ones((2 * STEP_REACH + 1, 2 * STEP_REACH + 1), np.uint8)
     missing = np.uint8(255) * (matched == UNKNOWN)
     gaps = cv2.blur(missing, (2 * GAP_REACH + 1, 2 * GAP_REACH + 1))
@@ -79,8 +78,6 @@ def confidence(
 
 def flat_pixels(grey: UInt8[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
     """Find pixels whose 5 x 5 window is constant along its rows, so that every disparity fits equally well."""
-    import cv2
-
     row = np.ones((1, 2 * FLAT_REACH + 1), np.uint8)
     level = (cv2.erode(grey, row) == cv2.dilate(grey, row)).view(np.uint8)
     return cv2.erode(level, row.T).view(np.bool_)

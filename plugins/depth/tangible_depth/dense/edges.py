@@ -6,6 +6,7 @@ This is the weighted median of Ma et al., Constant time weighted median filterin
 ICCV 2013, reduced to two candidates and to the pixels that have a choice.
 """
 
+import cv2
 import numpy as np
 from jaxtyping import Int16, UInt8
 from numba import int32, uint16
@@ -39,8 +40,6 @@ NO_GREY = 1000
 
 def median(disparity: Int16[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
     """Filter with a 5 x 5 median; the picture's edge is repeated outwards."""
-    import cv2
-
     return cv2.medianBlur(disparity, 2 * MEDIAN_REACH + 1)  # pyright: ignore[reportReturnType]
 
 
@@ -50,8 +49,6 @@ def sharpen_edges(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "
     disparity: a dense map in sixteenths of a pixel; grey: the left view. A pixel that changes sides takes the weighted
     mean of its new side. Returns: a new map (h, w).
     """
-    import cv2
-
     window = np.ones((2 * NEARBY + 1, 2 * NEARBY + 1), np.uint8)
     out = disparity.copy()
     around = VOTERS, VOTERS, VOTERS, LANES

@@ -5,6 +5,7 @@ Like OpenCV's `filterSpeckles`, but over runs of a row instead of pixels, and on
 
 from typing import NamedTuple
 
+import cv2
 import numpy as np
 from jaxtyping import Int16, Int32, UInt8
 from numba import int64
@@ -98,8 +99,6 @@ def _remove(disparity: np.ndarray, largest_px: np.ndarray, step: int, reach: int
 
 def _matched_share(disparity: np.ndarray, y0: int, y1: int, reach: int) -> UInt8[np.ndarray, "rows w"]:
     """Return the share of matched pixels near each pixel of rows y0..y1-1, in 255ths."""
-    import cv2
-
     cut, own = slices_with_margin(y0, y1, reach)
     window = 2 * reach + 1, 2 * reach + 1
     return cv2.blur(np.uint8(255) * (disparity[cut] != UNKNOWN), window)[own]  # pyright: ignore[reportReturnType]

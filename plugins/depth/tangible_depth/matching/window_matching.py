@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from jaxtyping import Float32
 
-from tangible_core.compiled import in_blocks
+from tangible_core.compiled import exponentials, in_blocks
 
 from ..dense.confidence import LEAST_MATCHED
 from ..dense.refinement import DenseMatches, complete
@@ -31,8 +31,6 @@ def match_by_correlation(pair: Pair, span: Span, window_px: int) -> DenseMatches
 
 def match_by_difference(pair: Pair, span: Span, window_px: int) -> DenseMatches:
     """Match by the sum of squared differences S; the confidence of a match is exp(-S / (pixels x SSD_SCALE))."""
-    from tangible_core.compiled import exponentials
-
     scale = np.float32(window_px**2 * SSD_SCALE)
     return _match(pair, span, window_px, True, -1e29, lambda scores: exponentials(np.minimum(scores, 0) / scale))
 

@@ -7,6 +7,7 @@ rectified (`rectify.rectification`). A rectified pair pays next to nothing.
 
 import logging
 
+import cv2
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Float64, UInt8
 
@@ -60,8 +61,6 @@ def corners_correspond(pair: Pair, most_row_offset_px: float = 0.0) -> bool:
 @plain_opencv()
 def _row_offsets(pair: Pair, scale: float) -> Float64[np.ndarray, "n"] | None:
     """Return the row offsets of tracked corners, in pixels; empty if over half got lost; None with too few corners."""
-    import cv2
-
     small = [cv2.resize(each, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA) for each in pair]
     # Optical flow assumes constant brightness; equal histograms allow another exposure or gamma.
     small = [cv2.equalizeHist(each) for each in small]
@@ -80,8 +79,6 @@ def _row_offsets(pair: Pair, scale: float) -> Float64[np.ndarray, "n"] | None:
 
 def _track_at_full_size(pair: Pair, start: Points, guess: Points) -> Float[np.ndarray, "inside 1 2"]:
     """Return shifts (x, y) of points tracked again at full size, in a column of patches instead of large pyramids."""
-    import cv2
-
     at = [np.rint(each[:, 0]).astype(int) - PATCH_PX // 2 for each in (start, guess)]
     most = np.array(pair.left.shape[::-1]) - PATCH_PX
     inside = np.all([((each >= 0) & (each <= most)).all(axis=1) for each in at], axis=0)
@@ -128,8 +125,6 @@ def rows_match_elsewhere(pair: Pair) -> bool:
 
 def _profile(view: UInt8[np.ndarray, "h w"]) -> Float64[np.ndarray, "h"]:
     """Return the mean grey of each row, without slow changes."""
-    import cv2
-
     means = cv2.reduce(view, 1, cv2.REDUCE_SUM, dtype=cv2.CV_32S)[:, 0] / view.shape[1]
     half = max(3, int(SLOW * len(means)))
     sums = np.concatenate([[0.0], np.cumsum(np.pad(means, half, mode="edge"))])
@@ -187,8 +182,6 @@ def align_rows(pair: Pair, bands: Bands, most_row_offset_px: float) -> Pair | No
 
 def shift_rows(pair: Pair, row_offset_px: float) -> Pair:
     """Move the right view up by `row_offset_px`, so that rows correspond; cubic between rows."""
-    import cv2
-
     nearest = round(row_offset_px)
     moved_px = nearest if abs(row_offset_px - nearest) < 0.15 else row_offset_px
     move = np.array([[1, 0, 0], [0, 1, -moved_px]], np.float32)
@@ -209,8 +202,6 @@ def common_row_offset(pair: Pair, bands: Bands) -> float | None:
 
 def rows_correspond(pair: Pair, disparity_px: Float32[np.ndarray, "h w"], matched: Bool[np.ndarray, "h w"]) -> bool:
     """Test whether `matched` pixels of a map correlate best in their own row: then noise prevented other matches."""
-    import cv2
-
     rows = np.arange(CELL_PX // 2, len(matched), CELL_PX)
     sixteenths = np.where(matched[rows], np.rint(16 * disparity_px[rows]), UNKNOWN).astype(np.int16)
     with plain_opencv():

@@ -3,6 +3,7 @@
 from math import floor, log2
 from typing import NamedTuple
 
+import cv2
 import numpy as np
 from jaxtyping import UInt8
 
@@ -72,14 +73,10 @@ def grey_pair(views: Views, method: str) -> Pair:
 def _grey8(picture: np.ndarray) -> UInt8[np.ndarray, "h w"]:
     if picture.ndim == 2:
         return np.ascontiguousarray(picture)
-    import cv2
-
     return cv2.cvtColor(np.ascontiguousarray(picture), cv2.COLOR_RGB2GRAY)  # pyright: ignore[reportReturnType]
 
 
 def _downsample(grey: UInt8[np.ndarray, "h w"], factor: int) -> UInt8[np.ndarray, "-(-h//{factor}) -(-w//{factor})"]:
-    import cv2
-
     h, w = grey.shape
     whole = cv2.copyMakeBorder(grey, 0, -h % factor, 0, -w % factor, cv2.BORDER_REPLICATE)
     size = (whole.shape[1] // factor, whole.shape[0] // factor)

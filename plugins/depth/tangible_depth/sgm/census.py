@@ -6,6 +6,7 @@ the order of grey values only, so that exposure, gain and gamma of the two pictu
 
 from collections.abc import Sequence
 
+import cv2
 import numpy as np
 from jaxtyping import UInt8
 
@@ -34,8 +35,6 @@ def two_scale_census(
     grey: UInt8[np.ndarray, "h w"], fine_px: float, coarse_px: float
 ) -> UInt8[np.ndarray, "h 6 whole"]:
     """Compute codes of 48 bits, the census at two Gaussian blurs: coarse ones resist noise, fine ones keep edges."""
-    import cv2
-
     return _encode([cv2.GaussianBlur(grey, (0, 0), sigma) for sigma in (fine_px, coarse_px)])
 
 
@@ -46,8 +45,6 @@ def census_with_levels(grey: UInt8[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h 4
 
 def _encode(greys: Sequence[np.ndarray], levels: bool = False) -> UInt8[np.ndarray, "h planes whole"]:
     """Encode several pictures of one size into consecutive planes; levels: one more plane of the first one's levels."""
-    import cv2
-
     h, w = greys[0].shape
     codes = np.empty((h, PLANES * len(greys) + levels, w + -w % BLOCK), np.uint8)
     around = RADIUS, RADIUS, RADIUS, RADIUS + -w % BLOCK

@@ -6,6 +6,12 @@ import numpy as np
 from jaxtyping import Float64, Int32
 
 from ..features.features import Features, Window
+from .counting import largest_number, likeliest_division
+from .discriminants import principal_axes
+from .dividing import divide
+from .joining import FEW_POWER, MANY, MANY_POWER, axes_between, join_clusters, project
+from .neighbourhood import interior_shares, refit_labels
+from .planes import combine_planes
 
 PRINCIPAL_AXES = 14
 """The number of principal axes along which cells are divided."""
@@ -41,13 +47,6 @@ def classes(
 
     Returns: the class of each cell, and the axes along which classes differ, none for a single class.
     """
-    from .counting import largest_number, likeliest_division
-    from .discriminants import principal_axes
-    from .dividing import divide
-    from .joining import FEW_POWER, MANY, MANY_POWER, axes_between, join_clusters, project
-    from .neighbourhood import interior_shares, refit_labels
-    from .planes import combine_planes
-
     spent, (planes, shape) = EFFORTS[effort], features.middle
     most = largest_number(planes.shape[1]) if segments == "auto" else segments
     rotated = combine_planes(principal_axes(features.wide.planes, PRINCIPAL_AXES, HALF_WHITE), features.wide.planes)

@@ -9,6 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float32, Float64
 
+from tangible_core.compiled import eigen, solve
+
+from .planes import combine_planes, inner_products, scatter_matrix
+
 SHRUNK = 0.05
 """The share of the mean variance within classes and of the total scatter added to the scatter within classes."""
 CELLS = 200
@@ -25,8 +29,6 @@ class Scatters(NamedTuple):
 
 def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k n"]) -> Scatters:
     """Compute the scatters of classes from each cell's weights; their sum is the cell's total weight."""
-    from .planes import inner_products, scatter_matrix
-
     counts = weights.sum(axis=1, dtype=np.float64) + 1e-3
     shares = counts / counts.sum()
     means = inner_products(weights, planes) / counts[:, None]
@@ -41,10 +43,6 @@ def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k
 
 def evidence(planes: Float32[np.ndarray, "d n"], fit: Scatters) -> Float32[np.ndarray, "k n"]:
     """Compute each cell's log likelihood of each class, Gaussians of one width, up to a common term."""
-    from tangible_core.compiled import solve
-
-    from .planes import combine_planes
-
     towards = solve(fit.within, fit.means)
     heights = 0.5 * (fit.means * towards).sum(axis=1)
     return combine_planes(towards, planes) - heights.astype(np.float32)[:, None]
@@ -52,8 +50,6 @@ def evidence(planes: Float32[np.ndarray, "d n"], fit: Scatters) -> Float32[np.nd
 
 def discriminant_axes(fit: Scatters, most: int) -> Float64[np.ndarray, "m d"]:
     """Return the directions in which classes differ most, at most `most`, scaled to unit scatter within classes."""
-    from tangible_core.compiled import eigen, solve
-
     centre = np.einsum("k,kd->d", fit.shares, fit.means)
     apart = np.sqrt(fit.shares)[:, None] * (fit.means - centre)
     towards = solve(fit.within, apart)
@@ -64,10 +60,6 @@ def discriminant_axes(fit: Scatters, most: int) -> Float64[np.ndarray, "m d"]:
 
 def principal_axes(planes: Float32[np.ndarray, "d n"], most: int, power: float = 0.0) -> Float64[np.ndarray, "m d"]:
     """Return leading principal axes of centred planes, divided by variance ** power; none for constant planes."""
-    from tangible_core.compiled import eigen
-
-    from .planes import scatter_matrix
-
     values, vectors = eigen(scatter_matrix(planes, np.ones(planes.shape[1], np.float32)) / planes.shape[1])
     kept = np.flatnonzero(values > 1e-6 * max(values[0], 1e-6))[:most]
     return vectors[kept] * np.array([value**-power for value in values[kept].tolist()])[:, None]

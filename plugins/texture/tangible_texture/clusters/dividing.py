@@ -3,6 +3,10 @@
 import numpy as np
 from jaxtyping import Float32, Int32
 
+from tangible_core.compiled import eigen
+
+from .planes import combine_planes, inner_products, scatter_matrix
+
 ROUNDS = 8
 """The largest number of Lloyd's rounds: joining corrects the rest."""
 
@@ -31,10 +35,6 @@ def divide(planes: Float32[np.ndarray, "d n"], most: int) -> Int32[np.ndarray, "
 
 def _halve_cluster(planes: Float32[np.ndarray, "d n"]) -> tuple[float, np.ndarray]:
     """Return the sum of squared distances from the mean, and a mask of the columns above it on the longest axis."""
-    from tangible_core.compiled import eigen
-
-    from .planes import combine_planes, scatter_matrix
-
     centred = planes - planes.mean(axis=1, keepdims=True)
     moments = scatter_matrix(centred, np.ones(planes.shape[1], np.float32))
     return float(np.trace(moments)), combine_planes(eigen(moments)[1][:1], centred)[0] > 0
@@ -42,8 +42,6 @@ def _halve_cluster(planes: Float32[np.ndarray, "d n"]) -> tuple[float, np.ndarra
 
 def _lloyd_rounds(planes: Float32[np.ndarray, "d n"], centres: np.ndarray) -> Int32[np.ndarray, "n"]:
     """Run at most ROUNDS of Lloyd's rounds; a cluster without cells is dropped."""
-    from .planes import combine_planes, inner_products
-
     labels = np.full(planes.shape[1], -1)
     for _ in range(ROUNDS):
         heights = 0.5 * np.square(centres).sum(axis=1, keepdims=True).astype(np.float32)

@@ -2,6 +2,7 @@
 
 from math import pi, sqrt
 
+import cv2
 import numpy as np
 from jaxtyping import Int32
 
@@ -31,8 +32,6 @@ def flat_areas(picture: np.ndarray, colour: bool, most: int) -> Int32[np.ndarray
 
     Raises: PictureError as `check_picture`.
     """
-    import cv2
-
     paint = channels(picture, colour)
     smooth = gaussian(paint, SMOOTH_PX)
     noise = float(np.median(np.abs(paint - smooth))) / 0.6745

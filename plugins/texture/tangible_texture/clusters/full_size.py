@@ -1,5 +1,6 @@
 """Labels of pixels from classes of cells: evidence in wide and narrow windows, neighbours, then interpolation."""
 
+import cv2
 import numpy as np
 from jaxtyping import Float32, Int32
 
@@ -34,8 +35,6 @@ def fine_memberships(
 
 def resize_planes(planes: Float32[np.ndarray, "k m"], shape: tuple[int, int], to: tuple[int, int]) -> np.ndarray:
     """Interpolate planes of cells between the centres of a coarse grid: (k, n)."""
-    import cv2
-
     with plain_opencv():
         return np.stack(
             [cv2.resize(each.reshape(shape), to[::-1], interpolation=cv2.INTER_LINEAR).ravel() for each in planes]

@@ -2,6 +2,7 @@
 
 from functools import cache
 
+import cv2
 import numpy as np
 from jaxtyping import Float32, Int32
 
@@ -26,8 +27,6 @@ INSIDE_CELLS = 2.0
 
 def smooth_memberships(memberships: Float32[np.ndarray, "k n"], shape: tuple[int, int], sigma: float) -> np.ndarray:
     """Compute Gaussian means of each class's memberships over the grid of cells."""
-    import cv2
-
     result, taps = np.empty(memberships.shape, np.float32), _gaussian(sigma)
     with plain_opencv():
         for each, out in zip(memberships, result, strict=True):
@@ -38,8 +37,6 @@ def smooth_memberships(memberships: Float32[np.ndarray, "k n"], shape: tuple[int
 @cache
 def _gaussian(sigma: float) -> Float32[np.ndarray, "t 1"]:
     """Return the taps of a Gaussian, up to four standard deviations: computed once, as grids are small and many."""
-    import cv2
-
     return np.asarray(cv2.getGaussianKernel(2 * round(4 * sigma) + 1, sigma, cv2.CV_32F), np.float32)
 
 

@@ -9,6 +9,7 @@ from jaxtyping import Bool, Float32, Float64
 from tangible_core.compiled import thread_count
 from tangible_core.plugins import note
 
+from ..signal.smoothing import remove_specks
 from .gabor_bank import Gabor
 from .local_energy import fft, mean_energies, spectrum_of, standardise
 
@@ -20,8 +21,6 @@ FAINT = 0.05
 
 def is_flat(grey: Float32[np.ndarray, "h w"]) -> bool:
     """Return True if all pixels have one grey, single pixels apart."""
-    from ..signal.smoothing import remove_specks
-
     return not standardise(remove_specks(grey[..., None])[..., 0]).any()
 
 

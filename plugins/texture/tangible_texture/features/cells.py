@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+import cv2
 import numpy as np
 from jaxtyping import Float32
 
@@ -45,8 +46,6 @@ def window_means(
 
     out: the array to write to; it may be `planes` where step is 1.
     """
-    import cv2
-
     rows, columns = (-(-side // step) for side in planes.shape[1:])
     means = np.empty((len(planes), rows, columns), np.float32) if out is None else out
 

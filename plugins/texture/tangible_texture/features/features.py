@@ -3,12 +3,20 @@
 import logging
 from typing import Literal, NamedTuple
 
+import cv2
 import numpy as np
 from jaxtyping import Float32
 
 from tangible_core.data import to_grey
 from tangible_core.plugins import note
 from tangible_core.runtime import plain_opencv
+
+from ..energies.filter_choice import is_flat, is_one_texture
+from ..energies.gabor_bank import bank, octaves
+from ..energies.local_energy import energy_planes, mean_energies, padding, spectrum_of, standardise
+from .cells import CELL_PX, ENERGY_SIGMA_PX, cap_rare_values, standardise_roots, window_means
+from .channels import channels
+from .patterns import PATTERNS, pattern_frequencies
 
 log: logging.Logger = logging.getLogger(__name__)
 
@@ -50,9 +58,6 @@ def features(
     The narrow ones have a value every 4 pixels, the middle ones every 8 and the wide ones every 16; of small pictures
     all of them every 4. Raises: PictureError as `check_picture`.
     """
-    from ..energies.filter_choice import is_flat, is_one_texture
-    from .cells import CELL_PX, ENERGY_SIGMA_PX, window_means
-
     grey = to_grey(picture)
     if is_flat(grey):
         note(log, "one segment: the picture is flat")
@@ -76,8 +81,6 @@ def _widths(pixels: int) -> tuple[float, float, float]:
 
 def _window(planes: Float32[np.ndarray, "d rows columns"], colour_count: int) -> Window:
     """Standardise planes in place; the last `colour_count` ones weigh more."""
-    from .cells import standardise_roots
-
     rows, columns = planes.shape[1:]
     flat = planes.reshape(len(planes), -1)
     standardise_roots(flat)
@@ -96,11 +99,6 @@ def _planes(
 
     All are written to one array: for a large picture it has hundreds of megabytes, and so would each copy.
     """
-    from ..energies.gabor_bank import bank, octaves
-    from ..energies.local_energy import energy_planes, mean_energies, padding, spectrum_of, standardise
-    from .cells import CELL_PX, ENERGY_SIGMA_PX, cap_rare_values
-    from .patterns import PATTERNS, pattern_frequencies
-
     filters = bank(octaves(lambda_max_px))
     spectrum = spectrum_of(grey, padding(filters, ENERGY_SIGMA_PX))
     means = mean_energies(spectrum, filters)
@@ -123,11 +121,6 @@ def _planes(
 
 def _colour_planes(picture: np.ndarray, colour: bool | Literal["auto"]) -> Float32[np.ndarray, "colours rows columns"]:
     """Return red against green and both against blue, cell by cell, 0..2; no plane where colour is not used."""
-    import cv2
-
-    from .cells import CELL_PX, window_means
-    from .channels import channels
-
     rows, columns = (-(-side // CELL_PX) for side in picture.shape[:2])
     none = np.empty((0, rows, columns), np.float32)
     if colour is False:

@@ -9,6 +9,7 @@ counter fits 5 bits (6 for quarter turns, of which each pixel has two), and two 
 
 from collections.abc import Iterable, Iterator
 
+import cv2
 import numpy as np
 from jaxtyping import Float32, UInt64
 
@@ -39,8 +40,6 @@ def pattern_frequencies(
     grey: of standard deviation 1. Cells lie as those of `energy_planes` with step_px = 4; the last may be cut. A flip
     or a quarter turn of the picture flips or turns the planes and exchanges some of them. out: the array to write to.
     """
-    import cv2
-
     shape = tuple(-(-side // CELL_PX) for side in grey.shape)
     frequencies = np.empty((PATTERNS, *shape), np.float32) if out is None else out
     for planes, (radius, sigma) in zip(frequencies.reshape(len(RADII), COUNTERS, *shape), RADII, strict=True):

@@ -9,6 +9,8 @@ from jaxtyping import Float32, Int32
 from tangible_core.data import SegmentMap
 from tangible_core.plugins import note
 
+from ..clusters.planes import combine_planes
+from ..regions.merging import number_in_reading_order
 from .lloyd import kmeans
 
 SAMPLE = 1500
@@ -42,8 +44,6 @@ def choose_count(features: Float32[np.ndarray, "n d"], most: int, seed: int = 0)
 
 def _silhouette(rows: Float32[np.ndarray, "n d"], labels: np.ndarray) -> float:
     """Return the mean of (b - a) / max(a, b), a and b being mean distances to the own and the nearest other cluster."""
-    from ..clusters.planes import combine_planes
-
     squares = np.square(rows).sum(axis=1)
     away = np.sqrt(np.maximum(squares[:, None] + squares - 2 * combine_planes(rows, np.ascontiguousarray(rows.T)), 0))
     sizes = np.bincount(labels)
@@ -92,8 +92,6 @@ def label_map_of_cells(
     labels: Int32[np.ndarray, "rows columns"], trust: Float32[np.ndarray, "n"], step_px: int, shape: tuple[int, int]
 ) -> SegmentMap:
     """Repeat labels and confidence of cells for (h, w) pixels; labels are in the order of their first pixels."""
-    from ..regions.merging import number_in_reading_order
-
     cells = np.ix_(*(np.arange(side) // step_px for side in shape))
     return SegmentMap(number_in_reading_order(labels.astype(np.int32))[cells], trust.reshape(labels.shape)[cells])
 

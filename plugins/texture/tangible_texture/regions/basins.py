@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+import cv2
 import numpy as np
 from jaxtyping import Float32, Int32
 
@@ -26,8 +27,6 @@ def basins(
     in a watershed: water fills it before it flows over.
     Returns: labels, -1 outside of the basins, and their number.
     """
-    import cv2
-
     labels = np.full(height.shape, UNSEEN, np.int32)
     count = 0
     for level in levels:

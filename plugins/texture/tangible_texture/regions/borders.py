@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+import cv2
 import numpy as np
 from jaxtyping import Float32, Int32, UInt8
 
@@ -28,8 +29,6 @@ def landscape(smooth: Float32[np.ndarray, "h w c"], most: float, noise: Float32[
     noise: that of the same picture with less smoothing, at any size, of which twice the value bounds the noise here.
     Where edges are many, smoothing leaves little flat area between them, and the slopes measured there are not noise.
     """
-    import cv2
-
     magnitude, across, down, own = slopes(smooth)
     with plain_opencv():
         noise = np.minimum(own, 2 * cv2.resize(noise, own.shape[::-1], interpolation=cv2.INTER_LINEAR))
@@ -39,8 +38,6 @@ def landscape(smooth: Float32[np.ndarray, "h w c"], most: float, noise: Float32[
 
 def canny_edges(land: Landscape, low: float, high: float, most: float) -> UInt8[np.ndarray, "h w"]:
     """Return 255 within one pixel of Canny's edges, else 0; the thresholds are in units of the noise."""
-    import cv2
-
     unit = _LARGEST / most
     across, down = (np.rint(slope * np.float32(unit)).astype(np.int16) for slope in (land.across, land.down))
     return cv2.dilate(cv2.Canny(across, down, unit * low, unit * high, L2gradient=True), np.ones((3, 3), np.uint8))

@@ -1,5 +1,6 @@
 """Removal of small parts of classes, and of seams: strips between two textures that look like a third."""
 
+import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, Int32
 
@@ -15,7 +16,6 @@ def remove_seams(
     segment is wide enough, all stay.
     Returns: the labels, and a mask of the cells that kept their segment.
     """
-    import cv2
     from scipy.ndimage import distance_transform_edt
 
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1))
@@ -48,8 +48,6 @@ def remove_small_parts(
 
 
 def _add_large_parts(markers: Int32[np.ndarray, "h w"], mask: np.ndarray, label: int, smallest_px: int) -> None:
-    import cv2
-
     count, parts = cv2.connectedComponents(mask.view(np.uint8), connectivity=4)
     numbers = np.asarray(parts, np.int32)
     large = np.bincount(numbers.ravel(), minlength=count) >= smallest_px

@@ -2,6 +2,7 @@
 
 from math import log, sqrt
 
+import cv2
 import numpy as np
 from jaxtyping import Float32
 
@@ -78,8 +79,6 @@ def _steepest(magnitude, across, down, result):
 
 
 def _noise(magnitude: Float32[np.ndarray, "h w c"]) -> Map:
-    import cv2
-
     rows, columns = magnitude.shape[:2]
     step = 4 if min(rows, columns) >= TILE_PX else 1
     strips = np.array_split(magnitude[::step, ::step], _tiles(rows), axis=0)

@@ -1,5 +1,6 @@
 """Smoothing before edge detection. Compiled by numba where every pixel is visited."""
 
+import cv2
 import numpy as np
 from jaxtyping import Float32
 
@@ -20,8 +21,6 @@ def remove_specks(values: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, "
     Noise, lines, corners and steps stay as they are. A picture of one pixel has no neighbours and stays.
     Source: conservative smoothing (Jain, Kasturi & Schunck, Machine Vision, 1995, ch. 4), limited by the spread.
     """
-    import cv2
-
     if values.shape[0] * values.shape[1] == 1:
         return values
     around = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], np.uint8)
@@ -42,8 +41,6 @@ def _replace_specks(values, lowest, highest, calm):
 
 def gaussian(values: Float32[np.ndarray, "h w *c"], sigma_px: float) -> Float32[np.ndarray, "h w *c"]:
     """Smooth by a Gaussian; outside of the picture is its mirror image."""
-    import cv2
-
     with plain_opencv():
         return cv2.GaussianBlur(values, (0, 0), sigma_px, borderType=cv2.BORDER_REFLECT).reshape(values.shape)
 
@@ -56,8 +53,6 @@ def smooth_at_two_scales(
     The second has little detail finer than its sigma: it has every step-th pixel only, a mean over step x step pixels.
     Returns: the first, the second, and the step, 1 pixel at least.
     """
-    import cv2
-
     rows, columns = values.shape[:2]
     near_px, wide_px = (min(sigma, (rows * columns) ** 0.5 / 16) for sigma in (sigma_px, WIDER * sigma_px))
     step = max(1, int(wide_px / 1.5))

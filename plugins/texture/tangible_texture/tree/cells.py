@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+import cv2
 import numpy as np
 from jaxtyping import Float32
 
@@ -32,8 +33,6 @@ Planes = Float32[np.ndarray, "d h w"]
 
 def reduce_to_cells(paint: Float32[np.ndarray, "H W c"]) -> Float32[np.ndarray, "h w c"]:
     """Return means over equal cells, CELLS at most; a small picture has one cell a pixel."""
-    import cv2
-
     rows, columns = paint.shape[:2]
     side = max(1.0, (rows * columns / CELLS) ** 0.5)
     size = max(1, round(columns / side)), max(1, round(rows / side))
@@ -61,8 +60,6 @@ def opponent_colours(cells: Float32[np.ndarray, "h w c"]) -> Planes | None:
 
 def shares(colours: Planes) -> Mapping[str, Float32[np.ndarray, "_ h w"]]:
     """Return how much of each kind a cell holds: soft histograms of one value, whose shares sum to 1 in every cell."""
-    import cv2
-
     kinds = {name: _bins(plane, *RANGES[name], BINS) for name, plane in zip(RANGES, colours, strict=True)}
     apart = np.abs(colours[0] - gaussian(colours[0], AROUND_CELLS))
     rough = gaussian(apart / (apart + np.float32(WEAK)), 0.7)

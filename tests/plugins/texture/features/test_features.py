@@ -48,10 +48,8 @@ def test_wide_windows_have_fewer_values_where_both_sides_are_long(shape: tuple[i
 
 
 def test_filters_of_less_than_a_share_of_all_energy_are_left_out(monkeypatch: pytest.MonkeyPatch):
-    from tangible_texture.energies import local_energy
-
     means = np.array([30, 12, 11, 9, 8, 8, 8, 8, 3, 1, 1, 1.0])
-    monkeypatch.setattr(local_energy, "mean_energies", lambda *_: means)
+    monkeypatch.setattr(module, "mean_energies", lambda *_: means)
     with collected() as notes:
         found = features(halves((96, 160), 80), 6.0, 0.1, colour=False)
     assert notes[0].startswith("9 of 12 filters left out")

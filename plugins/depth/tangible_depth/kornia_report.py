@@ -1,6 +1,6 @@
 """Method `kornia-report`: the chain of `report`, its Harris response, eight-point and correlation in torch."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from jaxtyping import Float64, Int64
@@ -10,9 +10,9 @@ from tangible_core.data import DisparityMap, Views
 from tangible_core.plugins import DepthEstimator
 from tangible_core.runtime import TorchDevice, need, pick_device
 
-from .matching.feature_chain import Grey, Parts, Row, disparity_by_features
-from .rectify.fundamental import check_matches
-from .sparse.matches import Matches
+if TYPE_CHECKING:
+    from .matching.feature_chain import Grey, Row
+    from .sparse.matches import Matches
 
 
 class KorniaReport(DepthEstimator):
@@ -46,12 +46,14 @@ class KorniaReport(DepthEstimator):
         """
         need("torch")
         need("kornia")
+        from .matching.feature_chain import Parts, disparity_by_features
+
         parts = Parts(lambda grey: kornia_response(grey, self.torch_device), kornia_eight_point, self._match_rows)
         return disparity_by_features(views, parts, self.least_contrast, self.least_score, self.max_disparity_px)
 
     def _match_rows(
-        self, left: Grey, right: Grey, points: Int64[np.ndarray, "n 2"], low: int, high: int
-    ) -> tuple[Row, Row]:
+        self, left: "Grey", right: "Grey", points: Int64[np.ndarray, "n 2"], low: int, high: int
+    ) -> "tuple[Row, Row]":
         from .windows.torch_zncc import match_pair
 
         disparity, score = match_pair(left, right, low, high, self.window_px, self.torch_device, self.memory_mb)
@@ -63,7 +65,7 @@ _BORDER = 4
 """Pixels of padding at the border."""
 
 
-def kornia_response(grey: Grey, torch_device: TorchDevice = "auto") -> Grey:
+def kornia_response(grey: "Grey", torch_device: TorchDevice = "auto") -> "Grey":
     """Compute `harris.harris_response` by kornia, on the same scale; the picture's edge is repeated outwards."""
     import torch
     from kornia.feature import harris_response
@@ -75,13 +77,15 @@ def kornia_response(grey: Grey, torch_device: TorchDevice = "auto") -> Grey:
     return response[_BORDER:-_BORDER, _BORDER:-_BORDER]
 
 
-def kornia_eight_point(matches: Matches, weights: np.ndarray | None = None) -> Float64[np.ndarray, "3 3"]:
+def kornia_eight_point(matches: "Matches", weights: np.ndarray | None = None) -> Float64[np.ndarray, "3 3"]:
     """Compute `fundamental.eight_point` by kornia, which also weights its normalisation.
 
     Raises: DegenerateMatches as `check_matches`.
     """
     import torch
     from kornia.geometry.epipolar import find_fundamental
+
+    from .rectify.fundamental import check_matches
 
     check_matches(matches)
     left, right = (torch.from_numpy(np.asarray(points, np.float64))[None] for points in matches)

@@ -10,10 +10,6 @@ from tangible_core.errors import PictureError
 from tangible_core.plugins import DepthEstimator
 from tangible_core.runtime import TorchDevice, need
 
-from .rectify.rectification import estimate_rectified
-from .sparse.assembling import assemble, erase_speckles
-from .sparse.corner_range import range_of_pair
-
 
 class KorniaZNCC(DepthEstimator):
     """Zero-mean normalised cross-correlation of every pixel, parabola, left-right check, holes filled by colour.
@@ -43,11 +39,15 @@ class KorniaZNCC(DepthEstimator):
         Raises: PictureError without a right view, BrokenMethod without torch, RectificationError as `rectify`.
         """
         need("torch")
+        from .rectify.rectification import estimate_rectified
+
         if views.right is None:
             raise PictureError("kornia-zncc needs two views; give a right one")
         return self._match(views) if self.rectify == "never" else estimate_rectified(views, self._match)
 
     def _match(self, views: Views) -> DisparityMap:
+        from .sparse.assembling import assemble, erase_speckles
+        from .sparse.corner_range import range_of_pair
         from .windows.torch_zncc import match_pair
 
         assert views.right is not None

@@ -1,6 +1,6 @@
 """Method `report`: the documented baseline, the chain of the report "Tangible Images"."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from jaxtyping import Int64
@@ -9,10 +9,8 @@ from pydantic import Field
 from tangible_core.data import DisparityMap, Views
 from tangible_core.plugins import DepthEstimator
 
-from .matching.feature_chain import Grey, Parts, Row, disparity_by_features
-from .rectify.fundamental import eight_point
-from .sparse.harris import gaussian_window, harris_response
-from .sparse.matches import inverse_lengths
+if TYPE_CHECKING:
+    from .matching.feature_chain import Grey, Row
 
 
 class Report(DepthEstimator):
@@ -43,13 +41,18 @@ class Report(DepthEstimator):
 
         Raises: PictureError without a right view, RectificationError as `rectify`.
         """
+        from .matching.feature_chain import Parts, disparity_by_features
+        from .rectify.fundamental import eight_point
+        from .sparse.harris import gaussian_window, harris_response
+
         window = gaussian_window(self.harris_sigma_px)
         parts = Parts(lambda grey: harris_response(grey, window), eight_point, self._match_rows)
         return disparity_by_features(views, parts, self.least_contrast, self.least_score, self.max_disparity_px)
 
     def _match_rows(
-        self, left: Grey, right: Grey, points: Int64[np.ndarray, "n 2"], low: int, high: int
-    ) -> tuple[Row, Row]:
+        self, left: "Grey", right: "Grey", points: Int64[np.ndarray, "n 2"], low: int, high: int
+    ) -> "tuple[Row, Row]":
+        from .sparse.matches import inverse_lengths
         from .sparse.sparse_ncc import match_rows
 
         half = self.window_px // 2

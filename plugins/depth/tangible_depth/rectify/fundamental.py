@@ -7,6 +7,7 @@ from collections.abc import Callable
 from math import lgamma, log
 from typing import Literal, NamedTuple
 
+import cv2
 import numpy as np
 from jaxtyping import Bool, Float64
 
@@ -132,8 +133,6 @@ def robust_fundamental(matches: Matches, threshold_px: float = 1.0, fit: Fit = e
 
 
 def _magsac(matches: Matches, threshold_px: float) -> Fundamental | None:
-    import cv2
-
     # OpenCV's convention is second^T F first = 0.
     try:
         left_px, right_px = matches
@@ -165,8 +164,6 @@ def _with_inliers(matrix: np.ndarray, matches: Matches, threshold_px: float) -> 
 
 def best_plane(matches: Matches, threshold_px: float) -> Plane | None:
     """Find the homography that explains most matches; None without one."""
-    import cv2
-
     matrix, _ = cv2.findHomography(matches.right_px, matches.left_px, cv2.USAC_MAGSAC, 2 * threshold_px)
     if matrix is None:
         return None

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+import cv2
 import numpy as np
 from jaxtyping import Float32, Float64
 
@@ -73,8 +74,6 @@ class RectifiedPair(Record):
 
     def _sample(self, values: Float32[np.ndarray, "h w"], outside: float) -> Float32[np.ndarray, "rows columns"]:
         """Sample the nearest value: an average across a depth edge would belong to neither surface."""
-        import cv2
-
         rows, columns = self.original_shape
         if self.left_radial:
             return _sample_nearest(values, self.left_place_px(_pixels(self.original_shape)), outside).reshape(
@@ -136,8 +135,6 @@ def _translate(homography: np.ndarray, origin: np.ndarray) -> Float64[np.ndarray
 
 
 def _warp(picture: np.ndarray, homography: np.ndarray, radial: float, width: int, height: int) -> np.ndarray:
-    import cv2
-
     if picture.dtype not in (np.uint8, np.uint16, np.float32, np.float64):
         picture = picture.astype(np.float32)
     raw = np.ascontiguousarray(picture)

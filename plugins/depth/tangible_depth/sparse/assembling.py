@@ -1,5 +1,6 @@
 """Assembly of a dense map from scattered disparities: filled along rows and columns, within colour edges."""
 
+import cv2
 import numpy as np
 from jaxtyping import Float32
 
@@ -26,8 +27,6 @@ def assemble(
     any match, everything is unknown.
     Source: normalised convolution by the domain transform of Gastal & Oliveira, SIGGRAPH 2011.
     """
-    import cv2
-
     guide = to_rgb8(picture)
     mean, _ = _weighted_mean(disparity_px, score, guide, reach_px, colour_step)
     with np.errstate(invalid="ignore"):
@@ -43,8 +42,6 @@ def _weighted_mean(
     values: Float32[np.ndarray, "h w"], score: Float32[np.ndarray, "h w"], guide: np.ndarray, reach: float, step: float
 ) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
     """Return the mean of the known values near each pixel, NaN out of their reach, and the sum of their weights."""
-    import cv2
-
     known = np.isfinite(values)
     weight = np.where(known, score, 0).astype(np.float32)
     with plain_opencv():
@@ -59,8 +56,6 @@ def _weighted_mean(
 
 def erase_speckles(disparity_px: Float32[np.ndarray, "h w"], most_px: int = 60) -> Float32[np.ndarray, "h w"]:
     """Make islands of at most most_px connected pixels of similar disparity unknown: mostly chance matches."""
-    import cv2
-
     lowest = -2048
     sixteenths = np.where(np.isfinite(disparity_px), 16 * disparity_px, 16 * lowest)
     raster = np.clip(np.rint(sixteenths), 16 * lowest, 32767).astype(np.int16)
@@ -70,8 +65,6 @@ def erase_speckles(disparity_px: Float32[np.ndarray, "h w"], most_px: int = 60) 
 
 def fill_nearest(values: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
     """Replace NaN by the nearest known value; at least one must be known."""
-    import cv2
-
     unknown = ~np.isfinite(values)
     if not unknown.any():
         return values

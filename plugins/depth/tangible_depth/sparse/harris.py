@@ -7,6 +7,7 @@ Source: Harris & Stephens, A Combined Corner and Edge Detector, 1988.
 
 from math import exp
 
+import cv2
 import numpy as np
 from jaxtyping import Float, Float64, Int64
 
@@ -28,8 +29,6 @@ def harris_response(
     window: the weights w along one axis, an odd number of them; a Gaussian of sigma 1 px when left out. A picture
     multiplied by c has its response multiplied by c^4.
     """
-    import cv2
-
     weights = gaussian_window(1.0) if window is None else window
     slope, one = np.array([-1.0, 0.0, 1.0]), np.ones(1)
     with plain_opencv():
@@ -48,8 +47,6 @@ def corners(response: Float[np.ndarray, "h w"], least: float, most: int) -> Int6
 
     least: >= 0; most: largest number of corners, so that a busy picture costs no more than a plain one.
     """
-    import cv2
-
     peak = (response > least) & (response >= cv2.dilate(response, np.ones((3, 3), np.uint8)))
     rows, columns = np.nonzero(peak)
     order = np.argsort(-response[rows, columns], kind="stable")[:most]

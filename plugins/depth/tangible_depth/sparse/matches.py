@@ -5,6 +5,7 @@ Points are (column, row) in pixels, centres at whole numbers.
 
 from typing import NamedTuple
 
+import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int64, UInt8
 
@@ -54,8 +55,6 @@ def stretch8(grey: Float32[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w"]:
 
 def sift_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h w"], ratio: float = 0.8) -> Matches:
     """Match SIFT features that are mutual best and pass the ratio test (Lowe, IJCV 2004, sec. 7.1)."""
-    import cv2
-
     if min(left.shape) < SMALLEST_SIDE:
         return NO_MATCHES
     scale = min(1.0, (MOST_PIXELS / left.size) ** 0.5)
@@ -77,8 +76,6 @@ def sift_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h
 
 
 def _reduce(picture: UInt8[np.ndarray, "h w"], scale: float) -> UInt8[np.ndarray, "small_h small_w"]:
-    import cv2
-
     return picture if scale == 1 else cv2.resize(picture, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
 
 
@@ -133,8 +130,6 @@ def correlations(left: Float32[np.ndarray, "n k"], right: Float32[np.ndarray, "m
 
 def inverse_lengths(grey: Float32[np.ndarray, "h w"], half: int) -> Float32[np.ndarray, "h w"]:
     """Return 1 / norm of each pixel's window minus its mean; 0 for a flat one. Edges are repeated outwards."""
-    import cv2
-
     side = (2 * half + 1, 2 * half + 1)
     # A difference of two large sums: in float32 it is negative for a quarter of the windows.
     exact = grey.astype(np.float64)
@@ -192,8 +187,6 @@ def flow_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h
     Cheap, as they are detected and tracked in small pictures and only refined in the full ones. A corner that does not
     come back to within half a small pixel is dropped, which removes most wrong matches.
     """
-    import cv2
-
     if min(left.shape) < SMALLEST_SIDE:
         return NO_MATCHES
     # Optical flow assumes constant brightness; equal histograms allow another exposure or gamma.
@@ -213,8 +206,6 @@ def track(
     first: np.ndarray, second: np.ndarray, start: np.ndarray, guess: np.ndarray, levels: int, window_px: int = 15
 ) -> np.ndarray:
     """Track `start` into the second picture from `guess` (pyramidal Lucas-Kanade); NaN for a lost point."""
-    import cv2
-
     flags = cv2.OPTFLOW_USE_INITIAL_FLOW
     there, seen, _ = cv2.calcOpticalFlowPyrLK(
         first, second, start, guess.copy(), winSize=(window_px, window_px), maxLevel=levels, flags=flags
@@ -244,8 +235,6 @@ def match_off_plane(
 
     Right points are returned in the left picture's frame, mapped by the homography.
     """
-    import cv2
-
     size = left.shape[::-1]
     with plain_opencv():
         moved = cv2.warpPerspective(right, homography, size)
@@ -259,8 +248,6 @@ def match_off_plane(
 
 def _correlating(one: Float32[np.ndarray, "h w"], other: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
     """Find the pixels at which windows of two pictures at the same place correlate."""
-    import cv2
-
     side, half = (WINDOW_PX, WINDOW_PX), WINDOW_PX // 2
     with plain_opencv():
         mean, its, both = (

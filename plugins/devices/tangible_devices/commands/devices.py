@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tangible_core.cli import FAILED, Json, completing, is_listing
-from tangible_core.errors import ConfigError
+from tangible_core.cli import FAILED, Json, completing, is_listing, listing
+from tangible_core.errors import ConfigError, DeviceError, TangibleError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -34,7 +35,6 @@ def devices(context: typer.Context, as_json: Json = False) -> None:
     """List devices; examine, home or calibrate one."""
     if not is_listing("devices", context.invoked_subcommand, as_json):
         return
-    from dataclasses import asdict
 
     from rich.markup import escape
 
@@ -67,7 +67,6 @@ def doctor(
 
     Checks permissions, drivers, firmware. Exit 1 if a check fails, or if one of a named device cannot be made.
     """
-    from dataclasses import asdict
 
     from tangible_core.cli import show
     from tangible_core.plugins.registry import default_registry
@@ -140,7 +139,6 @@ def stress(
 
 
 def _adjustable(name: str, sets: Sequence[str]) -> Adjustable:
-    from tangible_core.errors import DeviceError
     from tangible_core.plugins import Adjustable
     from tangible_core.plugins.registry import default_registry
 
@@ -164,7 +162,6 @@ def _cells(row: dict[str, Any]) -> list[tuple[str, str, str, str]]:
 
 def _findings(name: str, sets: Sequence[str], named: bool) -> Sequence[Finding]:
     from tangible_core.data import Finding
-    from tangible_core.errors import TangibleError
     from tangible_core.plugins.registry import default_registry
 
     from ..installed import examine_device
@@ -197,7 +194,6 @@ def _print_findings(results: dict[str, Sequence[Finding]]) -> None:
 
 def _ask(text: str) -> str:
     from tangible_core.cli import show
-    from tangible_core.errors import ConfigError
 
     show.note(text)
     try:
@@ -208,8 +204,6 @@ def _ask(text: str) -> str:
 
 def _devices_summary(rows: Sequence[Mapping[str, Any]]) -> str:
     """Return which devices can be felt now."""
-    from tangible_core.cli import listing
-
     real = [row["name"] for row in rows if row["units"]]
     simulated = [row["name"] for row in rows if row["simulated"]]
     text = f"{listing(real)} {'is' if len(real) == 1 else 'are'} connected" if real else "No real device is connected"

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from typing import Any
 from xml.sax.saxutils import escape, quoteattr
 
+import cv2
 import numpy as np
 from jaxtyping import Bool, Int32, UInt8
 
@@ -23,8 +24,6 @@ _BRAILLE = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])
 
 def png(pins: Pins, levels: int) -> bytes:
     """Return a picture with a pixel a pin: black is up, white is down, greys are between."""
-    import cv2
-
     grey = 255 - np.rint(pins.astype(np.float64) * (255 / levels)).astype(np.uint8)
     _, data = cv2.imencode(".png", grey)
     return data.tobytes()

@@ -1,5 +1,6 @@
 """The raised pins: borders of parts, sought on the grid of the pins, so that none is lost; and heights between them."""
 
+import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, Int32, Integer, UInt8
 
@@ -54,8 +55,6 @@ def borders(parts: Int32[np.ndarray, "r c"]) -> Bool[np.ndarray, "r c"]:
 
 def heights(relief: Relief, rows: int, columns: int, top: int) -> UInt8[np.ndarray, "{rows} {columns}"]:
     """Return the mean height in each pin's cell, scaled so that the highest is `top`; 0 everywhere if all is flat."""
-    import cv2
-
     metres: Float32[np.ndarray, "h w"] = relief.height_m
     over = (metres - metres.min()).astype(np.float32)
     mean = cv2.resize(over, (columns, rows), interpolation=cv2.INTER_AREA)

@@ -1,6 +1,4 @@
 """Workers: processes of this machine, or of all machines of a cluster. No other file knows Dask."""
-# Dask has no types.
-# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
 import faulthandler
 import logging

@@ -1,6 +1,4 @@
 """The borders of a picture's parts that can be felt as steps, under a fingertip that sinks in a little."""
-# scipy has no types.
-# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
 from math import nan
 from typing import Any

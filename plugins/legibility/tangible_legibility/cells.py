@@ -1,7 +1,4 @@
 """Operations on the cells of a label map: the nearest cell of a mask, boxes, discs, filling and voting."""
-# scipy has no types.
-# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownMemberType=false
-# pyright: reportUnknownArgumentType=false
 
 from typing import NamedTuple
 

@@ -4,8 +4,6 @@ Sources: Bazarevsky et al., BlazeFace, 2019 (boxes and six points of a face, ove
 al., Real-time facial surface geometry from monocular video on mobile GPUs, 2019 (points of a face in a square picture,
 and whether it is one).
 """
-# OpenCV has no types.
-# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
 
 from collections.abc import Iterator
 from typing import NamedTuple

@@ -1,6 +1,4 @@
 """The style of every panel: type, colours, colour bars; legible with colour blindness and in grey print."""
-# pyright: reportUnknownMemberType=false
-# (matplotlib leaves its keywords without types)
 
 from typing import Any
 

@@ -1,6 +1,4 @@
 """The agreement of segments with the true ones, regardless of their numbers."""
-# scipy has no types.
-# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
 from math import hypot
 from typing import Any

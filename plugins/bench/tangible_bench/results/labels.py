@@ -1,6 +1,5 @@
 """Labels for the points of a plot, placed so that none covers another label or a point."""
 # matplotlib keywords have no types.
-# pyright: reportUnknownMemberType=false
 
 from __future__ import annotations
 

@@ -1,6 +1,5 @@
 """The plot: error over run time, a panel for each measure, with the Pareto front; and a curve, if the task has one."""
 # matplotlib keywords have no types.
-# pyright: reportUnknownMemberType=false
 
 from __future__ import annotations
 

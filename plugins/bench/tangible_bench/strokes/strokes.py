@@ -1,6 +1,4 @@
 """Paths of a hand over a surface, with the exact nearest points of analytic surfaces along them."""
-# scipy has no types.
-# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

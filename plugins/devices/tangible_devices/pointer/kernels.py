@@ -1,7 +1,5 @@
 """Kernels that read and write a pointer's memory. Imports numba: this module is imported when a pointer is opened."""
 
-# pyright: basic
-
 import numpy as np
 from numba import float64, int64, uint64, void
 

@@ -2,8 +2,6 @@
 
 Every element is whole: none is cut by the outline. All elements keep the clear distance from each other.
 """
-# shapely has no types.
-# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
 from collections.abc import Callable
 from dataclasses import dataclass, field

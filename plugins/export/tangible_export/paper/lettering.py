@@ -1,6 +1,4 @@
 """Braille on a page: the title, lines of text, and letters in parts, clear of the outlines."""
-# shapely has no types.
-# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
 from typing import Any, NamedTuple
 

@@ -1,6 +1,4 @@
 """The pages of a work: the picture with its letters and fills, measured after it is drawn, and its key."""
-# shapely has no types.
-# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
 import logging
 from collections.abc import Sequence

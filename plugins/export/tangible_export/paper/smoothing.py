@@ -1,6 +1,4 @@
 """Smooth outlines of parts: the stairs of pixels become curves, which neighbours share to the bit."""
-# shapely has no types.
-# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
 from typing import Any
 

@@ -8,7 +8,7 @@ loses a race stays in its slot, and tries again in the next tick.
 Imports numba: a method imports this module inside its verb.
 """
 
-# pyright: basic, reportCallIssue=false
+# pyright: reportCallIssue=false
 
 import numpy as np
 from numba import float32, float64, int64, types

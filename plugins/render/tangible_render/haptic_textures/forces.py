@@ -1,7 +1,5 @@
 """The force of a texture at a point, compiled. Imports numba, so import this module inside the verb that needs it."""
 
-# pyright: basic
-
 import math
 
 import numpy as np

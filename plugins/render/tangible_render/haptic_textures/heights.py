@@ -6,8 +6,6 @@ more than a third of its rate. Campion & Hayward (World Haptics 2005): a texture
 sampled at all, and 5 to 10 samples a period to feel right.
 """
 
-# pyright: basic
-
 import math
 from typing import Any
 

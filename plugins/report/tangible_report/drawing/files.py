@@ -1,6 +1,4 @@
 """A sheet as a file: PNG, SVG or PDF, each with a title and a description for people who do not see it."""
-# pyright: reportUnknownMemberType=false
-# (matplotlib leaves its keywords without types)
 
 from __future__ import annotations
 

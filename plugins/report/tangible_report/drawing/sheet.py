@@ -1,6 +1,4 @@
 """The sheet of a run: panels for its products, and those that plugins add."""
-# pyright: reportUnknownMemberType=false
-# (matplotlib leaves its keywords without types)
 
 from __future__ import annotations
 

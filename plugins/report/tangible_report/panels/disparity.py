@@ -1,6 +1,4 @@
 """The panels of disparity and of its error."""
-# pyright: reportUnknownMemberType=false
-# (matplotlib leaves its keywords without types)
 
 import numpy as np
 from matplotlib.axes import Axes

@@ -1,6 +1,4 @@
 """The panel of forces along the path: arrows on the map of heights."""
-# pyright: reportUnknownMemberType=false
-# (matplotlib leaves its keywords without types)
 
 import numpy as np
 from jaxtyping import Bool, Float64, Int64

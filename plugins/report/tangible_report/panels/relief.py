@@ -1,6 +1,4 @@
 """The panels of the relief: from above, lit from one side as fingers feel it, and as a block."""
-# pyright: reportUnknownMemberType=false
-# (matplotlib leaves its keywords without types)
 
 from dataclasses import replace
 from typing import Any

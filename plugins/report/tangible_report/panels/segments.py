@@ -1,6 +1,4 @@
 """The panels of segments, with the names of their materials, and of parts, with their own names."""
-# pyright: reportUnknownMemberType=false
-# (matplotlib leaves its keywords without types)
 
 import numpy as np
 from jaxtyping import Float, Int

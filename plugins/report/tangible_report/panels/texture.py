@@ -1,6 +1,4 @@
 """The panels of a material's fine texture: its spectrum, and the force of a stroke over it."""
-# pyright: reportUnknownMemberType=false
-# (matplotlib leaves its keywords without types)
 
 import numpy as np
 from matplotlib.axes import Axes

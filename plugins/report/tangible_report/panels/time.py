@@ -1,6 +1,4 @@
 """The panel of force and tip over time."""
-# pyright: reportUnknownMemberType=false
-# (matplotlib leaves its keywords without types)
 
 import numpy as np
 from jaxtyping import Bool, Float64

@@ -1,6 +1,4 @@
 """The panel of the input pictures."""
-# pyright: reportUnknownMemberType=false
-# (matplotlib leaves its keywords without types)
 
 from matplotlib.axes import Axes
 

@@ -1,6 +1,5 @@
 """Plots of a result: functions over levels, or figures with their intervals; each participant is a small point."""
 # matplotlib keywords have no types.
-# pyright: reportUnknownMemberType=false
 
 from __future__ import annotations
 

@@ -1,8 +1,5 @@
 """The smallest regions of a picture, their borders, and sums over both. Compiled by numba."""
 
-# scikit-image has no types.
-# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
-
 from typing import NamedTuple
 
 import numpy as np

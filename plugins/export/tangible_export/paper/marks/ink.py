@@ -1,6 +1,4 @@
 """Copies of pages in ink, for a teacher who reads no braille: the marks in grey, their texts and a scale in black."""
-# shapely has no types.
-# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace

@@ -1,6 +1,4 @@
 """The SVG of a page: explicit black shapes alone."""
-# shapely has no types.
-# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field

@@ -36,18 +36,18 @@ def open_running(opener: Callable[[], Port], image: bytes | None, event_characte
 
     Raises: DeviceError if there is no image to load, or no attempt succeeds, or USB fails.
     """
-    place = failure = ""
+    place, failure = "", LoadError("")
     for attempt in range(1, TRIES + 1):
         port = opener()
         try:
-            failure = _start(port, image, event_character)
+            _start(port, image, event_character)
+            return port
+        except LoadError as error:
+            place, failure = port.place, error
+            port.close()
         except BaseException:
             port.close()
             raise
-        if not failure:
-            return port
-        port.close()
-        place = port.place
         log.info("%s: attempt %d of %d to load its firmware failed: %s", place, attempt, TRIES, failure)
     raise DeviceError(
         f"{place}: its firmware cannot be loaded, {TRIES} attempts failed, the last because {failure}; "
@@ -55,19 +55,17 @@ def open_running(opener: Callable[[], Port], image: bytes | None, event_characte
     )
 
 
-def _start(port: Port, image: bytes | None, event_character: bool) -> str:
-    """Load the firmware unless it answers; return the reason for a failure, empty on success."""
+def _start(port: Port, image: bytes | None, event_character: bool) -> None:
+    """Load the firmware unless it answers. Raises: LoadError, DeviceError as `open_running`."""
     ftdi.run_time(port, event_character)
     if firmware_answers(port):
-        return ""
+        return
     if image is None:
         raise DeviceError(f"{port.place}: has no firmware since power-on; give the option firmware; {WHENCE}")
-    try:
-        load(port, image)
-    except LoadError as error:
-        return str(error)
+    load(port, image)
     ftdi.run_time(port, event_character)
-    return "" if firmware_answers(port) else "the firmware does not answer"
+    if not firmware_answers(port):
+        raise LoadError("the firmware does not answer")
 
 
 def firmware_answers(port: Port) -> bool:

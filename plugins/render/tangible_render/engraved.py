@@ -1,7 +1,8 @@
 """Contours as valleys: a groove along each border between parts, carved into the surface of another force law."""
 
 import logging
-from typing import Annotated, Any, ClassVar
+from functools import partial
+from typing import Annotated, ClassVar
 
 import numpy as np
 from jaxtyping import Float32
@@ -22,8 +23,7 @@ def _refusal(cls: type[ForceRenderer]) -> str:
     return "already wraps a force law; name the inner force law itself" if cls is Engraved else ""
 
 
-def _complete(law: Law) -> dict[str, Any]:
-    return complete_options(law, _refusal)
+_COMPLETE = AfterValidator(partial(complete_options, refusal=_refusal))
 
 
 class Engraved(ForceRenderer, Reshaping):
@@ -45,7 +45,7 @@ class Engraved(ForceRenderer, Reshaping):
     renders_materials: ClassVar[bool] = True
     why_still: ClassVar[str] = "its grooves lie along borders, which would have to be found and followed in each frame"
 
-    law: Annotated[Law, AfterValidator(_complete), Field(validate_default=True)] = "proxy"
+    law: Annotated[Law, _COMPLETE, Field(validate_default=True)] = "proxy"
     """The inner force law, which renders the grooves: its name, or {use: its name} with its options."""
     width_m: Annotated[float, Field(gt=0, le=0.05, allow_inf_nan=False)] = 0.003
     """Width of a groove, from edge to edge."""

@@ -1,6 +1,7 @@
 """The effects of a surface's materials around any other force law."""
 
-from typing import Annotated, Any, ClassVar, final
+from functools import partial
+from typing import Annotated, ClassVar, final
 
 import numpy as np
 from pydantic import AfterValidator, Field
@@ -20,8 +21,7 @@ def _refusal(cls: type[ForceRenderer]) -> str:
     return "renders materials itself; use it directly" if cls.renders_materials else ""
 
 
-def _complete(law: Law) -> dict[str, Any]:
-    return complete_options(law, _refusal)
+_COMPLETE = AfterValidator(partial(complete_options, refusal=_refusal))
 
 
 def _builtin_name(material: str) -> str:
@@ -51,7 +51,7 @@ class WithMaterials(ForceRenderer):
         "no force law without materials supports moving surfaces; `proxy` does, and renders materials"
     )
 
-    law: Annotated[Law, AfterValidator(_complete), Field(validate_default=True)] = "penalty-gradient"
+    law: Annotated[Law, _COMPLETE, Field(validate_default=True)] = "penalty-gradient"
     """The inner force law: its name, or {use: its name} with its options."""
     friction: bool = True
     """Render friction."""

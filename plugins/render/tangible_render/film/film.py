@@ -16,8 +16,10 @@ from tangible_core.plugins import Film
 
 from ..surface.coefficients import BORDER, spline_coefficients
 from ..surface.jumps import ROUNDING
+from .filter_kernels import filter_coefficients, mark_jumps
 from .scratch import MARGIN, TAPS, Scratch
 from .slots import DROPPED, SPEED_M_PER_S, STEP_N, Slots
+from .steady import initial_memory
 
 HIGHEST_M = 1e6
 """The bound of heights, m: float32 can take their differences, and no hand reaches them."""
@@ -83,8 +85,6 @@ def create_film(
     frame_s: float,
 ) -> SplineFilm:
     """Return a film at rest on this surface. arguments, memory: the force law's; spring: its stiffness and damping."""
-    from .steady import initial_memory
-
     (rows, columns), (width_m, length_m) = surface.height_m.shape, map(float, surface.extent_m)
     coefficients = quick_coefficients(surface.height_m, Scratch.of(rows, columns))
     count = max(1, round(frame_s / period_s))
@@ -115,8 +115,6 @@ def quick_coefficients(height_m: Float32[np.ndarray, "h w"], scratch: Scratch) -
         height_m, highest_m = np.minimum(height_m, np.float32(HIGHEST_M)), np.float32(HIGHEST_M)
     if min(height_m.shape) <= MARGIN:
         return spline_coefficients(height_m)
-    from .filter_kernels import filter_coefficients, mark_jumps
-
     mark_jumps(height_m, highest_m * ROUNDING, *scratch[:3])
     # Of a height in the coefficients of its own cell and of its neighbours; their sum is 1.
     weights = (np.sqrt(3) - 2) ** np.arange(TAPS + 1)

@@ -1,11 +1,13 @@
 """The arrays of a film: three slots, each from one surface to the next, in shared memory or not."""
 
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float32, Float64, Int64
 
 from ..surface.tiles import tile_bounds
+from .filter_kernels import fill_slot
+from .playing import publish, slots
 
 SPEED_M_PER_S = 0.1
 """The greatest speed of any place of a surface, m/s: that of a hand."""
@@ -49,10 +51,8 @@ class Slots(NamedTuple):
 
         ends: scratch of the same shape.
         """
-        from .playing import publish
-
         while True:
-            played, published = slots_of(self.shared)
+            played, published = slots(self.shared)
             free = next(slot for slot in range(SLOTS) if slot not in (played, published))
             np.copyto(ends, target)
             self._fill(free, played, ends, most_m)
@@ -63,8 +63,6 @@ class Slots(NamedTuple):
 
     def _fill(self, free: int, played: int, ends: np.ndarray, most_m: float) -> None:
         """Fill a slot that begins at the end of another. `ends`: the target coefficients, then those at its end."""
-        from .filter_kernels import fill_slot
-
         self.host_state[SHORT + free] = fill_slot(ends, self.pairs[played], self.pairs[free], most_m)
         self.ends_m[free] = bounds = tile_bounds(ends)
         begins, bounds_of_both = self.ends_m[played], self.tiles_m[free]
@@ -74,11 +72,4 @@ class Slots(NamedTuple):
     @property
     def arrived(self) -> bool:
         """True if the slot published last ends at its target."""
-        return not self.host_state[SHORT + slots_of(self.shared)[1]]
-
-
-def slots_of(shared: Int64[np.ndarray, "2"]) -> tuple[int, int]:
-    """Return the slot that is played, and the slot that is published."""
-    from .playing import slots
-
-    return cast("tuple[int, int]", slots(shared))
+        return not self.host_state[SHORT + slots(self.shared)[1]]

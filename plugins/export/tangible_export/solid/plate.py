@@ -12,7 +12,7 @@ from tangible_core.data import Relief
 
 from ..braille import DOT_DIAMETER_M, DOT_HEIGHT_M, LINE_PITCH_M, Cells, dots
 from ..braille import height_m as braille_height_m
-from .patches import Patch, flat, join_patches, rectangle, strip, wall
+from .closed import Patch, flat, join_patches, rectangle, strip, wall
 from .triangles import Triangles
 
 LEAST_RIM_M = 0.004

@@ -5,9 +5,8 @@ stick-slip friction (`table`). The compiled functions `heights.texture_height` a
 at a point.
 """
 
-from .sample import sample_tile
+from .sample import Stroke, sample_tile, stroke
 from .spectrum import peak_wavelength_m, radial_spectrum
-from .stroke import Stroke, stroke
 from .table import compile_textures
 
 __all__ = ["Stroke", "compile_textures", "peak_wavelength_m", "radial_spectrum", "sample_tile", "stroke"]

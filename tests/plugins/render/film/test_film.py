@@ -122,7 +122,7 @@ class TestSlots:
                 lost.append(hold(film, 2 * TICKS))  # the loop goes on to frame 2 meanwhile
             return first(shared, *slots)
 
-        monkeypatch.setattr(playing, "publish", late)
+        monkeypatch.setattr("tangible_render.film.slots.publish", late)
         film.show(relief(3), 3)
         hold(film, 2 * TICKS)
         assert moving(film)[FRAME] == 3

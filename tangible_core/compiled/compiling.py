@@ -11,10 +11,11 @@ from typing import Any, cast
 
 from numba import njit as _njit
 from numba.core import event
+from numba.core.caching import FunctionCache
+from numba.core.dispatcher import Dispatcher
 from numba.extending import overload, register_jitable
 
 from .background import start_waiting
-from .loading import load_kernels_alone
 
 log: logging.Logger = logging.getLogger(__name__)
 BYTECODE = {"depth": 28_500, "texture": 3_700, "render": 10_600, "core": 14_000}
@@ -104,6 +105,31 @@ class _GarbageCollectionPause(event.Listener):
             gc.enable()
 
 
-load_kernels_alone()
+_dispatchers: Any = Dispatcher
+_enable_caching = _dispatchers.enable_caching
+
+
+class _KernelCache(FunctionCache):
+    """The disk cache of a kernel that does not use numba's runtime: memory, strings, hashes.
+
+    Before numba loads a function from its disk cache, it imports 72 modules of its own and SciPy's linear algebra, and
+    registers thousands of implementations: half a second, more than the import of numba. The function is machine code
+    by then, so that a process which compiles nothing saves this time. The first compilation does all of it by itself.
+    """
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Load the compiled kernel for this signature; None if it is not on the disk."""
+        cache: Any = self
+        with cache._guard_against_spurious_io_errors():
+            return cache._load_overload(sig, target_context)
+
+
+def _enable_kernel_caching(dispatcher: Any) -> None:
+    _enable_caching(dispatcher)
+    if dispatcher.targetoptions.get("_nrt") is False and type(dispatcher._cache) is FunctionCache:
+        dispatcher._cache.__class__ = _KernelCache
+
+
+_dispatchers.enable_caching = _enable_kernel_caching
 for _listener in (_CompileNotice(), _GarbageCollectionPause()):
     event.register("numba:compile", _listener)  # pyright: ignore[reportUnknownMemberType]

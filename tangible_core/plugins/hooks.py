@@ -11,7 +11,7 @@ import pluggy
 
 from ..errors import did_you_mean, shown
 from ..runtime.failure_log import where_kept
-from ..runtime.slowness import warn_if_slow
+from ..runtime.stopping import warn_if_slow
 from .naming import origin
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 from ..errors import BrokenMethod, UnknownMethod, UnknownName, did_you_mean, shown
 from ..runtime.failure_log import where_kept
-from ..runtime.slowness import warn_if_slow
+from ..runtime.stopping import warn_if_slow
 from . import hooks
 from .naming import KIND_NAMES as KIND_NAMES
 from .naming import origin

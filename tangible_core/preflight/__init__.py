@@ -3,6 +3,6 @@
 import lazy_loader  # pyright: ignore[reportMissingTypeStubs]
 
 # a file of this room has the same name: the last to be imported would win
-from .survey import survey as survey
+from .flight import survey as survey
 
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)  # pyright: ignore[reportUnknownVariableType]

@@ -5,9 +5,9 @@ from .flight import Flight as Flight
 from .flight import Hand as Hand
 from .flight import Loop as Loop
 from .flight import Settings as Settings
-from .legibility import Legibility as Legibility
+from .flight import survey as survey
+from .preflight import Legibility as Legibility
 from .preflight import Preflight as Preflight
-from .survey import survey as survey
 from .timing import PERCENTILES as PERCENTILES
 from .timing import Lateness as Lateness
 from .verdict import Change as Change
@@ -17,5 +17,5 @@ from .verdict import Unit as Unit
 from .verdict import Verdict as Verdict
 from .verdict import check_bound as check_bound
 from .verdict import over as over
-from .wording import quantity as quantity
-from .wording import relation as relation
+from .verdict import quantity as quantity
+from .verdict import relation as relation

@@ -4,8 +4,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any, ClassVar, Self
 
-from .verdict import Change, Grade, Verdict
-from .wording import as_data
+from .verdict import Change, Grade, Verdict, as_data
 
 MOST_REASONS = 3
 """Number of reasons in a sentence; further ones are counted."""
@@ -116,3 +115,27 @@ def _reconcile(verdict: Verdict, strictest: dict[str, Change]) -> Verdict:
                 str(change), f"(not by `{change.key}`, which another check wants {best.towards} {best.value})"
             )
     return replace(verdict, cure=cure, changes=tuple(kept))
+
+
+class Legibility(Verdicts):
+    """The verdicts on parts, in the order of the rules."""
+
+    __slots__ = ()
+    good = "readable"
+    bad: ClassVar[Grade] = "illegible"
+
+    @property
+    def readable(self) -> bool:
+        """True if nothing is illegible."""
+        return self.grade != self.bad
+
+    @property
+    def sentence(self) -> str:
+        """A sentence on the result: legible, legible but ..., or illegible because ....
+
+        >>> Legibility().sentence
+        'Legible: fingers can read it.'
+        """
+        if self.grade == "ok":
+            return "Legible: fingers can read it."
+        return f"{'Legible, but' if self.readable else 'Illegible, because'} {reasons(self)}."

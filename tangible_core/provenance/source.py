@@ -12,7 +12,7 @@ from typing import Any
 
 from . import versions
 from .closure import closure
-from .places import is_read
+from .versions import is_read
 
 PLAIN = (type(None), bool, int, float, complex, str, bytes)
 

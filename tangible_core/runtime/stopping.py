@@ -1,5 +1,7 @@
 """Stopping of long work from another thread: the work checks between its parts whether to go on."""
 
+import logging
+import threading
 from collections.abc import Generator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -38,3 +40,19 @@ def check_stopped() -> None:
     """Raise `Stopped` if the current work shall end; long work calls this between its parts."""
     if stop_asked():
         raise Stopped
+
+
+LONG_S = 5.0
+"""The time until the warning, s."""
+
+
+@contextmanager
+def warn_if_slow(log: logging.Logger, what: str) -> Generator[None]:
+    """Log a warning, with the way to end the work, if this block takes longer than `LONG_S`."""
+    timer = threading.Timer(LONG_S, log.warning, ["%s has taken %g s so far and goes on; Ctrl-C ends it", what, LONG_S])
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()

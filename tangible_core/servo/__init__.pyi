@@ -12,8 +12,8 @@ from .limits import PAGE_SERVER_SILENCE_S as PAGE_SERVER_SILENCE_S
 from .limits import PAGE_SILENCE_S as PAGE_SILENCE_S
 from .limits import POINTER_DEVICE_SILENCE_S as POINTER_DEVICE_SILENCE_S
 from .limits import POINTER_SILENCE_S as POINTER_SILENCE_S
-from .packed_touch import Packed as Packed
-from .packed_touch import pack_touch as pack_touch
+from .parcel import Packed as Packed
+from .parcel import pack_touch as pack_touch
 from .ring import PERIOD_NS as PERIOD_NS
 from .ring import SPINS as SPINS
 from .ring import STOP as STOP

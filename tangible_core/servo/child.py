@@ -16,8 +16,7 @@ from typing import IO, final
 from ..errors import DeviceError
 from ..plugins.interfaces import Link, Touch, touch_of
 from ..runtime.system import priority
-from ..runtime.system.console import ENDING, PAUSING, end_before_console
-from ..runtime.system.streams import take_input
+from ..runtime.system.console import ENDING, PAUSING, end_before_console, take_input
 from . import limits, parcel, watchdog
 from .framing import End, Refusal, Start, StartReply, Swap, SwapReply, receive, send, sendable
 from .ring import COUNT, STOP, SWAP, Ring

@@ -15,7 +15,7 @@ from .beacon import ALL_BUTTONS, ASKED, SEEN, Beacon, BeaconState
 from .framing import Start, StartReply, Swap, SwapReply
 from .guard.safety import Safety
 from .guard.stiffness import stiffness_of
-from .packed_touch import Packed
+from .parcel import Packed
 from .reports import report
 from .ring import LAST, PERIOD_NS, STOP, Ring
 from .supervisor import NOT_STARTED, OVER, LoopProcess

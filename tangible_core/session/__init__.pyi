@@ -21,9 +21,9 @@ from .recording import INTERRUPTED as INTERRUPTED
 from .recording import STOPPED as STOPPED
 from .recording import Recording as Recording
 from .recording import failure as failure
-from .recording.comparison import compare_recordings as compare_recordings
 from .recording.files import SUFFIXES as SUFFIXES
 from .recording.files import check_record_path as check_record_path
+from .recording.replay import compare_recordings as compare_recordings
 from .recording.replay import compare_replay as compare_replay
 from .recording.replay import replay as replay
 from .recording.replay import unaltered_forces as unaltered_forces

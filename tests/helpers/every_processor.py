@@ -23,7 +23,7 @@ from tangible_core.compiled import threads
 from tangible_core.data import DisparityMap, HapticSurface, Relief, SegmentMap, Views, digest_of
 from tangible_core.data.pictures import to_grey, to_rgb8
 from tangible_core.materials.assignment import library, relative_roughness
-from tangible_core.materials.colours import segment_colours
+from tangible_core.materials.rules import segment_colours
 from tangible_core.parts import (
     HeightChoice,
     Layering,

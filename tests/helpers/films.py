@@ -9,9 +9,9 @@ from tangible_core.data import DisparityMap, Relief, Views
 from tangible_core.errors import PictureError
 from tangible_core.plugins.interfaces import Film, Touch
 from tangible_core.relief import ReliefScale
-from tangible_core.relief.tones import STRAIGHT
+from tangible_core.relief.shaping import STRAIGHT
 from tangible_core.scene.geometry import make_relief, nearness_range
-from tangible_core.scene.video.frames import VideoFrame, VideoFrames
+from tangible_core.scene.video.capture import VideoFrame, VideoFrames
 from tangible_core.session.film import FrameMaker
 
 

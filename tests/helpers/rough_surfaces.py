@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from tangible_core.data import HapticSurface
-from tangible_core.testing.synthetic.reliefs import ridge, waves
+from tangible_core.testing.synthetic.scenes import ridge, waves
 
 
 def rough_surfaces(count: int = 128) -> dict[str, HapticSurface]:

@@ -8,9 +8,8 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from tangible_core.provenance.closure import closure
-from tangible_core.provenance.imports import imports
-from tangible_core.provenance.places import place
+from tangible_core.provenance.closure import closure, imports
+from tangible_core.provenance.versions import place
 
 ROOT = Path(__file__).parents[2]
 EVERYWHERE = ("pyproject.toml", "constraints.txt", "tests/conftest.py")

@@ -28,8 +28,19 @@ from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from .cache import Cache
 from .keys import product_key
-from .made import NOT_MADE, Made
-from .planning import REQUESTED, SAME, Outlook, depends_on, foresee, needed_for, not_needed, notes_ahead, with_notes
+from .planning import (
+    NOT_MADE,
+    REQUESTED,
+    SAME,
+    Made,
+    Outlook,
+    depends_on,
+    foresee,
+    needed_for,
+    not_needed,
+    notes_ahead,
+    with_notes,
+)
 from .stage import Context, Progress, Stage, StageEvent, ignore_event, stage_class
 
 log: logging.Logger = logging.getLogger(__name__)

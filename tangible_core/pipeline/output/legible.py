@@ -16,7 +16,7 @@ from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from ..config.part_checks import names_of
 from ..engine.engine import Engine
-from ..engine.legibility import judge_function
+from ..engine.hooked import judge_function
 from ..engine.working_grid import WorkingGrid
 
 WIDTH = "workspace.width_m"

@@ -1,13 +1,13 @@
+from .console import forget_typed as forget_typed
+from .console import take_input as take_input
 from .files import folder_lock as folder_lock
 from .files import is_mine as is_mine
 from .files import take_lock as take_lock
 from .processes import all_threads as all_threads
 from .processes import exit_with_parent as exit_with_parent
+from .processes import highest_bytes as highest_bytes
 from .processes import is_alive as is_alive
+from .processes import library_names as library_names
 from .processes import lower_priority as lower_priority
 from .processes import processors as processors
-from .resources import highest_bytes as highest_bytes
-from .resources import library_names as library_names
-from .streams import forget_typed as forget_typed
-from .streams import take_input as take_input
 from .timers import now_ns as now_ns

@@ -1,10 +1,11 @@
-"""The end of the program from outside: signals, a paused terminal, and a console of Windows that is closed."""
+"""The end of the program from outside: signals, a paused terminal, a console of Windows that is closed; stdin."""
 
+import os
 import signal
 import sys
 import threading
 from collections.abc import Callable
-from typing import Any
+from typing import IO, Any
 
 CLOSING_S = 4.5
 """Longest time, s, for what is done before the process ends: Windows ends it five seconds after the message."""
@@ -61,3 +62,44 @@ def end_before_console(end: Callable[[], object], over: threading.Event, ignore_
         return True
 
     return on_console_message(handle)
+
+
+IN = 0
+
+
+def take_input() -> IO[bytes]:
+    """Return standard input, unbuffered, under another number; the null device takes its place.
+
+    A library that is loaded looks at standard input, and Windows lets it wait there until a thread that reads has what
+    it waits for. A thread may read the returned pipe while libraries load.
+    """
+    pipe = open(os.dup(IN), "rb", buffering=0)  # noqa: PTH123, SIM115 - a buffer's lock would outlive its thread
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, IN)
+    os.close(nothing)
+    _name_for_libraries()
+    return pipe
+
+
+if sys.platform == "win32":
+    import ctypes
+    import msvcrt
+
+    def _name_for_libraries() -> None:
+        """Tell Windows too: libraries with a C library of their own ask it, not ours."""
+        ctypes.WinDLL("kernel32").SetStdHandle(-10, ctypes.c_void_p(msvcrt.get_osfhandle(IN)))
+
+    def forget_typed(keys: IO[str]) -> None:
+        """Forget what was typed at this terminal and not read yet."""
+        while msvcrt.kbhit():
+            msvcrt.getwch()
+
+else:
+    import termios
+
+    def forget_typed(keys: IO[str]) -> None:
+        """Forget what was typed at this terminal and not read yet."""
+        termios.tcflush(keys, termios.TCIFLUSH)
+
+    def _name_for_libraries() -> None:
+        """Do nothing: file 0 is standard input for every library."""

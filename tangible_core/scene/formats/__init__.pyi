@@ -6,11 +6,11 @@ from .kinds import MAPS as MAPS
 from .kinds import PICTURES as PICTURES
 from .kinds import VIDEOS as VIDEOS
 from .kinds import file_kind as file_kind
-from .label_colours import MOST_IN_PALETTE as MOST_IN_PALETTE
-from .label_colours import SPARE as SPARE
-from .label_colours import distinct_colours as distinct_colours
 from .pictures import MAX_LABELS as MAX_LABELS
+from .pictures import MOST_IN_PALETTE as MOST_IN_PALETTE
+from .pictures import SPARE as SPARE
 from .pictures import TruthScale as TruthScale
+from .pictures import distinct_colours as distinct_colours
 from .pictures import read_labels as read_labels
 from .pictures import read_map as read_map
 from .pictures import read_picture as read_picture

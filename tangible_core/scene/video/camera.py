@@ -10,8 +10,7 @@ from jaxtyping import UInt8
 
 from ...errors import PictureError, shown
 from . import capture as video_capture
-from .capture import USUAL_FPS, Capture, OpenCamera, grab, retrieve, stated_fps
-from .frames import VideoFrame, VideoFrames, ViewsOf
+from .capture import USUAL_FPS, Capture, OpenCamera, VideoFrame, VideoFrames, ViewsOf, grab, retrieve, stated_fps
 
 FIRST_S = 15.0
 """Time-out for the first picture, seconds; some cameras take seconds to adjust their exposure."""

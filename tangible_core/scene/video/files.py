@@ -16,9 +16,9 @@ from ..framing import apply_framing, cut_out
 from ..rig import Rectifier, StereoRig
 from ..scene_files import SceneFiles, VideoLayout
 from .camera import CameraFrames
-from .frames import VideoFrame as VideoFrame
-from .frames import VideoFrames as VideoFrames
-from .frames import ViewsOf
+from .capture import VideoFrame as VideoFrame
+from .capture import VideoFrames as VideoFrames
+from .capture import ViewsOf
 from .readers import FileFrames, FolderFrames
 
 

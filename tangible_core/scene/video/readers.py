@@ -15,8 +15,19 @@ from ...errors import PictureError
 from ..formats.kinds import PICTURES
 from ..formats.pairs import Stored, read_stored, same_type, turn_alike
 from ..formats.pictures import picture_of
-from .capture import USUAL_FPS, Capture, grab, open_file, position_s, retrieve, stated_count, stated_fps
-from .frames import VideoFrame, VideoFrames, ViewsOf
+from .capture import (
+    USUAL_FPS,
+    Capture,
+    VideoFrame,
+    VideoFrames,
+    ViewsOf,
+    grab,
+    open_file,
+    position_s,
+    retrieve,
+    stated_count,
+    stated_fps,
+)
 
 LONGEST_S = 60.0
 """Longest time between two frames of a file, seconds; a larger step of the time stamps is taken for an error."""

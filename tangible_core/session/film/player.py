@@ -15,7 +15,7 @@ from ...plugins.interfaces import Film
 from ...runtime.stopping import stoppable
 from ...runtime.system.processes import lower_priority, processors
 from ...runtime.threads import limited_threads, thread_limit
-from ...scene.video.frames import VideoFrame, VideoFrames
+from ...scene.video.capture import VideoFrame, VideoFrames
 from .reliefs import FrameRelief, Reliefs
 
 log: logging.Logger = logging.getLogger(__name__)

@@ -13,7 +13,7 @@ from ...errors import ConfigError
 from ...plugins.notes import silently
 from ...relief import ReliefScale
 from ...scene.geometry import ValueRange
-from ...scene.video.frames import VideoFrame, VideoFrames
+from ...scene.video.capture import VideoFrame, VideoFrames
 from .steady import Steady
 
 LOOK_EVERY, LOOK_PIXELS = 8, 4

@@ -1,6 +1,10 @@
-"""A kiosk: scenes in rotation on one device, for as long as an exhibition; the device may be unplugged and return."""
+"""A kiosk: scenes in rotation on one device, for as long as an exhibition; the device may be unplugged and return.
+
+An unplugged device is searched for less and less often, and each reason is reported once.
+"""
 
 import math
+import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -10,18 +14,103 @@ from typing import final
 
 import numpy as np
 
-from ...data import TICK_COLUMNS, ServoReport
+from ...data import TICK_COLUMNS, ServoReport, TickFlag
 from ...errors import DeviceError, check_positive
 from ...plugins.interfaces import HapticDevice
 from ...runtime.stopping import stop_asked, stoppable
+from ...runtime.system.timers import now_ns
 from ...servo import OVER, Servo
-from ...servo.reports import brief_report
-from ..live import ignore, watch_loop
+from ...servo.reports import LoopTotals, brief_report, report
+from ..live import LOOK_EVERY_S, ignore, watch_loop
 from ..parts_felt import with_part
 from ..recording import INTERRUPTED, STOPPED
-from .device_wait import DeviceWait
+from ..recording.tick_arrays import ARRAYS
 from .rotation import Rotation, Slot
-from .totals import SessionTotals
+
+FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 8.0
+"""First and longest pause between two searches for a device; each is twice as long, as a search starts a process."""
+
+
+@final
+class DeviceWait:
+    """The reason for which a session waits, and the pause until the next search."""
+
+    def __init__(self, notify: Callable[[str], None]) -> None:
+        """notify: called with a sentence, once for each reason and when the device is back."""
+        self._notify = notify
+        self._reason, self._pause_s = "", FIRST_PAUSE_S
+
+    def end(self) -> None:
+        """End the wait, if there was one: the device is open."""
+        if self._reason:
+            self._notify("the device is back; the session goes on")
+        self._reason, self._pause_s = "", FIRST_PAUSE_S
+
+    def pause(self, why: str, end_reason: Callable[[], str]) -> str:
+        """Wait until the next search for the device; return why the session ends, if it does."""
+        if why != self._reason:
+            self._reason = why
+            self._notify(f"no force; waiting for the device: {why}")
+        until_s = time.monotonic() + self._pause_s
+        self._pause_s = min(2 * self._pause_s, LONGEST_PAUSE_S)
+        while not (ended := end_reason()) and time.monotonic() < until_s:
+            time.sleep(LOOK_EVERY_S)
+        return ended
+
+
+PERIOD_S = 0.001
+"""Period of a loop, after which the last tick of a lost device is recorded."""
+
+
+@final
+class SessionTotals:
+    """The totals of all loops of a session, and the time since its first tick."""
+
+    def __init__(self, keep: Callable[[np.ndarray], None]) -> None:
+        """keep: called with all ticks, their times those of the session."""
+        self._keep = keep
+        self._first_ns = 0
+        """Time at which the first tick of the session was due; 0 before it."""
+        self.since_s: float = 0.0
+        """Time from then to the first tick of the current loop."""
+        self._before: LoopTotals | None = None
+        self._row: np.ndarray | None = None
+
+    @property
+    def begun(self) -> bool:
+        """True once a loop has begun."""
+        return self._first_ns > 0
+
+    @property
+    def passed_s(self) -> float:
+        """Time since the first tick, with or without a device; 0 before it."""
+        return (now_ns() - self._first_ns) / 1e9 if self.begun else 0.0
+
+    def begin(self, began_ns: int) -> None:
+        """Begin a loop, whose first tick was due at this time."""
+        self._first_ns = self._first_ns or began_ns
+        self.since_s = (began_ns - self._first_ns) / 1e9
+
+    def report(self, servo: Servo, stopped: str) -> ServoReport:
+        """Return the report of the session so far."""
+        return report(servo.ring, stopped, self._before, self.since_s)
+
+    def keep(self, rows: np.ndarray) -> None:
+        """Pass on ticks of the current loop."""
+        rows[:, ARRAYS["time_s"]] += self.since_s
+        self._row = rows[-1].copy()
+        self._keep(rows)
+
+    def close(self, servo: Servo) -> None:
+        """Add the totals of a lost loop to the session, and record a tick without force."""
+        totals = LoopTotals.of(servo.ring)
+        self._before = totals if self._before is None else self._before.plus(totals)
+        if self._row is not None:
+            self._row[ARRAYS["time_s"]] += PERIOD_S
+            self._row[ARRAYS["force_n"]], self._row[ARRAYS["flags"]] = 0.0, float(TickFlag.STALE)
+            self._keep(self._row[None])
+            self._row = None
+
 
 SHORTEST_S = 0.1
 """Shortest remaining time for which a device is opened."""

@@ -1,4 +1,4 @@
-"""Replay of a recording: the same states, tick by tick, through any touch."""
+"""Replay of a recording: the same states, tick by tick, through any touch; the difference of two recordings."""
 
 import math
 from collections.abc import Callable
@@ -6,9 +6,11 @@ from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
+from jaxtyping import Float64
 
 from ...compiled.touch import CompiledTouch
 from ...data import UNTOUCHED, HapticState, TickFlag
+from ...errors import check_positive
 from ...metrics.forces import force_errors
 from ...plugins.interfaces import Touch
 from .recording import Recording
@@ -77,3 +79,56 @@ def compare_replay(before: Recording, after: Recording) -> dict[str, float]:
         "recorded_contact_share": then["contact_share"],
         "contact_share": now["contact_share"],
     }
+
+
+NEAR_M = 1e-3
+"""Greatest distance of two places that count as one: no hand finds a place again more exactly."""
+MOST_COMPARED = 100_000
+"""Greatest number of ticks that are compared; a longer recording is thinned evenly."""
+SHOWN = ("ticks", "seconds", "contact_share", "median_contact_force_n", "peak_force_n", "work_j")
+"""Names of the figures of each recording in the comparison."""
+
+
+def compare_recordings(first: Recording, second: Recording, near_m: float = NEAR_M) -> dict[str, float]:
+    """Compare two recordings along similar paths, of any speed and length, in numbers by name, each with its unit.
+
+    Each tick of the first recording is compared with the nearest tick of the second, in place and in direction of
+    motion, as friction turns with the direction. Ticks without a partner within near_m are left out.
+
+    Returns: the figures of `Recording.figures` of the first as `first_...`, of the second as `second_...`; `compared`,
+    the number of ticks with a partner, and `compared_share`, their share; `apart_m`, the median distance of partners;
+    and the `force_errors` of the second's forces against the first's at partners, of which `error_n` is the root mean
+    square over the ticks where either force is not zero. NaN if there is no partner.
+    Raises: ConfigError if near_m is not positive.
+    """
+    check_positive("near_m", near_m)
+    ours, theirs = (each.rows[np.isfinite(_places(each, near_m)).all(axis=1)] for each in (first, second))
+    ours = ours[:: max(1, -(-len(ours) // MOST_COMPARED))]
+    here, there = Recording(ours), Recording(theirs)
+    partner, apart_m = _partners(here, there, near_m)
+    near = apart_m <= near_m
+    figures = {"first": first.figures(), "second": second.figures()}
+    return {
+        **{f"{which}_{name}": float(figures[which][name]) for name in SHOWN for which in figures},
+        "compared": int(near.sum()),
+        "compared_share": float(near.mean()) if near.size else 0.0,
+        "apart_m": float(np.median(apart_m[near])) if near.any() else float("nan"),
+        **force_errors(there.force_n[partner[near]], here.force_n[near]),
+    }
+
+
+def _partners(here: Recording, there: Recording, near_m: float) -> tuple[np.ndarray, Float64[np.ndarray, "n"]]:
+    """Return the index of the second's tick that is the partner of each tick of the first, and their distance."""
+    if not len(here.rows) or not len(there.rows):
+        return np.zeros(len(here.rows), np.int64), np.full(len(here.rows), np.inf)
+    from scipy.spatial import KDTree  # pyright: ignore[reportMissingTypeStubs]
+
+    tree: Any = KDTree(_places(there, near_m))
+    partner: np.ndarray = tree.query(_places(here, near_m))[1]
+    return partner, np.linalg.norm(here.position_m - there.position_m[partner], axis=1)
+
+
+def _places(recording: Recording, near_m: float) -> Float64[np.ndarray, "n 6"]:
+    """Return places in units of near_m with unit vectors of motion; a reverse motion is as far away as two units."""
+    speed = np.linalg.norm(recording.velocity_m_per_s, axis=1, keepdims=True)
+    return np.hstack([recording.position_m / near_m, recording.velocity_m_per_s / np.where(speed > 0, speed, 1)])

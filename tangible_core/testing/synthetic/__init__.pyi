@@ -1,11 +1,11 @@
-from .reliefs import cliff as cliff
-from .reliefs import cone as cone
-from .reliefs import ridge as ridge
-from .reliefs import waves as waves
 from .scenes import KnownSurface as KnownSurface
+from .scenes import cliff as cliff
+from .scenes import cone as cone
 from .scenes import plane as plane
 from .scenes import ramp as ramp
+from .scenes import ridge as ridge
 from .scenes import sphere_cap as sphere_cap
+from .scenes import waves as waves
 from .stereo_scenes import KnownPair as KnownPair
 from .stereo_scenes import synthetic_pair as synthetic_pair
 from .texture_scenes import KnownSegments as KnownSegments

@@ -6,7 +6,7 @@ import pytest
 from matplotlib.colors import XKCD_COLORS, to_rgb
 
 from tangible_core.data import SegmentMap
-from tangible_core.materials.colours import COLOURS, colour_names, segment_colours
+from tangible_core.materials.rules import COLOURS, colour_names, segment_colours
 
 BASIC = [name for name in COLOURS if name not in ("black", "white", "grey")]
 SHADES = ("", "light ", "pale ", "bright ", "dull ", "dusty ", "dark ")

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from tangible_core.provenance import closure, places, versions
+from tangible_core.provenance import closure, versions
 
 Write = Callable[..., Path]
 
 
 def forget() -> None:
     """Empty the caches, as in a new process."""
-    for module in (closure, places, versions):
+    for module in (closure, versions):
         for each in vars(module).values():
             if hasattr(each, "cache_clear"):
                 each.cache_clear()

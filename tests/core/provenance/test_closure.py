@@ -9,7 +9,7 @@ from types import ModuleType
 import pytest
 
 from tangible_core.provenance import closure as closures
-from tangible_core.provenance import places
+from tangible_core.provenance import versions
 from tangible_core.provenance.closure import closure, closure_of_function
 
 from .conftest import Write, forget
@@ -99,7 +99,7 @@ def test_closure_reads_only_the_used_modules_of_tangible_images(write: Write):
 
 def test_closure_reads_an_installed_tangible_images(write: Write, monkeypatch: pytest.MonkeyPatch):
     write(INSTALLED, **METHOD)
-    monkeypatch.setattr(places, "INSTALLED", {*places.INSTALLED, Path(places.__file__).parts[-4]})
+    monkeypatch.setattr(versions, "INSTALLED", {*versions.INSTALLED, Path(versions.__file__).parts[-4]})
     assert "tangible_core.data" in closure("acme.method").modules
 
 

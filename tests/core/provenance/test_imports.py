@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from tangible_core.provenance import imports as reading
-from tangible_core.provenance.imports import Import, definitions, imports
+from tangible_core.provenance import closure as reading
+from tangible_core.provenance.closure import Import, definitions, imports
 
 ROOT = Path(__file__).parents[3]
 

@@ -5,8 +5,7 @@ import pytest
 
 from tangible_core.data import Calibration, DisparityMap
 from tangible_core.relief import ReliefChoice, ReliefScale, shape_relief
-from tangible_core.relief.shaping import GRAIN_HIGH_M
-from tangible_core.relief.tones import STRAIGHT
+from tangible_core.relief.shaping import GRAIN_HIGH_M, STRAIGHT
 from tangible_core.scene import geometry
 from tangible_core.scene.geometry import ValueRange
 from tangible_core.scene.workspace import FeltSize, Workspace

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from tangible_core.relief.tones import BINS, STEEPEST, STRAIGHT, apply_tones, tones_of
+from tangible_core.relief.shaping import BINS, STEEPEST, STRAIGHT, apply_tones, tones_of
 
 UNIT = st.floats(0, 1, width=32)
 MAPS = hnp.arrays(np.float32, st.tuples(st.integers(1, 12), st.integers(1, 12)), elements=UNIT)

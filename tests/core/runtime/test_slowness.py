@@ -5,14 +5,14 @@ import time
 
 import pytest
 
-from tangible_core.runtime import slowness
-from tangible_core.runtime.slowness import warn_if_slow
+from tangible_core.runtime import stopping
+from tangible_core.runtime.stopping import warn_if_slow
 
 log = logging.getLogger("slow")
 
 
 def test_slow_work_is_reported_while_it_runs(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(slowness, "LONG_S", 0.01)
+    monkeypatch.setattr(stopping, "LONG_S", 0.01)
     until = time.monotonic() + 60
     with warn_if_slow(log, "importing acme"):
         while not caplog.messages and time.monotonic() < until:

@@ -16,7 +16,7 @@ from tangible_core.errors import DeviceError
 from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.servo import OVER, Safety
 from tangible_core.session import INTERRUPTED, STOPPED, Slot, run_kiosk
-from tangible_core.session.kiosk import device_wait
+from tangible_core.session.kiosk import kiosk
 
 AT_ONCE = Safety(ramp_s=0, max_step_n=10, stale_s=1.0, passivity="off")  # late ticks change nothing
 pytestmark = pytest.mark.usefixtures("patient")
@@ -29,7 +29,7 @@ soft = partial(proxy, stiffness_n_per_m=SOFT_N_PER_M)
 @pytest.fixture
 def no_pause(monkeypatch: pytest.MonkeyPatch) -> None:
     """Search for a device again without a pause."""
-    monkeypatch.setattr(device_wait, "FIRST_PAUSE_S", 0.01)
+    monkeypatch.setattr(kiosk, "FIRST_PAUSE_S", 0.01)
 
 
 @pytest.mark.usefixtures("loop_in_thread")
@@ -138,10 +138,10 @@ def test_kiosk_on_ctrl_c_while_waiting_ends() -> None:
 
 
 def test_kiosk_reports_a_reason_once_and_searches_less_and_less_often(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(device_wait, "FIRST_PAUSE_S", 1e-3)
-    monkeypatch.setattr(device_wait, "LONGEST_PAUSE_S", 3e-3)
+    monkeypatch.setattr(kiosk, "FIRST_PAUSE_S", 1e-3)
+    monkeypatch.setattr(kiosk, "LONGEST_PAUSE_S", 3e-3)
     said: list[str] = []
-    wait = device_wait.DeviceWait(said.append)
+    wait = kiosk.DeviceWait(said.append)
     pauses: list[float] = []
     for why in ("it is out", "it is out", "it is in use"):
         pauses.append(wait._pause_s)

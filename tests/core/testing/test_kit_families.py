@@ -10,7 +10,7 @@ from tangible_core import DisparityMap, Views
 from tangible_core.errors import BrokenMethod, DeviceError
 from tangible_core.plugins import DepthEstimator
 from tangible_core.testing import CheckFailure, kinds
-from tangible_core.testing.kinds.whole_files import demand_whole
+from tangible_core.testing.kinds.export import demand_whole
 
 FAMILIES: list[tuple[Any, Any, dict[str, Any]]] = [
     (kinds.depth.CHECKS, Depth(), {name: Depth(twist=twist) for name, twist in DEPTH.items()}),

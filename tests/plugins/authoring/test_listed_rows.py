@@ -7,7 +7,7 @@ from tangible_authoring.listed_parts import MOST_CELLS, ListedPart, list_rows
 from tangible_authoring.renumbering import Moved, moves
 from tangible_core.data import PartMap
 from tangible_core.parts import PartChoice, PartHeights
-from tangible_core.scene.formats.label_colours import DARKEST, LIGHTEST, MOST_CHROMA, STEPS, distinct_colours
+from tangible_core.scene.formats.pictures import DARKEST, LIGHTEST, MOST_CHROMA, STEPS, distinct_colours
 from tangible_report.numbered_parts import Before
 
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from tangible_core.data import HapticState, HapticSurface, Material
-from tangible_core.testing.synthetic.reliefs import waves
-from tangible_core.testing.synthetic.scenes import KnownSurface, ramp, sphere_cap
+from tangible_core.testing.synthetic.scenes import KnownSurface, ramp, sphere_cap, waves
 from tangible_render.force_shading import ForceShading
 from tangible_render.lateral_gradient import LateralGradient
 from tangible_render.lateral_shape import LateralShape

@@ -16,7 +16,7 @@ from tangible_core.errors import OptionError
 from tangible_core.materials.assignment import library
 from tangible_core.plugins.interfaces import ForceRenderer, PlainTouch, Touch
 from tangible_core.plugins.registry import load_method
-from tangible_core.testing.synthetic.reliefs import waves
+from tangible_core.testing.synthetic.scenes import waves
 from tangible_render.with_materials import WithMaterials
 
 

@@ -8,8 +8,7 @@ import pytest
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import Force, HapticState, HapticSurface, Material, Relief
 from tangible_core.plugins.interfaces import Touch
-from tangible_core.testing.synthetic.reliefs import waves
-from tangible_core.testing.synthetic.scenes import KnownSurface, plane, ramp, sphere_cap
+from tangible_core.testing.synthetic.scenes import KnownSurface, plane, ramp, sphere_cap, waves
 from tangible_render.proxy import Proxy
 
 RNG = np.random.default_rng(23)

@@ -6,7 +6,7 @@ from ....data import PartMap
 from ....drawing import PictureKind
 from ....parts import SimplifyChoice
 from ...config.part_checks import names_of
-from ..legibility import legibility_point, simplify_function
+from ..hooked import legibility_point, simplify_function
 from ..networks import has_figure
 from ..stage import Inputs
 from .parts import OfPartsStage

@@ -18,7 +18,7 @@ from tangible_core.pipeline.engine.engine import Engine
 from tangible_core.plugins.interfaces import DepthEstimator, Segmenter
 from tangible_core.plugins.registry import default_registry
 from tangible_core.provenance import closure as closures
-from tangible_core.provenance import places, versions
+from tangible_core.provenance import versions
 from tangible_core.relief import ReliefChoice
 from tangible_core.scene.scene_files import SceneFiles
 from tangible_core.scene.workspace import Workspace
@@ -85,7 +85,7 @@ READ = closures._text
 
 
 def forget() -> None:
-    for module in (closures, places, versions):
+    for module in (closures, versions):
         for each in vars(module).values():
             if hasattr(each, "cache_clear") and each is not READ:
                 each.cache_clear()
@@ -211,7 +211,7 @@ def outcome(pipe: Engine, product: str) -> str:
 def edit_module(monkeypatch: pytest.MonkeyPatch, module: str) -> None:
     """Pretend that the source of this module has changed."""
 
-    def text(here: places.Place):
+    def text(here: versions.Place):
         found = READ(here)
         return found._replace(content=b"edited") if here.name == module else found
 
@@ -237,7 +237,7 @@ class TestCode:
         ("module", "products"),
         [
             ("tangible_core.scene.scaling", {"disparity", "relief", "segments", "parts", "simplified"}),
-            ("tangible_core.relief.tones", {"relief"}),
+            ("tangible_core.relief.shaping", {"relief"}),
             ("tangible_core.relief.slope_kernels", {"relief"}),
             ("tangible_core.scene.geometry", {"relief", "simplified"}),
             ("tangible_core.materials.rules", {"materials"}),

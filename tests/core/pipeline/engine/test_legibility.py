@@ -4,7 +4,7 @@ import pluggy
 import pytest
 
 from tangible_core.errors import BrokenMethod
-from tangible_core.pipeline.engine.legibility import judge_function, legibility_point, simplify_function
+from tangible_core.pipeline.engine.hooked import judge_function, legibility_point, simplify_function
 from tangible_core.plugins import hooks
 from tangible_core.plugins.registry import Registry, default_registry
 

@@ -8,7 +8,7 @@ import pytest
 from films import GivenFrames, NearnessOfGrey, greys
 from tangible_core.errors import GeometryError
 from tangible_core.relief import ReliefScale
-from tangible_core.relief.tones import STRAIGHT
+from tangible_core.relief.shaping import STRAIGHT
 from tangible_core.scene.geometry import ValueRange
 from tangible_core.session.film import Reliefs
 from tangible_core.session.film.reliefs import ADAPTS_S, Scale

@@ -7,7 +7,7 @@ import pytest
 
 from tangible_core.errors import ConfigError
 from tangible_core.session import Recording, compare_recordings
-from tangible_core.session.recording.comparison import MOST_COMPARED
+from tangible_core.session.recording.replay import MOST_COMPARED
 
 DEEP_M, WIDE_M = 1e-3, 0.1
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from tangible_core.data import HapticSurface
-from tangible_core.testing.synthetic.reliefs import waves
-from tangible_core.testing.synthetic.scenes import plane, ramp, sphere_cap
+from tangible_core.testing.synthetic.scenes import plane, ramp, sphere_cap, waves
 from tangible_render.surface import spline
 from tangible_render.surface.coefficients import spline_surface
 from tangible_render.surface.dequantise import dequantise, lattice_step

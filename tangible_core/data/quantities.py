@@ -6,10 +6,10 @@ from decimal import Decimal
 from inspect import cleandoc, getdoc
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, cast, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, cast, get_args, get_origin
 from weakref import WeakKeyDictionary
 
-from pydantic import BaseModel, GetJsonSchemaHandler, ValidationError, ValidationInfo, field_validator
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationError, ValidationInfo, field_validator
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
@@ -66,6 +66,8 @@ class Quantities(BaseModel, metaclass=_Blocks):
     >>> Block(width_m="6 mm").width_m, Block(width_m=0.006).width_m
     (0.006, 0.006)
     """
+
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     @field_validator("*", mode="before")
     @classmethod

@@ -2,9 +2,9 @@
 
 import math
 from dataclasses import replace
-from typing import Annotated, ClassVar
+from typing import Annotated
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from ..data import DeviceSpec, Vector
 from ..data.quantities import Quantities
@@ -16,8 +16,6 @@ Size = Annotated[float, Field(gt=0, le=10)]
 
 class WorkspaceMapping(Quantities):
     """The mapping from hand to picture; without options they coincide."""
-
-    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     scale: Annotated[float, Field(ge=1e-3, le=1e3)] | None = None
     """Hand movement per movement on the picture. By default 1, or, with `region_m`, what fits the region to the

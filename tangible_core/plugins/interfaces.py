@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
-from pydantic import ConfigDict
 
 from ..data import NO_FORCE as NO_FORCE
 from ..data import DeviceSpec as DeviceSpec
@@ -88,8 +87,6 @@ def guard_verb(cls: type, verb: Verb) -> None:
 
 class Method(Quantities, ABC):
     """A named way to do one stage; its fields are its options, each with a default."""
-
-    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     version: ClassVar[int] = 1
     """A number to raise when a file that the method reads has changed: results are cached under it and the code."""

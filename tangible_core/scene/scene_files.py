@@ -4,9 +4,9 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from ..data import Calibration
 from ..data.quantities import Quantities
@@ -54,8 +54,6 @@ VideoSource = Annotated[Path | Annotated[int, Field(ge=0, le=LAST_CAMERA)], Befo
 class SceneFiles(Quantities):
     """A scene in files: a pair (left and right, or both in one file, stereo), one photo, a height map, or a video.
     Relative paths start at the YAML file."""
-
-    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     left: Path | None = None
     """The left view of a rectified pair."""
@@ -252,8 +250,6 @@ class SceneReader(Quantities, ABC):
     A package names its readers in the entry-point group `tangible.scene`. The name of the entry point is the key that
     only blocks of this form have, such as `set` in `scene: {set: kitti-2015, name: 000000_10}`.
     """
-
-    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     @abstractmethod
     def files(self) -> SceneFiles:

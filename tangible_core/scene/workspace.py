@@ -1,11 +1,10 @@
 """The size of the surface under the hand, and its defaults for each kind of scene."""
 
 import re
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
+from typing import Annotated, Any, Literal, NamedTuple, Self
 
 from pydantic import (
     BeforeValidator,
-    ConfigDict,
     Field,
     SerializerFunctionWrapHandler,
     model_serializer,
@@ -56,8 +55,6 @@ def flat_warning(relief: Relief, kind: ReliefKind) -> str:
 
 class Section(Quantities):
     """Base of the configuration's own blocks."""
-
-    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
 
 class FeltSize(NamedTuple):

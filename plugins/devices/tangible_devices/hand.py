@@ -2,9 +2,9 @@
 
 import cmath
 import math
-from typing import Annotated, ClassVar, final
+from typing import Annotated, final
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from tangible_core.data import Force, Quantities, Vector
 
@@ -14,8 +14,6 @@ class VirtualHand(Quantities):
 
     The defaults are of the order of a relaxed hand holding a handle.
     """
-
-    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     mass_kg: Annotated[float, Field(ge=1e-3, le=100)] = 0.1
     """Mass of hand and handle together."""

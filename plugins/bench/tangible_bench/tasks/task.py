@@ -11,8 +11,6 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, Literal, TypeVar, cast
 
-from pydantic import ConfigDict
-
 from tangible_core.data import Kind, Quantities, Record
 from tangible_core.errors import PictureError, quoted
 
@@ -21,8 +19,6 @@ Apply = Callable[[Any, float], Any]
 
 class SceneSpec(Quantities):
     """The options of a scene in a comparison file: plain values, which open the same scene in every process."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     @classmethod
     @abstractmethod

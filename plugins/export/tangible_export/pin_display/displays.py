@@ -1,8 +1,8 @@
 """Displays of raised pins."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from tangible_core.data import Quantities
 
@@ -12,8 +12,6 @@ PITCH_M = 0.0025
 
 class Display(Quantities):
     """An array of pins."""
-
-    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     columns: Annotated[int, Field(ge=3, le=1000)]
     """Pins from left to right."""

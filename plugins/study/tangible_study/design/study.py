@@ -1,9 +1,9 @@
 """The keys of a study file: what varies, the questions, the procedures, and what a participant hears."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from tangible_core.data import Quantities
 from tangible_core.scene import Section
@@ -92,8 +92,6 @@ class Limits(Section):
 
 class Study(Quantities):
     """A study file after all checks."""
-
-    model_config: ClassVar[ConfigDict] = Section.model_config
 
     study: Annotated[str, Field(pattern=r"^[A-Za-z0-9]+$", max_length=40)]
     """Name of the study in the names of its files: letters and digits."""

@@ -1,5 +1,6 @@
 """The type of a check, and the functions that checks are written with."""
 
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -33,3 +34,9 @@ def refuses(error: type[TangibleError], what: str, attempt: Callable[[], object]
     except error:
         return
     raise CheckFailure(f"{what} is accepted; it should raise {error.__name__}")
+
+
+def checks_in(module: str) -> tuple[Check, ...]:
+    """Return the public functions that a module has defined so far, in their order."""
+    defined = vars(sys.modules[module]).values()
+    return tuple(each for each in defined if getattr(each, "__module__", "") == module and each.__name__[0] != "_")

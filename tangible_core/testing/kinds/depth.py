@@ -7,7 +7,7 @@ import numpy as np
 from ...data import DisparityMap, Views
 from ...errors import ModelAbsent, PictureError, TangibleError
 from ...plugins.interfaces import DepthEstimator
-from ..checks import Check, demand, refuses
+from ..checks import Check, checks_in, demand, refuses
 from ..synthetic.scenes import wall
 from ..variants import TINY, coarse_variants, exact_variants
 
@@ -152,14 +152,4 @@ def _demand_agreement(expected: DisparityMap, result: DisparityMap, name: str) -
         demand(apart <= most, f"as {name}, the median disparity differs by {apart:.3g} ({expected.unit})")
 
 
-CHECKS: tuple[Check, ...] = (
-    map_is_well_formed,
-    wall_is_found,
-    same_views_same_map,
-    views_are_not_written_to,
-    every_picture_type_is_taken,
-    any_size_is_taken,
-    flat_pair_claims_nothing,
-    one_view_is_answered,
-    nan_is_refused,
-)
+CHECKS: tuple[Check, ...] = checks_in(__name__)

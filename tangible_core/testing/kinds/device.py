@@ -7,7 +7,7 @@ import numpy as np
 from ...data import NO_FORCE, Force
 from ...errors import DeviceAbsent, DeviceError
 from ...plugins.interfaces import HapticDevice
-from ..checks import Check, CheckFailure, demand, refuses
+from ..checks import Check, CheckFailure, checks_in, demand, refuses
 
 
 class _Mishap(Exception):
@@ -26,6 +26,11 @@ def absence_is_said(method: HapticDevice) -> None:
         method.open().close()
     except DeviceAbsent as error:
         demand(";" in str(error) or ", or " in str(error), f"{error}: names no cure; add what the user can do about it")
+
+
+def no_strange_channel_is_followed(method: HapticDevice) -> None:
+    """Check that the device follows at most its own channel: the page would take it for its own hand."""
+    demand(method.follows("a channel of no device") is False, "it follows a channel that no device has")
 
 
 def force_is_applied(method: HapticDevice) -> None:
@@ -139,24 +144,6 @@ def states_make_sense(method: HapticDevice) -> None:
         demand((np.abs(state.position_m) <= reach).all(), f"{state.position_m} m is far outside of {reach.tolist()} m")
 
 
-def no_strange_channel_is_followed(method: HapticDevice) -> None:
-    """Check that the device follows at most its own channel: the page would take it for its own hand."""
-    demand(method.follows("a channel of no device") is False, "it follows a channel that no device has")
-
-
-CHECKS: tuple[Check, ...] = (
-    spec_makes_sense,
-    absence_is_said,
-    no_strange_channel_is_followed,
-    force_is_applied,
-    forces_are_limited,
-    broken_force_is_none,
-    no_force_is_left_behind,
-    close_is_final,
-    device_can_be_opened_again,
-    openers_do_not_share,
-    velocity_is_that_of_the_positions,
-    states_make_sense,
-)
+CHECKS: tuple[Check, ...] = checks_in(__name__)
 WITH_MOTORS = CHECKS[3:]
 """The checks that open the device, most of them to push."""

@@ -20,7 +20,7 @@ from ...data import Record, Work, digest_of
 from ...data.products import EXPORTABLE
 from ...errors import BrokenMethod, TangibleError
 from ...plugins.interfaces import Exporter
-from ..checks import Check, CheckFailure, demand
+from ..checks import Check, CheckFailure, checks_in, demand
 from ..variants import coarse_variants, exact_variants
 from .exporter_inputs import plain_work, works
 
@@ -163,16 +163,7 @@ def _today() -> list[bytes]:
     return [day.strftime(form).encode() for day in days for form in ("%Y-%m-%d", "%Y%m%d", "D:%Y%m%d", "%a %b %d %Y")]
 
 
-CHECKS: tuple[Check, ...] = (
-    needs_are_products,
-    width_is_a_length,
-    plain_scene_is_written,
-    nothing_else_is_left,
-    same_work_same_files,
-    work_is_not_written_to,
-    every_work_is_answered,
-    every_picture_type_is_taken,
-)
+CHECKS: tuple[Check, ...] = checks_in(__name__)  # what stands below are no checks
 
 
 def demand_whole(path: Path) -> None:

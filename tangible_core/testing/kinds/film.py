@@ -15,7 +15,7 @@ from ...compiled.touch import FRAME, RISE_M, CompiledTouch
 from ...data import HapticState, HapticSurface, Relief
 from ...errors import ConfigError, GeometryError
 from ...plugins.interfaces import Film, Filming, ForceRenderer
-from ..checks import Check, demand, refuses
+from ..checks import Check, checks_in, demand, refuses
 
 PERIOD_S, FRAME_S, TICKS = 0.001, 1 / 30, 33
 WIDTH_M, MIDDLE_M = 0.08, 0.008
@@ -191,13 +191,4 @@ def _moving(film: Film) -> np.ndarray:
     return film.touch.moving
 
 
-CHECKS: tuple[Check, ...] = (
-    film_begins_as_a_touch,
-    film_arrives_where_a_touch_is,
-    film_does_not_jump,
-    film_tells_its_rise,
-    film_takes_odd_reliefs,
-    film_refuses_what_does_not_fit,
-    film_can_be_handed_over,
-    film_needs_no_more_memory,
-)
+CHECKS: tuple[Check, ...] = checks_in(__name__)

@@ -11,7 +11,7 @@ from jaxtyping import Float64
 
 from ...data import NO_FORCE, HapticState
 from ...plugins.interfaces import ForceRenderer
-from ..checks import Check, demand
+from ..checks import Check, checks_in, demand
 from ..synthetic.scenes import KnownSurface, plane, ramp, sphere_cap
 
 PLACES_M = ((0.0, 0.0), (0.011, 0.007), (-0.017, 0.012), (0.006, -0.021), (-0.013, -0.009))
@@ -128,12 +128,4 @@ def _stiffness(method: ForceRenderer) -> float | None:
     return float(stiffness[0]) if stiffness[0] > 0 and np.ptp(stiffness) <= 0.02 * stiffness[0] else None
 
 
-CHECKS: tuple[Check, ...] = (
-    free_air_is_free,
-    plane_pushes_straight_up,
-    what_it_says_of_itself_is_felt,
-    surface_lies_where_it_is_drawn,
-    slopes_push_downhill,
-    springs_are_exact,
-    resampling_feels_the_same,
-)
+CHECKS: tuple[Check, ...] = checks_in(__name__)

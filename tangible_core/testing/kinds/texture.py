@@ -5,7 +5,7 @@ import numpy as np
 from ...data import SegmentMap
 from ...errors import PictureError
 from ...plugins.interfaces import Segmenter
-from ..checks import Check, demand, refuses
+from ..checks import Check, checks_in, demand, refuses
 from ..synthetic.scenes import two_textures
 from ..variants import TINY, coarse_variants, exact_variants
 
@@ -106,13 +106,4 @@ def _accuracy(labels: np.ndarray, truth: np.ndarray) -> float:
     return float(table[large].max(axis=1).sum() / labels.size)
 
 
-CHECKS: tuple[Check, ...] = (
-    labels_are_well_formed,
-    two_textures_are_told_apart,
-    same_picture_same_labels,
-    picture_is_not_written_to,
-    one_colour_is_one_segment,
-    every_picture_type_is_segmented,
-    any_size_is_segmented,
-    what_is_no_picture_is_refused,
-)
+CHECKS: tuple[Check, ...] = checks_in(__name__)

@@ -9,7 +9,7 @@ from jaxtyping import Float64
 from ...data import NO_FORCE, DeviceSpec, HapticState, HapticSurface, Material
 from ...plugins.interfaces import ForceRenderer
 from ...servo.guard.stiffness import slopes
-from ..checks import Check, demand
+from ..checks import Check, checks_in, demand
 from ..synthetic.scenes import KnownSurface, plane, sphere_cap
 
 PERIOD_S = 0.001
@@ -164,14 +164,4 @@ def _patchwork(rough: bool = True) -> HapticSurface:
     return HapticSurface.from_heights(np.full((32, 64), 0.01, np.float32), 0.08, labels, (soft, hard))
 
 
-CHECKS: tuple[Check, ...] = (
-    broken_state_gives_no_force,
-    path_is_force_by_force,
-    same_path_same_forces,
-    touches_are_apart,
-    surface_is_not_written_to,
-    forces_are_always_finite,
-    any_surface_is_taken,
-    materials_are_taken,
-    stiffness_is_no_less_than_felt,
-)
+CHECKS: tuple[Check, ...] = checks_in(__name__)

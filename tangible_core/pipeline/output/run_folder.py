@@ -130,22 +130,12 @@ def _own(folder: Path) -> dict[str, str]:
     """Return the unchanged files of earlier runs with their digests."""
     manifest, there = read_manifest(folder), {name: content_digest(folder / name) for name in NAMES}
     if manifest is None:
-        own = there if _is_of_before_manifests(folder) else {}
-    elif manifest.complete:
+        return {}
+    if manifest.complete:
         own = {name: digest for name, digest in manifest.files.items() if content_digest(folder / name) == digest}
     else:  # there were no other files when that run began
         own = {**manifest.files, **there}
     return {name: digest for name, digest in own.items() if digest}
-
-
-def _is_of_before_manifests(folder: Path) -> bool:
-    """Return True for a run by a version without manifests, which the outcomes show."""
-    if (folder / MANIFEST).exists():  # damaged: files that changed since can no longer be found
-        return False
-    try:
-        return isinstance(json.loads(read_bytes(folder / OUTCOMES))["outcomes"], list)
-    except (OSError, ValueError, TypeError, KeyError, RecursionError):
-        return False
 
 
 @contextmanager

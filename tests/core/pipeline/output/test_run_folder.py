@@ -53,16 +53,13 @@ def test_run_deletes_only_the_files_of_earlier_runs(tmp_path: Path):
     assert names(out) == {each.name for each in first.files} | {"manifest.json", "notes.txt"}
     assert "surface.npz" in names(out)
     shutil.copytree(out, other, copy_function=shutil.copy)
-    shutil.copytree(out, tmp_path / "c")
-    (tmp_path / "c" / "manifest.json").unlink()
     second = run(out, "relief")
     assert names(out) == {each.name for each in second.files} | {"manifest.json", "notes.txt"}
     assert "surface.npz" not in names(out)
     manifest = read_manifest(out)
     assert manifest is not None and manifest.complete and manifest.files.keys() == {each.name for each in second.files}
-    for folder in (other, tmp_path / "c"):
-        run(folder, "relief")
-        assert "surface.npz" not in names(folder), "a copied folder, and one without a manifest"
+    run(other, "relief")
+    assert "surface.npz" not in names(other), "a copied folder"
 
 
 @pytest.mark.parametrize("name", ["surface.npz", "outcomes.json"])

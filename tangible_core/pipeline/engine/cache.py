@@ -221,13 +221,8 @@ def write_record(path: Path, record: Record, notes: Notes | None = None) -> None
         write_arrays(file, packed | arrays)
 
 
-def read_record(path: Path) -> Record:
-    """Read a record of `write_record`. Raises: FileNotFoundError; ValueError or other errors if it is damaged."""
-    return read_entry(path).record
-
-
 def read_entry(path: Path) -> Entry:
-    """Read a record and its notes. Raises: as `read_record`."""
+    """Read a record and its notes. Raises: FileNotFoundError; ValueError or other errors if it is damaged."""
     check_file(path)
     with path.open("rb") as file:
         archive = Archive(file)

@@ -18,7 +18,7 @@ from tangible_batch.farm import Done
 from tangible_core import Pipeline, Scene
 from tangible_core.errors import ArgumentError, BatchError, OutputError, ResultsError, Stopped
 from tangible_core.files.json_lines import JsonLines
-from tangible_core.pipeline.engine.cache import read_record
+from tangible_core.pipeline.engine.cache import read_entry
 from tangible_depth import Luminance
 
 CONFIG = "scene: builtin/brick\nwant: relief\ndepth: luminance\nworkspace: {width_m: 0.04}\n"
@@ -104,7 +104,7 @@ class TestScenes:
 
     def test_scene_equals_that_of_a_run(self, archive: Path, tmp_path: Path):
         self.run(archive.parent, "--set", "workspace.width_m=0.06")
-        found = read_record(tmp_path / "out/mine-batch/scenes/p2/relief.npz")
+        found = read_entry(tmp_path / "out/mine-batch/scenes/p2/relief.npz").record
         scene = Scene.photo(archive / "p2.png")
         same = Pipeline(scene, depth=Luminance(), workspace={"width_m": 0.06}, cached=False).relief
         assert found.digest() == same.digest()
@@ -331,7 +331,7 @@ class TestScenes:
         text = CONFIG.replace("builtin/brick", "{left: l.png, right: r.png, rotate: 90}")
         (archive.parent / "mine.yaml").write_text(text)
         assert self.run(archive.parent).returncode == 0
-        assert read_record(archive.parent / "out/mine-batch/scenes/p2/relief.npz").height_m.shape == (32, 24)
+        assert read_entry(archive.parent / "out/mine-batch/scenes/p2/relief.npz").record.height_m.shape == (32, 24)
 
     def test_scene_with_a_truth_has_the_figures_of_its_disparity(self, archive: Path):
         depth = np.linspace(1, 9, 24 * 32).reshape(24, 32)
@@ -372,7 +372,7 @@ class TestScenes:
 
     def test_second_batch_in_the_same_folder_is_refused(self, archive: Path):
         with JsonLines(archive.parent / "out/mine-batch/rows.jsonl", alone=True) as file:
-            file.add({"id": "other"})
+            file.add_row({"id": "other"})
             done = self.run(archive.parent)
         assert done.returncode == 2 and "another program" in done.stderr
         assert len(rows_in(archive.parent / "out/mine-batch")) == 1

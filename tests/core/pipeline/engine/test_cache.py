@@ -24,7 +24,7 @@ from tangible_core.data import (
     SegmentMap,
     Views,
 )
-from tangible_core.pipeline.engine.cache import Cache, read_record, write_record
+from tangible_core.pipeline.engine.cache import Cache, read_entry, write_record
 
 ICE = Material("ice", 900.0, 1.0, 0.1, 0.03, source="a test")
 HEIGHTS = np.linspace(0, 0.01, 12, dtype=np.float32).reshape(3, 4)
@@ -43,7 +43,7 @@ RECORDS: list[Record] = [
 @pytest.mark.parametrize("record", RECORDS, ids=lambda each: type(each).__name__)
 def test_record_is_read_as_it_was_written(tmp_path: Path, record: Record):
     write_record(tmp_path / "x.npz", record)
-    again = read_record(tmp_path / "x.npz")
+    again = read_entry(tmp_path / "x.npz").record
     assert type(again) is type(record)
     assert again.digest() == record.digest()
 

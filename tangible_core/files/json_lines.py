@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, Self, cast
+from typing import Any, cast
 
 from ..errors import ResultsError
 from .line_file import LineFile, read_lines
@@ -13,8 +13,8 @@ SYNC_EVERY_S = 1.0
 IN_USE = "another program is writing to it; wait for that one or choose another folder"
 
 
-class JsonLines:
-    """A JSON Lines file, open for appending; see `LineFile`."""
+class JsonLines(LineFile):
+    """A JSON Lines file, open for appending."""
 
     def __init__(self, path: Path, sync_every_s: float = SYNC_EVERY_S, alone: bool = False) -> None:
         """Open the file; missing parent folders are created.
@@ -22,21 +22,11 @@ class JsonLines:
         sync_every_s: the longest time until a row is on the disk. alone: lock the file against other processes.
         Raises: OutputError if the file cannot be written, or another process holds it.
         """
-        self._file = LineFile(path, sync_every_s=sync_every_s, in_use=IN_USE if alone else "")
+        super().__init__(path, sync_every_s=sync_every_s, in_use=IN_USE if alone else "")
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def add(self, row: Mapping[str, Any]) -> None:
+    def add_row(self, row: Mapping[str, Any]) -> None:
         """Add a row in one write. Raises: OutputError if it cannot be written; the file is then as before."""
-        self._file.add(json.dumps(row, ensure_ascii=False, allow_nan=False))
-
-    def close(self) -> None:
-        """Close the file, with all rows on the disk. Raises: OutputError if the disk does not take them."""
-        self._file.close()
+        self.add(json.dumps(row, ensure_ascii=False, allow_nan=False))
 
 
 def read_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:

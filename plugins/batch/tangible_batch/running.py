@@ -125,7 +125,7 @@ def run_batch(
             if full := row.get(FULL):
                 raise OutputError(f"{full}; the batch ends here, and the same command continues from there")
             row["folder"] = Path(row["folder"]).relative_to(out.absolute()).as_posix()
-            file.add(row)
+            file.add_row(row)
             tally.made += 1
             tally.failed += row["outcome"] != "ok"
             yield row

@@ -13,7 +13,7 @@ def test_rows_are_read_as_they_were_added_and_a_missing_file_has_none(tmp_path: 
     rows = [{"a": 1, "b": [None, "ö"]}, {}]
     with JsonLines(tmp_path / "a.jsonl") as file:
         for row in rows:
-            file.add(row)
+            file.add_row(row)
     assert list(read_rows(tmp_path / "a.jsonl")) == [(1, rows[0]), (2, rows[1])]
     assert list(read_rows(tmp_path / "missing.jsonl")) == []
 

@@ -79,7 +79,7 @@ def append(path: Path, row: Row) -> None:
     Raises: OutputError if the file cannot be written.
     """
     with JsonLines(path, sync_every_s=0.0) as file:
-        file.add(asdict(row))
+        file.add_row(asdict(row))
 
 
 def _row(path: Path, number: int, line: str) -> Row:

@@ -159,12 +159,9 @@ def _forms(form: dict[str, Any], units: Mapping[str, Decimal], nested: bool = Fa
     if form.get("type") != "number":
         _allow_text(form, units)
         return [form]
-    forms = [form, {"type": "string", "pattern": rf"^{_DIGITS}\s*({'|'.join(units)})$", "examples": [_example(units)]}]
+    example = f"6 {'mm' if 'mm' in units else next(iter(units))}"
+    forms = [form, {"type": "string", "pattern": rf"^{_DIGITS}\s*({'|'.join(units)})$", "examples": [example]}]
     return [{"anyOf": forms}] if nested else forms
 
 
 _OF_NUMBERS = ("type", "minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")
-
-
-def _example(units: Mapping[str, Decimal]) -> str:
-    return f"6 {'mm' if 'mm' in units else next(iter(units))}"

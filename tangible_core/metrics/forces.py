@@ -25,7 +25,8 @@ def force_errors(force_n: Vectors, truth_n: Vectors) -> dict[str, float]:
     such a tick.
     Raises: GeometryError if the two differ in length.
     """
-    _same_length(force_n, truth_n)
+    if len(force_n) != len(truth_n):
+        raise GeometryError(f"one has {len(force_n)} ticks and the other {len(truth_n)}; they must be of one path")
     known = np.isfinite(truth_n).all(axis=1)
     force, truth = force_n[known], truth_n[known]
     size, true_size = np.linalg.norm(force, axis=1), np.linalg.norm(truth, axis=1)
@@ -50,11 +51,6 @@ def angles_deg(first: Vectors, second: Vectors) -> Float64[np.ndarray, "n"]:
     across, along = np.linalg.norm(np.cross(first, second), axis=1), (first * second).sum(axis=1)
     # One by one: NumPy's arc tangent of an array has other last bits where AVX-512 is.
     return np.degrees(np.array(list(map(atan2, across.tolist(), along.tolist())), np.float64))
-
-
-def _same_length(first: np.ndarray, second: np.ndarray) -> None:
-    if len(first) != len(second):
-        raise GeometryError(f"one has {len(first)} ticks and the other {len(second)}; they must be of one path")
 
 
 def _rms(values: np.ndarray) -> float:

@@ -27,7 +27,10 @@ def fit(material: Material, spec: DeviceSpec, safety: Safety) -> Material:
     Source: Colgate & Schenkel 1997, as `safety`.
     """
     damping = effective_damping_n_s_per_m(spec)
-    most = _most_n_per_m(damping, spec, safety)
+    most = safety.stiffness_margin * stiffness_limit_n_per_m(damping, NOMINAL_S, safety.delay_ticks)
+    if safety.friction_n is not None:
+        most = min(most, safety.stiffness_margin * encoder_limit_n_per_m(safety.friction_n, spec.resolution_m))
+    most = min(most, spec.max_stiffness_n_per_m)  # what the guard leaves to a force law, as in `Safety.arrays`
     stiffness = min(material.stiffness_n_per_m, most)
     per_m = 2 * math.pi / material.grain_m
     roughness_m = min(material.roughness_m, (most - stiffness) / (EXPLORING_N * per_m**2))
@@ -71,11 +74,3 @@ def describe_changes(pairs: Mapping[Material, Material]) -> str:
             words = {"they": "it" if one else "they", "are": "is" if one else "are", "have": "has" if one else "have"}
             texts.append(f"{subject} {words['are']} felt {text.format(**words)}")
     return "; ".join(texts)
-
-
-def _most_n_per_m(damping_n_s_per_m: float, spec: DeviceSpec, safety: Safety) -> float:
-    """Return the stiffness that the guard leaves to a force law, as in `Safety.arrays`."""
-    most = safety.stiffness_margin * stiffness_limit_n_per_m(damping_n_s_per_m, NOMINAL_S, safety.delay_ticks)
-    if safety.friction_n is not None:
-        most = min(most, safety.stiffness_margin * encoder_limit_n_per_m(safety.friction_n, spec.resolution_m))
-    return min(most, spec.max_stiffness_n_per_m)

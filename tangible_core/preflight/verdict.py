@@ -181,10 +181,9 @@ def as_data(verdict: Verdict) -> dict[str, Any]:
 
     Each of `changes` has a `key` and a `value` for `pipeline.editing.edited`; values that are not finite become None.
     """
-    plain = {name: _finite(value) for name, value in asdict(verdict).items()}
+    infinite = [
+        name for name, value in asdict(verdict).items() if isinstance(value, float) and not math.isfinite(value)
+    ]
+    plain = asdict(verdict) | dict.fromkeys(infinite)
     changes = [{"key": each.key, "value": each.setting, "towards": each.towards} for each in verdict.changes]
     return {**plain, "stands": relation(verdict), "changes": changes}
-
-
-def _finite(value: Any) -> Any:
-    return None if isinstance(value, float) and not math.isfinite(value) else value

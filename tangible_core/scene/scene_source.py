@@ -95,7 +95,12 @@ class SceneSource:
         first = None if files.video is None else read_video(files.video, files, rig, notes.append)
         parts = {} if first is None else parts_of(first.picture, files, first.video.name)
         if files.left is not None:
-            left, right = (self._read_view(part, getattr(files, part), notes.append) for part in ("left", "right"))
+            left, right = (
+                Stored(as_picture(part, arrays[part]).copy(), None, str(path))
+                if part in arrays
+                else read_stored(cast(Path, path), notes.append)
+                for part, path in (("left", files.left), ("right", files.right))
+            )
             parts |= views_of(left, right, files.non_finite, notes.append)._asdict()
         for part, path in files:
             if part in parts:
@@ -128,12 +133,6 @@ class SceneSource:
             "warnings": tuple(warnings),
             "files": self.origin,
         }
-
-    def _read_view(self, part: str, path: Path, notify: Notify) -> Stored:
-        """Read a view of a pair as it is stored. Raises: PictureError."""
-        if part not in (self.arrays or {}):
-            return read_stored(path, notify)
-        return Stored(as_picture(part, cast(Any, self.arrays)[part]).copy(), None, str(path))
 
 
 def source_of_arguments(arguments: Mapping[str, Any]) -> SceneSource:

@@ -117,7 +117,7 @@ def _remove(blocks: list[dict[Any, Any]], parts: Location) -> None:
 
 def _edit(text: str, parts: Location, value: Any, shorthand: Shorthand) -> str:
     """Return the text with one change made in its place."""
-    node: Any = _compose(text)
+    node: Any = cast(Any, YAML(typ="rt")).compose(text)
     above: list[tuple[Node, int]] = []
     for depth, part in enumerate(parts):
         index = _index(node, part)
@@ -139,10 +139,6 @@ def _edit(text: str, parts: Location, value: Any, shorthand: Shorthand) -> str:
         return _replace_method(text, above, value)
     node, index = above[-1]
     return _replace(text, node.value[index], value)
-
-
-def _compose(text: str) -> Any:
-    return cast(Any, YAML(typ="rt")).compose(text)
 
 
 def _index(node: Any, part: Any) -> int | None:

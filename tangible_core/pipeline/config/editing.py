@@ -32,20 +32,15 @@ def edit_text(text: str, path: Path, changes: Changes) -> str:
     Raises: ConfigError if the text is not YAML, or a key leads into a list; ArgumentError for values that JSON has not.
     """
     changes = {key: REMOVE if value is None and _is_stage(key) else value for key, value in changes.items()}
-    changes = _in_their_units(text, path, changes)
+    tree: Any = plain(parse_source(text, path, EXPECTED, empty=True).tree)
+    places = {key: _parts_of(key) for key in changes}
+    changes = {key: _as_before(places[key][-1:], _at(tree, places[key]), value) for key, value in changes.items()}
     within = {key: value for key, value in changes.items() if _is_within_list(key)}
     text = change_text(text, path, {key: value for key, value in changes.items() if key not in within}, shorthand)
     for key, value in within.items():
         parts = _parts_of(key)
         text = change_text(text, path, {parts[:1]: _list_with(text, path, parts, value)})
     return text
-
-
-def _in_their_units(text: str, path: Path, changes: Changes) -> Changes:
-    """Return the changes with each number in the unit that the text has for its key."""
-    tree: Any = plain(parse_source(text, path, EXPECTED, empty=True).tree)
-    places = {key: _parts_of(key) for key in changes}
-    return {key: _as_before(places[key][-1:], _at(tree, places[key]), value) for key, value in changes.items()}
 
 
 def _as_before(name: Location, before: Any, value: Any) -> Any:

@@ -133,8 +133,10 @@ def _make_run(engine: Engine, out: Path, want: str, seconds: float, sheet: Sheet
         if recording is not None:
             recording.save(place(RECORDING))
         about_sheet = "".join(_draw(engine, products, recording, place(name)) for name in sheets)
+        versions = {name: version(name) for name in ("tangible-images", "numpy", "opencv-contrib-python-headless")}
+        versions |= {"python": platform.python_version(), "platform": platform.platform()}
         run = Run(
-            engine.scene.name, products, recording, figures, engine.outcomes, _versions(), engine.config.title,
+            engine.scene.name, products, recording, figures, engine.outcomes, versions, engine.config.title,
             engine.config.language, files, about_sheet,
         )  # fmt: skip
         for name, text in texts.items():
@@ -257,8 +259,3 @@ def _part_figures(engine: Engine, surface: HapticSurface) -> dict[int, dict[str,
         }
         for number, name in enumerate(names)
     }
-
-
-def _versions() -> dict[str, str]:
-    named = {name: version(name) for name in ("tangible-images", "numpy", "opencv-contrib-python-headless")}
-    return named | {"python": platform.python_version(), "platform": platform.platform()}

@@ -159,7 +159,8 @@ def truth_of(
 ) -> Float32[np.ndarray, "h w"]:
     """Return an array as `read_truth` does. Source: the kit of MPI Sintel, sintel_io.py. Raises: PictureError."""
     if scale != "sintel":
-        return _in_pixels(without(map_of(values, name), *nodata), scale)
+        stored = without(map_of(values, name), *nodata)
+        return stored if scale is None else np.where(stored > 0, stored / np.float32(scale), np.float32(np.nan))
     if values.ndim != 3 or values.shape[2] != 3 or values.dtype != np.uint8:
         raise PictureError(
             f"{name}: Sintel's disparities are pictures of three channels of 8 bits, not {values.shape} of "
@@ -167,12 +168,6 @@ def truth_of(
         )
     red, green, blue = np.moveaxis(values.astype(np.float32), 2, 0)
     return 4 * red + green / 64 + blue / 16384
-
-
-def _in_pixels(stored: Float32[np.ndarray, "h w"], scale: float | None) -> Float32[np.ndarray, "h w"]:
-    if scale is None:
-        return stored
-    return np.where(stored > 0, stored / np.float32(scale), np.float32(np.nan))
 
 
 MOST_IN_PALETTE = 256

@@ -142,7 +142,9 @@ class CameraFrames(VideoFrames):
             if capture is not None:
                 capture.release()
         if self._taken == taken:
-            return self._absent()
+            here = ", ".join(map(str, _cameras()))
+            cure = f"name one of the others: {here}" if here else "check its cable, and that no other program uses it"
+            return PictureError(f"camera {self._camera}: does not exist, or is in use; {cure}")
         return PictureError(
             f"camera {self._camera}: was unplugged, or another program took it; plug it in again to go on"
         )
@@ -161,11 +163,6 @@ class CameraFrames(VideoFrames):
                 self._taken += 1
                 self._lost = None
                 self._changed.notify_all()
-
-    def _absent(self) -> PictureError:
-        here = ", ".join(map(str, _cameras()))
-        cure = f"name one of the others: {here}" if here else "check its cable, and that no other program uses it"
-        return PictureError(f"camera {self._camera}: does not exist, or is in use; {cure}")
 
 
 def _cameras() -> list[int]:

@@ -127,7 +127,10 @@ class Reliefs:
         if filtered.cut:
             return self._begin(frame)
         if self._scale is not None and self._count % LOOK_EVERY == 0:
-            self._scale.look(self._maker.scale(_thin(filtered.disparity)), frame.time_s)
+            whole = filtered.disparity
+            few = whole.disparity_px[::LOOK_PIXELS, ::LOOK_PIXELS]
+            thin = DisparityMap(few if np.isfinite(few).any() else whole.disparity_px, unit=whole.unit)
+            self._scale.look(self._maker.scale(thin), frame.time_s)
         self._count += 1
         return filtered.disparity
 
@@ -139,9 +142,3 @@ class Reliefs:
         self._scale = Scale(self._maker.scale(disparity), frame.time_s)
         self._count = 1
         return disparity
-
-
-def _thin(disparity: DisparityMap) -> DisparityMap:
-    step = slice(None, None, LOOK_PIXELS)
-    few = disparity.disparity_px[step, step]
-    return DisparityMap(few if np.isfinite(few).any() else disparity.disparity_px, unit=disparity.unit)

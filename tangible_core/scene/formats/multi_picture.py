@@ -12,11 +12,9 @@ if TYPE_CHECKING:
 Notify = Callable[[str], None]
 """A callback that takes remarks on a file, such as that it holds further pictures."""
 
-MOST_PAGES = 100
-"""Largest number of pages of a TIFF, or pictures of a Multi-Picture file, that are counted."""
-NOT_A_PAGE = 0b101
-"""Bits of a TIFF's NewSubfileType that mark a smaller copy, or a mask, of another page."""
-_SUBFILE, _MP_ENTRIES = 254, 0xB002  # tags of TIFF and of the Multi-Picture Format
+MAX_PICTURES = 100
+"""Largest number of pictures of a Multi-Picture file that are counted."""
+_MP_ENTRIES = 0xB002  # tag of the Multi-Picture Format
 _MP_HEAD = re.compile(rb"MPF\0(?:II\*\0|MM\0\*)")
 _AUXILIARY = re.compile(rb"hdr-gain-map|:iso:ts:21496:|AuxiliaryImageType")  # in gain maps, and a phone's depth
 
@@ -26,26 +24,15 @@ def ignore(_: str) -> None:
 
 
 def count_pictures(image: "Image") -> int:
-    """Count the pictures in an open file, without smaller copies, thumbnails and gain maps; stand at the first one."""
+    """Count the pictures in an open file, without thumbnails and gain maps; stand at the first one."""
     try:
         if image.format == "MPO":
             return max(1, len(view_numbers(image)))
-        return _pages(image) if image.format == "TIFF" else int(getattr(image, "n_frames", 1))
+        return int(getattr(image, "n_frames", 1))
     except Exception:  # noqa: BLE001 - damage behind the first picture does not spoil the first one
         return 1
     finally:
         image.seek(0)
-
-
-def _pages(image: "Image") -> int:
-    pages = 1
-    for number in range(1, MOST_PAGES):
-        try:
-            image.seek(number)
-        except EOFError:
-            break
-        pages += not cast(Any, image).tag_v2.get(_SUBFILE, 0) & NOT_A_PAGE
-    return pages
 
 
 def multi_pictures(image: "Image", data: bytes) -> list[bytes]:
@@ -74,7 +61,7 @@ def _of_first_size(image: "Image", count: int) -> list[int]:
     image.seek(0)
     first = image.size
     numbers = [0]
-    for number in range(1, min(count, MOST_PAGES)):
+    for number in range(1, min(count, MAX_PICTURES)):
         image.seek(number)
         segments = cast(Any, image).applist
         if image.size == first and not any(_AUXILIARY.search(content) for _, content in segments):

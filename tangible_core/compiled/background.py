@@ -15,7 +15,6 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from types import TracebackType
 from typing import Any, NamedTuple, Self, final
 
 from ..runtime.child_process import command, dumps, pipe_of
@@ -76,9 +75,7 @@ class BackgroundCompiler:
         _waiting.append(self)
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         _waiting.remove(self)
         with self._lock:
             self._work = None

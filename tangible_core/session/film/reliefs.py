@@ -3,7 +3,6 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
-from types import TracebackType
 from typing import NamedTuple, Self, final
 
 import numpy as np
@@ -95,9 +94,7 @@ class Reliefs:
         self._count = 0
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         if self._frames is not None:
             self._frames.close()
 

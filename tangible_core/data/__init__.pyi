@@ -15,7 +15,6 @@ from .outcome import Kind as Kind
 from .outcome import Note as Note
 from .outcome import NoteKind as NoteKind
 from .outcome import Outcome as Outcome
-from .outcome import OutcomeKind as OutcomeKind
 from .outcome import Outcomes as Outcomes
 from .outcome import Plan as Plan
 from .part_words import label_of_number as label_of_number
@@ -37,7 +36,6 @@ from .products import Work as Work
 from .quantities import Quantities as Quantities
 from .records import Record as Record
 from .records import digest_of as digest_of
-from .surface import TEXTURES as TEXTURES
 from .surface import HapticSurface as HapticSurface
 from .surface import Material as Material
 from .surface import MaterialMap as MaterialMap

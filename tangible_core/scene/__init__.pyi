@@ -7,7 +7,6 @@ from .geometry import resample as resample
 from .geometry import scale_heights as scale_heights
 from .geometry import smooth as smooth
 from .geometry import workspace_to_picture as workspace_to_picture
-from .scaling import felt_factor as felt_factor
 from .scaling import middle_pixels as middle_pixels
 from .scaling import reduced_map as reduced_map
 from .scaling import reduced_segments as reduced_segments

@@ -168,12 +168,10 @@ def parse_source(
     overrides: Iterable[str] = (),
     *,
     empty: bool = False,
-    shorthand: Shorthand = no_shorthand,
 ) -> Source:
     """Parse a YAML text into a source that is ready to be checked.
 
     what: the complaint if the text is not a mapping. empty: accept an empty text as an empty mapping.
-    shorthand: for the blocks that overrides lead into.
     Raises: ConfigError if the text is not YAML, or not a mapping.
     """
     try:
@@ -189,7 +187,7 @@ def parse_source(
         raise ConfigError(f"{path}:1:1: {what}", complaints=[Complaint((), what, 1, 1)])
     source = Source(path, cast(Tree, tree))
     for override in overrides:
-        source.override(override, shorthand)
+        source.override(override)
     return source
 
 

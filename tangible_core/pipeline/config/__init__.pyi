@@ -12,7 +12,6 @@ from .model import PipelineConfig as PipelineConfig
 from .parsing import load_config as load_config
 from .parsing import parse_config as parse_config
 from .part_checks import names_of as names_of
-from .part_checks import wrong_of_parts as wrong_of_parts
 from .schema import default_in_code as default_in_code
 from .schema import json_schema as json_schema
 from .schema import materials_schema as materials_schema

@@ -10,9 +10,7 @@ from .preview import is_at_hand as is_at_hand
 from .preview import preview_config as preview_config
 from .preview import product_at_hand as product_at_hand
 from .preview import without_entries as without_entries
-from .stage import Context as Context
 from .stage import Progress as Progress
 from .stage import StageEvent as StageEvent
-from .stages.relief import ReliefStage as ReliefStage
 from .stages.touch import fit_to_device as fit_to_device
 from .working_grid import parts_on_grid as parts_on_grid

@@ -183,10 +183,6 @@ def _json(path: Path) -> None:
     json.loads(path.read_text(encoding="utf-8"), parse_constant=refuse)
 
 
-def _xml(path: Path) -> None:
-    ElementTree.parse(path)
-
-
 def _picture(path: Path) -> None:
     from PIL import Image
 
@@ -223,7 +219,8 @@ def _text(path: Path) -> None:
     path.read_text(encoding="utf-8")
 
 
-READERS: dict[str, Callable[[Path], None]] = {
-    ".json": _json, ".svg": _xml, ".xml": _xml, ".png": _picture, ".tif": _picture, ".tiff": _picture, ".jpg": _picture,
-    ".zip": _zip, ".3mf": _zip, ".stl": _stl, ".glb": _glb, ".pdf": _pdf, ".txt": _text, ".html": _text, ".csv": _text,
+READERS: dict[str, Callable[[Path], object]] = {
+    ".json": _json, ".svg": ElementTree.parse, ".xml": ElementTree.parse, ".png": _picture, ".tif": _picture,
+    ".tiff": _picture, ".jpg": _picture, ".zip": _zip, ".3mf": _zip, ".stl": _stl, ".glb": _glb, ".pdf": _pdf,
+    ".txt": _text, ".html": _text, ".csv": _text,
 }  # fmt: skip

@@ -23,9 +23,7 @@ def wall(disparity_px: float = 6.0, shape: tuple[int, int] = (96, 320), seed: in
     return Views(_waves(rows, columns, seed), _waves(rows, columns + disparity_px, seed))
 
 
-def two_textures(
-    shape: tuple[int, int] = (96, 128), seed: int = 0
-) -> tuple[UInt8[np.ndarray, "h w 3"], Int32[np.ndarray, "h w"]]:
+def two_textures(shape: tuple[int, int] = (96, 128)) -> tuple[UInt8[np.ndarray, "h w 3"], Int32[np.ndarray, "h w"]]:
     """Return a dark half with upright stripes 4 px apart, a bright one with slanting ones 5.7 px apart, and some noise.
 
     The halves differ by 110 grey levels and their stripes by 16: in brightness, direction and frequency.
@@ -35,7 +33,7 @@ def two_textures(
     labels = (columns >= shape[1] / 2).astype(np.int32)
     upright = 70 + 8 * np.cos(2 * np.pi * columns / 4)
     slanting = 180 + 8 * np.cos(2 * np.pi * (columns + rows) / 8)
-    grey = np.where(labels == 0, upright, slanting) + np.random.default_rng(seed).normal(0, 1, shape)
+    grey = np.where(labels == 0, upright, slanting) + np.random.default_rng(0).normal(0, 1, shape)
     return np.repeat(np.rint(grey).astype(np.uint8)[..., None], 3, axis=2), labels
 
 

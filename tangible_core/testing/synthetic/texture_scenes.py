@@ -62,9 +62,7 @@ def texture_mosaic(
     return KnownSegments(_bytes(picture), labels)
 
 
-def smooth_scene(
-    segments: int = 14, shape: Shape = (512, 512), seed: int = 0, noise: float = 6.0, blur_px: float = 1.0
-) -> KnownSegments:
+def smooth_scene(segments: int = 14, shape: Shape = (512, 512), seed: int = 0, noise: float = 6.0) -> KnownSegments:
     """Return curvy regions of one grey each under a gradient of light, blurred, with noise of `noise` grey levels."""
     import cv2
 
@@ -75,7 +73,7 @@ def smooth_scene(
     light = 25 * (columns * random.uniform(-1, 1) + rows * random.uniform(-1, 1))
     picture: np.ndarray = greys[labels] + light
     with plain_opencv():
-        smooth = cv2.GaussianBlur(picture, (0, 0), blur_px, borderType=cv2.BORDER_REFLECT)
+        smooth = cv2.GaussianBlur(picture, (0, 0), 1.0, borderType=cv2.BORDER_REFLECT)
     return KnownSegments(_bytes(smooth + noise * random.standard_normal(shape)), labels)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from tangible_core.data import TickFlag
 from tangible_core.errors import DeviceError
 from tangible_core.servo.ring import Ring, shared_folder
-from tangible_core.session.recording.tick_arrays import ARRAYS
+from tangible_core.session.recording.tick_file import ARRAYS
 
 from .figures import Figure, part
 from .servo_rounds import Round, no_later_figure, rows

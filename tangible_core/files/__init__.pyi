@@ -1,9 +1,9 @@
-from .json_lines import JsonLines as JsonLines
-from .json_lines import read_rows as read_rows
 from .json_text import as_json as as_json
 from .json_text import write_figures as write_figures
+from .line_file import JsonLines as JsonLines
 from .line_file import LineFile as LineFile
 from .line_file import read_lines as read_lines
+from .line_file import read_rows as read_rows
 from .paths import as_path as as_path
 from .paths import plain_line as plain_line
 from .paths import without_folders as without_folders

@@ -1,9 +1,12 @@
-"""The type of a check, and the functions that checks are written with."""
+"""The type of a check, the functions that checks are written with, and variants of pictures."""
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
+import numpy as np
+
+from ..data.pictures import to_grey
 from ..errors import TangibleError
 
 Check = Callable[[Any], None]
@@ -40,3 +43,27 @@ def checks_in(module: str) -> tuple[Check, ...]:
     """Return the public functions that a module has defined so far, in their order."""
     defined = vars(sys.modules[module]).values()
     return tuple(each for each in defined if getattr(each, "__module__", "") == module and each.__name__[0] != "_")
+
+
+TINY = ((1, 1), (1, 9), (9, 1), (2, 2), (17, 9))
+"""Sizes (h, w) at which windows, pyramids and neighbours run out."""
+
+
+def exact_variants(picture: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
+    """Yield the uint8 (h, w, 3) picture without loss in other types and memory layouts, with their names."""
+    yield "uint16", picture.astype(np.uint16) * 257
+    yield "float32", np.asarray(picture / 255, np.float32)
+    yield "float64", picture / 255
+    yield "opaque RGBA", np.dstack([picture, np.full(picture.shape[:2], 255, np.uint8)])
+    yield "Fortran order", np.asfortranarray(picture)
+    yield "a view with negative strides", np.ascontiguousarray(picture[::-1, ::-1])[::-1, ::-1]
+
+
+def coarse_variants(picture: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
+    """Yield the uint8 (h, w, 3) picture with less information, or with unusual but finite values, with names."""
+    yield "grey", np.rint(to_grey(picture) * 255).astype(np.uint8)
+    yield "bool", picture > 127
+    yield "float16", np.asarray(picture / 255, np.float16)
+    yield "floats over 1", picture.astype(np.float32)
+    yield "negative floats", picture / -255
+    yield "huge floats", picture * 1e300

@@ -5,11 +5,9 @@ from collections.abc import Callable, Iterable
 from ..flight import Flight
 from ..preflight import Preflight
 from ..verdict import Verdict
-from .clipping import clipping, contact
-from .device import damping, friction, workspace
+from .device import damping, friction, lateness, tick_cost, workspace
 from .features import features, textures
-from .jitter import lateness, tick_cost
-from .slopes import cliffs, slope_stiffness
+from .slopes import cliffs, clipping, contact, slope_stiffness
 from .stiffness import law_damping, law_stiffness, material_stiffness, quantisation
 
 Check = Callable[[Flight], Iterable[Verdict]]

@@ -24,7 +24,7 @@ from ...servo.reports import LoopTotals, brief_report, report
 from ..live import LOOK_EVERY_S, ignore, watch_loop
 from ..parts_felt import with_part
 from ..recording import INTERRUPTED, STOPPED
-from ..recording.tick_arrays import ARRAYS
+from ..recording.tick_file import ARRAYS
 from .rotation import Rotation, Slot
 
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 8.0

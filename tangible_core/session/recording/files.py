@@ -15,8 +15,7 @@ from ...files.reading import check_file
 from ...files.tables import read_table
 from ...files.writing import atomic_write
 from . import tick_file
-from .tick_arrays import ARRAYS, NEEDED, UNKNOWN, join_arrays, unknown_rows
-from .tick_file import NO_INFORMATION, About
+from .tick_file import ARRAYS, NEEDED, NO_INFORMATION, UNKNOWN, About, join_arrays, unknown_rows
 
 SUFFIXES = (".nc", ".npz", ".csv")
 NPZ_NAMES = frozenset(("stopped", *ARRAYS, *(each.name for each in fields(About))))

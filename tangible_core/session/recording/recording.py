@@ -16,8 +16,7 @@ from ...files.paths import as_path
 from ..guard_summary import flag_counts, guard_summary
 from . import files
 from .files import RecordingContents
-from .tick_arrays import ARRAYS, join_arrays
-from .tick_file import NO_INFORMATION, About
+from .tick_file import ARRAYS, NO_INFORMATION, About, join_arrays
 
 Vectors = Float64[np.ndarray, "n 3"]
 Times = Float64[np.ndarray, "n"]

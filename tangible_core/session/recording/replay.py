@@ -14,7 +14,7 @@ from ...errors import check_positive
 from ...metrics.forces import force_errors
 from ...plugins.interfaces import Touch
 from .recording import Recording
-from .tick_arrays import ARRAYS
+from .tick_file import ARRAYS
 
 NOWHERE = (math.nan, math.nan, math.nan)
 """Place of a proxy that does not exist."""

@@ -7,9 +7,8 @@ import numpy as np
 from ...data import DisparityMap, Views
 from ...errors import ModelAbsent, PictureError, TangibleError
 from ...plugins.interfaces import DepthEstimator
-from ..checks import Check, checks_in, demand, refuses
+from ..checks import TINY, Check, checks_in, coarse_variants, demand, exact_variants, refuses
 from ..synthetic.scenes import wall
-from ..variants import TINY, coarse_variants, exact_variants
 
 WALL_PX = 6.0
 

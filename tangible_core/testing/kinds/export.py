@@ -20,8 +20,7 @@ from ...data import Record, Work, digest_of
 from ...data.products import EXPORTABLE
 from ...errors import BrokenMethod, TangibleError
 from ...plugins.interfaces import Exporter
-from ..checks import Check, CheckFailure, checks_in, demand
-from ..variants import coarse_variants, exact_variants
+from ..checks import Check, CheckFailure, checks_in, coarse_variants, demand, exact_variants
 from .exporter_inputs import plain_work, works
 
 STEM = "still-life"

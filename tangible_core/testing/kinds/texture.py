@@ -5,9 +5,8 @@ import numpy as np
 from ...data import SegmentMap
 from ...errors import PictureError
 from ...plugins.interfaces import Segmenter
-from ..checks import Check, checks_in, demand, refuses
+from ..checks import TINY, Check, checks_in, coarse_variants, demand, exact_variants, refuses
 from ..synthetic.scenes import two_textures
-from ..variants import TINY, coarse_variants, exact_variants
 
 
 def labels_are_well_formed(method: Segmenter) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tangible_core.errors import ResultsError
-from tangible_core.files.json_lines import JsonLines, read_rows
+from tangible_core.files.line_file import JsonLines, read_rows
 from unreadable import unreadable
 
 

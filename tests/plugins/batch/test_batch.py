@@ -17,7 +17,7 @@ from tangible_batch import batch, extra, job, results, running
 from tangible_batch.farm import Done
 from tangible_core import Pipeline, Scene
 from tangible_core.errors import ArgumentError, BatchError, OutputError, ResultsError, Stopped
-from tangible_core.files.json_lines import JsonLines
+from tangible_core.files.line_file import JsonLines
 from tangible_core.pipeline.engine.cache import read_entry
 from tangible_depth import Luminance
 

@@ -16,8 +16,8 @@ from tangible_core.data import SegmentMap
 from tangible_core.errors import OptionError
 from tangible_core.plugins.interfaces import Segmenter
 from tangible_core.plugins.registry import default_registry
+from tangible_core.testing.checks import exact_variants
 from tangible_core.testing.synthetic.scenes import two_textures
-from tangible_core.testing.variants import exact_variants
 
 METHODS = [
     each.name

@@ -1,6 +1,8 @@
 """The kinds of keys that a pipeline file may have: how each is read, written and described."""
 
+from .block import NULL_IS_DEFAULT as NULL_IS_DEFAULT
 from .block import Block as Block
+from .block import Word as Word
 from .key import Key as Key
 from .key import Reading as Reading
 from .key import Unchecked as Unchecked
@@ -8,5 +10,3 @@ from .method import MethodBlock as MethodBlock
 from .method import MethodList as MethodList
 from .parts import PartsBlock as PartsBlock
 from .scene import SceneBlock as SceneBlock
-from .word import NULL_IS_DEFAULT as NULL_IS_DEFAULT
-from .word import Word as Word

@@ -9,7 +9,7 @@ from flights import fly, half_slope, level
 from tangible_core import HapticSurface, Workspace
 from tangible_core.preflight import CHECKS, judge
 from tangible_core.preflight.checks.cures import flatten, narrow
-from tangible_core.preflight.checks.jitter import lateness
+from tangible_core.preflight.checks.device import lateness
 from tangible_core.preflight.checks.stiffness import law_stiffness, quantisation
 from tangible_core.preflight.verdict import check_bound
 

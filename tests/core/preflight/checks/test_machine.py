@@ -5,8 +5,7 @@ import pytest
 
 from flights import fly, grades, level, of
 from tangible_core import HapticSurface
-from tangible_core.preflight.checks.device import damping, friction, workspace
-from tangible_core.preflight.checks.jitter import lateness, tick_cost
+from tangible_core.preflight.checks.device import damping, friction, lateness, tick_cost, workspace
 from tangible_core.preflight.timing import Lateness, TickCost
 from tangible_core.servo.guard.safety import Safety
 

@@ -9,8 +9,7 @@ import pytest
 from flights import fly, grades, half_slope, level, material, of, shape, surface_with_materials, value_in_cure
 from tangible_core import HapticSurface
 from tangible_core.data import Relief
-from tangible_core.preflight.checks.clipping import clipping, contact
-from tangible_core.preflight.checks.slopes import cliffs, climbable, slope_stiffness, slopes
+from tangible_core.preflight.checks.slopes import cliffs, climbable, clipping, contact, slope_stiffness, slopes
 from tangible_core.scene.geometry import smooth
 from tangible_core.servo.guard.safety import Safety
 

@@ -107,13 +107,8 @@ class Cache:
         except OSError:  # the folder may not be looked into
             return False
 
-    def get(self, key: str) -> Record | None:
-        """Return the record of this key; None without one. A damaged one is deleted, with a warning."""
-        entry = self.entry(key)
-        return entry and entry.record
-
     def entry(self, key: str) -> Entry | None:
-        """Return the record of this key with its notes, as `get`."""
+        """Return the record of this key with its notes; None without one. A damaged one is deleted, with a warning."""
         path = self._path(key)
         try:
             entry = read_entry(path)
@@ -135,7 +130,7 @@ class Cache:
             check_file(self._path(key))
             with self._path(key).open("rb") as file:
                 return _notes(Archive(file).read([NOTES])[NOTES])
-        except Exception:  # noqa: BLE001 - a damaged file can provoke any; `get` logs it
+        except Exception:  # noqa: BLE001 - a damaged file can provoke any; `entry` logs it
             return {}
 
     def put(self, key: str, record: Record, notes: Notes | None = None) -> None:

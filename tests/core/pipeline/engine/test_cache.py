@@ -147,7 +147,7 @@ def test_pruning_of_many_entries_keeps_those_used_last(tmp_path: Path):
     for age, name in names.items():
         cache.put(name, RECORDS[1])
         os.utime(tmp_path / f"{name}.npz", (1e9 - age, 1e9 - age))
-    assert cache.get(names[11]) is not None, "used now, so it stays"
+    assert cache.entry(names[11]) is not None, "used now, so it stays"
     size = next(tmp_path.glob("*.npz")).stat().st_size
     Cache(tmp_path, max_bytes=13 * size).put("new", RECORDS[1])
     assert len(list(tmp_path.glob("*.npz"))) == 13, "just full"
@@ -280,8 +280,8 @@ cache, record = Cache(Path(sys.argv[1]), max_bytes=int(sys.argv[3])), SegmentMap
 for i in range(60):
     key = f"k{(int(sys.argv[2]) + i) % 10}"
     cache.put(key, record)
-    found = cache.get(key)
-    assert found is None or found.digest() == record.digest()
+    found = cache.entry(key)
+    assert found is None or found.record.digest() == record.digest()
 """
 
 

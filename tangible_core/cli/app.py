@@ -97,8 +97,12 @@ def _run_app() -> int:
             localise_help()
         hooks.tell(default_registry().plugins, "tangible_commands", app=app)
         check_paths(app)
+    names = [each.name or getattr(each.callback, "__name__", "") for each in app.registered_commands]
+    # False for typer's own flags: to convert None, typer would import pydantic, a third of the start
+    off = dict.fromkeys(("help", "install_completion", "show_completion"), False)
+    off |= {name: {"help": False} for name in (*COMMANDS, *names)}
     try:
-        code = app(words, standalone_mode=False, default_map=_without_help())
+        code = app(words, standalone_mode=False, default_map=off)
     except OSError as error:
         if not isinstance(error, BrokenPipeError) and _in_typer(error):
             raise standard_output.give_up(error) from error
@@ -118,13 +122,6 @@ def _in_typer(error: BaseException) -> bool:
     """Return True if typer raised the error, such as where it prints `--help`."""
     *_, (frame, _) = walk_tb(error.__traceback__)
     return str(frame.f_globals.get("__name__")).partition(".")[0] == "typer"
-
-
-def _without_help() -> dict[str, object]:
-    """Return False for typer's own flags: to convert None, typer would import pydantic, a third of the start."""
-    names = [each.name or getattr(each.callback, "__name__", "") for each in app.registered_commands]
-    off = dict.fromkeys(("help", "install_completion", "show_completion"), False)
-    return {**off, **{name: {"help": False} for name in (*COMMANDS, *names)}}
 
 
 def _exit_code(work: Callable[[], int]) -> int:

@@ -106,14 +106,15 @@ def _converters(cls: type) -> tuple[tuple[str, Convert], ...]:
 def _converter(hint: Any) -> Convert | None:
     """Return the converter for an annotation; None if it accepts any value."""
     if get_origin(hint) in (Union, UnionType) and len(_parts(hint)) == 1:
-        inner = [each for each in map(_converter, _parts(hint)) if each]
-        return _or_none(inner[0]) if inner else None
+        inner = _converter(_parts(hint)[0])
+        return inner and (lambda name, value: None if value is None else inner(name, value))
     if get_origin(hint) is Literal:
         return _one_of(get_args(hint))
     if get_origin(hint) is tuple:
         return _tuple_of(get_args(hint))
     if hint is np.ndarray or hasattr(hint, "array_type"):
-        return _array_of(tuple(getattr(hint, "dtypes", ())))
+        dtypes = tuple(getattr(hint, "dtypes", ()))
+        return as_picture if len(dtypes) != 1 else lambda name, value: as_array(name, value, dtypes[0])
     if hint is float:
         return as_number
     return _instance_of(hint) if isinstance(hint, type) and (is_dataclass(hint) or hint is str) else None
@@ -122,16 +123,6 @@ def _converter(hint: Any) -> Convert | None:
 def _parts(union: Any) -> list[Any]:
     """Return the parts of a union other than None."""
     return [each for each in get_args(union) if each is not NoneType]
-
-
-def _or_none(convert: Convert) -> Convert:
-    return lambda name, value: None if value is None else convert(name, value)
-
-
-def _array_of(dtypes: tuple[str, ...]) -> Convert:
-    if len(dtypes) != 1:
-        return as_picture
-    return lambda name, value: as_array(name, value, dtypes[0])
 
 
 def _one_of(known: tuple[Any, ...]) -> Convert:

@@ -113,7 +113,10 @@ class Rectifier:
 
     def __init__(self, rig: StereoRig, shape: tuple[int, int]) -> None:
         """shape: (h, w) of each picture. Raises: GeometryError as `rectify_views`."""
-        axes = _axes(np.array(rig.centre_m), looking=rig.rotation[2] + [0, 0, 1])
+        along = np.array(rig.centre_m) / _length(np.array(rig.centre_m))
+        across = np.cross(rig.rotation[2] + [0, 0, 1], along)  # orthogonal to the baseline and the view
+        across /= max(_length(across), np.finfo(np.float64).tiny)
+        axes = np.stack([along, across, np.cross(along, across)])
         focal = float((rig.left.matrix[1, 1] + rig.right.matrix[1, 1]) / 2)
         camera = np.array([[focal, 0, rig.left.matrix[0, 2]], [0, focal, rig.left.matrix[1, 2]], [0, 0, 1.0]])
         size = _canvas(rig.left, axes, camera, shape)
@@ -133,14 +136,6 @@ class Rectifier:
         if self._calibration.vertical:  # the canvas lies on its left side
             left, right, inside = (np.ascontiguousarray(np.rot90(canvas, -1)) for canvas in (left, right, inside))
         return RectifiedViews(Views(left, right, self._calibration), inside)
-
-
-def _axes(baseline: np.ndarray, looking: np.ndarray) -> Float64[np.ndarray, "3 3"]:
-    """Return unit vectors as rows: along the baseline, orthogonal to it and the view, and the new viewing direction."""
-    x = baseline / _length(baseline)
-    y = np.cross(looking, x)
-    y /= max(_length(y), np.finfo(np.float64).tiny)
-    return np.stack([x, y, np.cross(x, y)])
 
 
 def _canvas(lens: Camera, axes: np.ndarray, camera: np.ndarray, shape: tuple[int, int]) -> tuple[int, int]:

@@ -190,7 +190,11 @@ class Scene:
                 if self.own_size is None or rise not in (None, Rise()):
                     relief = self._to_scale(height, width_m, relief_m, holes, rise or Rise(), notify)
                 else:
-                    relief = _measured_relief(height, self.own_size, width_m, relief_m)
+                    own_width_m, own_length_m, high_m = self.own_size
+                    scale = np.float32(relief_m / high_m) if high_m else np.float32(1)
+                    heights = fill_rows(height) if scale == 1 else fill_rows(height) * scale
+                    extent_m = width_m, width_m * own_length_m / own_width_m
+                    relief = Relief(np.maximum(heights, np.float32(0)), extent_m)  # the lowest keeps its height
             except GeometryError as error:
                 raise GeometryError(f"{self.name}: {error}") from error
         products = {"views": self.views, "relief": relief, "disparity": self.disparity, "segments": self.segments}
@@ -240,13 +244,3 @@ def scale_in_words(measured: MeasuredSize, width_m: float, rise: float) -> str:
         f"scale 1:{times:.6g}, 1 mm is {times / 1000:.3g} m on the ground; heights are {steeper:.3g} times as steep as "
         f"there, 1 mm is {measured.unit_m / rise / 1000:.3g} m"
     )
-
-
-def _measured_relief(
-    height_m: np.ndarray, own_size: tuple[float, float, float], width_m: float, relief_m: float
-) -> Relief:
-    """Scale heights in metres to this width and height; the lowest keeps its height above the base."""
-    own_width_m, own_length_m, high_m = own_size
-    scale = np.float32(relief_m / high_m) if high_m else np.float32(1)
-    heights = fill_rows(height_m) if scale == 1 else fill_rows(height_m) * scale
-    return Relief(np.maximum(heights, np.float32(0)), (width_m, width_m * own_length_m / own_width_m))

@@ -253,13 +253,11 @@ class PipelineConfig(BaseModel):
         size = {name: value for name, value in self.size._asdict().items() if name in Workspace.model_fields}
         workspace = self.workspace.model_copy(update=size)
         values = {name: getattr(self, name) for name in KEYS} | {"workspace": workspace}
-        shown = [name for name, value in values.items() if value not in (None, "", ()) or self._is_off(name)]
-        shown.sort(key=lambda name: KEYS[name].stands_last)
+        shown = [name for name, value in values.items() if value not in (None, "", ())]
+        if self.heights is None and self.given_heights_m:  # `heights: null`; without it, they would be a mistake
+            shown.append("heights")
+        shown.sort(key=lambda name: (KEYS[name].stands_last, list(KEYS).index(name)))
         return {name: KEYS[name].write(values[name]) for name in shown}
-
-    def _is_off(self, name: str) -> bool:
-        """Return True for `heights: null`, without which the heights of parts would be a mistake."""
-        return name == "heights" and self.heights is None and bool(self.given_heights_m)
 
     def as_yaml(self, leave_out: Collection[str] = ()) -> str:
         """Return the completed configuration as a pipeline file, without these keys. Raises: as `as_data`."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
 from ...data import Note, Outcome, Record
-from .cache import Cache, Notes
+from .cache import Cache
 from .stage import Stage
 
 REQUESTED = "requested"
@@ -48,7 +48,9 @@ def foresee(engine: Outlook, product: str, why: str, steps: dict[str, Outcome]) 
     elif stage.skip:
         steps[product] = Outcome(product, "skipped", stage.skip, stage.method)
     elif (cache := engine.cache_for(stage)) and engine.key(product) in cache:
-        notes = notes_within(cache.notes(engine.key(product)), product)
+        kept = cache.notes(engine.key(product))
+        within = (each for name in sorted(kept) if name != product for each in kept[name] if each.kind != "decision")
+        notes = (*kept.get(product, ()), *within)
         steps[product] = Outcome(product, "cached", with_notes(notes, SAME), stage.method, notes=notes)
     elif stage.refusal is not None:
         steps[product] = Outcome(product, "refused", str(stage.refusal), stage.method)
@@ -71,12 +73,6 @@ def not_needed(stage: Stage, notes: Sequence[Note]) -> Outcome:
 def notes_ahead(stage: Stage) -> tuple[Note, ...]:
     """Return the stage's note on work that this scene does not need."""
     return (Note(stage.note),) if stage.note else ()
-
-
-def notes_within(kept: Notes, product: str) -> tuple[Note, ...]:
-    """Return the notes on a cached product, and the warnings and doubts on the products that it was made from."""
-    within = (each for name in sorted(kept) if name != product for each in kept[name] if each.kind != "decision")
-    return (*kept.get(product, ()), *within)
 
 
 def with_notes(notes: Iterable[Note], why: str) -> str:

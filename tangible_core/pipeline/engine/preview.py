@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, TypeVar, final
 import numpy as np
 from pydantic import BaseModel, ValidationError
 
-from ...data import HapticSurface, Material, MaterialMap, Record
+from ...data import HapticSurface, MaterialMap, Record
 from ...data.products import Product
 from ...errors import ConfigError
 from ...materials.assignment import find, load_library
@@ -127,7 +127,10 @@ class PartHeightPreview:
         products: dict[str, Record] = {config.felt_parts: self._parts, "relief": relief}
         if self._materials is not None:
             own = own_materials(config) if materials is None else dict(enumerate(materials))
-            chosen = _with_own(self._materials.materials, own, config)
+            library = load_library(config.materials.library)
+            named = {number: find(name, library) for number, name in own.items() if name is not None}
+            found = self._materials.materials
+            chosen = tuple(named.get(number, material) for number, material in enumerate(found))
             products["materials"] = replace(self._materials, materials=chosen)
         made = self.engine.with_products(**products)
         surface: HapticSurface = made.make("surface")
@@ -171,15 +174,6 @@ def is_at_hand(engine: Engine, product: Product) -> bool:
 def product_at_hand(engine: Engine, product: Product) -> Any:
     """Return a product on the working grid; None if it would have to be made."""
     return engine.make_on_grid(product) if is_at_hand(engine, product) else None
-
-
-def _with_own(
-    found: tuple[Material, ...], own: Mapping[int, str | None], config: PipelineConfig
-) -> tuple[Material, ...]:
-    """Replace materials by the parts' own. Raises: MaterialError for a name that is not in the library."""
-    library = load_library(config.materials.library)
-    named = {number: find(name, library) for number, name in own.items() if name is not None}
-    return tuple(named.get(number, material) for number, material in enumerate(found))
 
 
 def _validate(section: type[S], said: Mapping[str, Any]) -> S:

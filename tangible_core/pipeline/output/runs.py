@@ -125,7 +125,9 @@ def _make_run(engine: Engine, out: Path, want: str, seconds: float, sheet: Sheet
     records = {f"{name}.npz": record for name, record in products.items() if isinstance(record, Record)}
     recordings = [RECORDING] if recording is not None else []
     sheets = [f"{SHEET}.{sheet}"] if can_draw(engine.registry) else []
-    texts = {**config_file, **_guessed_parts(engine, products)}
+    heights, high = engine.config.heights, products.keys() & {"relief", "surface", "touch"}
+    guessed = {GUESSED: to_correct(engine)} if heights is not None and heights.by == "guess" and high else {}
+    texts = {**config_file, **guessed}
     files = tuple(out / name for name in (*texts, *records, *recordings, *sheets, OUTCOMES))
     with rewriting(out, engine.config.path) as place:
         for name, record in records.items():
@@ -151,12 +153,6 @@ def _config_file(engine: Engine) -> dict[str, str]:
         return {CONFIG: engine.config.as_yaml()}
     except ConfigError as error:
         return {NO_CONFIG: f"{error}\n"}
-
-
-def _guessed_parts(engine: Engine, products: Mapping[str, Any]) -> dict[str, str]:
-    """Return the file with guessed heights of parts, if any, by its name."""
-    heights, high = engine.config.heights, products.keys() & {"relief", "surface", "touch"}
-    return {GUESSED: to_correct(engine)} if heights is not None and heights.by == "guess" and high else {}
 
 
 def about(engine: Engine) -> About:

@@ -31,7 +31,10 @@ def features(flight: Flight) -> Iterator[Verdict]:
     from_wider = {narrow: leakage(wide, narrow) * height_m[wide] for narrow, wide in pairwise(widths)}
     own = [width for width in widths if height_m[width] > max(NOTHING_M, OWN * from_wider.get(width, 0.0))]
     if not own:
-        yield _no_feature(flight)
+        whole_m = float(flight.surface.height_m.max() - flight.surface.height_m.min())
+        cure = "only its materials can be felt: choose a scene with relief, or `workspace.width_m` for a larger one"
+        note, says = "no feature 1 to 32 mm wide", "the relief has nothing that can be felt"
+        yield Verdict("features", "the relief", "warn", whole_m, "m", note=note, cure=cure, says=says)
     bounds = {width: max(threshold_m(width), resolution_m) for width in own}
     any_felt = any(height_m[width] >= bound for width, bound in bounds.items())
     for width, bound in bounds.items():
@@ -43,14 +46,6 @@ def features(flight: Flight) -> Iterator[Verdict]:
             says="the relief is too low to be felt",
             cure="" if any_felt else [heighten(flight, bound / height_m[width])],
         )
-
-
-def _no_feature(flight: Flight) -> Verdict:
-    """Return the verdict on a relief without a feature of any width measured."""
-    height_m = float(flight.surface.height_m.max() - flight.surface.height_m.min())
-    cure = "only its materials can be felt: choose a scene with relief, or `workspace.width_m` for a larger one"
-    note, says = "no feature 1 to 32 mm wide", "the relief has nothing that can be felt"
-    return Verdict("features", "the relief", "warn", height_m, "m", note=note, cure=cure, says=says)
 
 
 def textures(flight: Flight) -> Iterator[Verdict]:

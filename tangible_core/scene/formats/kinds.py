@@ -41,7 +41,8 @@ _STILL = (b"avif", b"avis", *HEIC)
 
 def file_kind(path: Path) -> FileKind | None:
     """Return what a file is; by its name alone if it cannot be read; None for another kind."""
-    named, head = _kind_by_suffix(path), _first_bytes(path)
+    suffix, head = path.suffix.lower(), _first_bytes(path)
+    named = "picture" if suffix in PICTURES else "video" if suffix in VIDEOS else "heights" if suffix in MAPS else None
     if head[:4] in TIFF:
         return "heights" if holds_heights(path) else "picture"
     if head[:2] in (b"Pf", b"PF") or head[:6] == NPY or ASC.match(head):
@@ -66,8 +67,3 @@ def _first_bytes(path: Path) -> bytes:
             with path.open("rb") as file:
                 return file.read(_HEAD)
     return b""
-
-
-def _kind_by_suffix(path: Path) -> FileKind | None:
-    suffix = path.suffix.lower()
-    return "picture" if suffix in PICTURES else "video" if suffix in VIDEOS else "heights" if suffix in MAPS else None

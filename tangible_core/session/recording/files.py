@@ -63,7 +63,9 @@ def read(path: Path) -> RecordingContents:
         check_file(path)
         with np.errstate(all="ignore"):  # NaN and infinity stay as they are
             contents = READERS[path.suffix](path)
-        _check_bits(contents.rows)
+        for name in ("flags", "buttons"):
+            if not (np.abs(contents.rows[:, ARRAYS[name]]) < 2**31).all():
+                raise ValueError(f"its {name} do not all fit into 32 bits")
     except OSError as error:
         gone = isinstance(error, FileNotFoundError)
         why = "there is no such file" if gone else f"cannot be read: {error.strerror or error}"
@@ -74,13 +76,6 @@ def read(path: Path) -> RecordingContents:
         why = shown(str(error), 200)
         raise OutputError(f"{path}: is not a recording, or a damaged one ({why}); record it again") from error
     return contents
-
-
-def _check_bits(rows: Float64[np.ndarray, "n columns"]) -> None:
-    """Check flags and buttons. Raises: ValueError if one does not fit into 32 bits."""
-    for name in ("flags", "buttons"):
-        if not (np.abs(rows[:, ARRAYS[name]]) < 2**31).all():
-            raise ValueError(f"its {name} do not all fit into 32 bits")
 
 
 def _from_npz(path: Path) -> RecordingContents:

@@ -44,7 +44,9 @@ def works(exporter: Exporter) -> Iterator[tuple[str, Work]]:
     yield "a flat surface", _flat(exporter, plain)
     yield "a scene without parts", work_of(exporter, picture=_picture((ROWS, COLUMNS)))
     yield "heights without a picture", work_of(exporter)
-    yield "a part that was simplified away", _without_last(exporter)
+    labels = _labels((ROWS, COLUMNS))
+    fine = np.where(labels == len(NAMES) - 1, 0, labels).astype(np.int32).repeat(FINE, 0).repeat(FINE, 1)
+    yield "a part that was simplified away", work_of(exporter, labels, _picture((ROWS, COLUMNS)), simplified=fine)
     for shape in ((1, 1), (1, 9), (9, 1), (2, 2)):
         name = f"{shape[0]} x {shape[1]} cells"
         yield name, work_of(exporter, labels=_labels(shape), picture=_picture(shape), shape=shape)
@@ -99,12 +101,6 @@ def _flat(exporter: Exporter, plain: Work) -> Work:
     if isinstance(surface := products.get("surface"), HapticSurface):
         products["surface"] = replace(surface, relief=relief)
     return replace(plain, products=products)
-
-
-def _without_last(exporter: Exporter) -> Work:
-    labels = _labels((ROWS, COLUMNS))
-    fine = np.where(labels == len(NAMES) - 1, 0, labels).astype(np.int32).repeat(FINE, 0).repeat(FINE, 1)
-    return work_of(exporter, labels, _picture((ROWS, COLUMNS)), simplified=fine)
 
 
 def _labels(shape: tuple[int, int]) -> np.ndarray:

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from math import isfinite
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol, Self, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 from jaxtyping import UInt8
@@ -28,29 +28,10 @@ MOST_THREADS = 4
 """Largest number of threads of a decoder, as each holds frames of its own."""
 
 
-class Capture(Protocol):
-    """The part of cv2.VideoCapture that is used here."""
-
-    def isOpened(self) -> bool:
-        """Tell whether there are frames to read."""
-        ...
-
-    def grab(self) -> bool:
-        """Go to the next frame; tell whether there is one."""
-        ...
-
-    def retrieve(self) -> tuple[bool, Any]:
-        """Return whether the frame is whole, and its picture in BGR."""
-        ...
-
-    def get(self, propId: int, /) -> float:
-        """Return a property by its number in OpenCV."""
-        ...
-
-    def release(self) -> None:
-        """Close the source."""
-        ...
-
+if TYPE_CHECKING:
+    from cv2 import VideoCapture as Capture
+else:
+    Capture = Any  # what has its methods
 
 OpenCamera = Callable[[int, float | None], Capture]
 """A function that opens a camera by its number, with frames a second or None; it may fail to open."""
@@ -66,7 +47,7 @@ def open_file(path: Path) -> Capture:
     _check_is_file(path)
     with silent_opencv():
         threads = [cv2.CAP_PROP_N_THREADS, min(thread_limit() or processors(), MOST_THREADS)]
-        capture = cast(Capture, cv2.VideoCapture(str(path.absolute()), cv2.CAP_FFMPEG, threads))
+        capture = cv2.VideoCapture(str(path.absolute()), cv2.CAP_FFMPEG, threads)
     if not capture.isOpened():
         raise PictureError(
             f"{path}: is not a video that this program can play, or has no frames; convert it to an .mp4 with H.264"
@@ -84,7 +65,7 @@ def open_camera(number: int, fps: float | None) -> Capture:
         capture = cv2.VideoCapture(number)
         if fps is not None:
             capture.set(cv2.CAP_PROP_FPS, fps)
-    return cast(Capture, capture)
+    return capture
 
 
 def grab(capture: Capture) -> bool:
@@ -99,7 +80,7 @@ def retrieve(capture: Capture, name: object) -> UInt8[np.ndarray, "h w 3"] | Non
 
     with silent_opencv():
         done, picture = capture.retrieve()
-    if not done or picture is None or picture.size == 0:
+    if not done or picture.size == 0:
         return None
     picture = np.asarray(picture)
     check_frame(picture.shape, name)

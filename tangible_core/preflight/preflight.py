@@ -17,10 +17,6 @@ class Verdicts(tuple[Verdict, ...]):
     good: ClassVar[str]
     """Name of the property that is True without a verdict of the worst grade, `bad`."""
     bad: ClassVar[Grade]
-    nothing: ClassVar[str]
-    """The sentence where nothing is wrong."""
-    but: ClassVar[tuple[str, str]]
-    """The beginning of the sentence without and with a verdict of the worst grade."""
 
     @classmethod
     def of(cls, verdicts: Iterable[Verdict]) -> Self:
@@ -37,14 +33,8 @@ class Verdicts(tuple[Verdict, ...]):
 
     @property
     def sentence(self) -> str:
-        """A sentence on the result: good, good but ..., or bad because ....
-
-        >>> Preflight().sentence, Legibility().sentence
-        ('Safe: nothing is wrong.', 'Legible: fingers can read it.')
-        """
-        if self.grade == "ok":
-            return self.nothing
-        return f"{self.but[self.grade == self.bad]} {reasons(self)}."
+        """A sentence on the result."""
+        raise NotImplementedError
 
     def as_data(self) -> dict[str, Any]:
         """Return the verdicts as JSON data, for programs: see `wording.as_data`."""
@@ -63,13 +53,22 @@ class Preflight(Verdicts):
     __slots__ = ()
     good = "safe"
     bad: ClassVar[Grade] = "unsafe"
-    nothing = "Safe: nothing is wrong."
-    but = "Safe, but", "Unsafe, because"
 
     @property
     def safe(self) -> bool:
         """True if nothing is unsafe."""
         return self.grade != self.bad
+
+    @property
+    def sentence(self) -> str:
+        """A sentence on the result: safe, safe but ..., or unsafe because ....
+
+        >>> Preflight().sentence
+        'Safe: nothing is wrong.'
+        """
+        if self.grade == "ok":
+            return "Safe: nothing is wrong."
+        return f"{'Safe, but' if self.safe else 'Unsafe, because'} {reasons(self)}."
 
 
 GRADES: tuple[Grade, ...] = ("unsafe", "illegible", "warn", "ok")
@@ -124,10 +123,19 @@ class Legibility(Verdicts):
     __slots__ = ()
     good = "readable"
     bad: ClassVar[Grade] = "illegible"
-    nothing = "Legible: fingers can read it."
-    but = "Legible, but", "Illegible, because"
 
     @property
     def readable(self) -> bool:
         """True if nothing is illegible."""
         return self.grade != self.bad
+
+    @property
+    def sentence(self) -> str:
+        """A sentence on the result: legible, legible but ..., or illegible because ....
+
+        >>> Legibility().sentence
+        'Legible: fingers can read it.'
+        """
+        if self.grade == "ok":
+            return "Legible: fingers can read it."
+        return f"{'Legible, but' if self.readable else 'Illegible, because'} {reasons(self)}."

@@ -61,10 +61,9 @@ class MethodList(Key, Unchecked):
             return ()
         if not isinstance(block, list):
             known = ", ".join(reading.registry.names(self.name))
-            kind = KINDS[cast(Any, self.name)].__name__.lower()
             return reading.source.complain(
                 (self.name,),
-                f"{self.name}: takes a list of {kind}s, such as [{{use: ...}}], not {quoted(block)}; "
+                f"{self.name}: takes a list of {_plural(self.name)}, such as [{{use: ...}}], not {quoted(block)}; "
                 f"installed: {known}",
             )
         listed = enumerate(cast("list[Any]", block))
@@ -102,6 +101,10 @@ def _take_method(place: Location, kind: str, reading: Reading, method: Any) -> N
         return named_method(kind, method, reading.registry)
     except ConfigError as error:
         return reading.source.complain(place, str(error))
+
+
+def _plural(kind: str) -> str:
+    return f"{KINDS[cast(Any, kind)].__name__.lower()}s"
 
 
 def index_of(listed: list[Any], name: str) -> int:

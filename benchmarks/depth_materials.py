@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Float64
 
 from tangible_core.data import Views
-from tangible_core.testing.synthetic.stereo_scenes import KnownPair
-from tangible_core.testing.synthetic.surfaces import (
+from tangible_core.testing.synthetic.stereo_scenes import (
+    KnownPair,
     Surface,
     disc,
     everywhere,

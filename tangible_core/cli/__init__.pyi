@@ -11,8 +11,8 @@ from .options import Sets as Sets
 from .options import Verbose as Verbose
 from .options import ask as ask
 from .options import is_listing as is_listing
+from .options import is_quiet as is_quiet
 from .sentences import approximately as approximately
 from .sentences import listing as listing
 from .show import plain as plain
 from .show import print_json as print_json
-from .verbosity import is_quiet as is_quiet

@@ -18,8 +18,7 @@ from ..plugins.registry import default_registry
 from ..runtime import signals, standard_output
 from ..translation import LANGUAGES, language, localise
 from .command_table import COMMANDS, LazyGroup, check_paths, load
-from .options import DONE, FAILED, INTERRUPTED, MISTAKE
-from .verbosity import parse_verbosity
+from .options import DONE, FAILED, INTERRUPTED, MISTAKE, parse_verbosity
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -11,7 +11,7 @@ from ..runtime.opencv import plain_opencv
 from ..scene import geometry, scaling
 from ..scene.workspace import FeltSize
 from .choice import ReliefChoice
-from .guided_filter import filter_coefficients
+from .shaping import filter_coefficients
 from .slope_limit import limit_slopes
 
 CELL_M = 3.3e-4

@@ -1,6 +1,7 @@
 """The steps from a disparity map to the relief that is felt.
 
 Tones: a rising map from nearness to height that gives most height to those depths which borders cross.
+The guided filter with a map itself as its guide makes noise even, and keeps steps.
 """
 
 from typing import NamedTuple
@@ -14,7 +15,6 @@ from ..scene import geometry, scaling
 from ..scene.geometry import ValueRange
 from ..scene.workspace import FeltSize
 from .choice import ReliefChoice
-from .guided_filter import filter_coefficients
 from .slope_limit import limit_slopes
 
 CELL_M = 1e-4
@@ -177,3 +177,25 @@ def _border_density(nearness: Float32[np.ndarray, "h w"]) -> Float64[np.ndarray,
         change += np.bincount((low * BINS).astype(np.int32), weight, BINS + 1)
         change -= np.bincount((high * BINS).astype(np.int32), weight, BINS + 1)
     return np.maximum(np.cumsum(change)[:BINS], 0)
+
+
+Map = Float32[np.ndarray, "h w"]
+
+
+def filter_coefficients(values: Map, radius: float, deviation: float) -> tuple[Map, Map]:
+    """Return two maps, of which the filtered map is the first times the values plus the second.
+
+    radius: of the window, cells, at least 1. deviation: the standard deviation below which a window is noise.
+    Source: He et al., PAMI 2013.
+    """
+    import cv2
+
+    side = 2 * max(1, round(radius)) + 1
+
+    def mean(values: np.ndarray) -> np.ndarray:
+        return np.asarray(cv2.blur(values, (side, side), borderType=cv2.BORDER_REPLICATE))
+
+    around = mean(values)
+    variance = np.maximum(mean(values * values) - around * around, 0)
+    kept = variance / (variance + np.float32(deviation**2))
+    return mean(kept), mean((1 - kept) * around)

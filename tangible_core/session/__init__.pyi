@@ -28,7 +28,7 @@ from .recording.replay import compare_replay as compare_replay
 from .recording.replay import replay as replay
 from .recording.replay import unaltered_forces as unaltered_forces
 from .recording.tick_file import About as About
-from .recording.writer import Writer as Writer
+from .recording.tick_file import Writer as Writer
 from .simulated import run_simulated as run_simulated
 from .tracking_error import EVERY as EVERY
 from .tracking_error import TickSampler as TickSampler

@@ -16,8 +16,7 @@ from ..plugins.interfaces import Film, HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Beacon, Safety, Servo
 from .recording import INTERRUPTED, STOPPED, Recording
-from .recording.tick_file import About
-from .recording.writer import Writer
+from .recording.tick_file import About, Writer
 
 log: logging.Logger = logging.getLogger(__name__)
 LOOK_EVERY_S = 0.05

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .. import completing
-from ..options import FAILED, MISTAKE, ConfigOrPictures, Json, NoCache, Sets, Verbose
-from ..verbosity import is_quiet, named_language
+from ..options import FAILED, MISTAKE, ConfigOrPictures, Json, NoCache, Sets, Verbose, is_quiet, named_language
 from .run import default_place, open_pipeline
 
 if TYPE_CHECKING:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import FAILED, Json, NoCache, Record, Sets, Verbose, Yes
-from ..verbosity import is_quiet
+from ..options import FAILED, Json, NoCache, Record, Sets, Verbose, Yes, is_quiet
 from .run import device_of, open_pipeline
 
 if TYPE_CHECKING:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from ..options import ConfigOrPictures, Json, NoCache, Sets, Verbose
-from ..verbosity import is_quiet
+from ..options import ConfigOrPictures, Json, NoCache, Sets, Verbose, is_quiet
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

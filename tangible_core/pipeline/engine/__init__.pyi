@@ -1,6 +1,5 @@
 from .cache import Cache as Cache
 from .cache import write_record as write_record
-from .keys import method_identities as method_identities
 from .part_heights import heights_of as heights_of
 from .part_validation import check_parts as check_parts
 from .part_validation import parts_of as parts_of
@@ -12,5 +11,6 @@ from .preview import product_at_hand as product_at_hand
 from .preview import without_entries as without_entries
 from .stage import Progress as Progress
 from .stage import StageEvent as StageEvent
+from .stage import method_identities as method_identities
 from .stages.touch import fit_to_device as fit_to_device
 from .working_grid import parts_on_grid as parts_on_grid

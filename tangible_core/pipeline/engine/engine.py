@@ -27,7 +27,6 @@ from ...scene.workspace import flat_warning
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from .cache import Cache
-from .keys import product_key
 from .planning import (
     NOT_MADE,
     REQUESTED,
@@ -41,7 +40,7 @@ from .planning import (
     notes_ahead,
     with_notes,
 )
-from .stage import Context, Progress, Stage, StageEvent, ignore_event, stage_class
+from .stage import Context, Progress, Stage, StageEvent, ignore_event, product_key, stage_class
 
 log: logging.Logger = logging.getLogger(__name__)
 

@@ -1,28 +1,31 @@
 """The base of all stages: each makes one product from a scene by a configuration.
 
 A stage stands in `stages/PRODUCT.py`, as the class `ProductStage`; the table `tangible_core.data.products.PRODUCTS`
-names the product.
+names the product. What a result depends on is in its key, one text or digest.
 """
 
+import hashlib
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 from importlib import import_module
 from typing import Any, ClassVar, NamedTuple, final
+from uuid import uuid4
 
-from ...data import Outcome, Record, Views
+from ...data import Material, Outcome, Record, Views, digest_of
 from ...errors import BrokenMethod, ConfigError, TangibleError
-from ...plugins.interfaces import Skippable
+from ...files.reading import content_digest
+from ...plugins.interfaces import Method, Skippable
 from ...plugins.registry import Registry, default_registry
 from ...provenance.closure import closure
+from ...provenance.source import source_digest
 from ...scene import scaling
 from ...scene.scene import Scene
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from . import working_grid
 from .cache import Cache
-from .keys import method_identity
 from .working_grid import WorkingGrid
 
 Inputs = Mapping[str, Any]
@@ -204,3 +207,33 @@ def no_picture(scene: Scene) -> ConfigError:
 
 def _size(shape: tuple[int, ...]) -> str:
     return " x ".join(map(str, reversed(shape)))
+
+
+def product_key(product: str, key: str, inputs: Mapping[str, str]) -> str:
+    """Return the key of a product: its own key and those of its inputs, as SHA-256 in hexadecimal digits."""
+    parts = (product, key, *(f"{name}={each}" for name, each in inputs.items()))
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def method_identities(config: PipelineConfig) -> str:
+    """Return what results depend on of the code and the options of all methods, in one text."""
+    return "\n".join(" ".join(method_identity(each)) for each in (config.depth, config.texture, config.render))
+
+
+def method_identity(chosen: NamedMethod[Any] | None) -> tuple[str, str]:
+    """Return a method's name, and all its results depend on: its distribution, code, version, options and files."""
+    if chosen is None:
+        return "", ""
+    method: Method = chosen.method
+    cls = type(method)
+    code = closure(cls.__module__)
+    digest = code.digest if code.modules else source_digest(cls) or uuid4().hex
+    options = method.model_dump()  # not as JSON, to which infinity and nothing are the same
+    read = "".join(f" {content_digest(path)}" for path in method.reads())
+    return chosen.name, f"{chosen.origin} {cls.__module__}:{cls.__qualname__} {digest} v{cls.version} {options}{read}"
+
+
+@cache
+def library_digest(materials: tuple[Material, ...]) -> str:
+    """Return the digest of a library; cached, as it has hundreds of values and hardly ever changes in a process."""
+    return digest_of(materials)

@@ -15,14 +15,15 @@ from tangible_core import load_method
 from tangible_core.data import DisparityMap, Views
 from tangible_core.errors import PictureError
 from tangible_core.plugins.registry import default_registry
-from tangible_core.testing.synthetic.stereo_scenes import KnownPair, synthetic_pair
-from tangible_core.testing.synthetic.surfaces import (
+from tangible_core.testing.synthetic.stereo_scenes import (
+    KnownPair,
     Surface,
     everywhere,
     left_view,
     rectangle,
     right_view,
     slanted_plane,
+    synthetic_pair,
     true_disparity,
     truly_visible,
 )

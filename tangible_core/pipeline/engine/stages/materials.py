@@ -6,9 +6,8 @@ from ....data import MaterialMap
 from ....materials import assignment
 from ....parts import find as part_finding
 from ....scene import scaling
-from ..keys import library_digest
 from ..part_validation import add_names_to_reasons, number_rules, own_materials
-from ..stage import Context, Inputs, Stage
+from ..stage import Context, Inputs, Stage, library_digest
 from ..working_grid import transparent_parts
 from .parts import missing_segments
 

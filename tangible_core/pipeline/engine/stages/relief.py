@@ -27,10 +27,9 @@ from ....relief import (
 from ....scene import geometry, scaling
 from ....scene.workspace import FeltSize, flat_warning
 from .. import part_heights
-from ..keys import method_identity
 from ..networks import look_function, networks_identity
 from ..part_heights import warn_missing_heights
-from ..stage import Inputs, Stage
+from ..stage import Inputs, Stage, method_identity
 from ..working_grid import flatten_transparent, relief_of_layers
 
 log: logging.Logger = logging.getLogger(__name__)

@@ -4,14 +4,15 @@ import numpy as np
 import pytest
 
 from tangible_bench.metrics.standard_sets import visible_pixels
-from tangible_core.testing.synthetic.stereo_scenes import SCENES, synthetic_pair
-from tangible_core.testing.synthetic.surfaces import (
+from tangible_core.testing.synthetic.stereo_scenes import (
+    SCENES,
     Surface,
     cap,
     everywhere,
     rectangle,
     right_view,
     slanted_plane,
+    synthetic_pair,
     texture,
     truly_visible,
 )

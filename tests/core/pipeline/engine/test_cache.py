@@ -69,7 +69,7 @@ def test_entry_with_invalid_notes_is_damaged(
         entry(tmp_path / f"{key}.npz", record, notes=packed, a=np.zeros((2, 2), np.int32))
     assert Cache(tmp_path).notes("good") == {"relief": (Note("x", "doubt"),)}
     assert Cache(tmp_path).notes("k") == {}
-    assert Cache(tmp_path).get("k") is None
+    assert Cache(tmp_path).entry("k") is None
     assert "damaged" in caplog.text
 
 
@@ -102,10 +102,10 @@ def test_damaged_entry_is_made_again(tmp_path: Path, damage: Callable[[Path], ob
     kept = Cache(tmp_path)
     kept.put("k", SegmentMap(np.zeros((64, 64), np.int32)))
     damage(tmp_path / "k.npz")
-    assert kept.get("k") is None
+    assert kept.entry("k") is None
     assert "k" not in kept
     kept.put("k", RECORDS[1])
-    assert kept.get("k") is not None
+    assert kept.entry("k") is not None
 
 
 def entry(path: Path, tree: object, **arrays: np.ndarray) -> None:
@@ -134,7 +134,7 @@ ODD = {
 @pytest.mark.parametrize("tree", ODD.values(), ids=ODD)
 def test_entry_of_any_content_is_made_again(tmp_path: Path, tree: object, caplog: pytest.LogCaptureFixture):
     entry(tmp_path / "k.npz", tree, a=np.zeros((2, 2), np.uint8), b=np.full((2, 2), np.nan))
-    assert Cache(tmp_path).get("k") is None
+    assert Cache(tmp_path).entry("k") is None
     assert "damaged" in caplog.text
     assert len(caplog.text) < 1000
     assert not (tmp_path / "k.npz").exists()
@@ -165,7 +165,7 @@ def test_unwritable_folder_gives_one_warning(tmp_path: Path, place: str, caplog:
     for key in "abc":
         kept = Cache(tmp_path / place)
         assert key not in kept
-        assert kept.get(key) is None
+        assert kept.entry(key) is None
         kept.put(key, RECORDS[1])
     [message] = caplog.messages
     assert message.startswith(f"results are not cached: {tmp_path / place}/a.npz: cannot be written: ")

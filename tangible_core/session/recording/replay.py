@@ -11,7 +11,7 @@ from jaxtyping import Float64
 from ...compiled.touch import CompiledTouch
 from ...data import UNTOUCHED, HapticState, TickFlag
 from ...errors import check_positive
-from ...metrics.forces import force_errors
+from ...metrics.truth_errors import force_errors
 from ...plugins.interfaces import Touch
 from .recording import Recording
 from .tick_file import ARRAYS

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangible_core.metrics import force_errors
-from tangible_core.metrics.forces import angles_deg
+from tangible_core.metrics.truth_errors import angles_deg
 
 UP = np.array((0.0, 0.0, 1.0))
 RANDOM = np.random.default_rng(2)

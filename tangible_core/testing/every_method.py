@@ -11,7 +11,7 @@ from ..errors import OptionError
 from ..plugins.interfaces import Method
 from ..plugins.registry import Listing
 from ..runtime.child_process import python
-from .checks import Check, CheckFailure, demand
+from .checks import Check, CheckFailure, checks_in, demand
 
 HEAVY = ("torch", "kornia", "cv2", "skimage", "numba", "usb", "scipy", "matplotlib")
 """Packages that take longer to import than a listing of plugins may take."""
@@ -47,7 +47,7 @@ def import_is_light(listing: Listing) -> None:
     )
 
 
-LISTING_CHECKS: tuple[Check, ...] = (name_is_plain, summary_is_there, import_is_light)
+LISTING_CHECKS: tuple[Check, ...] = checks_in(__name__)
 
 
 def every_option_has_a_default(method: Method) -> None:
@@ -101,12 +101,4 @@ def pickle_is_small(method: Method) -> None:
     demand(pickle.loads(data) == method, "the method is not equal to itself after a pickle round trip")
 
 
-OPTION_CHECKS: tuple[Check, ...] = (
-    every_option_has_a_default,
-    every_option_is_described,
-    options_are_frozen,
-    unknown_options_are_refused,
-    options_survive_json,
-    schema_can_be_made,
-    pickle_is_small,
-)
+OPTION_CHECKS: tuple[Check, ...] = checks_in(__name__)[len(LISTING_CHECKS) :]

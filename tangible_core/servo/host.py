@@ -8,6 +8,7 @@ from typing import Any, Self, final
 from ..data import Relief, ServoReport
 from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import Film, HapticDevice, Touch, touch_of
+from ..runtime.system import shared_memory
 from . import limits as time_limits
 from . import parcel
 from .beacon import ALL_BUTTONS, ASKED, SEEN, Beacon, BeaconState
@@ -199,7 +200,7 @@ class Servo:
         """Delete parcels that the loop did not consume; `stop` and `swap` may do so at the same time."""
         with suppress(IndexError):
             while True:
-                parcel.discard(self._sent.pop())
+                shared_memory.remove(self._sent.pop())
 
     def _arrays(self, touch: Touch | Film) -> tuple[Any, Any]:
         spec = self._device.spec()

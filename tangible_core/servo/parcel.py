@@ -69,16 +69,6 @@ def share(path: Path) -> Any:
     return _load(shared_memory.attach(path))
 
 
-def exists(path: Path) -> bool:
-    """Return True if the memory of `pack` was neither unpacked nor discarded."""
-    return shared_memory.exists(path)
-
-
-def discard(path: Path) -> None:
-    """Remove the memory of `pack`, if nobody has unpacked it."""
-    shared_memory.remove(path)
-
-
 def _load(mapped: memoryview) -> Any:
     parts: list[memoryview] = []
     at = 0
@@ -125,13 +115,13 @@ class Packed(Touch):
 
     def unused_parcel(self) -> Path:
         """Return the parcel, for a loop. Raises: DeviceError if a loop has consumed it, or it was discarded."""
-        if not exists(self.parcel):
+        if not shared_memory.exists(self.parcel):
             raise DeviceError("this packed touch was already used or discarded; pack a new one")
         return self.parcel
 
     def discard(self) -> None:
         """Delete the parcel, if no loop has; a second call does nothing."""
-        discard(self.parcel)
+        shared_memory.remove(self.parcel)
 
 
 def pack_touch(touch: Touch | Film, spec: DeviceSpec) -> Packed:

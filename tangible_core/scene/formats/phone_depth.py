@@ -9,9 +9,11 @@ import math
 import re
 import struct
 from base64 import b64decode
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from contextlib import suppress
+from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 from jaxtyping import Float32
@@ -29,7 +31,6 @@ if TYPE_CHECKING:
 
 _XMP, _EXTENDED = b"http://ns.adobe.com/xap/1.0/\0", b"http://ns.adobe.com/xmp/extension/\0"
 _GUID = 32
-_APP1, _SCAN, _ALONE = 0xE1, 0xDA, (0x01, *range(0xD0, 0xD8))
 _DATA = re.compile(rb'GDepth:Data\s{0,9}(?:=\s{0,9}(")|(>))')
 _RANGE = re.compile(rb'GDepth:(Format|Near|Far)\s{0,9}(?:=\s{0,9}"|>)\s{0,9}([\w.+-]{1,30})')
 _ITEM = re.compile(rb"<Container:Item\b[^>]{0,600}>")
@@ -99,16 +100,19 @@ def _nearness(
 
 def phone_depth(image: "Image", data: bytes) -> PhoneDepth | None:
     """Find the depth map in an open JPEG; None if there is none. Raises: ValueError or struct.error if damaged."""
-    xmp = _xmp(data)
+    xmp = _xmp(image, len(data))
     if found := _DATA.search(xmp):
         end = xmp.find(b'"' if found[1] else b"<", found.end())
         data = b64decode(xmp[found.end() : max(end, found.end())])
         return PhoneDepth(data, False, "GDepth", _linear_range(dict(_RANGE.findall(xmp))))
     if item := _depth_item(xmp, data):
         return PhoneDepth(item, False, "Dynamic Depth")
+    from PIL.JpegImagePlugin import JpegImageFile
+
     for part in multi_pictures(image, data)[1:]:
-        if found := _AUXILIARY.search(_xmp(part)):
-            return PhoneDepth(part, found[1] == b"disparity", "an iPhone's")
+        with suppress(SyntaxError), JpegImageFile(BytesIO(part)) as inner:  # a part may be of another kind
+            if found := _AUXILIARY.search(_xmp(inner, len(part))):
+                return PhoneDepth(part, found[1] == b"disparity", "an iPhone's")
     return None
 
 
@@ -118,34 +122,20 @@ def _linear_range(stated: Mapping[bytes, bytes]) -> tuple[float, float] | None:
     return (low, high) if stated.get(b"Format") == b"RangeLinear" and 0 < low < high < math.inf else None
 
 
-def _xmp(data: bytes) -> bytes:
+def _xmp(image: "Image", bytes_of_file: int) -> bytes:
     """Return a JPEG's metadata, followed by its extended XMP, which did not fit into one segment."""
     plain, extended = b"", bytearray()
-    for segment in _segments(data):
+    for segment in (content for name, content in cast(Any, image).applist if name == "APP1"):
         if segment.startswith(_XMP):
             plain += segment[len(_XMP) :]
         elif segment.startswith(_EXTENDED):
             size, at = struct.unpack_from(">II", segment, len(_EXTENDED) + _GUID)
             part = segment[len(_EXTENDED) + _GUID + 8 :]
-            if size > len(data) or at + len(part) > size:
+            if size > bytes_of_file or at + len(part) > size:
                 raise ValueError("the length of its extended XMP is wrong")
             extended.extend(bytes(max(0, at + len(part) - len(extended))))
             extended[at : at + len(part)] = part
     return plain + bytes(extended)
-
-
-def _segments(data: bytes) -> Iterator[bytes]:
-    """Yield the application segments (APP1) before the scan."""
-    at = 2
-    while at + 4 <= len(data) and data[at] == 0xFF and data[at + 1] != _SCAN:
-        kind = data[at + 1]
-        if kind in _ALONE or kind == 0xFF:
-            at += 1 if kind == 0xFF else 2
-            continue
-        (length,) = struct.unpack_from(">H", data, at + 2)
-        if kind == _APP1:
-            yield data[at + 4 : at + 2 + length]
-        at += 2 + length
 
 
 def _depth_item(xmp: bytes, data: bytes) -> bytes | None:

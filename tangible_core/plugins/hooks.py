@@ -108,17 +108,13 @@ def manager() -> pluggy.PluginManager:
         except (Exception, SystemExit) as error:
             log.warning("hooks %s (%s) cannot be loaded and are left out: %r", point.name, point.value, error)
             log.debug("the import of %s", point.value, exc_info=True)
-    _warn_of_unknown_hooks(plugins)
-    return plugins
-
-
-def _warn_of_unknown_hooks(plugins: pluggy.PluginManager) -> None:
     specified = [name for name in vars(Specs) if name.startswith("tangible_")]
     for name, plugin in plugins.list_name_plugin():
         for each in plugins.get_hookcallers(plugin) or []:
             if each.name not in specified:
                 near = did_you_mean(each.name, specified)
                 log.warning("%s implements an unknown hook: %s%s", name, each.name, near)
+    return plugins
 
 
 def tell(plugins: pluggy.PluginManager, moment: str, **facts: Any) -> list[Any]:

@@ -217,7 +217,14 @@ def survey(
     period_s, spec = loop.period_s, device.spec()
     stiffness = stiffness_of(touch, spec).n_per_m
     probes = probe(touch, surface, hand.press_n, stiffness, spec.workspace_m[2], period_s)
-    _check_finite(law, probes)
+    values = (probes.force_n.sum(axis=1), probes.onset_n, probes.stiffness_n_per_m, probes.damping_n_s_per_m)
+    broken = ~np.isfinite(values).all(axis=0)
+    if broken.any():
+        who = plugin_name("render", type(law).__module__, type(law).__qualname__)
+        raise BrokenMethod(
+            f"{who}: force gave values that are not finite at {np.count_nonzero(broken)} of {broken.size} places of "
+            "the surface; a force is always finite, as `tangible check` tests"
+        )
     return Flight(
         surface=surface,
         law=law,
@@ -231,17 +238,6 @@ def survey(
         lateness=measure_lateness(loop.seconds, period_s),
         cost=measure_ticks(touch, _stroke(surface, probes, hand.speed_m_per_s * period_s), period_s),
     )
-
-
-def _check_finite(law: ForceRenderer, probes: Probes) -> None:
-    values = (probes.force_n.sum(axis=1), probes.onset_n, probes.stiffness_n_per_m, probes.damping_n_s_per_m)
-    broken = ~np.isfinite(values).all(axis=0)
-    if broken.any():
-        who = plugin_name("render", type(law).__module__, type(law).__qualname__)
-        raise BrokenMethod(
-            f"{who}: force gave values that are not finite at {np.count_nonzero(broken)} of {broken.size} places of "
-            "the surface; a force is always finite, as `tangible check` tests"
-        )
 
 
 def _stroke(surface: HapticSurface, probes: Probes, step_m: float) -> Float64[np.ndarray, "n 3"]:

@@ -234,19 +234,14 @@ def _bands(page: "TiffPage", data: bytes) -> Iterator[np.ndarray]:
     if high * columns > MOST_PIXELS:
         raise WholePieceError("save it in strips or in tiles, or as PNG")
     together = max(1, BAND_PIXELS // (columns * high)) * high
+    tables = {"jpegtables": page.jpegtables, "jpegheader": page.jpegheader} if page.compression in _JPEG else {}
     for top in range(0, rows, together):
         band = np.full((planes, 1, min(together, rows - top), columns, samples), page.nodata, dtype)
         for plane, down, right in product(range(planes), range(0, band.shape[2], high), range(0, columns, wide)):
             index = (plane * -(-rows // high) + (top + down) // high) * -(-columns // wide) + right // wide
-            piece = _piece(page, data, index)
+            at, length = page.dataoffsets[index], page.databytecounts[index]
+            piece = page.decode(data[at : at + length] or None, index, **tables)[0]
             if piece is not None:  # else it is left out, as all of it is without data
                 place = band[plane, :, down : down + high, right : right + wide]
                 place[:, : piece.shape[1]] = piece[:, : place.shape[1], : place.shape[2]]
         yield band
-
-
-def _piece(page: "TiffPage", data: bytes, index: int) -> np.ndarray | None:
-    """Decode a strip or a tile, (1, rows, columns, samples); None if the file has no bytes for it."""
-    at, length = page.dataoffsets[index], page.databytecounts[index]
-    tables = {"jpegtables": page.jpegtables, "jpegheader": page.jpegheader} if page.compression in _JPEG else {}
-    return page.decode(data[at : at + length] or None, index, **tables)[0]

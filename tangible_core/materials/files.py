@@ -32,7 +32,7 @@ Explanations = dict[Annotated[str, AfterValidator(_check_key)], str]
 class MaterialBlock(Quantities):
     """The values of a material; for a shipped one, values that are left out stay."""
 
-    model_config: ClassVar[ConfigDict] = ConfigDict(title="Material")
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, title="Material")
 
     stiffness_n_per_m: Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
     """Force for a depth of one metre, N/m. Desktop devices render up to 3000, and up to 900 under a texture."""

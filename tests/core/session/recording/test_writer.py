@@ -14,7 +14,7 @@ from full_disk import files_up_to
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import OutputError
 from tangible_core.session import About, Recording, Writer
-from tangible_core.session.recording import netcdf, tick_file, writer
+from tangible_core.session.recording import netcdf, tick_file
 
 ROWS = np.arange(17 * 50, dtype=float).reshape(50, 17)
 
@@ -124,7 +124,7 @@ def test_file_is_whole_between_and_within_writes(tmp_path: Path, monkeypatch: py
             writes.append((self.tell(), bytes(data)))
             return super().write(data)
 
-    monkeypatch.setattr(writer, "open_alone", lambda path, private: Noted(path, "w"))
+    monkeypatch.setattr(tick_file, "open_alone", lambda path, private: Noted(path, "w"))
     with Writer(tmp_path / "stroke.nc") as written:
         for end in (10, 11, 50):
             written.append(ROWS[written.ticks : end])

@@ -95,14 +95,14 @@ def without(values: Float[np.ndarray, "h w"], *nodata: float) -> Float[np.ndarra
     return np.where(np.isin(values, marks), values.dtype.type(np.nan), values)
 
 
-def read_labels(path: Path) -> Int32[np.ndarray, "h w"]:
+def read_labels(path: Path, notify: Notify = ignore) -> Int32[np.ndarray, "h w"]:
     """Read a label picture as 0..n-1, each of them present, in the order of its grey values, indices or colours.
 
     One of ours keeps its order in whatever form another program saved it.
     Raises: PictureError as `read_picture`, or if it holds too many labels to be a label picture.
     """
     data = bytes_of(path)
-    values = values_of(path, data, ignore, "labels")
+    values = values_of(path, data, notify, "labels")
     colours = values_of(path, data, ignore) if values.ndim == 2 and values.dtype == np.uint8 else values
     is_coloured = colours.ndim == 3 and colours.dtype == np.uint8
     labels = labels_by_colour(colours, str(path)) if is_coloured else None

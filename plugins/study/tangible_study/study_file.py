@@ -11,8 +11,7 @@ from tangible_core.files.yaml import Location, Source, json_in_yaml, parse_sourc
 from tangible_core.pipeline.config import PipelineConfig, load_config
 from tangible_core.plugins.registry import Registry, default_registry
 
-from .design.study import Comparison, Study
-from .design.trial import Stimulus
+from .design import Comparison, Stimulus, Study
 from .procedures.installed import load_procedure, procedure_names
 from .procedures.procedure import Procedure
 from .questions import load_question

@@ -7,7 +7,7 @@ import pytest
 
 from tangible_study.analysis.analysing import analyse_comparison
 from tangible_study.analysis.sentences import sentences
-from tangible_study.design.study import Comparison
+from tangible_study.design import Comparison
 from tangible_study.measures.rows import ALL, Result, Row
 from tangible_study.statistics.psychometric import Blocks, fit_choice, fit_difference
 from tangible_study.trials import Answer

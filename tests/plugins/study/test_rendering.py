@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tangible_core.data import TICK_COLUMNS, TickFlag
-from tangible_study.design.study import Limits
+from tangible_study.design import Limits
 from tangible_study.presenting.rendering import Rendering
 
 TIME, LATE, FLAGS = (TICK_COLUMNS.index(each) for each in ("time_s", "late_s", "flags"))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tangible_core.errors import ConfigError
-from tangible_study.design.study import Comparison
+from tangible_study.design import Comparison
 from tangible_study.measures.rows import Result, Row, What
 from tangible_study.procedures import Stimulus, Trial
 from tangible_study.simulation.detection import Detection

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tangible_study.design.study import Comparison, Scale
+from tangible_study.design import Comparison, Scale
 from tangible_study.procedures import Trial
 from tangible_study.questions import load_question
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..design.study import Comparison
+from ..design import Comparison
 from ..measures.rows import ByParticipant, Result, as_record
 from ..questions import load_question
 from .results_folder import Kept, read_results

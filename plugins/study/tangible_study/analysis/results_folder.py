@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tangible_core.errors import ResultsError
 
-from ..design.study import Comparison, Study
+from ..design import Comparison, Study
 from ..study_file import read_design
 from ..trials import Answer, read_answers
 

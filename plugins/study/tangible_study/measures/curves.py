@@ -4,7 +4,7 @@ import numpy as np
 
 from tangible_core.errors import TangibleError
 
-from ..design.study import Comparison
+from ..design import Comparison
 from ..statistics.psychometric import Blocks, Curve
 from ..trials import Answer
 from .functions import Function

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, NamedTuple, final
 import numpy as np
 from jaxtyping import Float64
 
-from ..design.study import Comparison
+from ..design import Comparison
 from ..statistics.intervals import Estimate
 from ..statistics.psychometric import GAUSSIAN, JND, Blocks, Curve, fit_choice, fit_difference
 from ..trials import Answer

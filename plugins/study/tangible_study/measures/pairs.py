@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float64
 
-from ..design.study import Comparison
+from ..design import Comparison
 from ..statistics.bradley_terry import fit_scale
 from ..statistics.sensitivity import two_afc
 from ..trials import Answer

@@ -7,7 +7,7 @@ import numpy as np
 
 from tangible_core.errors import ResultsError, quoted
 
-from ..design.study import Comparison
+from ..design import Comparison
 from ..statistics import intervals
 from ..statistics.intervals import Estimate
 from ..trials import Answer

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import nan
 
-from ..design.study import Comparison
+from ..design import Comparison
 from ..statistics.intervals import Estimate
 from ..trials import Answer
 from .rows import (

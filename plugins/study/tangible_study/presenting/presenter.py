@@ -12,7 +12,7 @@ from tangible_core.pipeline.output import about, join_descriptions
 from tangible_core.servo import Servo
 from tangible_core.session import INTERRUPTED, About, Writer
 
-from ..design.trial import Stimulus, Trial
+from ..design import Stimulus, Trial
 from ..desks.desk import Desk
 from ..questions import load_question
 from .held_loop import HeldLoop

@@ -6,7 +6,7 @@ import numpy as np
 
 from tangible_core.data import TICK_COLUMNS, UNTOUCHED, TickFlag
 
-from ..design.study import Limits
+from ..design import Limits
 
 TIME, LATE, FLAGS = (TICK_COLUMNS.index(each) for each in ("time_s", "late_s", "flags"))
 LIMITED = {

@@ -7,7 +7,7 @@ from tangible_core.pipeline import Feeling, Pipeline
 from tangible_core.plugins.registry import default_registry
 from tangible_core.preflight import Loop, Preflight
 
-from ..design.trial import Stimulus
+from ..design import Stimulus
 from ..questions import load_question
 from ..study_file import Recipe, StudyFile, config_of_recipe
 

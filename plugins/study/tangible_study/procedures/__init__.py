@@ -1,7 +1,7 @@
 """Procedures: which trial is next, given the answers so far; others bring their own by an entry point."""
 
-from ..design.trial import Stimulus as Stimulus
-from ..design.trial import Trial as Trial
+from ..design import Stimulus as Stimulus
+from ..design import Trial as Trial
 from ..questions.question import Score as Score
 from .installed import load_procedure as load_procedure
 from .installed import procedure_names as procedure_names

@@ -6,8 +6,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from ..design.study import Comparison
-from ..design.trial import Stimulus, Trial
+from ..design import Comparison, Stimulus, Trial
 from ..points import QUESTIONS
 from ..questions import load_question
 

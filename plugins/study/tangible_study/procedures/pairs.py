@@ -7,8 +7,7 @@ from typing import final
 
 import numpy as np
 
-from ..design.study import Comparison
-from ..design.trial import DIFFERENT, SAME, Stimulus, Trial
+from ..design import DIFFERENT, SAME, Comparison, Stimulus, Trial
 from .cells import Cell, asks, cells_of, comparison_trial, in_rounds, stimuli_of, without_levels
 from .procedure import Course, Listed, Procedure
 

@@ -8,8 +8,7 @@ import numpy as np
 
 from tangible_core.scene import Section
 
-from ..design.study import Comparison
-from ..design.trial import Stimulus, Trial
+from ..design import Comparison, Stimulus, Trial
 from ..questions import load_question
 from ..questions.question import Score
 

@@ -6,8 +6,7 @@ from typing import Annotated, Any, final
 import numpy as np
 from pydantic import Field
 
-from ..design.study import Comparison
-from ..design.trial import Stimulus, Trial
+from ..design import Comparison, Stimulus, Trial
 from ..extra import need
 from ..measures.functions import Function
 from ..questions import load_question

@@ -6,8 +6,7 @@ from typing import final
 
 import numpy as np
 
-from ..design.study import Comparison
-from ..design.trial import Stimulus, Trial
+from ..design import Comparison, Stimulus, Trial
 from .cells import asks, in_rounds
 from .procedure import Course, Listed, Procedure
 

@@ -5,8 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..design.study import Comparison
-from ..design.trial import Trial
+from ..design import Comparison, Trial
 from ..measures.functions import CHOICE, EQUALITY, Function
 from ..measures.pairs import DIFFERENCE, SCALE, analyse_pairs
 from ..measures.rows import ByParticipant, Result, Row

@@ -6,8 +6,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from ..design.study import Comparison
-from ..design.trial import Stimulus, Trial
+from ..design import Comparison, Stimulus, Trial
 from ..measures.curves import analyse_levels
 from ..measures.functions import Function, Threshold
 from ..measures.rows import ByParticipant, Result, Row

@@ -15,7 +15,7 @@ from tangible_core.files import folder_lock, read_bytes, read_table, write_figur
 from tangible_core.pipeline.output import make_writable
 from tangible_core.provenance.versions import versions
 
-from ..design.study import Study
+from ..design import Study
 from ..points import QUESTIONS
 from ..questions import load_question
 from ..study_file import StudyFile

@@ -8,7 +8,7 @@ import numpy as np
 
 from tangible_core.errors import ResultsError
 
-from ..design.trial import Trial
+from ..design import Trial
 from ..procedures.procedure import Course, score
 from ..study_file import StudyFile
 from ..trials import Answer

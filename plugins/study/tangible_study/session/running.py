@@ -10,7 +10,7 @@ from tangible_core.errors import DeviceError, OutputError
 from tangible_core.files import write_text
 from tangible_core.session import Writer
 
-from ..design.trial import Stimulus, Trial
+from ..design import Stimulus, Trial
 from ..desks.desk import Desk
 from ..presenting.presenter import Presenter
 from ..presenting.rendering import Rendering

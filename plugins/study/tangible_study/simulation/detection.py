@@ -5,8 +5,7 @@ from typing import Annotated, Self, final
 import numpy as np
 from pydantic import Field
 
-from ..design.study import Comparison
-from ..design.trial import Stimulus, Trial
+from ..design import Comparison, Stimulus, Trial
 from .observer import Observer, decide
 
 

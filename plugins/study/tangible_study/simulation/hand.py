@@ -6,8 +6,7 @@ from typing import Annotated, Literal, Self, final
 import numpy as np
 from pydantic import Field
 
-from ..design.study import Comparison
-from ..design.trial import Stimulus, Trial
+from ..design import Comparison, Stimulus, Trial
 from .observer import Observer, decide
 
 JND_FORCE = 0.07

@@ -9,8 +9,7 @@ from pydantic import Field
 
 from tangible_core.scene import Section
 
-from ..design.study import Comparison
-from ..design.trial import Stimulus, Trial
+from ..design import Comparison, Stimulus, Trial
 from ..questions import load_question
 from ..questions.question import Percept
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy import stats
 
 from ..analysis.analysing import analyse_comparison
-from ..design.study import Comparison
+from ..design import Comparison
 from ..measures.rows import ALL, Result
 from ..questions import load_question
 from ..study_file import StudyFile

@@ -5,8 +5,7 @@ from typing import Annotated, Self, final
 import numpy as np
 from pydantic import Field
 
-from ..design.study import Comparison
-from ..design.trial import Trial
+from ..design import Comparison, Trial
 from ..measures.functions import Threshold
 from ..questions import load_question
 from .observer import Observer

@@ -6,8 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...design.study import Comparison
-from ...design.trial import DIFFERENT, SAME, Trial
+from ...design import DIFFERENT, SAME, Comparison, Trial
 from ...measures.rows import ByParticipant, Result, Row, What, grouped, of_each_and_all
 from ...measures.shares import DPRIME, analyse_right_answers
 from ...measures.words import told_apart

@@ -5,8 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...design.study import Comparison
-from ...design.trial import Stimulus, Trial
+from ...design import Comparison, Stimulus, Trial
 from ...measures.functions import Threshold, equal_level
 from ...measures.quantities import analyse_quantities
 from ...measures.rows import ByParticipant, Result, Row

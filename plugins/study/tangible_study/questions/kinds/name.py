@@ -5,8 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...design.study import Comparison
-from ...design.trial import Trial
+from ...design import Comparison, Trial
 from ...measures.rows import ByParticipant, Result, Row
 from ...measures.shares import CORRECT, analyse_right_answers
 from ...measures.words import share

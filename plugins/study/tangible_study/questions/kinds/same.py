@@ -4,8 +4,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...design.study import Comparison
-from ...design.trial import Trial
+from ...design import Comparison, Trial
 from ...measures.functions import DISTANCE, Function
 from ...measures.rows import ByParticipant, Result, Row
 from ...measures.shares import analyse_right_answers

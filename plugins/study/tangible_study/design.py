@@ -1,14 +1,19 @@
-"""The keys of a study file: what varies, the questions, the procedures, and what a participant hears."""
+"""The design of a study: the keys of its file, and its trials."""
 
+from dataclasses import dataclass
 from pathlib import Path
+<<<<<<< HEAD:plugins/study/tangible_study/design/study.py
 from typing import TYPE_CHECKING, Annotated, Any, Literal
+=======
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
+>>>>>>> 0cd705cb (study: keep the design in one module):plugins/study/tangible_study/design.py
 
 from pydantic import Field
 
 from tangible_core.data import Quantities
 from tangible_core.scene import Section
 
-from ..points import QUESTIONS
+from .points import QUESTIONS
 
 if TYPE_CHECKING:
     Question = str
@@ -130,3 +135,38 @@ class Study(Quantities):
     def comparison(self, name: str) -> Comparison:
         """Return the comparison of this name. Raises: StopIteration."""
         return next(each for each in self.comparisons if each.name == name)
+
+
+SAME, DIFFERENT = "same", "different"
+"""Responses to two intervals that may be equal."""
+
+
+class Stimulus(NamedTuple):
+    """A surface in an interval: that of a condition, at a level if one varies."""
+
+    condition: str
+    level: float | None = None
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A trial as a procedure asks for it; what it is called on the screen is its intervals' numbers alone."""
+
+    comparison: str
+    question: str
+    procedure: str
+    intervals: tuple[Stimulus, ...]
+    """The stimulus of each interval, in their order."""
+    choices: tuple[str, ...]
+    """Possible responses; of an adjustment, the levels that can be set, as text."""
+    condition: str
+    """Name of the condition under test."""
+    other: str | None = None
+    """Name of the condition with which it is compared."""
+    level: float | None = None
+    standard: float | None = None
+    position: int | None = None
+    """Interval, from 1, of the comparison or of the odd one."""
+    target: str | None = None
+    """Right answer, where it is not the number of an interval: the name of a part, or `same` or `different`."""
+    phase: str = "test"

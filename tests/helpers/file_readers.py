@@ -413,7 +413,7 @@ def _make_answers(folder: Path) -> None:
 
 
 def _answers(path: Path) -> object:
-    from tangible_study.analysis.results_folder import read_results
+    from tangible_study.analysis.analysing import read_results
 
     kept = read_results(path.parents[2])
     return [kept.of(each) for each in kept.study.comparisons]

@@ -11,9 +11,8 @@ import pytest
 
 from tangible_core.errors import ConfigError, OutputError, ResultsError
 from tangible_core.files.writing import sole_writer
-from tangible_study.analysis.analysing import analyse, analyse_kept
+from tangible_study.analysis.analysing import analyse, analyse_kept, counts
 from tangible_study.analysis.files import write_results
-from tangible_study.analysis.sentences import counts
 from tangible_study.commands.results import analyse as analyse_study
 from tangible_study.commands.results import simulate as simulate_study
 from tangible_study.measures.rows import What

@@ -5,8 +5,7 @@ from math import inf
 import numpy as np
 import pytest
 
-from tangible_study.analysis.analysing import analyse_comparison
-from tangible_study.analysis.sentences import sentences
+from tangible_study.analysis.analysing import analyse_comparison, sentences
 from tangible_study.design import Comparison
 from tangible_study.measures.rows import ALL, Result, Row
 from tangible_study.statistics.psychometric import Blocks, fit_choice, fit_difference

@@ -7,9 +7,8 @@ from statistics import mean, stdev
 import pytest
 
 from tangible_core.errors import TangibleError
-from tangible_study.analysis.analysing import Analysis, analyse_comparison
+from tangible_study.analysis.analysing import Analysis, Kept, analyse_comparison
 from tangible_study.analysis.files import as_markdown, as_tsv
-from tangible_study.analysis.results_folder import Kept
 from tangible_study.design import Comparison, Study
 from tangible_study.measures.curves import blocks_of
 from tangible_study.measures.functions import CHOICE, DISTANCE

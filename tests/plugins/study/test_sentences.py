@@ -4,7 +4,7 @@ from math import nan
 
 import pytest
 
-from tangible_study.analysis.sentences import sentences
+from tangible_study.analysis.analysing import sentences
 from tangible_study.measures.rows import Result, Row, What
 from tangible_study.statistics.intervals import Estimate
 

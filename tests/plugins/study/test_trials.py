@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tangible_core.errors import OutputError, ResultsError
-from tangible_study.analysis.results_folder import read_results
+from tangible_study.analysis.analysing import read_results
 from tangible_study.session.folder import Participant, participants
 from tangible_study.trials import COLUMNS, Answer, AnswerFile, read_answers
 

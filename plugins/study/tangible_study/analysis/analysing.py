@@ -1,14 +1,135 @@
 """The analysis of a study's folder: each comparison by the question that it asks."""
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from math import isfinite, isinf
 from pathlib import Path
 from typing import Any
 
-from ..design import Comparison
-from ..measures.rows import ByParticipant, Result, as_record
+from tangible_core.errors import ResultsError
+
+from ..design import Comparison, Study
+from ..measures.pairs import SCALE
+from ..measures.rows import ByParticipant, Result, Row, as_record
+from ..measures.shares import CORRECT
+from ..measures.words import interval, is_sure, odds, people
 from ..questions import load_question
-from .results_folder import Kept, read_results
-from .sentences import sentences
+from ..study_file import read_design
+from ..trials import Answer, read_answers
+
+
+@dataclass(frozen=True)
+class Kept:
+    """The answers of a study that count, and how many others there are."""
+
+    study: Study
+    answers: Mapping[str, list[Answer]]
+    """Answers of test trials that the device rendered, by participant."""
+    training: int
+    """Number of training trials."""
+    not_rendered: int
+    """Number of test trials in which the device did not render what was requested."""
+
+    @property
+    def trials(self) -> int:
+        """Number of trials that count."""
+        return sum(map(len, self.answers.values()))
+
+    def of(self, comparison: Comparison) -> dict[str, list[Answer]]:
+        """Return the answers of one comparison, by participant, in the order of its conditions and levels."""
+
+        def place(answer: Answer) -> tuple[int, float]:
+            known = answer.condition in comparison.conditions
+            index = comparison.conditions.index(answer.condition) if known else len(comparison.conditions)
+            return index, -1.0 if answer.level is None else answer.level
+
+        found = {
+            name: sorted((each for each in answers if each.comparison == comparison.name), key=place)
+            for name, answers in self.answers.items()
+        }
+        return {name: answers for name, answers in found.items() if answers}
+
+
+def read_results(folder: Path) -> Kept:
+    """Read the folder that `tangible study run` or `simulate` wrote. Raises: ResultsError, ConfigError."""
+    if not (folder / "study.yaml").is_file():
+        raise ResultsError(f"{folder}: is not the folder of a study; name one that `tangible study run` wrote")
+    if renamed := next(folder.glob("sub-*/beh/*_beh.csv"), None):
+        raise ResultsError(f"{renamed}: is a table under another name; rename it to {renamed.stem}.tsv, or remove it")
+    tables = {
+        path.parts[-3].removeprefix("sub-"): read_answers(path) for path in sorted(folder.glob("sub-*/beh/*_beh.tsv"))
+    }
+    everything = [each for answers in tables.values() for each in answers]
+    answers = {
+        name: [each for each in found if each.phase == "test" and each.rendered] for name, found in tables.items()
+    }
+    kept = Kept(
+        read_design(folder / "study.yaml"),
+        {name: found for name, found in answers.items() if found},
+        sum(each.phase == "training" for each in everything),
+        sum(each.phase == "test" and not each.rendered for each in everything),
+    )
+    if not kept.answers:
+        raise ResultsError(
+            f"{folder}: has no answer that counts yet; run a participant to the end of the training first"
+        )
+    return kept
+
+
+FEW = 6
+"""Number of participants below which a result says little about other people."""
+MANY = 3
+"""Number of comparisons from which one may seem to differ by chance."""
+
+
+def sentences(result: Result) -> list[str]:
+    """Return what was found in one comparison, and how sure that is; notes come last."""
+    who, question = people(len(result.participants)), load_question(result.question)
+    told = list(question.conclude(result, who))
+    contrasts = [row for row in result.rows if row.what.measure == f"difference of {result.main}"]
+    if result.main != SCALE:
+        noun = question.nouns.get(result.main, f"the {result.main}")
+        told += [text for row in contrasts for text in _difference(result.main, noun, row)]
+    against_chance = [] if result.main == CORRECT and contrasts else result.of_all(result.main)
+    tests = len([each for each in against_chance if each.p == each.p]) + len(contrasts)
+    if tests >= MANY:
+        told.append(f"{tests} differences were looked for: if there were none, about one in 20 would seem to be there.")
+    if len(result.participants) < FEW:
+        told.append(f"The result is about {who}, and says little about other people.")
+    return [*told, *result.notes]
+
+
+def counts(kept: Kept) -> str:
+    """Return how many answers count, and which were left out."""
+    return (
+        f"{kept.trials} answers of {people(len(kept.answers))} count; {kept.training} training trials and "
+        f"{kept.not_rendered} that the device did not render as requested are left out."
+    )
+
+
+def _difference(measure: str, what: str, row: Row) -> Iterator[str]:
+    """Yield sentences about a difference between two conditions."""
+    one, other = row.what.condition, row.what.other
+    value, low, high = (100 * each for each in row.estimate) if measure == CORRECT else row.estimate
+    unit = "percentage points" if measure == CORRECT else row.unit
+    more = "greater" if value > 0 else "smaller"
+    least, most = (low, high) if value > 0 else (-high, -low)
+    amount, between = f"{abs(value):.3g} {unit}".rstrip(), interval(least, most)
+    if not row.estimate.has_interval:
+        yield f"With {one}, {what} is {amount} {more} than with {other}; one value each does not tell how sure that is."
+    elif is_sure(row) and isinf(value):
+        yield f"With {one}, {what} is {more} than with {other}, by {least:.3g} {unit} or more (95 %)."
+    elif is_sure(row):
+        yield f"With {one}, {what} is {amount} {more} than with {other} ({between})."
+        if rare := odds(row):
+            yield rare
+    elif isfinite(value):
+        yield (
+            f"It is open whether {what} differs: with {one}, it is {amount} {more} than with {other} "
+            f"({between}, which holds 0)."
+        )
+    else:
+        yield f"It is open whether {what} differs between {one} and {other}: one of them has a bound, no estimate."
 
 
 @dataclass(frozen=True)

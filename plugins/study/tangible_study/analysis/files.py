@@ -9,9 +9,8 @@ from tangible_core.files import sole_writer, write_text
 
 from ..measures.rows import Result, Row, as_record
 from ..trials import MISSING
-from .analysing import Analysis
+from .analysing import Analysis, counts
 from .plots import draw
-from .sentences import counts
 
 HEADINGS = ("measure", "condition", "compared with", "value", "95 % interval", "chance", "p", "trials")
 

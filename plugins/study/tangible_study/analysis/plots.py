@@ -12,7 +12,7 @@ import numpy as np
 from tangible_core.files import atomic_write
 
 from ..measures.rows import ALL, Result, Row
-from .sentences import sentences
+from .analysing import sentences
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

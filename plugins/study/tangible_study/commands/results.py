@@ -77,8 +77,8 @@ def simulate(
 def _report(analysis: Analysis, out: Path, as_json: bool) -> None:
     from tangible_core.cli import show
 
+    from ..analysis.analysing import counts
     from ..analysis.files import write_results
-    from ..analysis.sentences import counts
 
     files = write_results(out, analysis)
     if as_json:

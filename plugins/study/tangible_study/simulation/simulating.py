@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..analysis.results_folder import Kept
+from ..analysis.analysing import Kept
 from ..session import folder
 from ..session.order import StudyCourse, answer_of
 from ..study_file import StudyFile

@@ -8,8 +8,7 @@ import numpy as np
 
 from tangible_study.desks.desk import Desk, Left
 from tangible_study.presenting.stimuli import Stimuli
-from tangible_study.session.running import Session
-from tangible_study.session.start import begin
+from tangible_study.session.running import Session, begin
 from tangible_study.study_file import parse_study
 
 PIPELINE = "scene: {height: heights.npy}\nwant: touch\nrender: {use: proxy, stiffness_n_per_m: 300}\ndevice: mock\n"

@@ -20,7 +20,7 @@ from tangible_study.desks.desk import Left
 from tangible_study.desks.page import Page, hand_changes, new_hand
 from tangible_study.presenting.held_loop import HeldLoop
 from tangible_study.presenting.stimuli import Stimuli
-from tangible_study.session.start import begin
+from tangible_study.session.running import begin
 from tangible_study.study_file import parse_study
 from tangible_study.trials import read_answers
 from waiting import LONGEST_S, until

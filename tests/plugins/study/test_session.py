@@ -17,7 +17,7 @@ from tangible_core.session import Recording, Writer
 from tangible_study.desks.desk import Left
 from tangible_study.presenting.stimuli import Stimuli
 from tangible_study.session.folder import Place, faults_before, participants
-from tangible_study.session.start import begin
+from tangible_study.session.running import begin
 from tangible_study.study_file import parse_study
 from tangible_study.trials import AnswerFile, read_answers
 

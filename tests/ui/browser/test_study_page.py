@@ -18,7 +18,7 @@ from studies import PIPELINE, write_study
 from tangible_core.session import Recording
 from tangible_study.desks.page import Page, hand_changes, new_hand
 from tangible_study.presenting.stimuli import Stimuli
-from tangible_study.session.start import begin
+from tangible_study.session.running import begin
 from tangible_study.study_file import parse_study
 from tangible_study.trials import Answer, read_answers
 

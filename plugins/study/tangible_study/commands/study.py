@@ -89,7 +89,7 @@ def run(
     from tangible_core.cli import show
 
     from ..desks.desk import Left
-    from ..session.start import begin
+    from ..session.running import begin
 
     hand = _own_hand(sets) if page and device is None else None
     stimuli = _open(file, device, sets, hand)
@@ -146,7 +146,7 @@ def _open_page(design: Study, hand: Hand | None, stack: ExitStack) -> Desk:
 
 def _open(file: Path, device: str | None, sets: list[str] | None, hand: Hand | None = None) -> Stimuli:
     from ..presenting.stimuli import Stimuli
-    from ..session.start import device_changes
+    from ..session.running import device_changes
     from ..study_file import load_study
 
     if hand is None:

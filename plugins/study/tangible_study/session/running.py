@@ -4,9 +4,10 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
-from tangible_core.errors import DeviceError, OutputError
+from tangible_core.errors import ConfigError, DeviceError, OutputError, quoted
 from tangible_core.files import write_text
 from tangible_core.session import Writer
 
@@ -16,6 +17,7 @@ from ..presenting.presenter import Presenter
 from ..presenting.rendering import Rendering
 from ..presenting.stimuli import Stimuli
 from ..questions import load_question
+from ..study_file import StudyFile
 from ..trials import Answer, AnswerFile, read_answers
 from . import folder
 from .order import StudyCourse, answer_of, replay
@@ -164,3 +166,47 @@ class Session:
             "Faults": self.faults,
         }
         folder.write_sidecar(self.place, self.stimuli.file, facts)
+
+
+CHOOSES_DEVICE = ("device.", "mapping.")
+"""Keys of a pipeline that may be set for a session: they belong to the place and not to the design."""
+
+
+def device_changes(device: str | None, sets: list[str]) -> tuple[str, ...]:
+    """Return the changes of each pipeline that choose the device. Raises: ConfigError for other keys."""
+    for each in sets:
+        if not each.startswith(CHOOSES_DEVICE):
+            raise ConfigError(
+                f"--set {quoted(each)}: what varies stands in the study file; only keys of the device are set here, "
+                "such as device.path=circle"
+            )
+    return (*([] if device is None else [f"device.use={device}"]), *sets)
+
+
+def begin(
+    file: StudyFile,
+    stimuli: Stimuli,
+    name: str,
+    root: Path,
+    desk: Desk,
+    *,
+    resume: bool = False,
+    in_real_time: bool = True,
+    progress: Callable[[int], None] = lambda _: None,
+) -> Session | None:
+    """Make all stimuli, check them on the device, and enrol the participant; None if the participant does not agree.
+
+    Raises: ConfigError for a stimulus that the device cannot render, or a name that is taken; OutputError; Left.
+    """
+    stimuli.make(progress)
+    stimuli.check()
+    place = folder.Place(root, name, file.study.study)
+    if root.exists():
+        folder.check_name(root, name, resume)
+    session = Session(stimuli, place, 0, desk, Presenter(stimuli, desk, in_real_time))
+    if not session.ask_consent():
+        return None
+    folder.prepare(root, file)
+    session.number = folder.enrol(root, name, file.study, resume)
+    session.save_consent()
+    return session

@@ -10,11 +10,8 @@ from tangible_core.errors import ConfigError
 from tangible_study.design import Comparison
 from tangible_study.measures.rows import Result, Row, What
 from tangible_study.procedures import Stimulus, Trial
-from tangible_study.simulation.detection import Detection
-from tangible_study.simulation.hand import Hand
-from tangible_study.simulation.observers import observer_of
+from tangible_study.simulation.observers import Detection, Hand, Psychometric, observer_of
 from tangible_study.simulation.power import effects_of, participants_needed, power_of
-from tangible_study.simulation.psychometric import Psychometric
 from tangible_study.simulation.simulating import kept_of, simulate
 from tangible_study.statistics.intervals import Estimate
 from tangible_study.statistics.sensitivity import naming_correct, oddity_correct

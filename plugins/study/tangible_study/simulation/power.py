@@ -13,7 +13,7 @@ from ..design import Comparison
 from ..measures.rows import ALL, Result
 from ..questions import load_question
 from ..study_file import StudyFile
-from .observer import Observer
+from .observers import Observer
 from .simulating import kept_of, simulate
 
 ALPHA = 0.05

@@ -10,7 +10,7 @@ from ..session import folder
 from ..session.order import StudyCourse, answer_of
 from ..study_file import StudyFile
 from ..trials import Answer, AnswerFile
-from .observer import Observer
+from .observers import Observer
 
 MEDIAN_S = 1.2
 """Median of the simulated response times, seconds; they say nothing about people."""

@@ -13,8 +13,7 @@ from tangible_study.analysis.analysing import analyse_comparison, analyse_kept
 from tangible_study.measures.rows import ALL, Result, What
 from tangible_study.measures.words import is_sure
 from tangible_study.simulation.observers import observer_of
-from tangible_study.simulation.power import plan, shortened
-from tangible_study.simulation.simulating import kept_of, simulate
+from tangible_study.simulation.power import kept_of, plan, shortened, simulate
 from tangible_study.statistics import sensitivity
 from tangible_study.statistics.psychometric import JND
 from tangible_study.study_file import StudyFile, parse_study

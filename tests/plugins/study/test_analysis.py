@@ -18,7 +18,7 @@ from tangible_study.commands.results import simulate as simulate_study
 from tangible_study.measures.rows import What
 from tangible_study.session import folder
 from tangible_study.simulation.observers import observer_of
-from tangible_study.simulation.simulating import kept_of, simulate, write_folder
+from tangible_study.simulation.power import kept_of, simulate, write_folder
 from tangible_study.study_file import StudyFile, parse_study
 from tangible_study.trials import AnswerFile, read_answers
 

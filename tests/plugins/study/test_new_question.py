@@ -52,7 +52,7 @@ from studies import sit_down
 from tangible_study.analysis.analysing import analyse
 from tangible_study.analysis.files import write_results
 from tangible_study.simulation.observers import observer_of
-from tangible_study.simulation.simulating import write_folder
+from tangible_study.simulation.power import write_folder
 from tangible_study.study_file import load_study
 
 path = Path(sys.argv[1])

@@ -11,8 +11,7 @@ from tangible_study.design import Comparison
 from tangible_study.measures.rows import Result, Row, What
 from tangible_study.procedures import Stimulus, Trial
 from tangible_study.simulation.observers import Detection, Hand, Psychometric, observer_of
-from tangible_study.simulation.power import effects_of, participants_needed, power_of
-from tangible_study.simulation.simulating import kept_of, simulate
+from tangible_study.simulation.power import effects_of, kept_of, participants_needed, power_of, simulate
 from tangible_study.statistics.intervals import Estimate
 from tangible_study.statistics.sensitivity import naming_correct, oddity_correct
 from tangible_study.study_file import StudyFile, load_study, parse_study

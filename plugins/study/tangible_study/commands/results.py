@@ -60,8 +60,7 @@ def simulate(
     """
     from ..analysis.analysing import analyse as analyse_folder
     from ..simulation.observers import observer_of
-    from ..simulation.power import plan
-    from ..simulation.simulating import write_folder
+    from ..simulation.power import plan, write_folder
     from ..study_file import load_study
 
     study = load_study(file)

@@ -3,4 +3,4 @@
 from .observers import OBSERVERS as OBSERVERS
 from .observers import observer_of as observer_of
 from .power import plan as plan
-from .simulating import simulate as simulate
+from .power import simulate as simulate

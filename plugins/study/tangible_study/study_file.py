@@ -12,8 +12,7 @@ from tangible_core.pipeline.config import PipelineConfig, load_config
 from tangible_core.plugins.registry import Registry, default_registry
 
 from .design import Comparison, Stimulus, Study
-from .procedures.installed import load_procedure, procedure_names
-from .procedures.procedure import Procedure
+from .procedures.procedure import Procedure, load_procedure, procedure_names
 from .questions import load_question
 
 EXPECTED = "a study is a mapping that starts with `study:`"

@@ -19,7 +19,7 @@ from tangible_core.session import Recording
 from tangible_study.desks.desk import Left
 from tangible_study.presenting.held_loop import HeldLoop
 from tangible_study.presenting.stimuli import Stimuli
-from tangible_study.procedures.installed import load_procedure
+from tangible_study.procedures.procedure import load_procedure
 from tangible_study.session.running import begin
 from tangible_study.study_file import load_study, parse_study
 from tangible_study.trials import read_answers

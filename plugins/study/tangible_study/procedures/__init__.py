@@ -3,8 +3,8 @@
 from ..design import Stimulus as Stimulus
 from ..design import Trial as Trial
 from ..questions.question import Score as Score
-from .installed import load_procedure as load_procedure
-from .installed import procedure_names as procedure_names
 from .procedure import Course as Course
 from .procedure import Procedure as Procedure
+from .procedure import load_procedure as load_procedure
+from .procedure import procedure_names as procedure_names
 from .procedure import score as score

@@ -2,13 +2,15 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from typing import final
+from typing import Any, cast, final
 
 import numpy as np
 
+from tangible_core.errors import BrokenMethod, UnknownName, shown
 from tangible_core.scene import Section
 
 from ..design import Comparison, Stimulus, Trial
+from ..points import points
 from ..questions import load_question
 from ..questions.question import Score
 
@@ -72,3 +74,25 @@ class Listed(Course):
     def take(self, trial: Trial, response: str) -> None:
         """Go on to the next trial."""
         self._at += 1
+
+
+def procedure_names() -> list[str]:
+    """Return the names of all installed procedures, ours first. Nothing is imported."""
+    return list(points())
+
+
+def load_procedure(name: str) -> type[Procedure]:
+    """Import the class of a procedure; its fields are its options. Raises: UnknownName, BrokenMethod."""
+    there = points()
+    if name not in there:
+        raise UnknownName("procedure", name, there)
+    try:
+        procedure = cast(Any, there[name].load())
+    except (Exception, SystemExit) as error:
+        raise BrokenMethod(
+            f"procedure {name!r} ({there[name].value}) cannot be loaded: {type(error).__name__}: "
+            f"{shown(str(error), 500)}; repair or remove its package"
+        ) from error
+    if not (isinstance(procedure, type) and issubclass(procedure, Procedure)):
+        raise BrokenMethod(f"procedure {name!r} ({there[name].value}) is not a Procedure")
+    return procedure

@@ -14,7 +14,7 @@ OURS = {
     "oddity": "pairs:Oddity",
     "same-different": "pairs:SameDifferent",
     "quest": "quest:Quest",
-    "adjustment": "adjustment:Adjustment",
+    "adjustment": "pairs:Adjustment",
     "naming": "single:Naming",
     "rating": "single:Rating",
 }

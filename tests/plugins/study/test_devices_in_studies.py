@@ -17,7 +17,7 @@ from tangible_core.errors import ConfigError, DeviceError, OutputError
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.session import Recording
 from tangible_study.desks.desk import Left
-from tangible_study.presenting.held_loop import HeldLoop
+from tangible_study.presenting.presenter import HeldLoop
 from tangible_study.presenting.stimuli import Stimuli
 from tangible_study.procedures.procedure import load_procedure
 from tangible_study.session.running import begin

@@ -18,7 +18,7 @@ from tangible_core.errors import DeviceError
 from tangible_core.translation import translate
 from tangible_study.desks.desk import Left
 from tangible_study.desks.page import Page, hand_changes, new_hand
-from tangible_study.presenting.held_loop import HeldLoop
+from tangible_study.presenting.presenter import HeldLoop
 from tangible_study.presenting.stimuli import Stimuli
 from tangible_study.session.running import begin
 from tangible_study.study_file import parse_study

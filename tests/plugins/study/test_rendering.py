@@ -5,7 +5,7 @@ import pytest
 
 from tangible_core.data import TICK_COLUMNS, TickFlag
 from tangible_study.design import Limits
-from tangible_study.presenting.rendering import Rendering
+from tangible_study.presenting.presenter import Rendering
 
 TIME, LATE, FLAGS = (TICK_COLUMNS.index(each) for each in ("time_s", "late_s", "flags"))
 

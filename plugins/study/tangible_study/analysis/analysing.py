@@ -1,4 +1,4 @@
-"""The analysis of a study's folder: each comparison by the question that it asks."""
+"""The analysis of a study's folder: the answers that count, each comparison by its question, and plain sentences."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

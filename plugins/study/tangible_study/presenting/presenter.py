@@ -1,25 +1,150 @@
-"""A trial on the device: its intervals one after the other, recorded, with no force between them."""
+"""A trial on the device: its intervals one after the other, in a loop that stays open, recorded and counted."""
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from types import TracebackType
+from typing import Self, final
 
 import numpy as np
 
-from tangible_core.data import TICK_COLUMNS
+from tangible_core.data import TICK_COLUMNS, UNTOUCHED, TickFlag
 from tangible_core.errors import DeviceError
+from tangible_core.pipeline import Feeling
 from tangible_core.pipeline.output import about, join_descriptions
-from tangible_core.servo import Servo
-from tangible_core.session import INTERRUPTED, About, Writer
+from tangible_core.plugins import HapticDevice
+from tangible_core.servo import Servo, beacon_to, null_touch
+from tangible_core.session import INTERRUPTED, STOPPED, About, RingDrain, Writer
 
-from ..design import Stimulus, Trial
+from ..design import Limits, Stimulus, Trial
 from ..desks.desk import Desk
 from ..questions import load_question
-from .held_loop import HeldLoop
-from .rendering import Rendering
 from .stimuli import Stimuli
 
-TIME = TICK_COLUMNS.index("time_s")
+TIME, LATE, FLAGS = (TICK_COLUMNS.index(each) for each in ("time_s", "late_s", "flags"))
+LIMITED = {
+    TickFlag.FORCE_LIMITED: "the force was limited to the greatest that is allowed",
+    TickFlag.STIFFNESS_LIMITED: "the force law was softened, as it is too stiff for this device",
+    TickFlag.SLEW_LIMITED: "the force was delayed, as it changed too quickly",
+    TickFlag.DAMPED: "the hand was damped, as the force gave it energy",
+    TickFlag.NOT_FINITE: "the force was zero, as it was not a number",
+    TickFlag.STALE: "the force was zero, as the device gave no position in time",
+}
+"""Sentences about the guard's changes of a force; a force that fades in is as requested."""
+
+
+@dataclass
+class Rendering:
+    """Counts of the ticks of a trial."""
+
+    ticks: int = 0
+    touching: int = 0
+    overruns: int = 0
+    flagged: dict[TickFlag, int] = field(default_factory=dict[TickFlag, int])
+    late_s: list[float] = field(default_factory=list[float])
+    """The 99th percentile and the maximum of each part of the ticks."""
+    last_s: float = 0.0
+    """Time of the last tick."""
+
+    def add(self, rows: np.ndarray) -> None:
+        """Count more ticks, rows of `TICK_COLUMNS`."""
+        if not len(rows):
+            return
+        flags = rows[:, FLAGS].astype(np.int64)
+        self.ticks, self.last_s = self.ticks + len(rows), float(rows[-1, TIME])
+        self.touching += int(np.count_nonzero(flags & (TickFlag.TOUCHING | TickFlag.NOT_FINITE | TickFlag.STALE)))
+        self.overruns += int(np.count_nonzero(flags & TickFlag.OVERRUN))
+        for flag in LIMITED:
+            self.flagged[flag] = self.flagged.get(flag, 0) + int(np.count_nonzero(flags & flag))
+        self.late_s += [float(np.percentile(rows[:, LATE], 99)), float(rows[:, LATE].max())]
+
+    def why_not(self, limits: Limits) -> str | None:
+        """Return why the device did not render what was requested; None if it did."""
+        flag, count = max(self.flagged.items(), key=lambda each: each[1], default=(None, 0))
+        if flag is not None and self.touching and count > limits.limited * self.touching:
+            return f"{LIMITED[flag]}, in {100 * count / self.touching:.0f} % of the time in contact"
+        if self.ticks and self.overruns > limits.late * self.ticks:
+            return f"{100 * self.overruns / self.ticks:.0f} % of the ticks came too late"
+        return None
+
+
+assert not any(flag & UNTOUCHED for flag in LIMITED)
+
+
+LOOK_EVERY_S = 0.05
+"""Interval at which ticks are taken from the loop, and so the most that a crash can lose of a recording."""
+
+
+@final
+class HeldLoop:
+    """The loop of a session, as a context manager that leaves no force."""
+
+    def __init__(self) -> None:
+        self._servo: Servo | None = None
+        self._device: HapticDevice | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> str:
+        """End the loop, if one runs, and return why it ended. Raises: whatever a faulty plugin raised in it."""
+        servo, self._servo = self._servo, None
+        return "" if servo is None else servo.stop().stopped
+
+    def feel(
+        self,
+        feeling: Feeling,
+        seconds: float,
+        keep: Callable[[np.ndarray], None],
+        desk: Desk,
+        on_start: Callable[[], None],
+        part: str | None,
+    ) -> None:
+        """Present a surface for some seconds, then nothing.
+
+        keep: called with all ticks. desk: may have a hand of its own; its `stop` ends the force at once. on_start:
+        called when the surface is there. part: a part to which the hand is pulled.
+        Raises: DeviceError if the device fails, or after `stop`; whatever `keep` or a faulty plugin raises. The loop
+        has ended then, and the next call opens the device anew.
+        """
+        try:
+            servo = self._servo_on(feeling)
+            servo.swap(feeling.touch, feeling.engine.config.safety)
+            servo.pull_to(None if part is None else beacon_to(feeling.pipeline.make("surface"), part))
+            with desk.exploring(feeling, servo, part):
+                drain, stop = RingDrain(servo, keep, servo.ring.count), desk.stop
+                until_s = time.monotonic() + seconds
+                on_start()
+                while servo.running and (left_s := until_s - time.monotonic()) > 0 and not stop.is_set():
+                    stop.wait(min(left_s, LOOK_EVERY_S))
+                    drain.look()
+                if stop.is_set() or not servo.running:
+                    ended = self.close()
+                    drain.look()
+                    raise DeviceError(STOPPED if stop.is_set() else ended)
+            servo.pull_to(None)
+            servo.swap(null_touch())
+        except BaseException:
+            self.close()
+            raise
+
+    def _servo_on(self, feeling: Feeling) -> Servo:
+        """Return the loop on the device of a surface, which is started if none runs on this device."""
+        device = feeling.device
+        if self._servo is None or not self._servo.running or device != self._device:
+            self.close()
+            servo = Servo(null_touch(), device, feeling.engine.config.safety)
+            servo.__enter__()
+            self._servo, self._device = servo, device
+        return self._servo
+
+
 PERIOD_S = 0.001
 """Period of the force loop; an interval begins at least so long after the last tick of the one before."""
 

@@ -1,4 +1,4 @@
-"""The interface of procedures: which trial is next, given the answers so far."""
+"""The interface of procedures, which trial is next, given the answers so far; and those that are installed."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable

@@ -13,8 +13,7 @@ from tangible_core.session import Writer
 
 from ..design import Stimulus, Trial
 from ..desks.desk import Desk
-from ..presenting.presenter import Presenter
-from ..presenting.rendering import Rendering
+from ..presenting.presenter import Presenter, Rendering
 from ..presenting.stimuli import Stimuli
 from ..questions import load_question
 from ..study_file import StudyFile

@@ -1,4 +1,4 @@
-"""The observer models by name, and their options from a command line."""
+"""The observer models by name, their interface, and their options from a command line."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence

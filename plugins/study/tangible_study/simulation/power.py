@@ -1,4 +1,4 @@
-"""Power: how many trials and participants are needed to find a difference, by simulated participants."""
+"""Participants who are models, by the procedures for people, and power: how many are needed to find a difference."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace

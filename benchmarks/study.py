@@ -10,8 +10,7 @@ import numpy as np
 from scipy import stats
 
 from tangible_study.analysis.analysing import analyse_comparison, analyse_kept
-from tangible_study.measures.rows import ALL, Result, What
-from tangible_study.measures.words import is_sure
+from tangible_study.measures.rows import ALL, Result, What, is_sure
 from tangible_study.simulation.observers import observer_of
 from tangible_study.simulation.power import kept_of, plan, shortened, simulate
 from tangible_study.statistics import sensitivity

@@ -13,8 +13,7 @@ from tangible_study.design import Comparison, Study
 from tangible_study.measures.curves import blocks_of
 from tangible_study.measures.functions import CHOICE, DISTANCE
 from tangible_study.measures.pairs import wins_of
-from tangible_study.measures.rows import ALL, Result, Row, What
-from tangible_study.measures.words import is_sure
+from tangible_study.measures.rows import ALL, Result, Row, What, is_sure
 from tangible_study.statistics.intervals import Estimate, proportion
 from tangible_study.trials import Answer
 

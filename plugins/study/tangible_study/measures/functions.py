@@ -13,8 +13,7 @@ from ..statistics.intervals import Estimate
 from ..statistics.psychometric import GAUSSIAN, JND, Blocks, Curve, fit_choice, fit_difference
 from ..trials import Answer
 from .pairs import note_on_order
-from .rows import Result, Row
-from .words import bound, interval
+from .rows import Result, Row, bound, interval
 
 EQUALITY = "point of equality"
 THRESHOLD = "threshold"

@@ -8,8 +8,7 @@ import numpy as np
 from ..design import Comparison, Trial
 from ..measures.functions import CHOICE, EQUALITY, Function
 from ..measures.pairs import DIFFERENCE, SCALE, analyse_pairs
-from ..measures.rows import ByParticipant, Result, Row
-from ..measures.words import is_sure, share
+from ..measures.rows import ByParticipant, Result, Row, is_sure, share
 from .question import Percept, Question, Score
 
 

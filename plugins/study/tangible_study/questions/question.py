@@ -9,8 +9,7 @@ import numpy as np
 from ..design import Comparison, Stimulus, Trial
 from ..measures.curves import analyse_levels
 from ..measures.functions import Function, Threshold
-from ..measures.rows import ByParticipant, Result, Row
-from ..measures.words import odds
+from ..measures.rows import ByParticipant, Result, Row, odds
 
 
 class Score(NamedTuple):

@@ -7,9 +7,8 @@ from typing import ClassVar
 import numpy as np
 
 from ...design import DIFFERENT, SAME, Comparison, Trial
-from ...measures.rows import ByParticipant, Result, Row, What, grouped, of_each_and_all
+from ...measures.rows import ByParticipant, Result, Row, What, grouped, of_each_and_all, told_apart
 from ...measures.shares import DPRIME, analyse_right_answers
-from ...measures.words import told_apart
 from ...statistics import sensitivity
 from ...trials import Answer
 from ..question import Percept, Question

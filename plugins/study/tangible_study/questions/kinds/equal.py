@@ -8,8 +8,7 @@ import numpy as np
 from ...design import Comparison, Stimulus, Trial
 from ...measures.functions import Threshold, equal_level
 from ...measures.quantities import analyse_quantities
-from ...measures.rows import ByParticipant, Result, Row
-from ...measures.words import interval
+from ...measures.rows import ByParticipant, Result, Row, interval
 from ...statistics.psychometric import GAUSSIAN
 from ..question import Percept, Question
 

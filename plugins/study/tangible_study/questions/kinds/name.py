@@ -6,9 +6,8 @@ from typing import ClassVar
 import numpy as np
 
 from ...design import Comparison, Trial
-from ...measures.rows import ByParticipant, Result, Row
+from ...measures.rows import ByParticipant, Result, Row, share
 from ...measures.shares import CORRECT, analyse_right_answers
-from ...measures.words import share
 from ...statistics import sensitivity
 from ..question import Percept, Question
 

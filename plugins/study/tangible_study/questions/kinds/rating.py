@@ -7,8 +7,7 @@ import numpy as np
 
 from ...design import Comparison, Trial
 from ...measures.quantities import analyse_quantities
-from ...measures.rows import ByParticipant, Result, Row
-from ...measures.words import interval
+from ...measures.rows import ByParticipant, Result, Row, interval
 from ..question import Percept, Question
 
 RATING = "mean rating"

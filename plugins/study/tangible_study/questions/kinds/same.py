@@ -6,9 +6,8 @@ import numpy as np
 
 from ...design import Comparison, Trial
 from ...measures.functions import DISTANCE, Function
-from ...measures.rows import ByParticipant, Result, Row
+from ...measures.rows import ByParticipant, Result, Row, told_apart
 from ...measures.shares import analyse_right_answers
-from ...measures.words import told_apart
 from ...statistics import sensitivity
 from ..question import Percept, Question
 

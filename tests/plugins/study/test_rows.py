@@ -10,8 +10,7 @@ from tangible_core.errors import TangibleError
 from tangible_study.analysis.analysing import Analysis, Kept, analyse_comparison
 from tangible_study.analysis.files import as_markdown, as_tsv
 from tangible_study.design import Comparison, Study
-from tangible_study.measures.curves import blocks_of
-from tangible_study.measures.functions import CHOICE, DISTANCE
+from tangible_study.measures.functions import CHOICE, DISTANCE, blocks_of
 from tangible_study.measures.pairs import wins_of
 from tangible_study.measures.rows import ALL, Result, Row, What, is_sure
 from tangible_study.statistics.intervals import Estimate, proportion

@@ -7,8 +7,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from ..design import Comparison, Stimulus, Trial
-from ..measures.curves import analyse_levels
-from ..measures.functions import Function, Threshold
+from ..measures.functions import Function, Threshold, analyse_levels
 from ..measures.rows import ByParticipant, Result, Row, odds
 
 

@@ -11,8 +11,8 @@ from tangible_study.analysis.analysing import Analysis, Kept, analyse_comparison
 from tangible_study.analysis.files import as_markdown, as_tsv
 from tangible_study.design import Comparison, Study
 from tangible_study.measures.functions import CHOICE, DISTANCE, blocks_of
-from tangible_study.measures.pairs import wins_of
 from tangible_study.measures.rows import ALL, Result, Row, What, is_sure
+from tangible_study.measures.shares import wins_of
 from tangible_study.statistics.intervals import Estimate, proportion
 from tangible_study.trials import Answer
 

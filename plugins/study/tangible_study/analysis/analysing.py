@@ -9,9 +9,8 @@ from typing import Any
 from tangible_core.errors import ResultsError
 
 from ..design import Comparison, Study
-from ..measures.pairs import SCALE
 from ..measures.rows import ByParticipant, Result, Row, as_record, interval, is_sure, odds, people
-from ..measures.shares import CORRECT
+from ..measures.shares import CORRECT, SCALE
 from ..questions import load_question
 from ..study_file import read_design
 from ..trials import Answer, read_answers

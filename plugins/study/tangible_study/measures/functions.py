@@ -14,8 +14,8 @@ from ..design import Comparison
 from ..statistics.intervals import Estimate
 from ..statistics.psychometric import GAUSSIAN, JND, Blocks, Curve, fit_choice, fit_difference
 from ..trials import Answer
-from .pairs import note_on_order
 from .rows import ByParticipant, Result, Row, What, bound, contrasts, grouped, interval, over_participants, together
+from .shares import note_on_order
 
 EQUALITY = "point of equality"
 THRESHOLD = "threshold"

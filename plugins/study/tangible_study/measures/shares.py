@@ -1,13 +1,22 @@
-"""Shares of the trials: how often an answer was right, or a condition was chosen, with its d'."""
+"""Measures of answers that are no function of a level: shares of the trials with d', choices of two, and numbers."""
 
 from collections.abc import Callable
 from dataclasses import replace
 from math import nan
 
+import numpy as np
+from jaxtyping import Float64
+
+from tangible_core.errors import ResultsError, quoted
+
 from ..design import Comparison
+from ..statistics import intervals
+from ..statistics.bradley_terry import fit_scale
 from ..statistics.intervals import Estimate
+from ..statistics.sensitivity import two_afc
 from ..trials import Answer
 from .rows import (
+    ALL,
     ByParticipant,
     Result,
     Row,
@@ -16,7 +25,9 @@ from .rows import (
     grouped,
     label,
     of_each_and_all,
+    over_participants,
     proportion_row,
+    together,
 )
 
 CORRECT = "proportion correct"
@@ -71,3 +82,97 @@ def with_dprime(row: Row, inverse: Callable[[float], float]) -> Row:
     found = row.estimate.mapped(inverse)
     value = inverse(min(max(row.estimate.value, edge), 1 - edge)) if row.estimate.value == row.estimate.value else nan
     return replace(row, what=row.what._replace(measure=DPRIME), estimate=Estimate(value, *found[1:]), chance=0.0)
+
+
+SPREAD = "standard deviation"
+
+
+def analyse_quantities(
+    comparison: Comparison,
+    answers: ByParticipant,
+    measure: str,
+    *,
+    origin: float = 0.0,
+    chance: float = nan,
+    unit: str = "",
+    about: Callable[[Answer], str] = label,
+) -> Result:
+    """Analyse numbers by their mean, and how conditions differ.
+
+    origin: what they are counted from. chance: their mean by chance alone. about: what belongs together.
+    """
+    rows: list[Row] = []
+    for name, some in answers.items():
+        for condition, cell in grouped(some, about).items():
+            values = [_number(each) - origin for each in cell]
+            p = nan if chance != chance else intervals.p_of_mean(values, chance)
+            rows.append(Row(What(measure, condition), name, intervals.mean(values), unit, len(cell), None, chance, p))
+            if len(values) > 1:
+                spread = Estimate(float(np.std(values, ddof=1)))
+                rows.append(Row(What(SPREAD, condition), name, spread, unit, len(cell)))
+    if len(answers) > 1:
+        rows += over_participants(rows)
+    rows += contrasts(measure, rows)
+    return Result(comparison.name, comparison.question, list(answers), rows, measure)
+
+
+def _number(answer: Answer) -> float:
+    try:
+        return float(answer.response)
+    except ValueError as error:
+        raise ResultsError(
+            f"trial {answer.trial} of {answer.comparison}: {quoted(answer.response)} is not a number; correct it"
+        ) from error
+
+
+SCALE = "scale value"
+DIFFERENCE = f"difference of {SCALE}"
+
+
+def analyse_pairs(comparison: Comparison, answers: ByParticipant) -> Result:
+    """Analyse how often each condition was chosen over each other one; three or more are placed on a scale."""
+
+    def rows_of(name: str, some: list[Answer]) -> list[Row]:
+        return share_rows(CHOSEN, name, some, lambda each: each.chosen, 0.5)
+
+    rows, _ = of_each_and_all(rows_of, answers)
+    dprimes = [with_dprime(row, two_afc) for row in rows]
+    notes = note_on_order(together(answers))
+    names = [each for each in comparison.conditions if any(each in (row.what[1:]) for row in rows)]
+    if len(names) < 3:
+        return Result(comparison.name, comparison.question, list(answers), [*rows, *dprimes], CHOSEN, notes=notes)
+    scale = fit_scale([wins_of(list(some), names) for some in answers.values()])
+    whom, trials = ALL if len(answers) > 1 else next(iter(answers)), sum(map(len, answers.values()))
+    values = [Row(What(SCALE, each), whom, scale.estimate(index), "", trials) for index, each in enumerate(names)]
+    between = [
+        Row(What(DIFFERENCE, one, other), whom, scale.difference(first, second), "", trials, None, 0.0)
+        for second, other in enumerate(names)
+        for first, one in enumerate(names)
+        if first > second
+    ]
+    if scale.was_completed:
+        notes = [*notes, "One condition was always chosen over others, so that half a choice was added to each pair."]
+    everything = [*rows, *dprimes, *values, *between]
+    return Result(comparison.name, comparison.question, list(answers), everything, SCALE, notes=notes)
+
+
+def wins_of(answers: list[Answer], names: list[str]) -> Float64[np.ndarray, "n n"]:
+    """Return how often each condition (row) was chosen over each other one (column)."""
+    wins = np.zeros((len(names), len(names)))
+    for each in answers:
+        if each.other is not None and each.chosen is not None:
+            pair = names.index(each.condition), names.index(each.other)
+            wins[pair if each.chosen else pair[::-1]] += 1
+    return wins
+
+
+def note_on_order(answers: list[Answer]) -> list[str]:
+    """Return a note if the first of two intervals was chosen more or less often than the second."""
+    first = proportion_row(What("first interval", ""), ALL, [int(each.response == "1") for each in answers], 0.5)
+    if not answers or first.estimate.holds(0.5):
+        return []
+    share = first.estimate.value
+    return [
+        f"The first interval was chosen in {100 * share:.0f} % of the trials, whatever it was. Each condition comes "
+        "first equally often, so that this adds noise and no bias."
+    ]

@@ -7,8 +7,8 @@ import numpy as np
 
 from ..design import Comparison, Trial
 from ..measures.functions import CHOICE, EQUALITY, Function
-from ..measures.pairs import DIFFERENCE, SCALE, analyse_pairs
 from ..measures.rows import ByParticipant, Result, Row, is_sure, share
+from ..measures.shares import DIFFERENCE, SCALE, analyse_pairs
 from .question import Percept, Question, Score
 
 

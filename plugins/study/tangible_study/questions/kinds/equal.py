@@ -7,8 +7,8 @@ import numpy as np
 
 from ...design import Comparison, Stimulus, Trial
 from ...measures.functions import Threshold, equal_level
-from ...measures.quantities import analyse_quantities
 from ...measures.rows import ByParticipant, Result, Row, interval
+from ...measures.shares import analyse_quantities
 from ...statistics.psychometric import GAUSSIAN
 from ..question import Percept, Question
 

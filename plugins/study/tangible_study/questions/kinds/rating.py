@@ -6,8 +6,8 @@ from typing import ClassVar
 import numpy as np
 
 from ...design import Comparison, Trial
-from ...measures.quantities import analyse_quantities
 from ...measures.rows import ByParticipant, Result, Row, interval
+from ...measures.shares import analyse_quantities
 from ..question import Percept, Question
 
 RATING = "mean rating"

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from tangible_bench.strokes import nearest
-from tangible_bench.strokes.strokes import LOOP_TICKS, LOOPS, SURFACES, analytic_stroke, relief_stroke
+from tangible_bench.strokes import LOOP_TICKS, LOOPS, SURFACES, analytic_stroke, on_ridge, on_step, relief_stroke
 
 SMOOTH = ("plane", "ramp", "sphere", "sine", "cone")
 
@@ -36,12 +35,12 @@ def test_nearest_point_on_ridge_stays_on_its_face():
     across = np.linspace(-0.004, 0.004, 801)
     way = np.column_stack([across, np.zeros(801), np.full(801, 0.029)])
     way = way[np.abs(way[:, 0]) > 1e-9]
-    found = nearest.on_ridge(way, 1.0, 0.03)
+    found = on_ridge(way, 1.0, 0.03)
     inside = np.abs(way[:, 0]) < 0.001 - 1e-9
     np.testing.assert_allclose(found[inside, 0], way[inside, 0] / 2 - 0.0005, atol=1e-12)
-    back = nearest.on_ridge(way[::-1], 1.0, 0.03)
+    back = on_ridge(way[::-1], 1.0, 0.03)
     np.testing.assert_allclose(back[inside[::-1], 0], way[::-1][inside[::-1], 0] / 2 + 0.0005, atol=1e-12)
-    lower = nearest.on_ridge(way - (0, 0, 0.001), 1.0, 0.03)
+    lower = on_ridge(way - (0, 0, 0.001), 1.0, 0.03)
     right = lower[:, 0] > 0
     assert way[right, 0].min() == pytest.approx(0.002, abs=1.1e-5)
     assert right[np.argmax(right) :].all()
@@ -57,19 +56,19 @@ def test_nearest_point_on_ridge_stays_on_its_face():
 )
 def test_nearest_point_on_step_from_below(hand: tuple[float, ...], point: tuple[float, ...]):
     way = np.array([(-0.01, 0.0, 0.001), (-0.001, 0.0, 0.001), hand])
-    np.testing.assert_allclose(nearest.on_step(way, 0.004)[2], point, atol=1e-15)
+    np.testing.assert_allclose(on_step(way, 0.004)[2], point, atol=1e-15)
 
 
 def test_nearest_point_on_step_from_above():
     way = np.array([(0.01, 0.0, 0.005), (0.01, 0.0, 0.003), (0.001, 0.0, 0.001), (-0.001, 0.0, -0.001)])
     expected = [(0.01, 0, 0.004), (0.001, 0, 0.004), (-0.001, 0, 0)]
-    np.testing.assert_allclose(nearest.on_step(way, 0.004)[1:], expected, atol=1e-15)
+    np.testing.assert_allclose(on_step(way, 0.004)[1:], expected, atol=1e-15)
 
 
 def test_nearest_point_far_below_a_crest_is_unknown():
     """Beyond the centre of curvature, 1 / (A k^2) = 2.53 mm under the crest, the point above is not a minimum."""
     crest = np.array([0.005, 0.005, 0.008])
-    above, beyond = nearest.on_waves(np.array([crest - (0, 0, 0.0025), crest - (0, 0, 0.0026)]), 0.004, 0.02)
+    above, beyond = on_waves(np.array([crest - (0, 0, 0.0025), crest - (0, 0, 0.0026)]), 0.004, 0.02)
     np.testing.assert_allclose(above, crest, atol=1e-12)
     assert np.isnan(beyond).all()
 

@@ -16,7 +16,7 @@ from tangible_bench.metrics.stability import HANDLE
 from tangible_bench.results.plot import draw_plot
 from tangible_bench.results.summary import cells
 from tangible_bench.results.table import Results, tables
-from tangible_bench.strokes.strokes import SURFACES, KnownStroke, analytic_stroke
+from tangible_bench.strokes import SURFACES, KnownStroke, analytic_stroke
 from tangible_bench.tasks.render import PERTURBATIONS, TASK, feel, limits, measure, prepare
 from tangible_core.errors import ConfigError, OutputError
 from tangible_core.plugins.registry import Registry, load_method

@@ -14,7 +14,7 @@ from tangible_core.scene import Scene, scale_heights
 from tangible_core.scene.formats import read_map
 from tangible_core.session import Recording
 
-from ..strokes.strokes import PERIOD_S, KnownStroke, analytic_stroke, relief_stroke
+from ..strokes import PERIOD_S, KnownStroke, analytic_stroke, relief_stroke
 from .task import SceneSpec, check_one_kind
 
 Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]

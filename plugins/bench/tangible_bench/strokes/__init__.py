@@ -1,1 +1,0 @@
-"""Strokes of a hand over surfaces, and the exact nearest points along them."""

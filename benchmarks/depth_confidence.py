@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tangible_bench.metrics.sparsification import WRONG_PX, sparsification_errors
+from tangible_bench.metrics.standard_sets import WRONG_PX, sparsification_errors
 from tangible_bench.tasks.depth import measure
 from tangible_depth.dense.confidence import probability
 from tangible_depth.opencv_sgbm import OpenCVSGBM

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 from jaxtyping import Bool, Float32
 
-from tangible_bench.metrics.sparsification import WRONG_PX
+from tangible_bench.metrics.standard_sets import WRONG_PX
 from tangible_core.testing.synthetic.stereo_scenes import SCENES, KnownPair, synthetic_pair
 from tangible_depth.dense.confidence import FILLED
 from tangible_depth.semi_global import SemiGlobal

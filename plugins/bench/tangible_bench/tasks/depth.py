@@ -14,8 +14,7 @@ from tangible_core.scene import fill_rows
 from tangible_core.testing.synthetic import KnownPair
 
 from ..datasets import MarkedPair
-from ..metrics.sparsification import LEFT, LEFT_BY_ORACLE, sparsification_errors
-from ..metrics.standard_sets import benchmark_errors
+from ..metrics.standard_sets import LEFT, LEFT_BY_ORACLE, benchmark_errors, sparsification_errors
 from . import damage
 from .depth_scenes import DepthScene, size_of
 from .task import Curve, Measure, Perturbation, Task

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tangible_bench.metrics.sparsification import LEFT, sparsification_curve, sparsification_errors
+from tangible_bench.metrics.standard_sets import LEFT, sparsification_curve, sparsification_errors
 from tangible_core.errors import PictureError
 from tangible_core.metrics import disparity_errors
 

@@ -12,8 +12,7 @@ from tangible_core.metrics import force_errors
 from tangible_core.plugins import ForceRenderer, Touch
 
 from ..memory import held_bytes
-from ..metrics.stability import Law, stiffness_limit
-from ..metrics.strokes import force_steps, loop_works, proxy_lag
+from ..metrics.stability import Law, force_steps, loop_works, proxy_lag, stiffness_limit
 from ..strokes import KnownStroke
 from .render_scenes import RenderScene
 from .task import Clock, Measure, Perturbation, Task

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tangible_bench.metrics.strokes import force_steps, loop_works, proxy_lag
+from tangible_bench.metrics.stability import force_steps, loop_works, proxy_lag
 
 UP = np.array((0.0, 0.0, 1.0))
 RANDOM = np.random.default_rng(2)

@@ -20,7 +20,7 @@ import numpy as np
 
 from ...measures.rows import Result, of_each_and_all
 from ...measures.shares import CHOSEN, share_rows
-from ...measures.words import share
+from ...measures.rows import share
 from ..question import Question, Score
 
 

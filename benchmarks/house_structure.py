@@ -104,8 +104,8 @@ def houses_on(house: str) -> list[str]:
 
 
 def translation_mechanisms() -> list[str]:
-    """Return what texts are translated by: catalogues, the page's tables, and each table of words in Python."""
-    files = [each for folder in shipped() for name in ("words.py", "words/de.py") for each in folder.rglob(name)]
+    """Return what texts are translated by: catalogues, the page's tables, and each other table of words."""
+    files = [each for folder in shipped() for name in ("words.py", "words/de.json") for each in folder.rglob(name)]
     tables = [each for each in files if each.stem == "de" or '"de"' in each.read_text(encoding="utf-8")]
     kinds = {"catalogues": "tangible_core/translation/*.po", "tables of the page": "plugins/**/src/words/words.ts"}
     return [*(kind for kind, pattern in kinds.items() if any(ROOT.glob(pattern))), *map(str, tables)]

@@ -12,6 +12,7 @@ from pathlib import Path
 from shown_texts import ROOT, described, is_prose, literals, python_files
 from tangible_core.translation.catalogue import ENTRY, unquoted
 from tangible_core.translation.template import PLACEHOLDER
+from tangible_legibility.words.languages import TABLES
 
 FOLDER = ROOT / "tangible_core" / "translation"
 WHOLE = ("de",)
@@ -27,8 +28,8 @@ msgstr ""
 "Language: {language}\\n"
 "Content-Type: text/plain; charset=UTF-8\\n"
 """
-OTHERS = (ROOT / "plugins/legibility/tangible_legibility/words/en.py",)
-"""Modules with words of their own, which other texts may contain."""
+OTHERS = (*TABLES["en"].words.values(), *TABLES["en"].materials)
+"""Words of descriptions, which other texts may contain."""
 OWN = frozenset(["Source: {0}", "and", "or", "integer", "number", "boolean", "string", "warning", "error"])
 """Texts that stand in no literal: sources of methods, joints of lists, types of JSON Schema, levels of logging."""
 TYPER = (
@@ -82,7 +83,7 @@ named: dict[str, str] = {}
 @cache
 def words() -> frozenset[str]:
     """Return all literals of the program: a catalogue may have more than `shown` finds, such as single words."""
-    return frozenset(normal(text) for path in (*python_files(), *OTHERS) for text in texts_of(path)) | OWN
+    return frozenset(map(normal, (*OTHERS, *(text for path in python_files() for text in texts_of(path))))) | OWN
 
 
 @cache

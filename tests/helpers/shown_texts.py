@@ -7,7 +7,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from tangible_legibility.words.en import WORDS
+from tangible_legibility.words.languages import TABLES
 
 ROOT = Path(__file__).parents[2]
 FOR_PROGRAMMERS = {
@@ -67,7 +67,7 @@ def is_prose(template: str) -> bool:
     """Return True for a template that reads as words for people."""
     text = re.sub(r"\{\w*\}", "{}", template)
     words = WORD.findall(text.replace("{}", " "))
-    if CODE.search(text) or template in WORDS or template in NAMES or not re.search(r"\s", text.strip()):
+    if CODE.search(text) or template in TABLES["en"].words or template in NAMES or not re.search(r"\s", text.strip()):
         return False
     long = [word for word in words if len(word) > 2]
     return len(words) >= 2 or ("{}" in text and (len(long) >= 1 or not SMALL.isdisjoint(words)))

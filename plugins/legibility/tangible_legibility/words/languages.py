@@ -1,16 +1,16 @@
 """The languages of descriptions, and sentences from their tables of words."""
 
+import json
 import logging
 import re
 from collections.abc import Callable, Mapping
+from importlib.resources import files
 from typing import Literal, NamedTuple, get_args
 from unicodedata import category
 
 from tangible_core.data import shown_number
 from tangible_core.errors import quoted, shown
 from tangible_core.plugins import note
-
-from . import de, en, fr
 
 Language = Literal["en", "de", "fr"]
 LANGUAGES: tuple[Language, ...] = get_args(Language)
@@ -20,19 +20,18 @@ class Table(NamedTuple):
     """The words of one language."""
 
     words: Mapping[str, str]
-    """Texts by key, with placeholders."""
+    """Texts by key, with placeholders; the key of a place is its third from the top and its third from the left."""
     materials: Mapping[str, str]
     """Names of the library's materials."""
-    after_like: Mapping[str, str]
-    """Names of the materials in the form that follows `feels like`."""
+    after_like: Mapping[str, str] = {}
+    """Names of the materials in the form that follows `feels like`, where that is another one."""
     no_break_before: str = ""
     """Marks before which a space does not break."""
 
 
 TABLES: Mapping[Language, Table] = {
-    "en": Table(en.WORDS, en.MATERIALS, en.MATERIALS),
-    "de": Table(de.WORDS, de.MATERIALS, de.MATERIALS),
-    "fr": Table(fr.WORDS, fr.MATERIALS, fr.AFTER_LIKE, ":;%"),
+    each: Table(**json.loads(files("tangible_legibility.words").joinpath(f"{each}.json").read_text(encoding="utf-8")))
+    for each in LANGUAGES
 }
 
 
@@ -104,7 +103,7 @@ class Words:
 
     def material_after_like(self, name: str, given: Callable[[str], str] = shown) -> str:
         """Return a material as it follows `feels like`. given: converts a name that is not in the library."""
-        return self._table.after_like.get(name) or given(name)
+        return self._table.after_like.get(name) or self._table.materials.get(name) or given(name)
 
     def number(self, value: float) -> str:
         """Format a number with two digits, or all of a whole number above 100."""

@@ -6,10 +6,9 @@ from hashlib import sha256
 from html import escape
 from typing import Any
 
-from tangible_legibility.words.languages import Language, one_line
+from tangible_legibility.words.languages import Language, Words, one_line
 
 from .packing import as_json
-from .words import NO_SCRIPT, UNTITLED
 
 
 def page_of(
@@ -22,7 +21,7 @@ def page_of(
     """
     if "</script" in script.lower() or "</style" in style.lower():
         raise ValueError("script and style must not end their elements")
-    name = escape(one_line(title))
+    name, say = escape(one_line(title)), Words(language)
     described = data.get("describes", {}).get(language)
     return f"""<!doctype html>
 <html lang="{language}">
@@ -32,19 +31,19 @@ def page_of(
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark">
 <meta name="referrer" content="no-referrer">
-<title>{name or UNTITLED[language]}</title>
+<title>{name or say("untitled")}</title>
 <style>{style}</style>
 </head>
 <body>
 <a id="skip" href="#terrain"></a>
-<header><h1 lang="{escape(named_in) if name else language}" dir="auto">{name or UNTITLED[language]}</h1></header>
+<header><h1 lang="{escape(named_in) if name else language}" dir="auto">{name or say("untitled")}</h1></header>
 <main>
 <p id="how"></p>
 <div id="scenery"><canvas id="terrain" tabindex="0" role="application" aria-describedby="how described"></canvas></div>
 <p id="described" class="visually-hidden"></p>
 <p id="said" role="status" aria-live="polite" dir="auto"></p>
 <p id="alerted" role="alert" dir="auto"></p>
-<noscript><p>{NO_SCRIPT[language]}</p></noscript>
+<noscript><p>{say("no script")}</p></noscript>
 <div id="controls" role="group"></div>
 <section id="parts" hidden></section>
 <section id="description" lang="{language}">{_describe(described) if described else ""}</section>

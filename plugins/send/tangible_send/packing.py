@@ -13,13 +13,12 @@ from jaxtyping import Shaped
 from PIL import Image
 
 from tangible_core.data import HapticSurface, Material, Relief, Work, digest_of, to_rgb8
-from tangible_legibility.words.languages import LANGUAGES, Language, one_line
+from tangible_legibility.words.languages import LANGUAGES, Language, Words, one_line
 from tangible_report.description import describe, facts
 from tangible_report.description.at_length import tell
 from tangible_web.materials import distinct_materials
 
 from .surface import SentSurface
-from .words import FIRST_FRAME
 
 MOST_SIDE_PX = 1600
 """The longest side of the picture: more than a phone shows, and opened a quarter sooner in software than 2048."""
@@ -121,7 +120,7 @@ def description(surface: HapticSurface, work: Work, language: Language) -> dict[
     kind = None if work.picture is not None else "heights"
     told = tell(surface, work.title, language, facts(surface), kind)
     return {
-        "overview": " ".join((*told.overview, *[FIRST_FRAME[language]] * work.film)),
+        "overview": " ".join((*told.overview, *[Words(language)("first frame")] * work.film)),
         "heading": told.heading,
         "parts": [[each.label, " ".join(each.sentences)] for each in told.parts],
         "left_out": told.left_out,

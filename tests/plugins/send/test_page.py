@@ -20,13 +20,12 @@ from tangible_core.data import Work
 from tangible_core.errors import OutputError
 from tangible_core.plugins.notes import collect_notes
 from tangible_depth import Luminance
-from tangible_legibility.words.languages import one_line
+from tangible_legibility.words.languages import Language, Words, one_line
 from tangible_render.surface.coefficients import spline_coefficients
 from tangible_send.html import page_of
 from tangible_send.packing import LEAST_PHOTO, deflate
 from tangible_send.page import Page
 from tangible_send.surface import MOST_CELLS, surface_to_send
-from tangible_send.words import NO_SCRIPT, UNTITLED
 from videos import write_video
 
 pytestmark = pytest.mark.usefixtures("built")
@@ -159,15 +158,16 @@ def test_surface_without_parts_is_sent_plainly(tmp_path: Path):
 @pytest.mark.parametrize(
     ("named_in", "language"), [("de", "de"), ("de-AT", "de"), ("fr", "fr"), ("en-GB", "en"), ("he", "en")]
 )
-def test_words_and_title_are_marked_with_their_languages(tmp_path: Path, named_in: str, language: str):
+def test_words_and_title_are_marked_with_their_languages(tmp_path: Path, named_in: str, language: Language):
     """A screen reader speaks each by its mark; words that there are in no language of the names are English."""
-    for title, shown in (("Ein Haus", "Ein Haus"), ("", UNTITLED[language])):
+    say = Words(language)
+    for title, shown in (("Ein Haus", "Ein Haus"), ("", say("untitled"))):
         (path,) = Page().write(replace(picture_to_send(title), language=named_in), tmp_path / "it")
         page = Elements(path.read_text("utf-8"))
         marks = [(tag, attrs["lang"]) for tag, attrs, _ in page.found if "lang" in attrs]
         assert marks == [("html", language), ("h1", named_in if title else language), ("section", language)]
         assert page.texts("title") == page.texts("h1") == [shown]
-        assert NO_SCRIPT[language] in page.texts("p")
+        assert say("no script") in page.texts("p")
 
 
 def test_drawn_heights_are_those_of_the_spline():

@@ -1,5 +1,6 @@
 """The style of every panel: type, colours, colour bars; legible with colour blindness and in grey print."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,30 +11,8 @@ from matplotlib.colors import Colormap, ListedColormap, to_rgb
 
 INK = "#222222"
 PALE = "#e9e9e9"
-STYLE: dict[str, Any] = {
-    "font.family": "DejaVu Sans",
-    "font.size": 9,
-    "axes.labelsize": 9,
-    "axes.linewidth": 0.6,
-    "axes.edgecolor": INK,
-    "axes.labelcolor": INK,
-    "text.color": INK,
-    "xtick.color": INK,
-    "ytick.color": INK,
-    "xtick.labelsize": 8,
-    "ytick.labelsize": 8,
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "xtick.major.size": 3,
-    "ytick.major.size": 3,
-    "legend.fontsize": 8,
-    "legend.frameon": False,
-    "text.parse_math": False,
-    "hatch.linewidth": 0.5,
-    "hatch.color": "#999999",
-    "image.interpolation": "nearest",
-    "svg.hashsalt": "tangible",
-}
+STYLE = Path(__file__).with_name("report.mplstyle")
+"""The style sheet of every panel, for `matplotlib.style`."""
 
 OKABE_ITO = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999")
 """Eight colours that colour-blind readers tell apart, from Okabe & Ito, Color Universal Design (2008), reordered."""

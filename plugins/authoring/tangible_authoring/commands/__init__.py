@@ -1,17 +1,10 @@
 """The commands that prepare and check a pipeline file. `tangible` imports them whenever it starts, so this is light."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from tangible_core.plugins import hookimpl
-
-if TYPE_CHECKING:
-    from typer import Typer
 
 
 @hookimpl
-def tangible_commands(app: Typer) -> None:
+def tangible_commands() -> None:
     """Add the commands that write, check and describe a pipeline file."""
     from tangible_core.cli import add
 

@@ -1,19 +1,10 @@
 """What the rules add to the program. `tangible` imports this whenever it starts, so this is light."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from tangible_core.plugins import hookimpl
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from typer import Typer
 
 
 @hookimpl
-def tangible_legibility() -> Mapping[str, str]:
+def tangible_legibility() -> dict[str, str]:
     """Name the rules of tactile graphics, and parts simplified by them."""
     return {
         "judge": "tangible_legibility.legible:legibility",
@@ -22,7 +13,7 @@ def tangible_legibility() -> Mapping[str, str]:
 
 
 @hookimpl
-def tangible_commands(app: Typer) -> None:
+def tangible_commands() -> None:
     """Add `tangible legible`."""
     from tangible_core.cli import add
 

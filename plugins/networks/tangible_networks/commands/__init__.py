@@ -1,25 +1,16 @@
 """What the networks add to the program. `tangible` imports this whenever it starts, so this is light."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from tangible_core.plugins import hookimpl
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from typer import Typer
 
 
 @hookimpl
-def tangible_networks() -> Mapping[str, str]:
+def tangible_networks() -> dict[str, str]:
     """Name what looks at a photograph, and what tells which networks are here."""
     return {"look": "tangible_networks.seeing:look", "identity": "tangible_networks.store:identity_here"}
 
 
 @hookimpl
-def tangible_commands(app: Typer) -> None:
+def tangible_commands() -> None:
     """Add `tangible networks`."""
     from tangible_core.cli import add
 

@@ -1,17 +1,10 @@
 """The commands for materials and descriptions, imported at each start of `tangible`, so it imports next to nothing."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from tangible_core.plugins import hookimpl
-
-if TYPE_CHECKING:
-    from typer import Typer
 
 
 @hookimpl
-def tangible_commands(app: Typer) -> None:
+def tangible_commands() -> None:
     """Add `tangible materials` and `tangible describe`."""
     from tangible_core.cli import add
 

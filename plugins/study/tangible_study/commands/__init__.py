@@ -7,13 +7,11 @@ from typing import TYPE_CHECKING
 from tangible_core.plugins import hookimpl
 
 if TYPE_CHECKING:
-    from typer import Typer
-
     from tangible_core.plugins.registry import Listing
 
 
 @hookimpl
-def tangible_commands(app: Typer) -> None:
+def tangible_commands() -> None:
     """Add `tangible study`."""
     from tangible_core.cli import add
 

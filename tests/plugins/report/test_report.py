@@ -37,12 +37,13 @@ from tangible_core.plugins.hooks import Panel, hookimpl
 from tangible_core.plugins.registry import Registry
 from tangible_core.session import Recording
 from tangible_render.haptic_textures import peak_wavelength_m
-from tangible_report import block
 from tangible_report.drawing.layout import Cell, arrange
 from tangible_report.drawing.sheet import DPI, WIDTH_IN, draw_figure, draw_sheet
 from tangible_report.material_sheet import draw_material, spectra
 from tangible_report.panels import PANELS
 from tangible_report.panels.force import round_number, spread
+from tangible_report.panels.relief import points_of
+from tangible_report.panels.time import heights_under
 from tangible_report.style import colours
 
 NAN = np.nan
@@ -129,26 +130,15 @@ class TestLayout:
         assert [(box.top_in, box.left_in) for box in boxes] == sorted((box.top_in, box.left_in) for box in boxes)
 
 
-class TestBlock:
-    def test_points_with_border_have_the_surface_extent(self) -> None:
-        relief = Relief(np.float32([[1, 2]]), (0.4, 0.1))
-        points_m = block.points_of(relief)
+class TestPoints:
+    def test_points_are_the_cells_centres_at_their_heights(self) -> None:
+        points_m = points_of(Relief(np.float32([[1, 2]]), (0.4, 0.1)))
         np.testing.assert_allclose(points_m, [[[-0.1, 0, 1], [0.1, 0, 2]]])
-        framed = block.add_border(points_m, relief.extent_m)
-        assert framed.shape == (3, 4, 3)
-        np.testing.assert_allclose(framed[0], [[-0.2, 0.05, 1], [-0.1, 0.05, 1], [0.1, 0.05, 2], [0.2, 0.05, 2]])
-        np.testing.assert_allclose(framed[2, 0], [-0.2, -0.05, 1])
-
-    def test_facets_are_sorted_from_far_to_near(self) -> None:
-        facets = block.facets(block.points_of(Relief(np.zeros((3, 3), np.float32), (0.1, 0.1))))
-        assert (facets.row[0], facets.column[0]) == (0, 0)
-        assert (facets.row[-1], facets.column[-1]) == (1, 1)
-        assert facets.corners.shape == (4, 4, 2)
 
     def test_heights_under_points_are_those_of_cells(self) -> None:
         relief = Relief(np.float32([[1, 2], [3, 4]]), (0.2, 0.2))
         points_m = np.array([[-0.05, 0.05, 9], [0.05, 0.05, 0], [-0.05, -0.05, 0], [0.099, -0.099, 0], [0.2, 0, 0]])
-        np.testing.assert_array_equal(block.heights_under(relief, points_m), [1, 2, 3, 4, NAN])
+        np.testing.assert_array_equal(heights_under(relief, points_m), [1, 2, 3, 4, NAN])
 
 
 class TestForces:

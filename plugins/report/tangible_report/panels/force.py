@@ -8,8 +8,8 @@ from matplotlib.colors import LightSource
 from tangible_core.data import Relief
 from tangible_core.session import Recording
 
-from ..block import drawn_size
 from ..style import FORCES, INK, colour_bar, inches
+from .relief import drawn_size
 
 ARROWS = 150
 """The most arrows."""

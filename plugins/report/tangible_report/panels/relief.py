@@ -1,21 +1,17 @@
 """The panels of the relief: from above, lit from one side as fingers feel it, and as a block."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from jaxtyping import Float64
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import PolyCollection
 from matplotlib.colors import LightSource, Normalize
-from matplotlib.patches import Polygon
-from matplotlib.ticker import MaxNLocator
 
 from tangible_core.data import Relief
-from tangible_core.scene import normals
+from tangible_core.scene import normals, picture_to_workspace, resample
 
-from ..block import add_border, drawn_size, facets, on_paper, points_of
-from ..style import INK, VIRIDIS, bare, colour_bar, inches
+from ..style import INK, VIRIDIS, bare, colour_bar
 
 LIGHT = LightSource(azdeg=315, altdeg=50)
 LOW_LIGHT = LightSource(azdeg=315, altdeg=35)
@@ -30,11 +26,20 @@ ARROW = 0.035
 """The length of the arrow of a horizontal normal, as a share of the longer side."""
 FLAT_M = 1e-6
 """The height below which a relief is drawn as a plane."""
-ROOM_IN = (0.1, 0.45, 0.4, 0.12)
-"""The room left of the block, right of it, below and above, for its scales and normals, inches."""
-SCALE_MARK_IN = 0.35
-"""The least distance between two numbers of a scale, inches."""
-TICK = {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0, "shrinkB": 0}
+
+
+def drawn_size(relief: Relief, most: int) -> Relief:
+    """Resample the surface to at most `most` cells a side."""
+    rows, columns = relief.height_m.shape
+    scale = min(1.0, most / max(rows, columns))
+    return resample(relief, (max(1, round(rows * scale)), max(1, round(columns * scale))))
+
+
+def points_of(relief: Relief) -> Float64[np.ndarray, "h w 3"]:
+    """Return the cell centres at their heights, in the workspace frame."""
+    row, column = np.indices(relief.height_m.shape, np.float64)
+    x_m, y_m = picture_to_workspace(column, row, relief.height_m.shape, relief.extent_m)
+    return np.stack([x_m, y_m, relief.height_m], axis=-1)
 
 
 def draw_relief(axes: Axes, relief: Relief) -> str:
@@ -56,55 +61,24 @@ def draw_relief(axes: Axes, relief: Relief) -> str:
 
 
 def draw_surface(axes: Axes, relief: Relief) -> str:
-    """Draw the relief as a block without normals, for a fine texture."""
-    relief = drawn_size(relief, CELLS)
-    highest_m, stretch = float(relief.height_m.max()), _stretch(relief)
+    """Draw the relief as a block without normals, for a fine texture; low heights are multiplied until they show."""
+    shown = drawn_size(relief, CELLS)
+    highest_m, (width_m, length_m) = float(shown.height_m.max()), shown.extent_m
+    stretch = max(1, round(max(width_m, length_m) / 6 / highest_m)) if highest_m > FLAT_M else 1
     heights = ScalarMappable(Normalize(0, 1000 * max(highest_m, FLAT_M)), VIRIDIS)
-    stretched = replace(relief, height_m=np.float32(stretch) * relief.height_m)
-    _draw_block(axes, stretched, heights.to_rgba(np.pad(1000 * relief.height_m, 1, "edge"))[..., :3])
-    _leave_room(axes, stretched)
-    width_m, length_m = relief.extent_m
-    _draw_scale(axes, "x [mm]", np.array([0, -length_m / 2, 0]), np.array([1.0, 0, 0]), width_m / 2)
-    _draw_scale(axes, "y [mm]", np.array([width_m / 2, 0, 0]), np.array([0, 1.0, 0]), length_m / 2)
+    x_mm, y_mm, z_mm = 1000 * np.moveaxis(points_of(shown), -1, 0)
+    pitch_mm = {"dx": 1000 * shown.pitch_m[0], "dy": 1000 * shown.pitch_m[1]}
+    lit = LIGHT.shade_rgb(heights.to_rgba(z_mm)[..., :3], stretch * z_mm, blend_mode=_dim, **pitch_mm)
     axes.set_axis_off()
+    block: Any = axes.inset_axes((0, 0, 1, 1), projection="3d")
+    block.plot_surface(x_mm, y_mm, z_mm, rcount=CELLS, ccount=CELLS, facecolors=lit, shade=False, rasterized=True)
+    block.set(xlabel="x [mm]", ylabel="y [mm]", zticks=[], zlim=(0, 1000 * max(highest_m, FLAT_M)), proj_type="ortho")
+    block.set_box_aspect((width_m, length_m, stretch * max(highest_m, FLAT_M)), zoom=1.15)
+    block.view_init(elev=42, azim=-68)  # from the user's side and a little from the right
     colour_bar(axes, heights, "height [mm]")
     if highest_m <= FLAT_M:
         return "Surface, smooth"
     return f"Surface, heights x {stretch}" if stretch > 1 else "Surface"
-
-
-def _leave_room(axes: Axes, stretched: Relief) -> None:
-    """Set the limits of the axes: true proportion, with the block centred in the room that the scales leave."""
-    x_m, y_m = (side / 2 for side in stretched.extent_m)
-    heights_m = 0.0, float(stretched.height_m.max())
-    corners = on_paper(np.array([(x, y, z) for x in (-x_m, x_m) for y in (-y_m, y_m) for z in heights_m]))
-    least, most = corners.min(axis=0), corners.max(axis=0)
-    shares, (left_in, right_in, low_in, high_in) = np.array(inches(axes)), ROOM_IN
-    free_in = 1 / shares - [left_in + right_in, low_in + high_in]
-    per_in = float(np.max((most - least) / np.maximum(free_in, 0.2)))
-    start = (least + most) / 2 - per_in * (free_in / 2 + [left_in, low_in])
-    end = start + per_in / shares
-    axes.set(xlim=(start[0], end[0]), ylim=(start[1], end[1]), aspect="auto")
-
-
-def _stretch(relief: Relief) -> int:
-    """Return the whole factor on heights that makes the block at least a sixth of its longer side high."""
-    top_m = float(relief.height_m.max())
-    return max(1, round(max(relief.extent_m) / 6 / top_m)) if top_m > FLAT_M else 1
-
-
-def _draw_block(axes: Axes, relief: Relief, paint: np.ndarray) -> None:
-    points_m = add_border(points_of(relief), relief.extent_m)
-    width_m, length_m = relief.pitch_m
-    lit = LIGHT.shade_rgb(paint, points_m[..., 2], blend_mode=_dim, dx=width_m, dy=length_m)
-    top = facets(points_m)
-    corners: Any = top.corners  # matplotlib takes arrays of polygons; its types know only lists of them
-    colours = lit[top.row, top.column]
-    cells = PolyCollection(corners, facecolors=colours, edgecolors="face", linewidths=0.3, rasterized=True)
-    axes.add_collection(cells, autolim=False)  # `_leave_room` sets the limits
-    for edge_m, grey in ((points_m[-1], "0.72"), (points_m[:, -1], "0.55")):
-        wall_m = np.concatenate([edge_m, edge_m[::-1] * (1, 1, 0)])
-        axes.add_patch(Polygon(on_paper(wall_m), facecolor=grey, edgecolor=INK, linewidth=0.4))
 
 
 def _dim(colours: np.ndarray, light: np.ndarray) -> np.ndarray:
@@ -125,22 +99,3 @@ def _draw_normals(axes: Axes, relief: Relief) -> None:
         *base_mm[:, :2].T, *normal[:, :2].T, units="inches", width=0.012, minlength=0.6,
         angles="xy", scale_units="xy", scale=1 / (1000 * ARROW * max(relief.extent_m)), color=INK,
     )  # fmt: skip
-
-
-def _draw_scale(axes: Axes, name: str, middle_m: np.ndarray, along: np.ndarray, half_m: float) -> None:
-    """Draw ticks and a name below an edge of the base, at right angles to it; no ticks in the corners."""
-    way = on_paper(along)
-    below = np.array([way[1], -way[0]]) / np.linalg.norm(way)
-    ends = axes.transData.transform([on_paper(middle_m - half_m * along), on_paper(middle_m + half_m * along)])
-    long_in = float(np.hypot(*(ends[1] - ends[0]))) / axes.figure.dpi
-    for tick_mm in MaxNLocator(min(4, max(1, int(long_in / SCALE_MARK_IN)))).tick_values(-1000 * half_m, 1000 * half_m):
-        if abs(tick_mm) < 950 * half_m:
-            at = on_paper(middle_m + tick_mm / 1000 * along)
-            _write(axes, "", at, 4 * below, arrowprops=TICK)
-            _write(axes, f"{tick_mm:g}".replace("-", "\N{MINUS SIGN}"), at, 11 * below, fontsize=8)
-    _write(axes, name, on_paper(middle_m), 24 * below, rotation=np.degrees(np.arctan2(way[1], way[0])))
-
-
-def _write(axes: Axes, text: str, at: np.ndarray, offset_pt: np.ndarray, **look: Any) -> None:
-    offset = (offset_pt[0], offset_pt[1])
-    axes.annotate(text, (at[0], at[1]), offset, textcoords="offset points", ha="center", va="center", **look)

@@ -1,13 +1,13 @@
 """The panel of force and tip over time."""
 
 import numpy as np
-from jaxtyping import Bool, Float64
+from jaxtyping import Bool, Float32, Float64
 from matplotlib.axes import Axes
 
 from tangible_core.data import Relief
+from tangible_core.scene import workspace_to_picture
 from tangible_core.session import Recording
 
-from ..block import heights_under
 from ..style import OKABE_ITO
 
 TIP, CONTACT, FORCE = OKABE_ITO[0], OKABE_ITO[1], OKABE_ITO[5]
@@ -59,3 +59,13 @@ def _draw_legend(upper: Axes, lower: Axes) -> None:
     upper.legend(
         keys.values(), keys.keys(), ncols=len(keys), loc="lower right", bbox_to_anchor=(1.0, 0.97), borderaxespad=0.2
     )
+
+
+def heights_under(relief: Relief, points_m: Float64[np.ndarray, "... 3"]) -> Float32[np.ndarray, "..."]:
+    """Return the height of the cell below (or above) each point, metres; NaN outside the surface."""
+    shape = rows, columns = relief.height_m.shape
+    places = workspace_to_picture(points_m[..., 0], points_m[..., 1], shape, relief.extent_m)
+    column, row = (np.floor(place + 0.5) for place in places)
+    inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+    height_m = relief.height_m[np.where(inside, row, 0).astype(int), np.where(inside, column, 0).astype(int)]
+    return np.where(inside, height_m, np.nan)

@@ -3,7 +3,16 @@
 import numpy as np
 import pytest
 
-from tangible_bench.strokes import LOOP_TICKS, LOOPS, SURFACES, analytic_stroke, on_ridge, on_step, relief_stroke
+from tangible_bench.strokes import (
+    LOOP_TICKS,
+    LOOPS,
+    SURFACES,
+    analytic_stroke,
+    on_ridge,
+    on_step,
+    on_waves,
+    relief_stroke,
+)
 
 SMOOTH = ("plane", "ramp", "sphere", "sine", "cone")
 

@@ -1,17 +1,11 @@
 """The plot: drawn, legible, and without overlaps."""
 
 from dataclasses import replace
-from itertools import combinations
 from pathlib import Path
 
 import cv2
-import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from matplotlib.text import Text
 
-from tangible_bench.results.labels import place_labels
 from tangible_bench.results.plot import draw_plot
 from tangible_bench.results.summary import Cell
 from tangible_bench.results.table import Results
@@ -53,23 +47,3 @@ def test_plot_without_results_is_not_written(tmp_path: Path):
     failed = Cell("m", "s", "none", error="no")
     assert not draw_plot(tmp_path / "plot.png", Results(load_task("depth"), {failed.key: failed}, None))
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_labels_cover_neither_each_other_nor_points(seed: int):
-    points = np.random.default_rng(seed).normal(0.5, 0.2, (9, 2)).clip(0, 1)
-    figure = Figure(figsize=(6.4, 4.8), dpi=100)
-    canvas = FigureCanvasAgg(figure)
-    axes = figure.subplots()
-    axes.set(xlim=(-0.2, 1.2), ylim=(-0.2, 1.2))
-    canvas.draw()
-    place_labels(axes, [(f"method {index}", x, y) for index, (x, y) in enumerate(points)])
-    canvas.draw()
-    boxes = [Text.get_window_extent(text) for text in axes.texts]  # without the line to the point
-    assert len(boxes) == 9
-    for one, other in combinations(boxes, 2):
-        assert not (one.padded(-1).overlaps(other.padded(-1)))
-    for box in boxes:
-        assert axes.bbox.padded(1).containsx(box.x0) and axes.bbox.padded(1).containsx(box.x1)
-        inside = [box.padded(-1).contains(*axes.transData.transform(point)) for point in points]
-        assert not np.any(inside)

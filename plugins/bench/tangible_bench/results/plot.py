@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from tangible_core.files import atomic_write
 
-from .labels import place_labels
 from .table import Results
 
 if TYPE_CHECKING:
@@ -48,20 +47,15 @@ def draw_plot(path: Path, results: Results) -> bool:
     count = len(measures) + bool(curved)
     with style.context(STYLE):
         figure = Figure(figsize=(PANEL_IN[0] * count, PANEL_IN[1]), dpi=DPI, layout="constrained")
-        canvas = FigureCanvasAgg(figure)
         panels: list[Any] = list(figure.subplots(1, count, squeeze=False)[0])
         for axes, measure in zip(panels, measures, strict=False):
             _draw_panel(axes, results, timed, measure)
         if curve and curved:
             _draw_curve(panels[-1], timed, curved, curve)
         figure.suptitle(_title(results), fontsize=10)
-        canvas.draw()  # labels need the final positions of the points
-        figure.set_layout_engine("none")
-        for axes, measure in zip(panels, measures, strict=False):
-            points = [(each.method, *_point(results, each, measure)) for each in timed]
-            place_labels(axes, points, _front(results, timed, measure))
+        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper")
         with atomic_write(path) as file:
-            canvas.print_png(file)
+            FigureCanvasAgg(figure).print_png(file)
     return True
 
 
@@ -72,7 +66,7 @@ def _draw_panel(axes: Axes, results: Results, timed: list[Line], measure: str) -
 
     for index, line in _by_name(timed):
         x, y = _point(results, line, measure)
-        axes.plot(x, y, markersize=7, zorder=3, **_look(index))
+        axes.plot(x, y, markersize=7, zorder=3, linestyle="", label=line.method, **_look(index))
     best = _front(results, timed, measure)
     axes.step(*zip(*best, strict=True), where="post", color=INK, linewidth=1, linestyle=(0, (4, 2)), zorder=2)
     axes.set_xscale("log")
@@ -92,9 +86,9 @@ def _draw_curve(axes: Axes, timed: list[Line], curved: list[Line], curve: Curve)
             ideal = list(curve.ideal), _values(line, curve.ideal)
             axes.plot(*ideal, color=look["color"], linewidth=1, linestyle=":")
             at = list(curve.points), _values(line, curve.points)
-            axes.plot(*at, markersize=5, label=line.method, **look)
+            axes.plot(*at, markersize=5, **look)
     axes.set(xlabel=curve.over, ylabel=curve.title)
-    axes.legend(title="dotted: the best there could be", title_fontsize=8)
+    axes.set_title("dotted: the best there could be", fontsize=8)
     _draw_grid(axes)
 
 

@@ -12,8 +12,7 @@ from tangible_core.runtime.system import folder_lock
 from .config.reading import Comparison
 from .measuring.plan import measurements
 from .measuring.rows import Row, read_rows
-from .measuring.run import Outlook, Report, look, run
-from .measuring.side_by_side import run_side_by_side
+from .measuring.run import Outlook, Report, look, run, run_side_by_side
 from .results.files import write_tables
 from .results.plot import draw_plot
 from .results.regressions import Verdict, find_regressions

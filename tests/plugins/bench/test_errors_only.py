@@ -60,7 +60,7 @@ def test_errors_alone_equal_those_of_timed_measurements(registry: Registry, tmp_
 def test_command_with_errors_only_reports_no_times_and_alone_takes_workers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr("tangible_bench.measuring.side_by_side.Farm", Here)
+    monkeypatch.setattr("tangible_bench.measuring.run.Farm", Here)
     scenes = "{synthetic: steps, width_px: 64, height_px: 48}, {synthetic: bars, width_px: 64, height_px: 48}"
     (tmp_path / "c.yaml").write_text(f"compare: depth\nmethods: [half]\nscenes: [{scenes}]\nout: {tmp_path}/out\n")
     done = tangible("compare", "c.yaml", "--errors-only", "--workers", 1, cwd=tmp_path)

@@ -4,7 +4,7 @@ import os
 from functools import cache
 from pathlib import Path
 
-from tangible_bench.tasks.texture_scenes import TextureScene
+from tangible_bench.tasks.texture import TextureScene
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments, smooth_scene
 
 FOLDER = "TANGIBLE_TEXTURES"

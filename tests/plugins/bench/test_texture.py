@@ -12,9 +12,8 @@ from tangible_bench.measuring.plan import measurements
 from tangible_bench.measuring.run import look, run
 from tangible_bench.results.summary import cells
 from tangible_bench.results.table import Results, tables
-from tangible_bench.tasks import transforms
-from tangible_bench.tasks.texture import PERTURBATIONS, TASK
-from tangible_bench.tasks.texture_scenes import TextureScene
+from tangible_bench.tasks import damage
+from tangible_bench.tasks.texture import PERTURBATIONS, TASK, TextureScene
 from tangible_core.errors import ConfigError, PictureError
 from tangible_core.plugins.registry import Registry
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments, smooth_scene, texture_mosaic
@@ -83,15 +82,15 @@ def test_transformed_labels_follow_the_picture(name: str, value: float):
 
 
 def test_quarter_turns_and_flips_are_exact():
-    back = transforms.quarter(transforms.quarter(SCENE, 1), 3)
+    back = damage.quarter(damage.quarter(SCENE, 1), 3)
     np.testing.assert_array_equal(back.picture, SCENE.picture)
-    np.testing.assert_array_equal(transforms.flip(SCENE, 1).labels, SCENE.labels[:, ::-1])
-    np.testing.assert_array_equal(transforms.flip(SCENE, 0).labels, SCENE.labels[::-1])
+    np.testing.assert_array_equal(damage.flip(SCENE, 1).labels, SCENE.labels[:, ::-1])
+    np.testing.assert_array_equal(damage.flip(SCENE, 0).labels, SCENE.labels[::-1])
 
 
 def test_rotation_by_90_degrees_is_a_quarter_turn():
     square = smooth_scene(4, (41, 41), seed=1)
-    turned, expected = transforms.rotate(square, 90), transforms.quarter(square, 1)
+    turned, expected = damage.rotate(square, 90), damage.quarter(square, 1)
     np.testing.assert_array_equal(turned.labels, expected.labels)
     np.testing.assert_array_equal(turned.picture, expected.picture)
 
@@ -102,7 +101,7 @@ def test_rotated_scene_has_no_empty_corners(degrees: float, shape: tuple[int, in
     """A slope stays one: anything from outside would bend it."""
     rows, columns = np.indices(shape)
     slope = KnownSegments((20 + rows + columns).astype(np.uint8), np.zeros(shape, np.int32))
-    grey = transforms.rotate(slope, degrees).picture.astype(np.float64)
+    grey = damage.rotate(slope, degrees).picture.astype(np.float64)
     assert np.abs(np.diff(grey, 2, axis=0)).max() <= 2
     assert np.abs(np.diff(grey, 2, axis=1)).max() <= 2
     cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
@@ -112,11 +111,11 @@ def test_rotated_scene_has_no_empty_corners(degrees: float, shape: tuple[int, in
 
 @pytest.mark.parametrize(("factor", "shape"), [(0.5, (20, 30)), (2, (80, 120)), (0.1, (4, 6))])
 def test_scaled_scene_has_the_scaled_shape(factor: float, shape: tuple[int, int]):
-    scaled = transforms.scale(SCENE, factor)
+    scaled = damage.scale(SCENE, factor)
     assert scaled.labels.shape == scaled.picture.shape == shape
     assert scaled.picture.mean() == pytest.approx(SCENE.picture.mean(), abs=4)
     stripes = KnownSegments(np.uint8(255 * (np.indices((40, 60))[1] % 2)), np.zeros((40, 60), np.int32))
-    assert factor != 0.5 or transforms.scale(stripes, 0.45).picture.std() < 30, "no aliasing"
+    assert factor != 0.5 or damage.scale(stripes, 0.45).picture.std() < 30, "no aliasing"
 
 
 @pytest.mark.usefixtures("cells_here")

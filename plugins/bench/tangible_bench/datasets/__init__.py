@@ -7,7 +7,7 @@
 
 from .choosing import SetScene as SetScene
 from .choosing import pairs as pairs
-from .globs import matched as matched
+from .folders import matched as matched
 from .sets import SETS as SETS
 from .sets import StandardSet as StandardSet
 from .standard_pair import FULL_PX as FULL_PX

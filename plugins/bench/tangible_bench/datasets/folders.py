@@ -1,11 +1,14 @@
-"""The folders of a set and the names of their files; no file is opened."""
+"""The folders of a set with the names of their files, and files whose patterns match the same; no file is opened."""
 
 import os
-from collections.abc import Iterator
-from pathlib import Path
+import re
+from collections.abc import Iterator, Mapping
+from fnmatch import translate
+from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
-from tangible_core.errors import PictureError
+from tangible_core.errors import ConfigError, PictureError, quoted
+from tangible_core.files import as_path
 
 MOST_DEPTH = 10
 """The number of levels of folders that are searched; no kit has more than six."""
@@ -56,3 +59,79 @@ def folders(root: Path) -> Iterator[Folder]:
         if len(within) <= MOST_DEPTH:
             below.sort(reverse=True)
             waiting += [(os.path.join(path, name), (*within, name)) for name in below]  # noqa: PTH118
+
+
+_WILD = re.compile(r"\*\*/?|\*|\?|\[[^\]]+\]")
+
+
+def matched(folder: Path, patterns: Mapping[str, str], needed: tuple[str, str]) -> dict[str, dict[str, Path]]:
+    """Return name -> part -> file, in the order of names; a name is the text that the stars match.
+
+    patterns: part -> pattern relative to the folder; `*` and `?` match within a name, `**/` any folders. needed: the
+    two parts that every name must have; the names are those of the first one.
+    Raises: ConfigError for patterns with different numbers of stars; PictureError if nothing matches, or a file has no
+    partner.
+    """
+    first, second = needed
+    wanted = len(_WILD.findall(patterns[first]))
+    for part, pattern in patterns.items():
+        if (stars := len(_WILD.findall(pattern))) != wanted or not stars:
+            raise ConfigError(
+                f"{part}: {quoted(pattern)} has {stars} stars and {first}: {quoted(patterns[first])} has {wanted}; "
+                "files belong together if their stars match the same, so each pattern needs as many, at least one"
+            )
+    files_of = {part: dict(_files(folder, pattern)) for part, pattern in patterns.items()}
+    names = sorted(files_of[first])
+    if not names:
+        raise PictureError(f"{folder}: no file in it matches {first}: {quoted(patterns[first])}; check the pattern")
+    if lonely := next((name for name in names if name not in files_of[second]), None):
+        raise PictureError(
+            f"{files_of[first][lonely]}: no file matches {second}: {quoted(patterns[second])} with the same stars "
+            f"({quoted(lonely)}); correct the pattern, or move this one away"
+        )
+    return {name: {part: files[name] for part, files in files_of.items() if name in files} for name in names}
+
+
+def _files(folder: Path, pattern: str) -> Iterator[tuple[str, Path]]:
+    base, rest = _start(folder, pattern)
+    if not base.is_dir():
+        raise PictureError(f"{base}: there is no such folder for {quoted(pattern)}; check the path")
+    wanted = re.compile(_regex(rest))
+    deep = "/" in rest or "**" in rest
+    for each in folders(base):
+        within = each.path.relative_to(base).as_posix()
+        for name in sorted(each.files):
+            hit = wanted.fullmatch(name if within == "." else f"{within}/{name}")
+            if hit is not None:
+                yield "/".join(part.strip("/") for part in hit.groups() if part.strip("/")), each.path / name
+        if not deep:
+            break
+
+
+def _start(folder: Path, pattern: str) -> tuple[Path, str]:
+    """Return the folder before the first star, and the rest of the pattern."""
+    parts = PurePosixPath(as_path(pattern).as_posix()).parts
+    plain = next((index for index, part in enumerate(parts) if _WILD.search(part)), len(parts))
+    return folder.joinpath(*parts[:plain]), "/".join(parts[plain:])
+
+
+def _regex(pattern: str) -> str:
+    """Return a regular expression with a group for each star.
+
+    >>> _regex("**/left_*.png")
+    '((?:[^/]+/)*)left_([^/]*)\\\\.png'
+    """
+    text, at = "", 0
+    for star in _WILD.finditer(pattern):
+        text += re.escape(pattern[at : star.start()]) + _STARS.get(star[0], "")
+        text += "" if star[0] in _STARS else f"({_one_of(star[0])})"
+        at = star.end()
+    return text + re.escape(pattern[at:])
+
+
+_STARS = {"**/": "((?:[^/]+/)*)", "**": "(.*)", "*": "([^/]*)", "?": "([^/])"}
+
+
+def _one_of(brackets: str) -> str:
+    """Return brackets such as `[0-9]` as a regular expression."""
+    return translate(brackets).removeprefix("(?s:").removesuffix(r")\Z").removesuffix(r")\z")

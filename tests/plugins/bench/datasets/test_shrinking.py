@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tangible_bench.datasets.shrinking import shrink_mask, shrink_truth, shrink_views
+from tangible_bench.datasets.standard_pair import shrink_mask, shrink_truth, shrink_views
 from tangible_core.data import Calibration, Views
 
 NAN = float("nan")

@@ -23,7 +23,7 @@ from tangible_core.scene.geometry import smooth
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.workspace import SUITS, Workspace
 from tangible_export.paper.borders import shared_borders
-from tangible_legibility.border_steps import border_steps
+from tangible_legibility.neighbours import border_steps
 from tangible_legibility.simplifying.large import large_parts
 from tangible_texture import Hierarchy
 

@@ -13,7 +13,7 @@ from tangible_core import HapticSurface
 from tangible_core.data import DisparityMap, Relief
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.scene.geometry import nearness_range, unit_nearness
-from tangible_legibility.border_steps import WITHIN_M, felt_steps
+from tangible_legibility.neighbours import WITHIN_M, felt_steps
 
 BORDER = 0.04
 """The least difference of neighbours at a true border, of the range of disparities."""

@@ -9,11 +9,9 @@ import numpy as np
 from tangible_core.data import Material
 from tangible_core.preflight import Change, Cure, Verdict, over
 
-from .border_steps import border_steps
 from .cells import boxes
 from .legibility_input import LegibilityInput, Measurement, deepest_cells
-from .neighbours import apart, sample_relief
-from .pins import PIN_PITCH_M, show_on_pins
+from .neighbours import PIN_PITCH_M, apart, border_steps, sample_relief, show_on_pins
 from .words.texts import millimetres
 
 WIDEST_M = 2.0

@@ -8,7 +8,7 @@ import pytest
 
 from tangible_core.data import Relief
 from tangible_core.errors import PictureError
-from tangible_legibility.border_steps import border_steps, felt_steps
+from tangible_legibility.neighbours import border_steps, felt_steps
 
 PITCH_M = 0.0001
 SKIN_M = 0.0005

@@ -8,7 +8,7 @@ import pytest
 from tangible_core.data import PartMap, Relief
 from tangible_export.braille import DOT_HEIGHT_M
 from tangible_legibility import legibility, sizes
-from tangible_legibility.pins import PIN_PITCH_M
+from tangible_legibility.neighbours import PIN_PITCH_M
 
 PITCH_M = 1e-4
 ROUND_TABLE = "Round Table on Information Access for People with Print Disabilities"

@@ -11,8 +11,7 @@ from tangible_core.materials.assignment import library
 from tangible_legibility import apart
 from tangible_legibility.cells import FEW, vote
 from tangible_legibility.grid import on_grid
-from tangible_legibility.neighbours import sample_relief, steps_between
-from tangible_legibility.pins import PIN_PITCH_M, show_on_pins
+from tangible_legibility.neighbours import PIN_PITCH_M, sample_relief, show_on_pins, steps_between
 from tangible_legibility.words.places import place_of_counts
 
 PITCH_M = 0.00025

@@ -12,7 +12,7 @@ from tangible_core.preflight import Change, Cure, Verdict, over
 from .cells import boxes
 from .legibility_input import LegibilityInput, Measurement, deepest_cells
 from .neighbours import PIN_PITCH_M, apart, border_steps, sample_relief, show_on_pins
-from .words.texts import millimetres
+from .words.places import millimetres
 
 WIDEST_M = 2.0
 """Width above which a larger picture is not proposed as a cure."""

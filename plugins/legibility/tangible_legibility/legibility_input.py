@@ -14,7 +14,7 @@ from .neighbours import Steps, sample_relief, steps_between
 from .rules import Profile
 from .simplifying.textures import count_textures
 from .widths import Widths, measure
-from .words.texts import describe_part, describe_place
+from .words.places import describe_part, describe_place
 
 MOST_EACH = 4
 """Number of failing verdicts of one check; further ones are gathered into one."""

@@ -13,7 +13,7 @@ from .drawings import judge_drawing
 from .grid import on_grid
 from .legibility_input import LegibilityInput
 from .rules import PROFILES, Rule
-from .words.texts import millimetres
+from .words.places import millimetres
 
 
 def legibility(

@@ -14,7 +14,7 @@ from tangible_core.plugins import note
 
 from ..grid import Grid, on_grid
 from ..widths import ROUND_OFF, Widths, measure
-from ..words.texts import describe_part, join_texts, millimetres
+from ..words.places import describe_part, join_texts, millimetres
 from .opening import NOISY, Opening, too_small
 from .textures import count_textures, texture_kinds
 

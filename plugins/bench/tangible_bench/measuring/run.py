@@ -149,7 +149,7 @@ def run_side_by_side(
         for number, done in enumerate(farm.map(_measure, outlook.waiting, timeout_s=timeout_s)):
             check_stopped()
             row = replace(done.job.row, **(done.result or {"error": done.death}))
-            file.add(asdict(row))
+            file.add_row(asdict(row))
             rows[row.key] = row
             finished(number, row)
     return rows

@@ -2,12 +2,11 @@
 
 from tangible_core.plugins import Panel as Panel
 
-from .disparity import draw_disparity, draw_disparity_error
 from .force import draw_force_map
 from .relief import draw_relief
 from .segments import draw_parts, draw_segments
 from .time import draw_force_time
-from .views import draw_views
+from .views import draw_disparity, draw_disparity_error, draw_views
 
 PANELS = (
     Panel(draw_views, {"views"}, least_in=2.2),

@@ -41,9 +41,8 @@ from tangible_report.drawing.layout import Cell, arrange
 from tangible_report.drawing.sheet import DPI, WIDTH_IN, draw_figure, draw_sheet
 from tangible_report.material_sheet import draw_material, spectra
 from tangible_report.panels import PANELS
-from tangible_report.panels.force import round_number, spread
+from tangible_report.panels.force import heights_under, round_number, spread
 from tangible_report.panels.relief import points_of
-from tangible_report.panels.time import heights_under
 from tangible_report.style import colours
 
 NAN = np.nan

@@ -2,10 +2,9 @@
 
 from tangible_core.plugins import Panel as Panel
 
-from .force import draw_force_map
+from .force import draw_force_map, draw_force_time
 from .relief import draw_relief
 from .segments import draw_parts, draw_segments
-from .time import draw_force_time
 from .views import draw_disparity, draw_disparity_error, draw_views
 
 PANELS = (

@@ -4,6 +4,6 @@ from .at_length import Told as Told
 from .at_length import describe_at_length as describe_at_length
 from .at_length import page_of as page_of
 from .at_length import tell as tell
+from .describing import PartFacts as PartFacts
 from .describing import describe as describe
-from .facts import PartFacts as PartFacts
-from .facts import facts as facts
+from .describing import facts as facts

@@ -11,8 +11,7 @@ from tangible_core.scene import SceneKind
 from tangible_legibility.words.languages import Language, Words, one_line
 from tangible_legibility.words.places import NOWHERE
 
-from .describing import FLAT_M, heights_in_words, materials_in_words, people_in_words
-from .facts import PartFacts
+from .describing import FLAT_M, PartFacts, heights_in_words, materials_in_words, people_in_words
 
 MOST_PARTS = 60
 """The number of parts that are described, the largest; the others are counted."""

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tangible_authoring.losses import losses
+from tangible_authoring.fixing import losses
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
 from tangible_core.preflight.verdict import Change

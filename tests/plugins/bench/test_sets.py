@@ -13,6 +13,7 @@ import pytest
 
 from command_line import tangible
 from standard_sets import LAYOUTS, known, put
+from tangible_bench.commands.submission import submit
 from tangible_bench.config.reading import Comparison, parse_comparison
 from tangible_bench.datasets import MarkedPair
 from tangible_bench.datasets.submissions import write_png16
@@ -20,7 +21,6 @@ from tangible_bench.measuring.rows import Row, append
 from tangible_bench.results import set_tables
 from tangible_bench.results.summary import cells
 from tangible_bench.results.table import Results
-from tangible_bench.submitting import submit
 from tangible_bench.tasks.depth import TASK, measure, range_px
 from tangible_bench.tasks.depth_scenes import DepthScene
 from tangible_core.data import DisparityMap

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from tangible_bench.commands.progress import Forecast, forecast
 from tangible_bench.comparing import compare, read_comparison
 from tangible_bench.config.reading import Comparison, Damage, parse_comparison, shorten
-from tangible_bench.measuring.forecast import Forecast, forecast
 from tangible_bench.measuring.plan import measurements
 from tangible_bench.measuring.run import look
 from tangible_core.metrics.measured import load_measured

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tangible_batch import card
+from tangible_batch.job import CARD, write_card
 from tangible_core import Pipeline
 
 
@@ -17,8 +17,8 @@ def test_card_shows_the_picture_and_then_the_parts_or_the_relief(tmp_path: Path,
     Image.fromarray(np.full((40, 80, 3), (200, 30, 30), np.uint8)).save(tmp_path / "red.png")
     text = "scene: {photo: red.png, segments: parts.png}\nheights: {by: given}\n"
     (tmp_path / "mine.yaml").write_text(f"{text}want: {want}\n")
-    card.write_card(Pipeline.from_yaml(tmp_path / "mine.yaml"), tmp_path)
-    with Image.open(tmp_path / card.CARD) as drawn:
+    write_card(Pipeline.from_yaml(tmp_path / "mine.yaml"), tmp_path)
+    with Image.open(tmp_path / CARD) as drawn:
         pixels = np.asarray(drawn).astype(int)
     assert np.ptp(pixels[40, 80]) > 100  # red: the picture
     left, right = pixels[40, 200], pixels[40, 280]
@@ -37,6 +37,6 @@ def test_slope_is_as_bright_as_its_angle_to_the_light(tmp_path: Path, right: flo
         height_m = float(np.ptp(right * x + down * y)) or 0.01
         space = f"{{width_m: 0.04, relief_m: {height_m}, smooth_m: 0}}"
         (tmp_path / "mine.yaml").write_text(f"scene: {{height: slope.npy}}\nwant: relief\nworkspace: {space}\n")
-        card.write_card(Pipeline.from_yaml(tmp_path / "mine.yaml"), tmp_path)
-        with Image.open(tmp_path / card.CARD) as drawn:
+        write_card(Pipeline.from_yaml(tmp_path / "mine.yaml"), tmp_path)
+        with Image.open(tmp_path / CARD) as drawn:
             assert int(np.asarray(drawn)[80, 80, 0]) == pytest.approx(expected, abs=3)

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Sequence
 from html import escape
+from importlib.resources import files
+from string import Template
 from typing import NamedTuple
 
 import numpy as np
@@ -23,16 +25,6 @@ MOST_NEIGHBOURS = 4
 """The number of neighbours of a part that are named, those with the longest borders."""
 SHARES = (0.5, 0.25, 0.08, 0.0)
 """The shares of the picture from which on another word describes the size of a part."""
-
-_STYLE = """
-:root { color-scheme: light dark; }
-body { background: Canvas; color: CanvasText; font: 125%/1.6 system-ui, sans-serif; margin: 2rem auto; max-width: 40em;
-  padding: 0 1rem; }
-h1, h2 { line-height: 1.25; }
-li { margin: 0 0 0.75em; padding-left: 0.25em; }
-@media print { body { font-size: 14pt; margin: 0; max-width: none; } h2 { break-after: avoid; }
-  li { break-inside: avoid; } }
-""".strip()
 
 
 class ToldPart(NamedTuple):
@@ -101,25 +93,14 @@ def page_of(
     )
     listed = f"<h2>{told.heading}</h2>\n<ul>\n{items}</ul>\n" if told.parts else ""
     left = f"<p>{told.left_out}</p>\n" if told.left_out else ""
-    return f"""<!doctype html>
-<html lang="{language}">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'">
-<title>{escape(one_line(title)) or told.title}</title>
-<style>
-{_STYLE}
-</style>
-</head>
-<body>
-<main>
-<h1>{told.title}</h1>
-<p>{" ".join(told.overview)}</p>
-{listed}{left}</main>
-</body>
-</html>
-"""
+    page = files("tangible_report.description").joinpath("page.html").read_text(encoding="utf-8")
+    return Template(page).substitute(
+        language=language,
+        name=escape(one_line(title)) or told.title,
+        title=told.title,
+        overview=" ".join(told.overview),
+        parts=f"{listed}{left}",
+    )
 
 
 def tell(

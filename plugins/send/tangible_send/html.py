@@ -4,6 +4,8 @@ from base64 import b64encode
 from collections.abc import Mapping
 from hashlib import sha256
 from html import escape
+from importlib.resources import files
+from string import Template
 from typing import Any
 
 from tangible_legibility.words.languages import Language, Words, one_line
@@ -23,39 +25,18 @@ def page_of(
         raise ValueError("script and style must not end their elements")
     name, say = escape(one_line(title)), Words(language)
     described = data.get("describes", {}).get(language)
-    return f"""<!doctype html>
-<html lang="{language}">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="{_policy(script, style)}">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<meta name="referrer" content="no-referrer">
-<title>{name or say("untitled")}</title>
-<style>{style}</style>
-</head>
-<body>
-<a id="skip" href="#terrain"></a>
-<header><h1 lang="{escape(named_in) if name else language}" dir="auto">{name or say("untitled")}</h1></header>
-<main>
-<p id="how"></p>
-<div id="scenery"><canvas id="terrain" tabindex="0" role="application" aria-describedby="how described"></canvas></div>
-<p id="described" class="visually-hidden"></p>
-<p id="said" role="status" aria-live="polite" dir="auto"></p>
-<p id="alerted" role="alert" dir="auto"></p>
-<noscript><p>{say("no script")}</p></noscript>
-<div id="controls" role="group"></div>
-<section id="parts" hidden></section>
-<section id="description" lang="{language}">{_describe(described) if described else ""}</section>
-<details id="help"></details>
-</main>
-<!--
-{licences.replace("--", "- -")}-->
-<script type="application/json" id="data">{as_json(data)}</script>
-<script>{script}</script>
-</body>
-</html>
-"""
+    return Template(files("tangible_send").joinpath("page.html").read_text(encoding="utf-8")).substitute(
+        language=language,
+        policy=_policy(script, style),
+        title=name or say("untitled"),
+        style=style,
+        named_in=escape(named_in) if name else language,
+        no_script=say("no script"),
+        description=_describe(described) if described else "",
+        licences=licences.replace("--", "- -"),
+        data=as_json(data),
+        script=script,
+    )
 
 
 def _policy(script: str, style: str) -> str:

@@ -36,8 +36,7 @@ class Page(Exporter):
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
         """Write one file. Raises: ConfigError if the page was not built; OutputError if it cannot be small enough."""
-        from .html import page_of
-        from .packing import LEAST_PHOTO, pack, photo
+        from .packing import LEAST_PHOTO, pack, page_of, photo
         from .surface import fits, surface_to_send
 
         script, style, licences = map(page_file, ("send.js", "send.css", "LICENSES.txt"))

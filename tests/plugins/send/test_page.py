@@ -22,8 +22,7 @@ from tangible_core.plugins.notes import collect_notes
 from tangible_depth import Luminance
 from tangible_legibility.words.languages import Language, Words, one_line
 from tangible_render.surface.coefficients import spline_coefficients
-from tangible_send.html import page_of
-from tangible_send.packing import LEAST_PHOTO, deflate
+from tangible_send.packing import LEAST_PHOTO, deflate, page_of
 from tangible_send.page import Page
 from tangible_send.surface import MOST_CELLS, surface_to_send
 from videos import write_video

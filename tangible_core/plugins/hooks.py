@@ -45,8 +45,6 @@ class Panel(NamedTuple):
     bottom_in: float = 0.4
     least_in: float = 2.9
     """The width for the headline, in inches, where the axes are narrower."""
-    least_aspect: float = 0.0
-    """The least width over height next to tall panels, where the aspect is not fixed."""
 
 
 class Specs:

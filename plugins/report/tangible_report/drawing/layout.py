@@ -16,8 +16,7 @@ TALLEST_IN = 4.5
 class Cell(NamedTuple):
     """The requested size of a panel: width over height of its axes, and the room around them in inches.
 
-    A cell narrower than its text, `least_in`, gets more room on the right. A cell with a `least_aspect` may shrink to
-    that aspect next to narrow cells, so that these become higher.
+    A cell narrower than its text, `least_in`, gets more room on the right.
     """
 
     aspect: float
@@ -26,18 +25,11 @@ class Cell(NamedTuple):
     bottom_in: float
     top_in: float
     least_in: float = 0.0
-    least_aspect: float = 0.0
 
     @property
     def wanted_in(self) -> float:
         """The preferred height: narrow cells are higher, so that they are as large as a square in a row of ROW_IN."""
         return min(ROW_IN / min(self.aspect, 1.0) ** 0.5, TALLEST_IN)
-
-    def at(self, height_in: float, wider_in: float = 0.0) -> "Cell":
-        """Return the cell in a row of this height: as wide as it prefers, but `wider_in` above its least at most."""
-        if not self.least_aspect:
-            return self
-        return self._replace(aspect=min(self.aspect, self.least_aspect + wider_in / height_in), least_aspect=0.0)
 
 
 class Box(NamedTuple):
@@ -54,7 +46,7 @@ def arrange(cells: Sequence[Cell], width_in: float) -> tuple[list[Box], float, f
 
     The cells are broken into rows such that the heights of the rows are nearest to the preferred heights of the cells.
     """
-    rows = [_stretch(row, width_in) for row in _break_into_rows(cells, width_in)]
+    rows = [(row, min(_height(row, width_in), TALLEST_IN)) for row in _break_into_rows(cells, width_in)]
     used_in = max(_width(row, height_in) for row, height_in in rows)
     boxes: list[Box] = []
     top_in = 0.0
@@ -63,16 +55,6 @@ def arrange(cells: Sequence[Cell], width_in: float) -> tuple[list[Box], float, f
         boxes += _row_boxes(row, top_in, height_in, used_in)
         top_in += height_in + max(cell.bottom_in for cell in row)
     return boxes, used_in, top_in
-
-
-def _stretch(row: Sequence[Cell], width_in: float) -> tuple[Sequence[Cell], float]:
-    """Return the row with its cells as wide as they can be, and its height."""
-    height_in = min(_height(row, width_in), TALLEST_IN)
-    if not _can_shrink(row):
-        return [cell._replace(least_aspect=0.0) for cell in row], height_in
-    narrow = [cell.at(height_in) for cell in row]
-    free_in = width_in - _width(narrow, height_in)
-    return [cell.at(height_in, free_in) for cell in row], height_in
 
 
 def _break_into_rows(cells: Sequence[Cell], width_in: float) -> list[Sequence[Cell]]:
@@ -100,18 +82,8 @@ def _width(row: Sequence[Cell], height_in: float) -> float:
     return sum(_cell_width(cell, height_in) for cell in row)
 
 
-def _can_shrink(row: Sequence[Cell]) -> bool:
-    """Return True if a cell of the row may be narrower, and another one prefers a higher row."""
-    return any(cell.least_aspect for cell in row) and any(cell.wanted_in > ROW_IN for cell in row)
-
-
 def _height(row: Sequence[Cell], width_in: float) -> float:
-    """Return the height of axes at which the row is width_in wide, by bisection; a small one if it never fits.
-
-    Next to a cell that may shrink, no cell is higher than it prefers.
-    """
-    if _can_shrink(row):
-        return min(_height([cell.at(1.0) for cell in row], width_in), max(cell.wanted_in for cell in row))
+    """Return the height of axes at which the row is width_in wide, by bisection; a small one if it never fits."""
     low, high = 0.01, 2 * width_in / min(cell.aspect for cell in row)
     for _ in range(40):
         middle = (low + high) / 2

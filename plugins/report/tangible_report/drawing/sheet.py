@@ -185,7 +185,7 @@ def panel_aspect(panel: Panel, run: Mapping[str, Any]) -> float:
 
 def _cell(panel: Panel, run: Mapping[str, Any]) -> Cell:
     room_in = panel.left_in, panel.right_in, panel.bottom_in, HEADLINE_IN
-    return Cell(panel_aspect(panel, run), *room_in, panel.least_in, panel.least_aspect)
+    return Cell(panel_aspect(panel, run), *room_in, panel.least_in)
 
 
 def _products_of(panel: Panel, run: Mapping[str, Any]) -> dict[str, Any]:

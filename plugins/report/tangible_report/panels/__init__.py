@@ -15,8 +15,6 @@ PANELS = (
     Panel(draw_parts, {"parts"}, {"views", "surface"}, right_in=1.75),
     Panel(draw_relief, {"relief"}, right_in=0.45),
     Panel(draw_force_map, {"relief", "recording"}, left_in=0.65, right_in=0.95, bottom_in=0.65),
-    Panel(
-        draw_force_time, {"recording"}, {"relief"}, 4.5, left_in=0.65, bottom_in=0.55, least_in=7.6, least_aspect=3.0
-    ),
+    Panel(draw_force_time, {"recording"}, {"relief"}, 4.5, left_in=0.65, bottom_in=0.55, least_in=7.6),
 )
 """The panels in the order in which a picture becomes a force."""

@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 from scipy.special import logit
 
-from tangible_bench.metrics.segments import adjusted_rand_index, contingency, covering, rand_index
+from tangible_bench.metrics.segments import Counts, adjusted_rand_index, contingency
 from tangible_core.data import SegmentTree, Views
 from tangible_core.data.views import border_pixels
 from tangible_core.pipeline.engine.stages.relief import LEVEL, SEEN_LEVEL
@@ -38,6 +38,30 @@ GRAPH = {"sigma": 0.5, "k": 500.0, "min_size": 300}
 """OpenCV's graph at the options that cover the given photographs best, of k 100..1000 and sizes 50..500."""
 RUNS, LARGE = 7, (3000, 4000)
 Labels = np.ndarray
+
+
+def rand_index(counts: Counts) -> float:
+    """Return the share of pairs of pixels on which both maps agree: together in both, or apart in both.
+
+    The mean over several people's maps is the probabilistic Rand index.
+    Source: Unnikrishnan, Pantofaru & Hebert, IEEE TPAMI 29, 2007.
+    """
+    groups = counts, counts.sum(axis=1), counts.sum(axis=0), counts.sum(keepdims=True)
+    both, first, second, every = (int((each * (each - 1) // 2).sum()) for each in groups)
+    return 1 - (first + second - 2 * both) / every if every else 1.0
+
+
+def covering(counts: Counts) -> float:
+    """Return how well segments cover the true ones: the greatest overlap of each true segment, weighted by its area.
+
+    The overlap of two segments is their intersection over their union.
+    Source: Arbelaez, Maire, Fowlkes & Malik, IEEE TPAMI 33, 2011, sec. 3.1.
+    """
+    found, true = counts.sum(axis=1), counts.sum(axis=0)
+    overlaps = counts / (found[:, None] + true - counts)
+    return float((true * overlaps.max(axis=0)).sum() / true.sum())
+
+
 COUNTED = {"covering": covering, "PRI": rand_index, "ARI": adjusted_rand_index}
 MEASURES = *COUNTED, "F"
 NEAR = 0.0075

@@ -51,27 +51,6 @@ def adjusted_rand_index(counts: Counts) -> float:
     return 1.0 if most == chance else (2 * both * every - chance) / (most - chance)
 
 
-def rand_index(counts: Counts) -> float:
-    """Return the share of pairs of pixels on which both maps agree: together in both, or apart in both.
-
-    The mean over several people's maps is the probabilistic Rand index.
-    Source: Unnikrishnan, Pantofaru & Hebert, IEEE TPAMI 29, 2007.
-    """
-    both, first, second, every = _pair_counts(counts)
-    return 1 - (first + second - 2 * both) / every if every else 1.0
-
-
-def covering(counts: Counts) -> float:
-    """Return how well segments cover the true ones: the greatest overlap of each true segment, weighted by its area.
-
-    The overlap of two segments is their intersection over their union.
-    Source: Arbelaez, Maire, Fowlkes & Malik, IEEE TPAMI 33, 2011, sec. 3.1.
-    """
-    found, true = counts.sum(axis=1), counts.sum(axis=0)
-    overlaps = counts / (found[:, None] + true - counts)
-    return float((true * overlaps.max(axis=0)).sum() / true.sum())
-
-
 def matched_accuracy(counts: Counts) -> float:
     """Return the share of the pixels on the best matching of labels; pixels of labels without a partner are wrong.
 

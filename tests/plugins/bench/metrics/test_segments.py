@@ -8,14 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
+from benchmarks.regions import covering, rand_index
 from tangible_bench.metrics.segments import (
     adjusted_rand_index,
     border_points,
     boundary_distance,
     contingency,
-    covering,
     matched_accuracy,
-    rand_index,
     segment_errors,
 )
 from tangible_core.errors import PictureError

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, get_args
 
 import typer
 
 from tangible_core.cli import FAILED, Config, Json, NoCache, Sets, Verbose, open_pipeline
+from tangible_core.plugins import Medium
 
 if TYPE_CHECKING:
-    from tangible_core.plugins import Medium
     from tangible_core.preflight import Legibility
 
 COLOURS = {"ok": "green", "warn": "yellow", "illegible": "bold red"}
@@ -18,19 +17,10 @@ WIDTHS = 9, 15
 """The columns of grades and of checks, characters."""
 
 
-class ReadOn(StrEnum):
-    """The media that fingers read."""
-
-    swell = "swell"
-    print = "print"
-    pins = "pins"
-    force = "force"
-
-
 def legible(
     config: Config,
     medium: Annotated[
-        ReadOn | None,
+        Medium | None,
         typer.Option(
             "--for",
             help="Medium: swell paper, a printed solid, pins or a force device [default: each].",
@@ -55,7 +45,7 @@ def legible(
     pipeline = open_pipeline(config, sets or [], not no_cache)
     feeling, scene = Feeling(pipeline), pipeline.scene.name
     found = list[Found]()
-    media: list[Medium] = [medium.value] if medium else ["swell", "print", "pins", "force"]
+    media: tuple[Medium, ...] = (medium,) if medium else get_args(Medium)
     for name in media:
         wide_m = feeling.width_on(name) if width_m is None else width_m
         found.append(Found(name, wide_m, feeling.is_simplified_on(name), feeling.legible(name, wide_m)))

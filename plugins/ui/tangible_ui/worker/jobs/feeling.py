@@ -2,7 +2,9 @@
 
 import shlex
 from datetime import datetime
+from importlib.resources import files
 from pathlib import Path
+from string import Template
 from typing import Any, cast
 
 from tangible_core.data import HapticSurface
@@ -63,26 +65,6 @@ def laws(
     return [loop_input_of(first), *(loop_input_of(Pipeline.from_config(config, like=first)) for config in with_others)]
 
 
-STUDY = """\
-# Two force laws, blindly: neither participant nor experimenter sees which one acts.
-#   {run}
-#   {analyse}
-study: laws
-title: {title}
-pipeline: pipeline.yaml
-conditions:
-  {first}: {{}}
-  {second}: {{set: {{render: {other}}}}}
-comparisons:
-- name: laws
-  question: {question}
-  repetitions: 18                  # trials; a multiple of 6 shows each arrangement equally often
-breaks: {{every: 18, seconds: 60}}
-language: {language}
-"""
-"""A study of the page's two laws."""
-
-
 @job(quick=True)
 def write_law_study(
     state: WorkerState,
@@ -112,5 +94,7 @@ def write_law_study(
     blocks = {"title": json_in_yaml(" / ".join(names)), "other": json_in_yaml(other), "first": first, "second": second}
     config = parse_config(text, path, state.registry, sets)
     write_text(pipeline, relocate_text(text, path, config, pipeline), private=True)
-    write_text(file, STUDY.format(**found, **blocks, question=question, language=language), private=True)
+    study = Template(files("tangible_ui.worker.jobs").joinpath("law_study.yaml").read_text(encoding="utf-8"))
+    written = study.substitute(found, **blocks, question=question, language=language)
+    write_text(file, written, private=True)
     return found

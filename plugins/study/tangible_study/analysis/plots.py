@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +10,7 @@ import numpy as np
 
 from tangible_core.files import atomic_write
 
-from ..measures.rows import ALL, Result, Row
+from ..measures.rows import ALL, Result
 from .analysing import sentences
 
 if TYPE_CHECKING:
@@ -80,7 +79,7 @@ def _draw_figures(axes: Axes, result: Result) -> None:
 
     shown = result.of_all(result.main)
     for place, row in enumerate(shown):
-        single = [each.estimate.value for each in _of_participants(result, row)]
+        single = [each.estimate.value for each in result.rows if each.what == row.what and each.participant != ALL]
         axes.plot(single, place + 0.18 + 0.02 * np.arange(len(single)) % 0.2, "o", color="#999999", markersize=3)
         value, low, high = row.estimate
         if row.estimate.has_interval and np.isfinite((low, high)).all():
@@ -91,7 +90,3 @@ def _draw_figures(axes: Axes, result: Result) -> None:
     names = [" / ".join(filter(None, (row.what.condition, row.what.other))) for row in shown]
     axes.set_yticks(range(len(shown)), names)
     axes.set(ylim=(len(shown) - 0.5, -0.5), xlabel=f"{result.main} {shown[0].unit if shown else ''}".rstrip())
-
-
-def _of_participants(result: Result, row: Row) -> Sequence[Row]:
-    return [each for each in result.rows if each.what == row.what and each.participant != ALL]

@@ -177,7 +177,8 @@ class Presenter:
         study = self.stimuli.file.study
         self.desk.stop.clear()
         for number, stimulus in enumerate(intervals, 1):
-            self._pause(study.pause_s if number > 1 else 0.0)
+            if self.in_real_time and number > 1:
+                time.sleep(study.pause_s)
             name = f"Interval {number}." if len(intervals) > 1 else "Feel now."
             self._present_one(trial, stimulus, name, writer, start_s, rendering)
         self.desk.say("Please stop now.")
@@ -212,10 +213,6 @@ class Presenter:
         else:  # a film, which is played in a loop of its own
             self.loop.close()
             _check_end(feeling.run(seconds, keep=keep, on_start=begin, beacon=part, stop=self.desk.stop).stopped)
-
-    def _pause(self, seconds: float) -> None:
-        if self.in_real_time and seconds:
-            time.sleep(seconds)
 
 
 def _check_end(stopped: str) -> None:

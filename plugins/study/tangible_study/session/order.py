@@ -95,20 +95,16 @@ def replay(course: Course, answers: Iterable[Answer]) -> int:
 
     Raises: ResultsError if they are answers to other trials: the study file or the program has changed since.
     """
-    done = list(answers)
+    done, shared = list(answers), {*SHARED} - {"question", "procedure"}
     for answer in done:
         trial = course.next()
-        if trial is None or not _same(trial, answer):
+        if trial is None or any(getattr(trial, each) != getattr(answer, each) for each in shared):
             raise ResultsError(
                 f"trial {answer.trial}: is an answer to another trial than this study asks now; run the study with the "
                 "version of the program that began it, which the file next to the answers names"
             )
         course.take(trial, answer.response)
     return len(done)
-
-
-def _same(trial: Trial, answer: Answer) -> bool:
-    return all(getattr(trial, each) == getattr(answer, each) for each in {*SHARED} - {"question", "procedure"})
 
 
 def answer_of(trial: Trial, number: int, response: str, seconds: float) -> Answer:

@@ -67,12 +67,6 @@ def _kitti_2012(
     return (folder / f"{pair.name}.png",)
 
 
-def _kitti_2015(
-    folder: Path, label: str, pair: StandardPair, disparity_px: Disparity, seconds: float
-) -> tuple[Path, ...]:
-    return _kitti_2012(folder / "disp_0", label, pair, disparity_px, seconds)
-
-
 def _eth3d(folder: Path, label: str, pair: StandardPair, disparity_px: Disparity, seconds: float) -> tuple[Path, ...]:
     disparity, time = (folder / "low_res_two_view" / f"{pair.name}.{end}" for end in ("pfm", "txt"))
     write_pfm(disparity, disparity_px)
@@ -93,6 +87,6 @@ Writer = Callable[[Path, str, StandardPair, Disparity, float], tuple[Path, ...]]
 WRITERS: Mapping[str, Writer] = {
     **dict.fromkeys(("middlebury-eval3", "middlebury-2014", "middlebury-2021"), _middlebury),
     "kitti-2012": _kitti_2012,
-    "kitti-2015": _kitti_2015,
+    "kitti-2015": lambda folder, *more: _kitti_2012(folder / "disp_0", *more),
     "eth3d": _eth3d,
 }

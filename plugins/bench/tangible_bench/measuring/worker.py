@@ -60,7 +60,9 @@ def measure(job: Job) -> Result:
     """Run a job in this process. Raises: any error of the method."""
     task = load_task(job.kind)
     method = load_method(job.kind, job.use).model_validate(job.options)
-    scene = _open_scene(task, job)
+    scene = task.scene.model_validate(job.scene).open()
+    if job.perturb in task.perturbations:
+        scene = task.perturbations[job.perturb].apply(scene, job.value)
     if not job.calls:
         return Result(None, None, None, _errors(task, job, scene, task.work(task.prepare(method, scene), scene)))
     warm = [_time(task, method, scene).whole_s for _ in range(job.warmups)]
@@ -78,11 +80,6 @@ def _errors(task: Task, job: Job, scene: Any, result: Any) -> dict[str, float | 
         result = task.finishes[name](result)
     measures = task.measure(result, scene)
     return {name: float(value) if math.isfinite(value) else None for name, value in measures.items()}
-
-
-def _open_scene(task: Task, job: Job) -> Any:
-    scene = task.scene.model_validate(job.scene).open()
-    return task.perturbations[job.perturb].apply(scene, job.value) if job.perturb in task.perturbations else scene
 
 
 class _Timing(NamedTuple):

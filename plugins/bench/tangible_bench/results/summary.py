@@ -118,13 +118,11 @@ def _cell(rows: Sequence[Row], baseline: Mapping[int, float]) -> Cell:
         first_seconds=[row.first_seconds for row in good if row.first_seconds is not None],
         ratios=[row.seconds / baseline[row.repeat] for row in good if row.seconds and baseline.get(row.repeat)],
         memory_bytes=[row.peak_memory_bytes for row in good if row.peak_memory_bytes is not None],
-        measures={name: median(_present(row.measures.get(name) for row in good)) for name in names},
+        measures={
+            name: median(value for row in good if (value := row.measures.get(name)) is not None) for name in names
+        },
         error=errors[-1] if errors else None,
     )
-
-
-def _present(values: Iterable[float | None]) -> list[float]:
-    return [value for value in values if value is not None]
 
 
 def _line(method: str, perturb: str, of_scenes: Sequence[Cell | None], known: Set[tuple[str, str]]) -> Line:

@@ -152,14 +152,10 @@ def _measures() -> dict[str, Measure]:
         "ausc": Measure("sparsification %", 3, tolerance=0.0005),
         "ausc_by_oracle": Measure("sparsification / oracle"),
     }
-    of_sets = _benchmark_titles()
-    return _with_noc(errors) | sorted_out | _with_noc(of_sets | _at_full_size(errors | of_sets))
-
-
-def _benchmark_titles() -> dict[str, Measure]:
     quantiles = {f"a{share}_px": Measure(f"A{share} px", 3, tolerance=0.0005, of_sets=True) for share in QUANTILES}
     titles = {"invalid": "invalid", "bad3": "bad3", "d1": "D1-all", "d1_bg": "D1-bg", "d1_fg": "D1-fg"}
-    return quantiles | {name: Measure(f"{title} %", of_sets=True) for name, title in titles.items()}
+    of_sets = quantiles | {name: Measure(f"{title} %", of_sets=True) for name, title in titles.items()}
+    return _with_noc(errors) | sorted_out | _with_noc(of_sets | _at_full_size(errors | of_sets))
 
 
 def _at_full_size(known: Mapping[str, Measure]) -> dict[str, Measure]:

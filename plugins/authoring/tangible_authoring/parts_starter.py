@@ -33,7 +33,7 @@ def parts_starter(
     depth = pipeline.config.depth
     values = {
         "name": plain_line(Path(scene.name).name), "file": plain_line(str(file)), "columns": columns, "rows": rows,
-        "count": _count_in_words(len(listed)),
+        "count": f"{len(listed)} part{'s' * (len(listed) != 1)}",
         "labels": labels, "numbered": numbered, "scene": _scene_in_yaml(scene, file.parent, labels),
         "title": on_one_line(title), "heights": GUESSED if guessed else MEASURED, "parts": _lines(listed),
         "round_mm": f"{1000 * heights.round_m:g}", "bulge_mm": f"{1000 * heights.bulge_m:g}",
@@ -54,10 +54,6 @@ def title_of(picture: Path) -> str:
     stem = plain_line(picture.stem)
     words = re.sub(r"[\s_-]+", " ", stem).strip() or stem
     return words[:1].upper() + words[1:]
-
-
-def _count_in_words(parts: int) -> str:
-    return f"{parts} part{'s' * (parts != 1)}"
 
 
 def _lines(listed: Sequence[ListedPart]) -> str:

@@ -109,7 +109,9 @@ def moves(written: Mapping[int, Any], before: Sequence[Before]) -> list[Moved]:
     written: the file's parts by their earlier numbers. before: the earlier number of each part; empty if unknown.
     """
     now = {each.number: number for number, each in enumerate(before) if each.number is not None}
-    found = (Moved(number, now.get(number), _name(choice)) for number, choice in written.items())
+    found = (
+        Moved(number, now.get(number), str(_block(choice).get("name") or "")) for number, choice in written.items()
+    )
     return [each for each in found if before and each.now != each.before]
 
 
@@ -165,7 +167,3 @@ def _comment(before: Before, part: ListedPart) -> str:
 def _block(choice: Any) -> dict[str, Any]:
     """Return the block of a part, of which a word alone is the name."""
     return cast("dict[str, Any]", choice) if isinstance(choice, dict) else {"name": choice}
-
-
-def _name(choice: Any) -> str:
-    return str(_block(choice).get("name") or "")

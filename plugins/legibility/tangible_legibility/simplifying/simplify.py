@@ -132,7 +132,7 @@ def simplify(
     Raises: GeometryError if width_m is not positive.
     """
     grid = on_grid(parts, width_m, worked=True)
-    coarse, coarse_m = _coarsen(grid.parts.labels), COARSE * grid.pitch_m
+    coarse, coarse_m = np.ascontiguousarray(grid.parts.labels[::COARSE, ::COARSE]), COARSE * grid.pitch_m
     coarse_widths = measure(coarse, coarse_m, choice.gap_m, quick=True)
     if not _clearly_fails(grid.parts, coarse_widths, coarse_m, choice, names):
         whole = on_grid(parts, width_m)
@@ -149,10 +149,6 @@ def simplify(
     simplified = _number_pieces(grid.parts, labels, kinds)
     note_outcome(grid.parts, Grid(simplified, grid.pitch_m), widths, width_m, choice, names)
     return simplified
-
-
-def _coarsen(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "r c"]:
-    return np.ascontiguousarray(labels[::COARSE, ::COARSE])
 
 
 def _refine(coarse: np.ndarray, shape: tuple[int, int]) -> np.ndarray:

@@ -115,7 +115,10 @@ def tell(
     """Return a long description. given: formats custom names, which are those of the title, of parts and materials."""
     say = Words(language)
     largest = _largest(parts)
-    labels = {each.number: _label(each, say, given) for each in parts}
+    labels = {
+        each.number: given(each.name) if each.name else say("part number", number=shown_number(each.number))
+        for each in parts
+    }
     left = [each for each in parts if each not in largest]
     share = _percent(sum(each.share for each in left), say)
     left_out = say("small part" if len(left) == 1 else "small parts", count=len(left), share=share) if left else ""
@@ -136,10 +139,6 @@ def _largest(parts: Sequence[PartFacts]) -> list[PartFacts]:
     ranked = sorted(large, key=lambda each: (not each.name, -each.share))
     chosen = {each.number for each in ranked[:MOST_PARTS]}
     return [each for each in parts if each.number in chosen]
-
-
-def _label(part: PartFacts, say: Words, given: Callable[[str], str]) -> str:
-    return given(part.name) if part.name else say("part number", number=shown_number(part.number))
 
 
 def _size(surface: HapticSurface, say: Words) -> str:

@@ -140,7 +140,13 @@ def draw_figure(run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> 
     panels = [panel for panel in panels if run.keys() >= set(panel.needs)]
     if not panels:
         raise OutputError(f"{title}: there is nothing to draw; request a product that can be drawn")
-    boxes, width_in, height_in = arrange([_cell(panel, run) for panel in panels], WIDTH_IN)
+    boxes, width_in, height_in = arrange(
+        [
+            Cell(panel_aspect(each, run), each.left_in, each.right_in, each.bottom_in, HEADLINE_IN, each.least_in)
+            for each in panels
+        ],
+        WIDTH_IN,
+    )
     figure = Figure(figsize=(width_in, height_in + TITLE_IN), dpi=DPI, facecolor="white")
     figure.text(0.15 / width_in, 1 - 0.1 / (height_in + TITLE_IN), title, fontsize=13, weight="bold", va="top")
     for letter, panel, box in zip(_letters(), panels, boxes, strict=False):
@@ -181,11 +187,6 @@ def panel_aspect(panel: Panel, run: Mapping[str, Any]) -> float:
     """Return width over height of a panel of this run."""
     own = panel.aspect(**_products_of(panel, run)) if callable(panel.aspect) else panel.aspect
     return own or scene_aspect(run)
-
-
-def _cell(panel: Panel, run: Mapping[str, Any]) -> Cell:
-    room_in = panel.left_in, panel.right_in, panel.bottom_in, HEADLINE_IN
-    return Cell(panel_aspect(panel, run), *room_in, panel.least_in)
 
 
 def _products_of(panel: Panel, run: Mapping[str, Any]) -> dict[str, Any]:

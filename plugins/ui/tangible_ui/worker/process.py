@@ -73,12 +73,7 @@ def _work(state: Any, asks: "queue.SimpleQueue[JobRequest]", voice: Sender, quic
     while True:
         voice.say(answer(state, asks.get()))
         if not quick:
-            give_precedence()
-
-
-def give_precedence() -> None:
-    """Lower the priority of every thread but that of the quick jobs, for which somebody waits."""
-    lower_priority(all_threads() - _keep_precedence, NICENESS)
+            lower_priority(all_threads() - _keep_precedence, NICENESS)
 
 
 def answer(state: Any, ask: JobRequest) -> JobResult | JobFailure:

@@ -92,7 +92,8 @@ def document_with_parts(
     changes: dict[Any, Any] = dict(_scene(now, path, place))
     changes |= {("heights", key): value for key, value in (heights or {}).items()}
     changes |= {(key,): value or REMOVE for key, value in words.items() if value is not None}
-    short = {shown_number(label): _short(each) for label, each in sorted(choices.items()) if each}
+    entries = ((number, each) for number, each in sorted(choices.items()) if each)
+    short = {shown_number(number): each["name"] if set(each) == {"name"} else dict(each) for number, each in entries}
     before = now.get("parts")
     before = before if isinstance(before, dict) else {}
     if not before or len(short.keys() | before.keys()) > MOST_EDITED:
@@ -111,11 +112,6 @@ def _with_block(text: str, path: Path, parts: Mapping[int, Any]) -> str:
     except ConfigError:
         bare = edit_text(text, path, {("parts",): REMOVE})
         return edit_text(bare, path, {("parts", str(number)): value for number, value in parts.items()})
-
-
-def _short(each: Mapping[str, Any]) -> Any:
-    """Return the name alone if the entry has nothing else."""
-    return each["name"] if set(each) == {"name"} else dict(each)
 
 
 def _another(name: str, taken: set[str]) -> str:

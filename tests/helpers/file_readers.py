@@ -600,7 +600,7 @@ REQUESTS = {
 
 
 def _uploaded_labels(path: Path) -> object:
-    from tangible_ui.worker.parts.label_files import is_ours, unpack
+    from tangible_ui.worker.parts.saving import is_ours, unpack
 
     return is_ours(path, "p.yaml") if path.suffix == ".png" else unpack(path, LABELS.shape)
 
@@ -608,7 +608,7 @@ def _uploaded_labels(path: Path) -> object:
 def _make_uploads(folder: Path) -> None:
     import gzip
 
-    from tangible_ui.worker.parts.label_files import as_png
+    from tangible_ui.worker.parts.saving import as_png
 
     (folder / "labels.gz").write_bytes(gzip.compress(LABELS.astype("<u2").tobytes()))
     (folder / "parts.png").write_bytes(as_png(LABELS.astype(np.int32), "p.yaml"))

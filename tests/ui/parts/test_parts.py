@@ -24,9 +24,8 @@ from tangible_ui.state.scheduling import LatestWins
 from tangible_ui.state.session import Session
 from tangible_ui.worker.jobs import JOBS, making
 from tangible_ui.worker.parts import opening
-from tangible_ui.worker.parts.label_files import as_png, is_ours, unpack
 from tangible_ui.worker.parts.opening import _places
-from tangible_ui.worker.parts.saving import document_with_parts, number_parts
+from tangible_ui.worker.parts.saving import as_png, document_with_parts, is_ours, number_parts, unpack
 from tangible_ui.worker.state import WorkerState
 from waiting import happened
 

@@ -22,9 +22,9 @@ from tangible_core.pipeline.engine import (
 
 from ..loop_input import parcel_of
 from ..parts import opening, saving
-from ..parts.label_files import as_png, unpack
 from ..parts.outlines import snap
 from ..parts.proposals import Kind, as_points, propose, propose_region, runs
+from ..parts.saving import as_png, unpack
 from ..state import WorkerState
 from ..view.files import show
 from ..view.surface_view import SurfaceView, view_parts

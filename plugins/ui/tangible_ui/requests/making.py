@@ -1,4 +1,4 @@
-"""Requests to make products of the document, and to stop."""
+"""Requests to make products of the document, to export them, and to stop."""
 
 import asyncio
 from typing import Any
@@ -96,3 +96,12 @@ async def _insist(session: Session, numbers: set[int]) -> None:
     if numbers & session.long_jobs.running:
         session.long_jobs.killed = True
         session.worker.kill()
+
+
+@request()
+async def export(session: Session, tab: Tab | None, exports: list[dict[str, Any] | str]) -> dict[str, Any] | None:
+    """Write files of the document as it is on the screen; None if it was stopped.
+
+    exports: as `export:` of a pipeline file has them. Raises: ConfigError for invalid ones.
+    """
+    return await long_job(session, "export", "surface", sets=session.document.sets, exports=exports)

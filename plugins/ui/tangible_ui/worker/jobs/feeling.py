@@ -17,8 +17,8 @@ from tangible_core.pipeline.engine import product_at_hand
 from tangible_core.servo import beacon_to, parcel
 
 from ...user_data import user_folder
-from ..loop_input import loop_input_of
 from ..state import WorkerState
+from .making import loop_input_of
 from .table import job
 
 

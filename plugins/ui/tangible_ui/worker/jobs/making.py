@@ -1,26 +1,57 @@
-"""Jobs that make products and show them on the way; and the plan of making."""
+"""Jobs that make products, show them on the way and pack the loop's input; and the plan of making."""
 
 from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from pathlib import Path
+from threading import Event
 from time import perf_counter
 from typing import Any, cast
 
 import numpy as np
 
-from tangible_core.data import PRODUCTS, Outcome, Plan
+from tangible_core.data import PRODUCTS, HapticSurface, Outcome, Plan
 from tangible_core.errors import TangibleError
+from tangible_core.mapping import over
 from tangible_core.pipeline import Pipeline
+from tangible_core.pipeline.config import PipelineConfig
 from tangible_core.pipeline.engine import Progress, StageEvent
+from tangible_core.plugins import Touch
+from tangible_core.runtime import dumps
+from tangible_core.servo import pack_touch
+from tangible_core.session import materials_text
 
-from ..loop_input import loop_input_of
 from ..state import Work, WorkerState
 from ..view.files import show
 from ..view.surface_view import SurfaceView, view_of
 from .document import digest_of
 from .surface import description_data
 from .table import job
+
+
+def loop_input_of(pipeline: Pipeline, report: Progress | None = None, stop: Event | None = None) -> dict[str, Any]:
+    """Make the touch, and return the loop's input. Raises: ConfigError without a device; as `Pipeline.make`."""
+    touch, config = pipeline.make("touch", report, stop), pipeline.config
+    return parcel_of(touch, pipeline.make("surface"), config)
+
+
+def parcel_of(touch: Touch, surface: HapticSurface, config: PipelineConfig) -> dict[str, Any]:
+    """Pack a touch into the loop's input. Raises: ConfigError without a device; DeviceError if there is no room."""
+    if config.device is None or config.felt_device is None:
+        raise config.missing("device")
+    device = over(config.felt_device, surface.extent_m)
+    sent = pack_touch(touch, device.spec())
+    return {
+        "parcel": str(sent.parcel),
+        "stiffness_n_per_m": sent.stiffness_n_per_m,
+        "law": config.render.name if config.render else "",
+        "device_name": config.device.name,
+        "device": dumps(device),
+        "mapping": dumps(config.mapping),
+        "safety": dumps(config.safety),
+        "materials": materials_text(surface),
+    }
+
 
 SLOW = ("disparity", "segments")
 """Products that take seconds: they are not made again at every edit, but on request."""

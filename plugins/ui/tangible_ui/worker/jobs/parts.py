@@ -20,7 +20,6 @@ from tangible_core.pipeline.engine import (
     without_entries,
 )
 
-from ..loop_input import parcel_of
 from ..parts import opening, saving
 from ..parts.outlines import snap
 from ..parts.proposals import Kind, as_points, propose, propose_region, runs
@@ -28,6 +27,7 @@ from ..parts.saving import as_png, unpack
 from ..state import WorkerState
 from ..view.files import show
 from ..view.surface_view import SurfaceView, view_parts
+from .making import parcel_of
 from .table import job
 
 

@@ -12,7 +12,7 @@ from tangible_core.preflight import Cure, Verdict, check_bound
 
 from .neighbours import Steps, sample_relief, steps_between
 from .rules import Profile
-from .simplifying.textures import count_textures
+from .simplifying.large import count_textures
 from .widths import Widths, measure
 from .words.places import describe_part, describe_place
 

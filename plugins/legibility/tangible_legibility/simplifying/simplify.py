@@ -15,8 +15,8 @@ from tangible_core.plugins import note
 from ..grid import Grid, on_grid
 from ..widths import ROUND_OFF, Widths, measure
 from ..words.places import describe_part, join_texts, millimetres
+from .large import count_textures, texture_kinds
 from .opening import NOISY, Opening, too_small
-from .textures import count_textures, texture_kinds
 
 log: logging.Logger = logging.getLogger(__name__)
 SIZE_STEP = 1.1

@@ -10,8 +10,8 @@ from tangible_core.parts import SimplifyChoice
 from tangible_core.plugins.notes import collected
 from tangible_legibility.grid import Grid
 from tangible_legibility.simplifying import textures as textures_module
+from tangible_legibility.simplifying.large import texture_kinds
 from tangible_legibility.simplifying.simplify import Failures, _number_pieces, find_failures, note_outcome
-from tangible_legibility.simplifying.textures import texture_kinds
 from tangible_legibility.widths import measure
 
 PITCH_M = 0.0002

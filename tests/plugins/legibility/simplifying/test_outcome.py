@@ -9,7 +9,7 @@ from tangible_core.data import PartMap
 from tangible_core.parts import SimplifyChoice
 from tangible_core.plugins.notes import collected
 from tangible_legibility.grid import Grid
-from tangible_legibility.simplifying import textures as textures_module
+from tangible_legibility.simplifying import large as merging
 from tangible_legibility.simplifying.large import texture_kinds
 from tangible_legibility.simplifying.simplify import Failures, _number_pieces, find_failures, note_outcome
 from tangible_legibility.widths import measure
@@ -114,7 +114,7 @@ def test_textures_that_add_least_to_the_spread_become_one():
 
 
 def test_of_very_many_textures_the_smallest_go_to_the_most_alike(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(textures_module, "MOST_COMPARED", 3)
+    monkeypatch.setattr(merging, "MOST_COMPARED", 3)
     labels = np.repeat(np.arange(5), [40, 3, 30, 2, 20])[None].repeat(20, 0).astype(np.int32)
     found = texture_kinds(part_map(labels), (), 4, greys(labels, 10, 240, 100, 20, 250))
     assert found.tolist() == [0, 2, 1, 0, 2]

@@ -40,7 +40,6 @@ def python_files() -> list[Path]:
 NOT_SHOWN = (
     "tangible_core/translation",  # is in the language itself
     "plugins/legibility/tangible_legibility/words",  # has its own words in each language
-    "plugins/send/tangible_send/words.py",  # likewise
 )
 
 

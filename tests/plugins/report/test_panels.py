@@ -68,8 +68,13 @@ class TestForce:
 
 class TestRelief:
     def test_block_is_stretched_to_a_sixth_of_its_longer_side(self):
-        assert relief._stretch(level(0.002, (0.12, 0.04))) == relief._stretch(level(0.002, (0.04, 0.12))) == 10
-        assert relief._stretch(level(0.03, (0.12, 0.04))) == 1
+        for high_m, extent_m, says in (
+            (0.002, (0.12, 0.04), "Surface, heights x 10"),
+            (0.002, (0.04, 0.12), "Surface, heights x 10"),
+            (0.03, (0.12, 0.04), "Surface"),
+            (0.0, (0.12, 0.04), "Surface, smooth"),
+        ):
+            assert relief.draw_surface(Figure().subplots(), level(high_m, extent_m)) == says
 
     def test_slope_is_lit_or_dark_by_the_side_that_it_faces(self, axes: Axes):
         """The light is at the upper left; level ground is in between."""

@@ -6,10 +6,8 @@ from functools import partial
 from pathlib import Path
 
 from .kits import middlebury
-from .kits.booster import booster
-from .kits.eth3d import eth3d
 from .kits.kitti import kitti_2012, kitti_2015
-from .kits.sintel import sintel
+from .kits.others import booster, eth3d, sintel
 from .standard_pair import Resolution, StandardPair
 
 Read = Callable[[Path], Iterator[StandardPair]]

@@ -1,1 +1,1 @@
-"""Readers for the folders of the standard sets, a file for each benchmark."""
+"""Readers for the folders of the standard sets: Middlebury, KITTI and the others."""

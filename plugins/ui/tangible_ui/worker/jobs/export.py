@@ -3,7 +3,6 @@
 import re
 import secrets
 import shutil
-from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -16,7 +15,7 @@ from tangible_core.pipeline.output import Exported, drawn_width_m, read_list, wi
 from tangible_core.plugins import Previewing, silently
 
 from ..state import WorkerState
-from ..view.files import leave, write_whole
+from ..view.files import leave, sweep, write_whole
 from .document import digest_of
 from .making import announced, plan_data
 from .table import job
@@ -43,7 +42,7 @@ def export(
     at = state.folder / f"{FOLDER}{secrets.token_hex(8)}"
     try:
         with announced(state, number, pipeline, text, "export") as (work, report):
-            _sweep(state.folder)
+            sweep(state.folder, f"{FOLDER}*", KEPT - 1)
             outcomes = [_outcome_data(each) for each in pipeline.export(at, None, report, work.stop).exports]
             found = {"digest": digest_of(text), "folder": at.name, "exports": outcomes}
             state.tell("exported", **found)
@@ -75,7 +74,7 @@ def export_preview(
         picture = chosen.method.preview(work_for(with_width(pipeline.engine, width_m), chosen.method))
     at = f"{PREVIEW}{digest_of_records((picture,))}"
     leave(state.folder / at, "the preview", lambda part: write_whole(picture, part / "picture.png"))
-    _sweep(state.folder, PREVIEW, KEPT_PREVIEWS)
+    sweep(state.folder, f"{PREVIEW}*", KEPT_PREVIEWS)
     rows, columns = picture.shape
     return {"file": f"{at}/picture.png", "waits": False, "columns": columns, "rows": rows, "width_m": width_m}
 
@@ -109,13 +108,3 @@ def _outcome_data(each: Exported) -> dict[str, Any]:
         "files": [{"name": file.name, "bytes": file.stat().st_size} for file in each.files],
         "legible": None if each.legible is None else each.legible.as_data(),
     }
-
-
-def _sweep(folder: Path, prefix: str = FOLDER, kept: int = KEPT - 1) -> None:
-    """Remove folders of files that were exported long ago, also by a killed process."""
-    found: list[tuple[int, Path]] = []
-    for each in folder.glob(f"{prefix}*"):
-        with suppress(OSError):  # another thread swept it
-            found.append((each.stat().st_mtime_ns, each))
-    for _, each in sorted(found)[:-kept]:
-        shutil.rmtree(each, ignore_errors=True)

@@ -1,6 +1,5 @@
 """Start of the parts editor: a scene's picture and parts, also as files."""
 
-import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,7 +16,7 @@ from tangible_core.plugins import Hierarchical
 from tangible_core.scene import Scene
 
 from ..state import WorkerState
-from ..view.files import leave, write_whole
+from ..view.files import leave, sweep, write_whole
 
 FOLDER = "parts-"
 TREES = "hierarchy"
@@ -140,6 +139,4 @@ def leave_files(opened: Opened, at: Path) -> None:
 
     leave(at, "the parts", write)
     (at / "labels.u16").touch()
-    left = sorted(at.parent.glob(f"{FOLDER}*/labels.u16"), key=lambda each: each.stat().st_mtime_ns)
-    for each in left[:-KEPT]:
-        shutil.rmtree(each.parent, ignore_errors=True)
+    sweep(at.parent, f"{FOLDER}*/labels.u16", KEPT)

@@ -3,6 +3,7 @@
 import json
 import shutil
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -43,7 +44,7 @@ def show(seen: SurfaceView, folder: Path) -> dict[str, Any]:
     about = _about(seen)
     leave(at, "what is to be drawn", partial(_write, seen, about))
     (at / ABOUT).touch()
-    _sweep(folder)
+    sweep(folder, f"*/{ABOUT}", KEPT)
     return about
 
 
@@ -65,6 +66,16 @@ def leave(at: Path, what: str, write: Callable[[Path], None]) -> None:
     finally:
         if part is not None:
             shutil.rmtree(part, ignore_errors=True)
+
+
+def sweep(folder: Path, pattern: str, kept: int) -> None:
+    """Remove all but the newest folders that match, or have a file that does; also those of a killed process."""
+    found: list[tuple[int, Path]] = []
+    for each in folder.glob(pattern):
+        with suppress(OSError):  # another thread swept it
+            found.append((each.stat().st_mtime_ns, each))
+    for _, each in sorted(found)[:-kept]:
+        shutil.rmtree(each if each.is_dir() else each.parent, ignore_errors=True)
 
 
 def label_type(labels: np.ndarray) -> str:
@@ -171,13 +182,6 @@ def write_whole(picture: np.ndarray, path: Path) -> None:
 def _save(whole: Image.Image, size: tuple[int, int], path: Path) -> None:
     small = whole if size == whole.size else whole.resize(size, Image.Resampling.BOX, reducing_gap=2.0)
     small.save(path, quality=88)
-
-
-def _sweep(folder: Path) -> None:
-    """Remove old surfaces: a large one has a hundred megabytes."""
-    shown = sorted(folder.glob(f"*/{ABOUT}"), key=lambda path: path.stat().st_mtime_ns)
-    for path in shown[:-KEPT]:
-        shutil.rmtree(path.parent, ignore_errors=True)
 
 
 def count_levels(shape: tuple[int, int]) -> int:

@@ -200,7 +200,7 @@ def _name(value: ast.AST) -> str:
     return plain[0] if plain else "value"
 
 
-NAMES = {"Pro Audio", "tangible parts", "tangible numbers", "DejaVu Sans", "offset points", "part share {next}"}
+NAMES = {"Pro Audio", "tangible parts", "tangible numbers", "outside right upper", "part share {next}"}
 """Texts that are names for programs."""
 DULL = {
     "quoted", "shown", "self", "len", "str", "map", "join", "float", "int", "max", "min", "round", "name_of", "sorted",

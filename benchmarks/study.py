@@ -12,7 +12,7 @@ from scipy import stats
 from tangible_study.analysis.analysing import analyse_comparison, analyse_kept
 from tangible_study.measures.rows import ALL, Result, What, is_sure
 from tangible_study.simulation.observers import observer_of
-from tangible_study.simulation.power import kept_of, plan, shortened, simulate
+from tangible_study.simulation.power import kept_of, plan, shorten_study, simulate
 from tangible_study.statistics import sensitivity
 from tangible_study.statistics.psychometric import JND
 from tangible_study.study_file import StudyFile, parse_study
@@ -154,7 +154,7 @@ def _power(folder: Path) -> tuple[int, float, float]:
         each for each in plan(file, observer_of("detection", ["difference=1.6"], file)) if each.repetitions == 12
     )
     assert need.participants is not None
-    one = shortened(file, file.study.comparisons[0], 12)
+    one = shorten_study(file, file.study.comparisons[0], 12)
     found = [
         [_finds(one, need.participants, difference, study) for study in range(STUDIES)] for difference in (1.6, 0.0)
     ]

@@ -14,7 +14,18 @@ from ..design import Comparison
 from ..statistics.intervals import Estimate
 from ..statistics.psychometric import GAUSSIAN, JND, Blocks, Curve, fit_choice, fit_difference
 from ..trials import Answer
-from .rows import ByParticipant, Result, Row, What, bound, contrasts, grouped, interval, over_participants, together
+from .rows import (
+    ByParticipant,
+    Result,
+    Row,
+    What,
+    bound,
+    contrasts,
+    group_answers,
+    interval,
+    over_participants,
+    together,
+)
 from .shares import note_on_order
 
 EQUALITY = "point of equality"
@@ -200,7 +211,7 @@ def analyse_levels(comparison: Comparison, answers: ByParticipant, function: Fun
     rows: list[Row] = []
     unfit: list[str] = []
     for name, some in answers.items():
-        for condition, cell in grouped(some, lambda each: each.condition).items():
+        for condition, cell in group_answers(some, lambda each: each.condition).items():
             key = f"{name}/{condition}"
             blocks[key] = blocks_of(cell, function)
             if len(blocks[key].levels) < 2:
@@ -235,7 +246,7 @@ def blocks_of(answers: list[Answer], function: Function) -> Blocks:
     def where(each: Answer) -> float:
         return float(function.intensities(np.array([each.level or 0.0]), each.standard)[0])
 
-    cells = sorted(grouped(answers, where).items())
+    cells = sorted(group_answers(answers, where).items())
     hits = [[function.hit(each) or 0 for each in cell] for _, cell in cells]
     return Blocks(
         np.array([level for level, _ in cells], float),

@@ -171,7 +171,7 @@ def as_record(row: Row) -> dict[str, Any]:
     }
 
 
-def grouped(answers: Sequence[Answer], key: Callable[[Answer], Key]) -> dict[Key, list[Answer]]:
+def group_answers(answers: Sequence[Answer], key: Callable[[Answer], Key]) -> dict[Key, list[Answer]]:
     """Return answers by a key, in the order of the first of each."""
     groups: dict[Key, list[Answer]] = {}
     for answer in answers:

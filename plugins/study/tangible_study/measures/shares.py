@@ -1,4 +1,4 @@
-"""Measures of answers that are no function of a level: shares of the trials with d', choices of two, and numbers."""
+"""Measures of answers without a function of a level: shares of the trials with d', choices of two, and numbers."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -22,7 +22,7 @@ from .rows import (
     Row,
     What,
     contrasts,
-    grouped,
+    group_answers,
     label,
     of_each_and_all,
     over_participants,
@@ -67,7 +67,7 @@ def share_rows(
     one_sided: bool = False,
 ) -> list[Row]:
     """Return the share of hits among a participant's answers, for each condition, and level if one varies."""
-    cells = grouped(answers, lambda each: What(measure, label(each), each.other or ""))
+    cells = group_answers(answers, lambda each: What(measure, label(each), each.other or ""))
     return [
         proportion_row(what, name, [hit(each) or 0 for each in cell], chance, one_sided) for what, cell in cells.items()
     ]
@@ -103,7 +103,7 @@ def analyse_quantities(
     """
     rows: list[Row] = []
     for name, some in answers.items():
-        for condition, cell in grouped(some, about).items():
+        for condition, cell in group_answers(some, about).items():
             values = [_number(each) - origin for each in cell]
             p = nan if chance != chance else intervals.p_of_mean(values, chance)
             rows.append(Row(What(measure, condition), name, intervals.mean(values), unit, len(cell), None, chance, p))

@@ -122,7 +122,7 @@ def plan(
     return needs
 
 
-def shortened(file: StudyFile, comparison: Comparison, repetitions: int) -> StudyFile:
+def shorten_study(file: StudyFile, comparison: Comparison, repetitions: int) -> StudyFile:
     """Return a study of one comparison alone, without training."""
     changed = comparison.model_copy(update={"repetitions": repetitions, "training": 0})
     return replace(file, study=file.study.model_copy(update={"comparisons": (changed,)}))
@@ -187,7 +187,7 @@ def power_of(mean: float, spread: float, participants: int) -> float:
 def _need(
     file: StudyFile, comparison: Comparison, repetitions: int, observer: Observer, power: float, seed: int
 ) -> Need:
-    one = shortened(file, comparison, repetitions)
+    one = shorten_study(file, comparison, repetitions)
     curves = bool(comparison.levels) and load_question(comparison.question).function is not None
     answers = [simulate(one, observer, number, seed) for number in range(TRIED_CURVES if curves else TRIED)]
     [changed], trials = one.study.comparisons, len(answers[0])

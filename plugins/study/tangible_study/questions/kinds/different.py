@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from ...design import DIFFERENT, SAME, Comparison, Trial
-from ...measures.rows import ByParticipant, Result, Row, What, grouped, of_each_and_all, told_apart
+from ...measures.rows import ByParticipant, Result, Row, What, group_answers, of_each_and_all, told_apart
 from ...measures.shares import DPRIME, analyse_right_answers
 from ...statistics import sensitivity
 from ...trials import Answer
@@ -49,7 +49,7 @@ class Different(Question):
 
 def _dprimes(name: str, answers: list[Answer]) -> list[Row]:
     rows: list[Row] = []
-    for what, cell in grouped(answers, lambda each: What(DPRIME, each.condition, each.other or "")).items():
+    for what, cell in group_answers(answers, lambda each: What(DPRIME, each.condition, each.other or "")).items():
         different = [each for each in cell if each.target == DIFFERENT]
         equal = [each for each in cell if each.target == SAME]
         hits, alarms = ([each.response for each in some].count(DIFFERENT) for some in (different, equal))

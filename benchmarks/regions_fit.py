@@ -134,7 +134,7 @@ class Measured:
 
 
 @njit
-def _add_between(bounds, ends, strengths, pairs, cues):  # noqa: ANN001, ANN202 -- numba takes the types from the call
+def _add_between(bounds, ends, strengths, pairs, cues):
     """Write the mean strengths of the borders between two nodes, each with the places of its leaves."""
     for row in range(len(bounds)):
         low, high, start, stop = bounds[row]

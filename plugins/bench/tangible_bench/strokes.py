@@ -1,6 +1,3 @@
-<<<<<<< HEAD:plugins/bench/tangible_bench/strokes/strokes.py
-"""Paths of a hand over a surface, with the exact nearest points of analytic surfaces along them."""
-=======
 """Paths of a hand over a surface, with the exact nearest points of analytic surfaces along them.
 
 All nearest points are closed forms except those of the waves. Each function takes hands inside and above its surface;
@@ -8,9 +5,6 @@ the results of the ones above are meaningless. Where two faces meet in an edge, 
 the hand came in until its foot leaves that face, as a proxy does: the nearest point of both would leap through the body
 to the other side.
 """
-# scipy has no types.
-# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
->>>>>>> 6f0b4731 (bench: keep strokes and their nearest points in one module):plugins/bench/tangible_bench/strokes.py
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

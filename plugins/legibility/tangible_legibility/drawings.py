@@ -11,7 +11,7 @@ from tangible_core.drawing import DrawnPicture, Lines, PictureKind, find_ink, fi
 from tangible_core.preflight import Verdict, check_bound
 
 from .rules import GRAPHICS, OURS, Profile
-from .words.texts import describe_part, describe_place, join_texts
+from .words.places import describe_part, describe_place, join_texts
 
 MAX_LOST = 0.1
 """The greatest share of the lines' length that may be lost before the picture is."""

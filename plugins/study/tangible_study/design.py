@@ -2,11 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-<<<<<<< HEAD:plugins/study/tangible_study/design/study.py
-from typing import TYPE_CHECKING, Annotated, Any, Literal
-=======
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
->>>>>>> 0cd705cb (study: keep the design in one module):plugins/study/tangible_study/design.py
 
 from pydantic import Field
 

@@ -12,9 +12,5 @@ from .model import PipelineConfig as PipelineConfig
 from .parsing import load_config as load_config
 from .parsing import parse_config as parse_config
 from .part_checks import names_of as names_of
-from .schema import default_in_code as default_in_code
 from .schema import json_schema as json_schema
 from .schema import materials_schema as materials_schema
-from .schema import name_of_block as name_of_block
-from .schema import options_in as options_in
-from .schema import values_in_code as values_in_code

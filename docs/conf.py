@@ -23,7 +23,7 @@ add_module_names = False
 
 html_theme = "alabaster"
 html_theme_options = {
-    "description": "Turn a picture into something one can feel.",
+    "description": "Feel any picture: on a force device, a 3-D print, swell paper, or in your browser.",
     "fixed_sidebar": True,
     "page_width": "76rem",
     "sidebar_width": "16rem",

@@ -72,6 +72,15 @@ def test_pages_on_single_kinds_show_their_examples_as_they_are(page, name):
     assert ROOT.joinpath("examples", name).read_text(encoding="utf-8").strip() in shown
 
 
+def test_readme_runs_its_first_lines_of_python(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    first, *_ = re.findall(r"```python\n(.*?)```", ROOT.joinpath("README.md").read_text("utf-8"), re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    exec(first, names)
+    assert len(names["recording"].time_s) == 1000
+    assert next(tmp_path.glob("out/coins/*.stl")).stat().st_size > 10_000
+
+
 @pytest.mark.parametrize("moment", sorted(name for name in vars(hooks.Specs) if name.startswith("tangible_")))
 def test_plugin_page_names_every_hook(moment):
     assert f"`{moment}(" in PLUGIN_PAGE.read_text(encoding="utf-8")

@@ -44,7 +44,7 @@ def eight_bits(picture: np.ndarray) -> UInt8[np.ndarray, "h w 3"]:
     if colours.dtype == np.uint8:
         return np.ascontiguousarray(colours)
     scale = np.iinfo(colours.dtype).max if colours.dtype.kind in "iu" else 1
-    return np.clip(np.rint(np.nan_to_num(colours.astype(np.float32)) * (255 / scale)), 0, 255).astype(np.uint8)
+    return np.clip(np.rint(np.nan_to_num(colours.astype(np.float64)) * (255 / scale)), 0, 255).astype(np.uint8)
 
 
 def reduce_to_side(colours: UInt8[np.ndarray, "h w 3"], side: int) -> UInt8[np.ndarray, "r c 3"]:

@@ -101,7 +101,9 @@ def measure_kind(picture: np.ndarray) -> Float64[np.ndarray, "n"]:
     flat = np.sqrt(np.maximum(square - mean * mean, 0)) < QUIET * noise + 1
     at_step = step.max(axis=2) > 8 * noise + 16
     bins = smooth[flat] // SHADES
-    counts = np.sort(np.bincount(bins @ np.array([1, 16, 256]), minlength=1))[::-1] if flat.any() else np.ones(1)
+    counts = (
+        np.sort(np.bincount(np.einsum("ij,j->i", bins, [1, 16, 256]), minlength=1))[::-1] if flat.any() else np.ones(1)
+    )
     size, inked = max(1, counts.sum()), max(1, np.count_nonzero(ink.mask))
     letters = sum(each.letters for each in texts.boxes)
     lined = np.count_nonzero(ink.mask & ~texts.ink)
@@ -131,7 +133,7 @@ def picture_kind(picture: np.ndarray) -> KindFound:
     measures = measure_kind(picture)
     if measures[NOISE] > np.log10(MAX_NOISE) or max(measures[STEPS], measures[INK]) < -2.99:
         return KindFound(PictureKind.photograph, 0.5)
-    scores = measures @ WEIGHTS[:-1] + WEIGHTS[-1]
+    scores = np.einsum("i,ij->j", measures, WEIGHTS[:-1]) + WEIGHTS[-1]
     shares = np.exp(scores - scores.max())
     best = int(shares.argmax())
     return KindFound(list(PictureKind)[best], float(shares[best] / shares.sum()))

@@ -3,6 +3,7 @@
 import logging
 from collections.abc import Collection
 from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float32
@@ -11,10 +12,10 @@ from tangible_core.data import Figure, to_rgb
 from tangible_core.errors import ConfigError
 from tangible_core.plugins import note
 
-from .card import Task
+from .card import Runtime, Task
 from .fitting import Colours, fit_size, resize, restore_size, tensor
 from .runtimes import run
-from .store import KnownNetwork, networks_here
+from .store import networks_here
 
 log: logging.Logger = logging.getLogger(__name__)
 MAX_PX = {"figure": 102_400, "borders": 154_401, "faces": 4_000_000}
@@ -64,7 +65,8 @@ def _map(colours: Colours, task: Task) -> Float32[np.ndarray, "r c"] | None:
     card = network.card
     fit = fit_size(colours.shape[:2], card.input, MAX_PX[card.task])
     given = tensor(resize(colours, fit.resized), card.input, fit)
-    output = _run_once(network, network.path.stat().st_mtime_ns, given.tobytes(), given.shape)
+    model = network.path, card.runtime or "opencv", card.input.left, card.output.name
+    output = _run_once(*model, network.path.stat().st_mtime_ns, given.tobytes(), given.shape)
     values = restore_size(output, fit, fit.resized, card.output.channel)
     if values is None:
         raise ConfigError(f"the network {network.name} returns no map; name another output in its card")
@@ -75,11 +77,11 @@ def _map(colours: Colours, task: Task) -> Float32[np.ndarray, "r c"] | None:
 
 
 @lru_cache(maxsize=2)
-def _run_once(network: KnownNetwork, changed_ns: int, given: bytes, shape: tuple[int, ...]) -> np.ndarray:
+def _run_once(
+    path: Path, runtime: Runtime, left: str, output: str, changed_ns: int, given: bytes, shape: tuple[int, ...]
+) -> np.ndarray:
     """Return a network's map: several stages ask for the borders of one picture."""
-    card = network.card
-    picture = np.frombuffer(given, np.float32).reshape(shape)
-    return run(network.path, card.runtime or "opencv", {card.input.left: picture}, [card.output.name])[0]
+    return run(path, runtime, {left: np.frombuffer(given, np.float32).reshape(shape)}, [output])[0]
 
 
 def _faces(colours: Colours) -> Float32[np.ndarray, "n 468 3"] | None:

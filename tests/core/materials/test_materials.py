@@ -73,7 +73,7 @@ class TestOwnFile:
             ("ice: [\n", "mine.yaml:2:1: "),
             ("ice: {}\nice: {}\n", "mine.yaml:2:1: "),
             ("ice:\n\tgrain_m: 1\n", "mine.yaml:2:1: "),
-            ("", "mine.yaml:1:1: a library is a mapping"),
+            ("", "mine.yaml:1:1: the file is empty; a library is a mapping"),
             ("- ice\n", "mine.yaml:1:1: a library is a mapping"),
             ("ice: {stiffness_n_per_m: 0}\n", "mine.yaml:1:7: ice.stiffness_n_per_m: "),
             ("ice: {grain_m: .inf}\n", "mine.yaml:1:7: ice.grain_m: "),

@@ -21,7 +21,7 @@ def sample_files() -> list[Path]:
     files = [path for folder in FOLDERS for path in sorted((ROOT / folder).rglob("*.yaml"))]
     texts = {path: path.read_text(encoding="utf-8").splitlines() for path in files}
     keys = {path: {line.partition(":")[0] for line in lines} for path, lines in texts.items()}
-    templates = {path for path, lines in texts.items() if "scene: $scene" in lines}
+    templates = {path for path, lines in texts.items() if any(line.startswith("scene: $scene") for line in lines)}
     return [path for path, named in keys.items() if {"scene", "render", "device"} <= named and path not in templates]
 
 

@@ -153,7 +153,7 @@ def test_preflight_judges_the_grooves():
     """On two parts of equal height the only slope is the groove's."""
     labels = (np.indices((80, 80))[1] > 40).astype(np.int32)
     scene = Scene.photo(np.full((80, 80, 3), 128, np.uint8), segments=labels)
-    level_m = {number: {"height_m": 0.004} for number in (0, 1)}
+    level_m = {number: {"height_m": 0.004} for number in (1, 2)}
 
     def notes(law: ForceRenderer) -> str:
         pipeline = Pipeline(

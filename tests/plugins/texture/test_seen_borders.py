@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import drawn_parts
+from benchmarks.regions import covering
 from onnx_models import mono
-from tangible_bench.metrics.segments import contingency, covering
+from tangible_bench.metrics.segments import contingency
 from tangible_core import Pipeline, Scene
 from tangible_networks.fetching import add_network
 from tangible_networks.store import known_networks

@@ -246,5 +246,6 @@ def test_missing_file_folder_pipe_or_device_is_refused(tmp_path: Path, suffix: s
     (tmp_path / f"folder{suffix}").mkdir()
     os.mkfifo(tmp_path / f"pipe{suffix}")
     (tmp_path / f"zero{suffix}").symlink_to("/dev/zero")
-    for name in ("none", "folder", "pipe", "zero"):
+    assert "there is no such file" in refusal(tmp_path / f"none{suffix}")
+    for name in ("folder", "pipe", "zero"):
         assert "cannot be read" in refusal(tmp_path / f"{name}{suffix}")

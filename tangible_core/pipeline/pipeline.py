@@ -148,7 +148,7 @@ class Pipeline:
         """Return another pipeline with these arguments of `Pipeline` changed; equal products are not made again.
 
         >>> Pipeline(Scene.heights([[0, 1]]), title="one").with_(title="two")
-        Pipeline('array', want='surface')
+        Pipeline('arrays', want='surface')
 
         Raises: as `Pipeline`.
         """

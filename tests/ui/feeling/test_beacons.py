@@ -23,7 +23,7 @@ from tangible_web.framing import STATE_FRAME
 from waiting import happened, until
 
 pytestmark = pytest.mark.anyio
-IN_PARTS = TEXT.replace("want: touch", "want: touch\nparts: {0: {name: wall}}")
+IN_PARTS = TEXT.replace("want: touch", "want: touch\nparts: {1: {name: wall}}")
 
 
 async def test_beacon_requested_by_a_tab_is_announced_to_all_tabs(

@@ -36,7 +36,7 @@ def tree(tmp_path: Path) -> Path:
     """Files of this tree that the hook and the builders read; the page is not built."""
     root = tmp_path / "tree"
     leave = shutil.ignore_patterns("node_modules", "static", "static-*", "__pycache__")
-    for web in (WEB, *ROOT.glob("plugins/*/web")):
+    for web in (WEB, ROOT / "configs", *ROOT.glob("plugins/*/web")):
         shutil.copytree(web, root / web.relative_to(ROOT), ignore=leave)
     for name in ("pyproject.toml", "hatch_build.py", "README.md", "LICENSE", ".gitignore"):
         shutil.copy(ROOT / name, root / name)

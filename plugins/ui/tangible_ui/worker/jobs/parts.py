@@ -90,7 +90,8 @@ def parts_first(state: WorkerState, text: str, path: Path, sets: list[str]) -> d
     opened = opening.opened_of(state, opening.edited_of(state, text, path, sets))
     if opened.scene.views is None:
         return {"labels": "", "heights_m": []}
-    joined = f"texture={{use: {opening.TREES}, segments: {segments_for()}}}"
+    method = opening.TREES if opened.scene.kind.likely == "photograph" else "flat"  # as a starter file has it
+    joined = f"texture={{use: {method}, segments: {segments_for()}}}"
     divided = state.pipeline_of(text, path, [*sets, joined])
     found, config = proposed_parts(divided), divided.config
     by_parts = config.with_values(heights=config_heights(config))

@@ -37,9 +37,9 @@ def structure_rows() -> list[str]:
             f"| {what} | {figure} | <= {bound} | {'met' if figure <= bound else 'missed'} |"
             for what, figure, bound in (
                 ("all Python that is shipped: lines", sum(lines.values()), 78_000),
-                ("tests: lines", tracked_lines("tests/*.py"), 61_000),
+                ("tests: lines", tracked_lines("tests/*.py"), 62_000),
                 ("lists of faults: lines", tracked_lines("benchmarks/mutations/*.yaml"), 3_500),
-                ("benchmarks: lines", tracked_lines("benchmarks/*.py"), 9_000),
+                ("benchmarks: lines", tracked_lines("benchmarks/*.py"), 9_800),
                 ("TypeScript that is shipped: lines", shipped_typescript(), 23_000),
                 *((f"files that a new {thing} touches", len(files), 3) for thing, files in THINGS.items()),
                 ("houses: floors", house_floors(), 6),

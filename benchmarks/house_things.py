@@ -12,6 +12,7 @@ from .house_words import ROOT
 
 Edit = Callable[[str], str]
 COPIED = (
+    "tangible",
     "tangible_core",
     "plugins/*/tangible_*",
     "examples/device",

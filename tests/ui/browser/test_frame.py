@@ -105,8 +105,8 @@ def test_start_without_a_file_offers_three_tiles_until_a_file_is_opened(page: "P
 def test_photograph_without_depth_has_a_notice_that_leads_on(
     opened: Callable[..., str], open_page: OpenPage, tmp_path: Path
 ):
-    picture = np.full((60, 80, 3), 40, np.uint8)
-    picture[15:45, 20:60] = 220
+    picture = np.random.default_rng(0).integers(0, 90, (60, 80, 3), np.uint8)  # noise: no drawing
+    picture[15:45, 20:60] += 150
     Image.fromarray(picture).save(tmp_path / "square.png")
     page: Any = open_page(opened(tmp_path / "square.png") + "&measure")
     notice = page.locator("#no-depth")

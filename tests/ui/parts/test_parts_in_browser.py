@@ -144,8 +144,8 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
 
     parts, labels = read_parts(photo.with_suffix(".yaml"))
     assert {each.name for each in parts.values()} == {"wall", "ball", "table", "lamp", "door"}
-    assert parts[int(labels[90, 150])].name == "ball"
-    assert parts[int(labels[170, 20])].name == "table"
+    assert parts[int(labels[90, 150]) + 1].name == "ball"
+    assert parts[int(labels[170, 20]) + 1].name == "table"
 
 
 def test_photograph_becomes_three_named_parts_on_swell_paper_in_fifteen_actions(

@@ -169,7 +169,7 @@ export interface Document {
   values: Values | null;
   /** What the scene is, and what its relief is made of; null if something is wrong. */
   scene_kind: "photograph" | "depth" | "heights" | null;
-  relief_from: "photograph" | "depth" | "heights" | "edges" | "figure" | "parts" | null;
+  relief_from: "photograph" | "depth" | "heights" | "edges" | "figure" | "lines" | "parts" | null;
   complaints: Complaint[];
   can_undo: boolean;
   can_redo: boolean;

@@ -54,7 +54,8 @@ export class Telling {
   take(): string {
     const nowMs = this.clock.now();
     for (const each of this.waiting) if (each.kind === "contact") this.contact = each.contact;
-    const all = this.waiting.filter(({ atMs }) => nowMs - atMs <= MAX_AGE_MS);
+    const last = this.waiting.filter(({ kind }) => kind === "contact").at(-1); // still true, however long it waited
+    const all = this.waiting.filter((each) => each === last || nowMs - each.atMs <= MAX_AGE_MS);
     this.waiting = [];
     const left = Math.max(0, all.length - MAX_SENTENCES);
     const told = all.slice(left);

@@ -15,6 +15,7 @@ export const t = words({
   from_photograph: ["brightness", "Helligkeit", "la luminosité"],
   from_edges: ["edges", "Kanten", "les contours"],
   from_figure: ["what networks see", "dem, was Netze sehen", "ce que voient les réseaux"],
+  from_lines: ["the drawing's lines", "den Linien der Zeichnung", "les lignes du dessin"],
   from_depth: ["depth", "Tiefe", "la profondeur"],
   from_heights: ["measured heights", "gemessenen Höhen", "des hauteurs mesurées"],
   from_parts: ["heights of its parts", "Höhen seiner Teile", "les hauteurs de ses parties"],

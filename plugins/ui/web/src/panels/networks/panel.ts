@@ -2,7 +2,7 @@
 import { button, field, make, paragraph } from "kit/elements";
 import type { Page } from "kit/page";
 import type { Events } from "kit/server/messages";
-import { decimal } from "kit/words/words";
+import { decimal, language } from "kit/words/words";
 import { sendFile } from "../open/upload";
 import { t } from "./words";
 
@@ -102,9 +102,10 @@ export function build(page: Page, root: HTMLElement): Promise<void> {
     const line = document.createElement("li");
     const name = make("h4", { textContent: about.title || about.name });
     name.append(" ", make("span", { className: `chip ${COLOURS[about.state]}`, textContent: t(about.state) }));
-    const { licence, trained_on, source } = about;
-    const [known, from] = [licence || t("unknown"), source || t("unknown")];
-    line.append(name, paragraph(t("facts", { size: size(about.bytes), licence: known, trained: trained_on || t("unknown"), source: from }), "hint"));
+    const facts = paragraph(size(about.bytes), "hint");
+    for (const [what, fact] of [["licence", about.licence], ["trained", about.trained_on], ["source", about.source]] as const)
+      facts.append(`. ${t(what)}: `, make("span", { lang: fact ? "en" : language, textContent: fact || t("unknown") })); // a card is English
+    line.append(name, facts);
     if (!about.verified) line.append(paragraph(t("unverified"), "hint"));
     line.append(...controls(about));
     return line;

@@ -185,6 +185,7 @@ def pack(pure: Path, code: Path, out: Path) -> Path:
     files[f"{about}/METADATA"] = _demand_versions(files[f"{about}/METADATA"].decode(), python).encode()
     record = "".join(f"{each},sha256={_digest(content)},{len(content)}\n" for each, content in files.items())
     files[f"{about}/RECORD"] = f"{record}{about}/RECORD,,\n".encode()
+    out.mkdir(parents=True, exist_ok=True)
     part = wheel.with_suffix(".part")
     with ZipFile(part, "w", ZIP_DEFLATED) as new:
         for each, content in files.items():

@@ -33,19 +33,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("wheel", type=Path)
     parser.add_argument("--out", type=Path, help="the folder of the new wheel; by default that of the pure one")
-    parser.add_argument("--only-code", type=Path, help="write the machine code into this folder, and make no wheel")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
-        code = options.only_code or Path(temporary, "code")
+        code = Path(temporary, "code")
         with ZipFile(options.wheel) as pure:
             pure.extractall(Path(temporary, "package"))
         rehearse(Path(temporary, "package"), Path(temporary, "cache"), Path(temporary))
         count = collect(Path(temporary, "package"), Path(temporary, "cache"), code)
         size = sum(path.stat().st_size for path in code.iterdir()) / 1e6
         print(f"{count} kernels for {PROCESSOR}, {size:.1f} MB")
-        if not options.only_code:
-            wheel = pack(options.wheel, code, options.out or options.wheel.parent)
-            print(f"{wheel}: {wheel.stat().st_size / 1e6:.1f} MB")
+        wheel = pack(options.wheel, code, options.out or options.wheel.parent)
+        print(f"{wheel}: {wheel.stat().st_size / 1e6:.1f} MB")
 
 
 # What is compiled

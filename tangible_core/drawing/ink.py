@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float32, UInt8
 
+from ..data.pictures import to_rgb8
 from ..runtime.opencv import plain_opencv
 
 MAX_SIDE = 1600
@@ -39,12 +40,8 @@ class Ink(NamedTuple):
 
 
 def eight_bits(picture: np.ndarray) -> UInt8[np.ndarray, "h w 3"]:
-    """Return the colours of a picture in three channels of 8 bits; NaN is black."""
-    colours = picture[..., :3] if picture.ndim == 3 and picture.shape[2] >= 3 else np.dstack([picture] * 3)
-    if colours.dtype == np.uint8:
-        return np.ascontiguousarray(colours)
-    scale = np.iinfo(colours.dtype).max if colours.dtype.kind in "iu" else 1
-    return np.clip(np.rint(np.nan_to_num(colours.astype(np.float64)) * (255 / scale)), 0, 255).astype(np.uint8)
+    """Return the colours of a picture in three channels of 8 bits, transparency over white; NaN is black."""
+    return np.ascontiguousarray(to_rgb8(np.nan_to_num(picture)))
 
 
 def reduce_to_side(colours: UInt8[np.ndarray, "h w 3"], side: int) -> UInt8[np.ndarray, "r c 3"]:

@@ -22,5 +22,6 @@ export function showOpening(page: Pick<Page, "hub">): void {
     isOpening = false;
     hide();
   });
+  page.hub.on("error", () => isOpening && hide());
   page.hub.on("made", ({ outcome }) => outcome !== "made" && isOpening && hide());
 }

@@ -24,7 +24,7 @@ class TangibleError(Exception):
     """
 
     def __str__(self) -> str:
-        lines = [shown(str(each), MOST_IN_LINE) for each in self.args[:MOST_LINES]]
+        lines = [shown(str(arg), MOST_IN_LINE) for arg in self.args[:MOST_LINES]]
         if more := len(self.args) - len(lines):
             lines.append(f"and {more} more")
         return "\n".join(lines)
@@ -51,9 +51,9 @@ class ConfigError(TangibleError):
         complaints: by default, the sentences without a place.
         """
         super().__init__(*sentences)
-        records = tuple(complaints) or tuple(Complaint((), str(each)) for each in sentences)
+        records = tuple(complaints) or tuple(Complaint((), str(sentence)) for sentence in sentences)
         self.complaints: tuple[Complaint, ...] = tuple(
-            each._replace(text=shown(each.text, MOST_IN_LINE)) for each in records
+            record._replace(text=shown(record.text, MOST_IN_LINE)) for record in records
         )
 
 

@@ -96,7 +96,7 @@ def _run_app() -> int:
             localise_help()
         hooks.tell(default_registry().plugins, "tangible_commands", app=app)
         check_paths(app)
-    names = [each.name or getattr(each.callback, "__name__", "") for each in app.registered_commands]
+    names = [command.name or getattr(command.callback, "__name__", "") for command in app.registered_commands]
     # False for typer's own flags: to convert None, typer would import pydantic, a third of the start
     off = dict.fromkeys(("help", "install_completion", "show_completion"), False)
     off |= {name: {"help": False} for name in (*COMMANDS, *names)}

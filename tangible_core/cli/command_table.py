@@ -150,10 +150,10 @@ def load(name: str) -> Any:
 
 def check_paths(app: typer.Typer) -> None:
     """Let every command of a group refuse a path that no file can have; one that is checked stays as it is."""
-    for each in _all_commands(app):
-        if each.callback and each.callback not in _checked:
-            each.callback = _check_paths(each.callback)
-            _checked.add(each.callback)
+    for command in _all_commands(app):
+        if command.callback and command.callback not in _checked:
+            command.callback = _check_paths(command.callback)
+            _checked.add(command.callback)
 
 
 def _check_paths(command: Callable[..., Any]) -> Callable[..., Any]:

@@ -70,7 +70,7 @@ def _scene_keys(words: Sequence[str], incomplete: str) -> list[str]:
         if not equals:
             options = (option for reader in scene_readers() for option in reader.model_fields)
             return _matching((f"scene.{option}=" for option in options), incomplete)
-        source = parse_source("{}", Path("here.yaml"), "", [each for each in words if each.startswith("scene")])
+        source = parse_source("{}", Path("here.yaml"), "", [word for word in words if word.startswith("scene")])
         block = plain(source.tree.get("scene"))
         block = cast("dict[str, Any]", block) if isinstance(block, dict) else {}
         reader = scene_reader_of({key: "", **block})
@@ -99,8 +99,8 @@ def _exporter_keys(incomplete: str) -> list[str]:
 def _installed_methods(kind: str | None, incomplete: str) -> list[tuple[str, str]]:
     from ..plugins.registry import default_registry
 
-    listings = [each for each in default_registry().listings if kind in (None, each.kind)]
-    return [(each.name, each.summary) for each in listings if each.name.startswith(incomplete)]
+    listings = [listing for listing in default_registry().listings if kind in (None, listing.kind)]
+    return [(listing.name, listing.summary) for listing in listings if listing.name.startswith(incomplete)]
 
 
 def _matching(names: Iterable[str], incomplete: str) -> list[str]:

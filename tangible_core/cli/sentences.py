@@ -55,8 +55,10 @@ def where(files: Sequence[Path]) -> str:
 
 def export_summary(scene: str, done: Export) -> str:
     """Return what a scene was exported as, and which exports failed; a warning tells what fingers cannot read."""
-    written = [f"{each.name}{' (parts simplified)' * made_simpler(each.made)}" for each in done.exports if each.files]
-    failed = [each.name for each in done.exports if not each.files]
+    written = [
+        f"{export.name}{' (parts simplified)' * made_simpler(export.made)}" for export in done.exports if export.files
+    ]
+    failed = [export.name for export in done.exports if not export.files]
     text = f"{scene} is written as {listing(written)}." if written else f"Nothing of {scene} was written."
     if written and failed:
         text += f" {listing(failed)} could not be written."
@@ -65,13 +67,13 @@ def export_summary(scene: str, done: Export) -> str:
 
 def made_simpler(outcomes: Sequence[Outcome]) -> bool:
     """Return True if the parts were simplified on the way to a product."""
-    return any(each.product == "simplified" and each.outcome in ("ran", "cached") for each in outcomes)
+    return any(outcome.product == "simplified" and outcome.outcome in ("ran", "cached") for outcome in outcomes)
 
 
 def plan_summary(steps: Sequence[Outcome]) -> str:
     """Return which products of a plan have yet to be made."""
-    to_run = [each.product for each in steps if each.outcome == "ran"]
-    cached = sum(each.outcome == "cached" for each in steps)
+    to_run = [step.product for step in steps if step.outcome == "ran"]
+    cached = sum(step.outcome == "cached" for step in steps)
     if not to_run:
         return "Nothing is left to run: all products are cached from earlier runs, or come with the scene."
     text = f"`run` would make {listing(to_run)}"
@@ -93,7 +95,7 @@ def touch_summary(device: str, figures: Mapping[str, Any]) -> str:
 
 def check_summary(name: str, results: Sequence[CheckResult]) -> str:
     """Return the number of conformance checks that a method passes or fails."""
-    broken = sum(not each.as_declared for each in results)
+    broken = sum(not result.as_declared for result in results)
     if not broken:
         return f"{name} passes all {len(results)} conformance checks."
     return f"{name} fails {broken} of {len(results)} conformance checks."

@@ -107,9 +107,9 @@ def outcomes(rows: Iterable[Outcome], title: str | None = None, ran: str = "ran"
     from ..data.outcome import HEADINGS
 
     cells = [
-        (product, method, f"[{COLOURS[each.outcome]}]{word}[/]", escape(_without_warnings(each, ran)), seconds)
-        for each in rows
-        for product, method, word, _, seconds in [each.row(ran)]
+        (product, method, f"[{COLOURS[row.outcome]}]{word}[/]", escape(_without_warnings(row, ran)), seconds)
+        for row in rows
+        for product, method, word, _, seconds in [row.row(ran)]
     ]
     table(HEADINGS, cells, title)
 
@@ -130,9 +130,9 @@ def parts_felt(parts: Sequence[PartFelt]) -> None:
     if parts:
         say("")
         cells = [
-            (str(shown_number(each.number)), escape(each.name), escape(each.material), f"{100 * each.share:.0f}",
-             f"{each.peak_force_n:.2f}")
-            for each in parts
+            (str(shown_number(part.number)), escape(part.name), escape(part.material), f"{100 * part.share:.0f}",
+             f"{part.peak_force_n:.2f}")
+            for part in parts
         ]  # fmt: skip
         table(("part", "name", "material", "% of the contact", "peak N"), cells)
 
@@ -147,9 +147,9 @@ def verdicts(
     say(f"{heading}\n")
     widths = (
         max(widths[0], *(len(localise(grade)) for grade in colours)),
-        max(widths[1], *(len(localise(each.check)) for each in rows), 0),
+        max(widths[1], *(len(localise(row.check)) for row in rows), 0),
     )
-    lines = {verdict_line(each, colours, widths): each.verdict for each in rows}  # one for all segments of a material
+    lines = {verdict_line(row, colours, widths): row.verdict for row in rows}  # one for all segments of a material
     shown = [line for line, grade in lines.items() if verbose or grade != "ok"]
     for line in shown:
         say(line)
@@ -173,7 +173,7 @@ def verdict_line(verdict: Verdict, colours: Mapping[str, str], widths: tuple[int
 
 def as_rows(rows: Iterable[Outcome]) -> list[dict[str, Any]]:
     """Return outcomes as plain values."""
-    return [asdict(each) for each in rows]
+    return [asdict(row) for row in rows]
 
 
 def sentence(text: str, apart: bool = True) -> None:

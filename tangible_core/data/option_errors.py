@@ -52,7 +52,7 @@ def sentences_about(
 
     location: that of the block, which the sentences name too.
     """
-    return [_sentence(each, model, location) for each in plain_errors(error, block)]
+    return [_sentence(plain_error, model, location) for plain_error in plain_errors(error, block)]
 
 
 def _sentence(error: dict[str, Any], model: type[BaseModel], location: Location) -> tuple[Location, str]:

@@ -66,7 +66,7 @@ def options_in(
 def _inner(option: Mapping[str, Any]) -> list[str]:
     """Return the names of the blocks that an option is, may be, or is a list of."""
     forms = (option, *option.get("anyOf", ()), option.get("items", {}))
-    return [name_of_block(each) for each in forms if "$ref" in each]
+    return [name_of_block(form) for form in forms if "$ref" in form]
 
 
 def name_of_block(form: Mapping[str, Any]) -> str:
@@ -83,7 +83,7 @@ def default_in_code(option: Mapping[str, Any]) -> str:
 def values_in_code(option: Mapping[str, Any]) -> str:
     """Return the values that may be written, with bounds."""
     if forms := option.get("anyOf", option.get("oneOf")):
-        return " or ".join(values_in_code(each) for each in cast("list[dict[str, Any]]", forms))
+        return " or ".join(values_in_code(form) for form in cast("list[dict[str, Any]]", forms))
     if "enum" in option:
         return names_in_code(option["enum"])
     if "const" in option:

@@ -70,7 +70,7 @@ class Plan:
     @property
     def refusal(self) -> str:
         """The reason why this cannot be run, as far as it is known beforehand; "" if it can."""
-        return next((each.why for each in self.steps if each.outcome == "refused"), "")
+        return next((step.why for step in self.steps if step.outcome == "refused"), "")
 
     def __repr__(self) -> str:
         return text_table(HEADINGS[:-1], self._rows())
@@ -79,7 +79,7 @@ class Plan:
         return html_table(HEADINGS[:-1], self._rows())
 
     def _rows(self) -> list[Sequence[str]]:
-        return [each.row(ran="to run")[:-1] for each in self.steps]
+        return [step.row(ran="to run")[:-1] for step in self.steps]
 
 
 def text_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -97,7 +97,7 @@ def text_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def html_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return rows as an HTML table for a notebook; the cells are escaped."""
-    head = "".join(f"<th style='text-align:left'>{escape(each)}</th>" for each in headings)
+    head = "".join(f"<th style='text-align:left'>{escape(heading)}</th>" for heading in headings)
     lines = ("".join(f"<td style='text-align:left'>{escape(cell)}</td>" for cell in row) for row in rows)
     body = "".join(f"<tr>{line}</tr>" for line in lines)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"

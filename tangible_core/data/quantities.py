@@ -47,7 +47,7 @@ class _Blocks(type(BaseModel)):
                 return super().__call__(**options)
             except ValidationError as error:
                 sentences = [text for _, text in sentences_about(error, cls, options)]
-            raise OptionError(*(f"{cls.__name__}: {each}" for each in sentences))
+            raise OptionError(*(f"{cls.__name__}: {sentence}" for sentence in sentences))
 
 
 _TEXTS = WeakKeyDictionary[type, str | None]()

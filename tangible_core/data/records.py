@@ -99,7 +99,7 @@ def settle(record: Any) -> None:
 @cache
 def _converters(cls: type) -> tuple[tuple[str, Convert], ...]:
     hints = get_type_hints(cls)
-    converters = ((each.name, _converter(hints[each.name])) for each in fields(cast(Any, cls)))
+    converters = ((field.name, _converter(hints[field.name])) for field in fields(cast(Any, cls)))
     return tuple((name, convert) for name, convert in converters if convert is not None)
 
 
@@ -122,7 +122,7 @@ def _converter(hint: Any) -> Convert | None:
 
 def _parts(union: Any) -> list[Any]:
     """Return the parts of a union other than None."""
-    return [each for each in get_args(union) if each is not NoneType]
+    return [arg for arg in get_args(union) if arg is not NoneType]
 
 
 def _one_of(known: tuple[Any, ...]) -> Convert:
@@ -175,7 +175,7 @@ def short_repr(value: Any) -> str:
     >>> short_repr(DisparityMap(np.arange(6, dtype=np.float32).reshape(2, 3)))
     'DisparityMap(disparity_px=<float32 (2, 3), 0 to 5>, confidence=<float32 (2, 3), 1 to 1>)'
     """
-    shown = ((each.name, getattr(value, each.name)) for each in fields(value) if _differs(value, each))
+    shown = ((field.name, getattr(value, field.name)) for field in fields(value) if _differs(value, field))
     return f"{type(value).__name__}({', '.join(f'{name}={_shown(part)}' for name, part in shown)})"
 
 

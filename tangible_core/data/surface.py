@@ -90,7 +90,7 @@ class Material:
     source: str = ""
 
     def __post_init__(self) -> None:
-        for name in (each.name for each in fields(self) if each.type in (float, int)):
+        for name in (field.name for field in fields(self) if field.type in (float, int)):
             value = as_number(f"material {quoted(self.name)}: {name}", getattr(self, name))
             if not 0 <= value < np.inf:
                 raise MaterialError(f"material {quoted(self.name)}: {name} is {value}; it must be >= 0 and finite")

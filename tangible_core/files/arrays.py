@@ -32,7 +32,7 @@ class Archive:
         with _plain_errors():
             self._zip = ZipFile(file)
         members = self._zip.infolist()
-        self._members = {each.filename[:-4]: each for each in members if each.filename.endswith(".npy")}
+        self._members = {member.filename[:-4]: member for member in members if member.filename.endswith(".npy")}
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -79,7 +79,7 @@ def _is_compressible(array: np.ndarray) -> bool:
     flat = np.ascontiguousarray(array).reshape(-1).view(np.uint8)
     starts = np.linspace(0, max(0, flat.size - _SAMPLE), _SAMPLES).astype(int)
     samples = [flat[start : start + _SAMPLE].tobytes() for start in dict.fromkeys(starts.tolist())]
-    return sum(len(zlib.compress(each, 1)) for each in samples) <= _MOST_SHARE * sum(map(len, samples))
+    return sum(len(zlib.compress(sample, 1)) for sample in samples) <= _MOST_SHARE * sum(map(len, samples))
 
 
 def read_array(file: IO[bytes]) -> np.ndarray:

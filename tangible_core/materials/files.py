@@ -13,7 +13,7 @@ from ..data.quantities import Quantities
 from ..errors import MaterialError, did_you_mean, quoted, shown
 from ..files.yaml.source import Source, Tree, parse_source, read_text
 
-VALUES = tuple(each.name for each in fields(Material) if each.name not in ("name", "source"))
+VALUES = tuple(field.name for field in fields(Material) if field.name not in ("name", "source"))
 REQUIRED = ("stiffness_n_per_m", "damping_n_s_per_m", "static_friction", "dynamic_friction")
 
 

@@ -170,7 +170,7 @@ def _list(verb: str, parts: list[int]) -> str:
     """Return words such as `; it is behind parts 1, 2 and 5`; nothing for no part."""
     if len(parts) == 1:
         return f"; {verb} {name_part(parts[0])}"
-    *others, last = [str(shown_number(each)) for each in parts[:MOST_NAMED]] or [""]
+    *others, last = [str(shown_number(part)) for part in parts[:MOST_NAMED]] or [""]
     return f"; {verb} parts {', '.join(others)} and {last}" if others else ""
 
 

@@ -125,7 +125,7 @@ def _method(frame: FrameType) -> Place | None:
 
 def _function(frames: list[FrameType]) -> Place | None:
     """Find the innermost function in a package that has plugins."""
-    packages = {package(each.module) for each in points()} - {OURS}
+    packages = {package(point.module) for point in points()} - {OURS}
     names = [(str(frame.f_globals.get("__name__")), frame.f_code.co_name) for frame in frames]
     return next((Place("", module, "", name) for module, name in names if package(module) in packages), None)
 

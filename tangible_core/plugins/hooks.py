@@ -108,21 +108,21 @@ def manager() -> pluggy.PluginManager:
             log.debug("the import of %s", point.value, exc_info=True)
     specified = [name for name in vars(Specs) if name.startswith("tangible_")]
     for name, plugin in plugins.list_name_plugin():
-        for each in plugins.get_hookcallers(plugin) or []:
-            if each.name not in specified:
-                near = did_you_mean(each.name, specified)
-                log.warning("%s implements an unknown hook: %s%s", name, each.name, near)
+        for hookcaller in plugins.get_hookcallers(plugin) or []:
+            if hookcaller.name not in specified:
+                near = did_you_mean(hookcaller.name, specified)
+                log.warning("%s implements an unknown hook: %s%s", name, hookcaller.name, near)
     return plugins
 
 
 def tell(plugins: pluggy.PluginManager, moment: str, **facts: Any) -> list[Any]:
     """Call the implementations of a hook one by one, and return their answers; an error is logged, the rest go on."""
     answers: list[Any] = []
-    for each in plugins.hook.__getattribute__(moment).get_hookimpls():
+    for hookimpl in plugins.hook.__getattribute__(moment).get_hookimpls():
         try:
-            answers.append(each.function(*(facts[name] for name in each.argnames)))
+            answers.append(hookimpl.function(*(facts[name] for name in hookimpl.argnames)))
         except Exception as error:  # noqa: BLE001 - the other observers are called all the same
-            _warn_of_failure(plugins, each.plugin_name, moment, error)
+            _warn_of_failure(plugins, hookimpl.plugin_name, moment, error)
     return [answer for answer in answers if answer is not None]
 
 

@@ -47,7 +47,7 @@ def plugin_name(kind: str, module: str, owner: str) -> str:
     The plugin is the class itself, or the only one of its kind in the module or in its package. Where there are
     several, the class and the distribution are named.
     """
-    of_kind = [each for each in points() if kind in ("", _kind(each))]
+    of_kind = [point for point in points() if kind in ("", _kind(point))]
     exact = [each for each in of_kind if each.value == f"{module}:{owner}"]
     in_module = [each for each in of_kind if each.module == module]
     near = exact or in_module or [each for each in of_kind if package(each.module) == package(module)]

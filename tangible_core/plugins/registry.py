@@ -73,7 +73,7 @@ class Registry:
 
     def names(self, kind: str) -> list[str]:
         """Return the names to write after `use:`: `distribution/name` where two distributions offer the same name."""
-        of_kind = [each for each in self.listings if each.kind == kind]
+        of_kind = [listing for listing in self.listings if listing.kind == kind]
         short = [each.name for each in of_kind]
         return [each.name if short.count(each.name) == 1 else f"{each.distribution}/{each.name}" for each in of_kind]
 
@@ -86,16 +86,16 @@ class Registry:
             raise UnknownName("kind of methods", kind, KIND_NAMES)
         distribution, _, short = str(name).rpartition("/")
         listings = [
-            each
-            for each in self.listings
-            if each.kind == kind and each.name == short and distribution in ("", each.distribution)
+            listing
+            for listing in self.listings
+            if listing.kind == kind and listing.name == short and distribution in ("", listing.distribution)
         ]
         if not listings:
             raise UnknownMethod(kind, name, self.names(kind))
         if len(listings) > 1:
             raise BrokenMethod(
-                f"{kind} method {name!r} is offered by {' and '.join(each.origin for each in listings)}; "
-                f"write {' or '.join(f'{each.distribution}/{short}' for each in listings)}"
+                f"{kind} method {name!r} is offered by {' and '.join(listing.origin for listing in listings)}; "
+                f"write {' or '.join(f'{listing.distribution}/{short}' for listing in listings)}"
             )
         return listings[0]
 

@@ -44,8 +44,10 @@ def fit_surface(surface: HapticSurface, spec: DeviceSpec, safety: Safety) -> tup
     """Limit the materials of a surface to what this device renders stably; return a sentence on the changes as well."""
     if surface.materials is None:
         return surface, ""
-    pairs = {each: fit(each, spec, safety) for each in dict.fromkeys(surface.materials)}  # however many labels have it
-    materials = tuple(pairs[each] for each in surface.materials)
+    pairs = {
+        fromkey: fit(fromkey, spec, safety) for fromkey in dict.fromkeys(surface.materials)
+    }  # however many labels have it
+    materials = tuple(pairs[material] for material in surface.materials)
     return replace(surface, materials=materials), describe_changes(pairs)
 
 

@@ -78,9 +78,9 @@ def reconcile_cures(verdicts: Iterable[Verdict]) -> list[Verdict]:
     """Give all changes of a key the strictest value; leave out a change that would undo that of a worse verdict."""
     verdicts = list(verdicts)
     strictest: dict[str, Change] = {}
-    for change in (change for each in sorted(verdicts, key=_rank) for change in each.changes):
+    for change in (change for verdict in sorted(verdicts, key=_rank) for change in verdict.changes):
         strictest[change.key] = strictest[change.key].stricter(change) if change.key in strictest else change
-    return [_reconcile(each, strictest) for each in verdicts]
+    return [_reconcile(verdict, strictest) for verdict in verdicts]
 
 
 def worst(verdicts: Iterable[Verdict]) -> Grade:
@@ -92,7 +92,7 @@ def reasons(verdicts: Iterable[Verdict]) -> str:
     """Join the texts of the worst verdicts, as the end of a sentence."""
     verdicts = list(verdicts)
     grade = worst(verdicts)
-    texts = list(dict.fromkeys(each.says for each in verdicts if each.verdict == grade and each.says))
+    texts = list(dict.fromkeys(verdict.says for verdict in verdicts if verdict.verdict == grade and verdict.says))
     more = len(texts) - MOST_REASONS
     named = texts[:MOST_REASONS] + ([f"{more} more thing{'s' * (more > 1)}"] if more > 0 else [])
     return " and ".join(filter(None, [", ".join(named[:-1]), named[-1]]))

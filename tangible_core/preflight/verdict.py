@@ -155,9 +155,9 @@ def relation(verdict: Verdict) -> str:
     numbers = verdict.value, verdict.bound
     if any(map(math.isnan, numbers)):
         return f"{verdict.value:g} must be {verdict.relation} {verdict.bound:g} {verdict.unit}"
-    texts = ([quantity(each, verdict.unit, digits) for each in numbers] for digits in range(MOST_DIGITS))
+    texts = ([quantity(number, verdict.unit, digits) for number in numbers] for digits in range(MOST_DIGITS))
     value, bound = next(
-        (pair for pair in texts if pair[0] != pair[1]), [f"{each!r} {verdict.unit}" for each in numbers]
+        (pair for pair in texts if pair[0] != pair[1]), [f"{number!r} {verdict.unit}" for number in numbers]
     )
     return f"{value} {'>' if verdict.relation == '<=' else '<'} {bound}"
 
@@ -185,5 +185,5 @@ def as_data(verdict: Verdict) -> dict[str, Any]:
         name for name, value in asdict(verdict).items() if isinstance(value, float) and not math.isfinite(value)
     ]
     plain = asdict(verdict) | dict.fromkeys(infinite)
-    changes = [{"key": each.key, "value": each.setting, "towards": each.towards} for each in verdict.changes]
+    changes = [{"key": change.key, "value": change.setting, "towards": change.towards} for change in verdict.changes]
     return {**plain, "stands": relation(verdict), "changes": changes}

@@ -80,8 +80,8 @@ def _select(nodes: Iterable[ast.AST]) -> list[ast.Import | ast.ImportFrom]:
 
 def _imports_of(node: ast.Import | ast.ImportFrom) -> list[Import]:
     if isinstance(node, ast.Import):
-        return [Import(each.name) for each in node.names]
-    return [Import(node.module or "", each.name, each.asname or each.name, node.level) for each in node.names]
+        return [Import(name.name) for name in node.names]
+    return [Import(node.module or "", name.name, name.asname or name.name, node.level) for name in node.names]
 
 
 @dataclass(frozen=True)

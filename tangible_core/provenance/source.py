@@ -68,7 +68,7 @@ def _of_module(name: str) -> str:
 def _references(thing: type | FunctionType) -> Iterator[tuple[str, Any]]:
     """Yield the names of its module that a class or a function of a notebook refers to, and a class's bases."""
     functions = [thing] if isinstance(thing, FunctionType) else list(_functions(thing))
-    if {name for each in functions for name in each.__code__.co_freevars} - {"__class__"}:
+    if {name for function in functions for name in function.__code__.co_freevars} - {"__class__"}:
         raise _UnknownContentError(thing.__qualname__)  # it was defined in a function, and uses its variables
     if isinstance(thing, type):
         yield from ((base.__qualname__, base) for base in thing.__bases__)
@@ -108,6 +108,6 @@ def _functions(cls: type) -> Iterator[FunctionType]:
 
 def _names(code: CodeType) -> Iterator[str]:
     yield from code.co_names
-    for each in code.co_consts:
-        if isinstance(each, CodeType):
-            yield from _names(each)
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _names(constant)

@@ -28,8 +28,8 @@ def limited_threads(most: int | None = None) -> Generator[None]:
     token = _limit.set(limit)
     try:
         with ExitStack() as libraries:
-            for each in limiters:
-                libraries.enter_context(each(limit))
+            for limiter in limiters:
+                libraries.enter_context(limiter(limit))
             yield
     finally:
         _limit.reset(token)

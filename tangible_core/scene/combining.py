@@ -103,7 +103,7 @@ def _fill(parts: dict[str, np.ndarray], main: str) -> np.ndarray | None:
 def _cut_out(parts: dict[str, np.ndarray], files: SceneFiles, notify: Notify) -> np.ndarray | None:
     """Drop the fourth channel of the pictures; return the mask of the main one, None if it was opaque everywhere."""
     shown: dict[str, np.ndarray] = {}
-    for name in [each for each in parts if each in PICTURES and parts[each].shape[2:] == (4,)]:
+    for name in [part for part in parts if part in PICTURES and parts[part].shape[2:] == (4,)]:
         parts[name], shown[name] = cut_out(parts[name], str(getattr(files, name)))
     main = shown.get(files.main)
     if main is None or main.all():

@@ -121,10 +121,10 @@ class SceneSource:
                 notes.append(f"{found.name} states the cameras of the pair; write `rig: {named}` to use it")
         warnings: list[str] = []
         fields = combine_parts(files, parts, rig, notes, warnings)
-        for each in notes:
-            log.info("%s", each)
-        for each in warnings:
-            log.warning("%s", each)
+        for note in notes:
+            log.info("%s", note)
+        for warning in warnings:
+            log.warning("%s", warning)
         return fields | {
             "name": self.name,
             "relief_m": files.relief_m,

@@ -83,7 +83,7 @@ def names_text(names: Mapping[int, str]) -> str:
 
 def materials_text(surface: HapticSurface) -> str:
     """Return the names of a surface's materials by the number of their label, as `names_text`; empty for none."""
-    return names_text({number: each.name for number, each in enumerate(surface.materials or ())})
+    return names_text({number: material.name for number, material in enumerate(surface.materials or ())})
 
 
 def names_in(configuration: str) -> str:
@@ -122,7 +122,7 @@ def parts_felt(recording: Recording, surface: HapticSurface) -> tuple[PartFelt, 
     under, force_n = _parts_under(surface, recording.position_m[touching]), force_n[touching]
     numbers, ticks = np.unique(under[under >= 0], return_counts=True)
     order = np.argsort(-ticks, kind="stable")
-    materials = [each.name for each in surface.materials or ()]
+    materials = [material.name for material in surface.materials or ()]
     return tuple(
         PartFelt(
             number,

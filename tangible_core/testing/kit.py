@@ -133,7 +133,7 @@ def _declared_failures(registry: Registry, kind: str, name: str) -> Mapping[str,
 def _unknown(kind: str, reasons: Mapping[str, str]) -> str:
     """Return a complaint about the first name that is not a check of this kind; empty if all are."""
     names = [check.__name__ for check in checks(kind)]
-    unknown = next((each for each in reasons if each not in names), None)
+    unknown = next((reason for reason in reasons if reason not in names), None)
     if unknown is None:
         return ""
     return f"expected_failures: no {kind} check is named {unknown!r}{did_you_mean(unknown, names)}"

@@ -30,8 +30,8 @@ class Catalogue:
 
     def __init__(self, entries: dict[str, str], numerals: Numerals) -> None:
         templates = [Template(*each) for each in entries.items()]
-        self._exact = {each.english: each.translation for each in templates if not each.names}
-        varied = sorted((each for each in templates if each.names), key=lambda each: -each.letters)
+        self._exact = {template.english: template.translation for template in templates if not template.names}
+        varied = sorted((template for template in templates if template.names), key=lambda each: -each.letters)
         self._strong = [each for each in varied if each.letters >= WEAK or "\n" in each.english]
         self._weak = [each for each in varied if each not in self._strong]
         self._endings = [each for each in varied if each.english[0] in MARKS]
@@ -80,10 +80,10 @@ class Catalogue:
         self, text: str, templates: Sequence[Template], fits: Callable[[str], bool] = lambda _: True
     ) -> str | None:
         """Return a text that was made of one of these templates, and whose values fit."""
-        for each in templates:
-            values = each.match(text) if each.is_once_in(text) else None
+        for template in templates:
+            values = template.match(text) if template.is_once_in(text) else None
             if values is not None and all(map(fits, values.values())):
-                return each.fill(values, self)
+                return template.fill(values, self)
         return None
 
     def _fits(self, text: str) -> bool:
@@ -119,7 +119,7 @@ class Catalogue:
 
     def _by_sentences(self, text: str) -> str | None:
         sentences = re.split(r"(?<=[.!?]) +(?=[A-Z`[])", text)
-        known = len(sentences) > 1 and all(self.find(each) is not None for each in sentences)
+        known = len(sentences) > 1 and all(self.find(sentence) is not None for sentence in sentences)
         return " ".join(map(self, sentences)) if known else None
 
     def _by_joints(self, text: str) -> str | None:
@@ -132,7 +132,7 @@ class Catalogue:
 
     def _by_halves(self, text: str, fits: Callable[[str], bool]) -> str | None:
         for parts, joint in self._halves(text):
-            if all(map(fits, parts)) and any(self.find(each) is not None for each in parts):
+            if all(map(fits, parts)) and any(self.find(part) is not None for part in parts):
                 return f"{self(parts[0])}{self._joint(joint)}{self(parts[1])}"
         return None
 
@@ -171,7 +171,7 @@ def is_name(text: str) -> bool:
     (True, True, False)
     """
     words = text.split()
-    short = len(words) < 2 or (len(words) == 2 and not all(each.isalpha() and each.islower() for each in words))
+    short = len(words) < 2 or (len(words) == 2 and not all(word.isalpha() and word.islower() for word in words))
     return short or (text.startswith("`") and text.endswith("`"))
 
 
@@ -190,4 +190,4 @@ def parse(text: str) -> dict[str, str]:
 
 def unquoted(lines: str) -> str:
     """Return the text of the quoted lines of an entry."""
-    return "".join(json.loads(each) for each in LINE.findall(lines))
+    return "".join(json.loads(text) for text in LINE.findall(lines))

@@ -52,7 +52,7 @@ class Template:
         for number in reversed(range(len(middle))):  # of placeholders side by side, the first one has it all
             if not middle[number]:
                 values[number], values[number + 1] = values[number + 1], values[number]
-        if "\n" not in self.english and any("\n" in each for each in values):
+        if "\n" not in self.english and any("\n" in value for value in values):
             return None
         return dict(zip(self.names, values, strict=True))
 

@@ -30,8 +30,8 @@ def localise_marked(text: str) -> str:
     if language() == LANGUAGES[0]:
         return text
     return "".join(
-        each if number % 2 else _escape(localise(each.replace(r"\[", "[")))
-        for number, each in enumerate(MARKS.split(text))
+        word if number % 2 else _escape(localise(word.replace(r"\[", "[")))
+        for number, word in enumerate(MARKS.split(text))
     )
 
 

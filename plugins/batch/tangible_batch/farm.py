@@ -148,10 +148,10 @@ class Farm:
         workers = self._client.scheduler_info(n_workers=-1)["workers"]
         if not workers:
             raise BatchError(f"{scheduler}: has no workers; start some: dask worker {scheduler} --nthreads 1")
-        for address, each in workers.items():
-            if each["nthreads"] != 1:
+        for address, worker in workers.items():
+            if worker["nthreads"] != 1:
                 raise BatchError(
-                    f"the worker {address} works on {each['nthreads']} scenes at once in one process; start it with "
+                    f"the worker {address} works on {worker['nthreads']} scenes at once in one process; start it with "
                     "--nthreads 1, and several with --nworkers"
                 )
         theirs = self._client.run(metadata.version, DISTRIBUTION, on_error="return")
@@ -198,14 +198,14 @@ SETTINGS = {
 def _quiet() -> Generator[None]:
     """Silence the loggers that report when workers come and go."""
     loggers = [logging.getLogger(name) for name in NOISY_LOGGERS]
-    levels = [each.level for each in loggers]
-    for each in loggers:
-        each.setLevel(logging.CRITICAL)
+    levels = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
     try:
         yield
     finally:
-        for each, level in zip(loggers, levels, strict=True):
-            each.setLevel(level)
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)
 
 
 def _cluster(distributed: Any, workers: int, threads: int) -> Any:

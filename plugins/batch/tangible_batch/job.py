@@ -118,8 +118,10 @@ def _make(job: Job) -> Row:
     return {
         "scene": pipeline.scene.name,
         "figures": _plain({**figures, **_size(pipeline)}),
-        "stages": {each.product: round(each.seconds, 5) for each in pipeline.outcomes if each.outcome == "ran"},
-        "notes": [note.text for each in pipeline.outcomes for note in each.notes if note.kind != "decision"],
+        "stages": {
+            outcome.product: round(outcome.seconds, 5) for outcome in pipeline.outcomes if outcome.outcome == "ran"
+        },
+        "notes": [note.text for outcome in pipeline.outcomes for note in outcome.notes if note.kind != "decision"],
         "files": [*files, card],
         "card": card,
     }
@@ -139,7 +141,7 @@ def _export(pipeline: Pipeline, folder: Path) -> list[str]:
     if not pipeline.config.export:
         return []
     done = pipeline.export(folder, force=True)
-    if failed := [each for each in done.outcomes if each.outcome != "ran"]:
+    if failed := [outcome for outcome in done.outcomes if outcome.outcome != "ran"]:
         raise OutputError("; ".join(f"export {each.product}: {each.why}" for each in failed))
     return [path.relative_to(folder).as_posix() for paths in done.files.values() for path in paths]
 

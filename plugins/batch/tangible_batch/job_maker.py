@@ -91,7 +91,7 @@ def _complaints(text: str, path: Path, sets: tuple[str, ...]) -> dict[object, st
     try:
         parse_config(text, path, default_registry(), sets)
     except ConfigError as error:
-        places = [(each.location, each.text) for each in error.complaints]
+        places = [(complaint.location, complaint.text) for complaint in error.complaints]
         return dict(zip(places, map(str, error.args), strict=False))
     except TangibleError as error:
         return {str(error): str(error)}

@@ -137,7 +137,7 @@ def _files(paths: Iterable[Path], besides: Path | None) -> list[Path]:
     """Return the files among these paths that are not in the folder `besides`, in order."""
     left_out = None if besides is None else besides.absolute()
     return sorted(
-        each for each in paths if each.is_file() and not (left_out and each.absolute().is_relative_to(left_out))
+        path for path in paths if path.is_file() and not (left_out and path.absolute().is_relative_to(left_out))
     )
 
 

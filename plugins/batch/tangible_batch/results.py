@@ -187,7 +187,7 @@ def _figure(row: Row) -> str:
 def _product(row: Row) -> str:
     """Return the product that was kept, such as `relief`."""
     records = [file.removesuffix(".npz") for file in row.get("files", ()) if file.endswith(".npz")]
-    return next((each for each in reversed(records) if each != "recording"), "surface")
+    return next((record for record in reversed(records) if record != "recording"), "surface")
 
 
 def _summary(row: Row) -> str:

@@ -105,11 +105,11 @@ class Onnx(DepthEstimator, Skippable):
         wanted = [gives.name, gives.confidence] if gives.confidence else [gives.name]
         outputs = run(model, card.runtime or self.runtime, inputs, wanted)
         maps: list[Map] = []
-        for name, each in zip(wanted, outputs, strict=True):
-            values = restore_size(each, fit, shape, gives.channel if name == gives.name else None)
+        for name, output in zip(wanted, outputs, strict=True):
+            values = restore_size(output, fit, shape, gives.channel if name == gives.name else None)
             if values is None:
                 raise ConfigError(
-                    f"model: {model} returns {name or 'an output'} of {each.shape}, which is not a map; name another "
+                    f"model: {model} returns {name or 'an output'} of {output.shape}, which is not a map; name another "
                     "output in the card"
                 )
             maps.append(values)

@@ -43,7 +43,7 @@ class InstalledDevice:
 
 def installed_devices(registry: Registry) -> tuple[InstalledDevice, ...]:
     """List every installed device with its connected units; a device that fails is a row with a problem."""
-    return tuple(_look_for(each, registry) for each in registry.listings if each.kind == "device")
+    return tuple(_look_for(listing, registry) for listing in registry.listings if listing.kind == "device")
 
 
 def make_device(registry: Registry, name: str, sets: Sequence[str] = ()) -> HapticDevice:

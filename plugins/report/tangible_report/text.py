@@ -80,7 +80,7 @@ class Text(Exporter):
         else:
             note(log, "no part has a name, so parts are described by number; `tangible parts` shows them for naming")
             parts = facts(surface, work.materials, simplified, work.names)
-        return parts if self.materials else tuple(each._replace(material="") for each in parts)
+        return parts if self.materials else tuple(part._replace(material="") for part in parts)
 
     def _emboss(self, lines: Sequence[str], language: Language) -> str:
         """Return lines and pages of braille for embossers, in plain ASCII."""

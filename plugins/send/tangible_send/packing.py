@@ -82,8 +82,8 @@ def _surface_in_words(sent: SentSurface, work: Work) -> HapticSurface:
 def _rows(materials: Sequence[Material] | None) -> list[tuple[float, float, float, float]]:
     """Return stiffness, damping and frictions of each label, as `proxy` has them; one row if all are alike."""
     rows = [
-        (each.stiffness_n_per_m, each.damping_n_s_per_m, each.static_friction, each.dynamic_friction)
-        for each in materials or (PLAIN,)
+        (material.stiffness_n_per_m, material.damping_n_s_per_m, material.static_friction, material.dynamic_friction)
+        for material in materials or (PLAIN,)
     ]
     return rows[:1] if len(set(rows)) == 1 else rows
 
@@ -103,8 +103,8 @@ def _meta(
         "levels": [{"step": 1, "rows": rows, "columns": columns}],
         "labels": 0 if sent.labels is None else int(sent.labels.max()) + 1,
         "label_bytes": 2,
-        "materials": [{**asdict(each), "name": one_line(each.name)} for each in materials],
-        "parts": None if surface.names is None else [one_line(each) for each in surface.names],
+        "materials": [{**asdict(material), "name": one_line(material.name)} for material in materials],
+        "parts": None if surface.names is None else [one_line(name) for name in surface.names],
         "photo": work.picture is not None,
         "fine_photo": None,
         "layers": {},
@@ -126,7 +126,7 @@ def description(surface: HapticSurface, work: Work, language: Language) -> dict[
     return {
         "overview": " ".join((*told.overview, *[Words(language)("first frame")] * work.film)),
         "heading": told.heading,
-        "parts": [[each.label, " ".join(each.sentences)] for each in told.parts],
+        "parts": [[part.label, " ".join(part.sentences)] for part in told.parts],
         "left_out": told.left_out,
     }
 

@@ -23,7 +23,7 @@ OURS = {
 
 def points() -> dict[str, EntryPoint]:
     """Return the entry points of all installed procedures by name, ours first. Nothing is imported."""
-    others = {each.name: each for each in entry_points(group=GROUP)}
+    others = {entry_point.name: entry_point for entry_point in entry_points(group=GROUP)}
     ours = {name: EntryPoint(name, f"{__package__}.procedures.{place}", GROUP) for name, place in OURS.items()}
     return {**ours, **{name: point for name, point in others.items() if name not in ours}}
 

@@ -46,9 +46,9 @@ class StudyFile:
     def recipes(self) -> dict[tuple[str, Stimulus], Recipe]:
         """Return the pipeline of everything that may be presented, by comparison and stimulus."""
         return {
-            (each.name, stimulus): recipe_of(self.study, self.path.parent, each, stimulus)
-            for each in self.study.comparisons
-            for stimulus in self.procedures[each.name].stimuli(each)
+            (comparison.name, stimulus): recipe_of(self.study, self.path.parent, comparison, stimulus)
+            for comparison in self.study.comparisons
+            for stimulus in self.procedures[comparison.name].stimuli(comparison)
         }
 
     def place(self, comparison: str, stimulus: Stimulus) -> Location:
@@ -81,7 +81,7 @@ def parse_study(text: str, path: Path) -> StudyFile:
     study = _design(source)
     if not study.comparisons:
         source.complain(("comparisons",), "asks nothing; write `comparisons:`, each with a `name:` and a `question:`")
-    names = [each.name for each in study.comparisons]
+    names = [comparison.name for comparison in study.comparisons]
     for index, name in enumerate(names):
         if name in names[:index]:
             source.complain(("comparisons", index, "name"), f"two comparisons are called {quoted(name)}; rename one")
@@ -89,9 +89,9 @@ def parse_study(text: str, path: Path) -> StudyFile:
         if condition.pipeline is None and study.pipeline is None:
             source.complain(("conditions", name), f"{name}: has no pipeline; write `pipeline:` here or for the study")
     procedures = {
-        each.name: found
-        for index, each in enumerate(study.comparisons)
-        if (found := _procedure(source, index, each, study)) is not None
+        comparison.name: found
+        for index, comparison in enumerate(study.comparisons)
+        if (found := _procedure(source, index, comparison, study)) is not None
     }
     source.settle()
     file = StudyFile(path, text, study, procedures, source)
@@ -130,7 +130,10 @@ def _design(source: Source) -> Study:
     source.settle()
     assert study is not None
     everything = {"conditions": tuple(study.conditions)}
-    filled = (each if each.conditions else each.model_copy(update=everything) for each in study.comparisons)
+    filled = (
+        comparison if comparison.conditions else comparison.model_copy(update=everything)
+        for comparison in study.comparisons
+    )
     return study.model_copy(update={"comparisons": tuple(filled)})
 
 
@@ -178,11 +181,11 @@ def _check_pipelines(file: StudyFile, registry: Registry) -> None:
             config_of_recipe(recipe, registry)
         except ConfigError as error:
             index = [each.name for each in file.study.comparisons].index(comparison)
-            for each in error.complaints:
-                where = _origin(file, index, stimulus, each)
-                if (where, each.text) not in seen:
-                    seen.add((where, each.text))
-                    file.source.complain(where, f"{recipe.pipeline.name}: {each.text}")
+            for complaint in error.complaints:
+                where = _origin(file, index, stimulus, complaint)
+                if (where, complaint.text) not in seen:
+                    seen.add((where, complaint.text))
+                    file.source.complain(where, f"{recipe.pipeline.name}: {complaint.text}")
 
 
 def config_of_recipe(recipe: Recipe, registry: Registry) -> PipelineConfig:

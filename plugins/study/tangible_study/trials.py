@@ -62,10 +62,10 @@ class Answer:
     @classmethod
     def of(cls, cells: Mapping[str, str]) -> Self:
         """Read an answer from the cells of a line, by column. Raises: ValueError, KeyError."""
-        return cls(**{each.name: _value(cells[each.name], each.type) for each in fields(cls)})
+        return cls(**{field.name: _value(cells[field.name], field.type) for field in fields(cls)})
 
 
-COLUMNS = tuple(each.name for each in fields(Answer))
+COLUMNS = tuple(field.name for field in fields(Answer))
 """Names of the columns, in their order."""
 
 

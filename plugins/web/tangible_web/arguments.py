@@ -19,7 +19,7 @@ def checked_arguments(name: str, answer: Callable[..., Any], own: int, said: dic
     name: of the request. own: number of leading parameters that the page may not give.
     Raises: ConfigError for wrong, missing and further arguments.
     """
-    if any(each.kind is each.VAR_KEYWORD for each in inspect.signature(answer).parameters.values()):
+    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in inspect.signature(answer).parameters.values()):
         return said  # it checks them itself
     try:
         found = _model(answer, own).model_validate_json(json.dumps(said))

@@ -125,8 +125,8 @@ class LiveTab:
                 async with asyncio.TaskGroup() as group:
                     senders = [group.create_task(self._send_states()), group.create_task(self._send_events())]
                     await self._hear()
-                    for each in senders:
-                        each.cancel()
+                    for sender in senders:
+                        sender.cancel()
         finally:
             self._gone = True
             self._program.leave(self)

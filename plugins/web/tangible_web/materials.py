@@ -9,5 +9,5 @@ from tangible_core.data import Material
 
 def distinct_materials(materials: Sequence[Material]) -> tuple[list[Material], np.ndarray]:
     """Return the distinct materials, and the index of each label's material among them, (labels,) uint16."""
-    places = {each: place for place, each in enumerate(dict.fromkeys(materials))}
-    return list(places), np.array([places[each] for each in materials], "<u2")
+    places = {fromkey: place for place, fromkey in enumerate(dict.fromkeys(materials))}
+    return list(places), np.array([places[material] for material in materials], "<u2")

@@ -99,7 +99,7 @@ def feel(
         document: dict[str, Any] = {"outcomes": show.as_rows(pipeline.outcomes), "loop": loop}
         document["figures"] = {"device": device.name, "spec": asdict(device.method.spec()), **figures}
         document |= {"guard": session.guard_summary(report.flagged), "hand": hand and hand._asdict()}
-        document |= {"part": report.part, "material": report.material, "parts": [each._asdict() for each in parts]}
+        document |= {"part": report.part, "material": report.material, "parts": [part._asdict() for part in parts]}
         document |= {"beacon": report.beacon, "beacons": [each._asdict() for each in pulled]}
         show.print_json({**document, "file": record and str(record)})
     elif not is_quiet():
@@ -142,7 +142,7 @@ def confirm_doubts(pipeline: Pipeline, yes: bool) -> None:
     from ...errors import PictureError
 
     pipeline.make("touch")
-    doubts = "; ".join(each.text.partition(":")[0] for each in pipeline.outcomes.doubts)
+    doubts = "; ".join(doubt.text.partition(":")[0] for doubt in pipeline.outcomes.doubts)
     if yes or not doubts:
         return
     if sys.stdin is None or not sys.stdin.isatty():

@@ -77,7 +77,7 @@ def plugins(context: typer.Context, as_json: Json = False) -> None:
 
     registry = default_registry()
     listings = (*registry.listings, *chain.from_iterable(tell(registry.plugins, "tangible_listings")))
-    rows = [{column: getattr(each, column) for column in (*COLUMNS, "target")} for each in listings]
+    rows = [{column: getattr(listing, column) for column in (*COLUMNS, "target")} for listing in listings]
     if as_json:
         print(json.dumps(rows, indent=2, ensure_ascii=False), file=stream())
         return
@@ -109,14 +109,16 @@ def show_one(kind: Kind, name: Name = None, as_json: Json = False) -> None:
     if as_json:
         figures = None if measurements is None else _figures(measurements, listing.name)
         head = {column: getattr(listing, column) for column in (*COLUMNS, "target")}
-        show.print_json({**head, "text": text, "options": [each._asdict() for each in options], "measured": figures})
+        show.print_json(
+            {**head, "text": text, "options": [option._asdict() for option in options], "measured": figures}
+        )
         return
     show.plain(f"{listing.name} is {WORDS[kind]} of {listing.origin}.\n")
     show.plain(f"{text}\n")
     show.say("[bold]options[/]" if options else "It has no options.")
-    for each in options:
-        bounds = ", ".join(filter(None, (each.unit, localise(each.values))))
-        show.entry(f"{each.name} = {each.default or 'null'}   ({bounds})", each.meaning)
+    for option in options:
+        bounds = ", ".join(filter(None, (option.unit, localise(option.values))))
+        show.entry(f"{option.name} = {option.default or 'null'}   ({bounds})", option.meaning)
     show.plain(f"\n{_speed_and_accuracy(listing, measurements)}")
     show.plain(f"Its source: {inspect.getsourcefile(cls)}")
 
@@ -170,15 +172,16 @@ def check(kind: Kind, name: Name = None, as_json: Json = False) -> None:
     kind, name = _kind_and_name(kind, name)
     results = list(run_checks(kind, name))
     if as_json:
-        show.print_json([each._asdict() for each in results])
+        show.print_json([result._asdict() for result in results])
     else:
         rows = [
-            (each.name, GRADES[each.passed, bool(each.expected_failure)], escape(_message(each))) for each in results
+            (result.name, GRADES[result.passed, bool(result.expected_failure)], escape(_message(result)))
+            for result in results
         ]
         show.sentence(sentences.check_summary(f"{kind} method {name}", results))
         show.table(("check", "result", "message"), rows)
         show.say(f"\n{_count(results)}")
-    if not all(each.as_declared for each in results):
+    if not all(result.as_declared for result in results):
         raise typer.Exit(FAILED)
 
 
@@ -200,7 +203,7 @@ def _message(result: CheckResult) -> str:
 
 
 def _count(results: Sequence[CheckResult]) -> str:
-    numbers = Counter((each.passed, bool(each.expected_failure)) for each in results)
+    numbers = Counter((result.passed, bool(result.expected_failure)) for result in results)
     parts = [f"{numbers[True, False]} passed", f"{numbers[False, False]} failed"]
     if declared := numbers[False, True]:
         parts.append(f"{declared} failed as the method declares")

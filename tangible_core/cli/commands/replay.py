@@ -90,7 +90,7 @@ def _print(
         recorded["parts"] = session.names_of(before.about.parts)
         recorded["beacons"] = [each._asdict() for each in pulled]
         recorded["materials"] = session.names_of(before.about.materials)
-        touched = [each._asdict() for each in parts]
+        touched = [part._asdict() for part in parts]
         show.print_json({"recorded": recorded, "figures": figures, "parts": touched, "file": record and str(record)})
         return
     if before.stopped:

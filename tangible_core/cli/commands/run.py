@@ -235,9 +235,9 @@ def _material_lines(figures: Mapping[Any, Any]) -> list[str]:
     from ...data.part_words import name_part, shown_number
 
     lines = list[str]()
-    for label, each in figures.items():
-        place, name = name_part(int(label), noun="segment"), each["name"]
-        why = each["why"].removeprefix(f"{place}: ").removesuffix(f" -> {name}")
+    for label, figure in figures.items():
+        place, name = name_part(int(label), noun="segment"), figure["name"]
+        why = figure["why"].removeprefix(f"{place}: ").removesuffix(f" -> {name}")
         lines.append(f"{shown_number(int(label))}: {name} ({why})")
     return lines
 
@@ -247,8 +247,9 @@ def _part_lines(figures: Mapping[Any, Any]) -> list[str]:
     from ...data.part_words import shown_number
 
     return [
-        f"{shown_number(int(number))}: {', '.join(_properties(each))}" + (f" ({each['why']})" if each["why"] else "")
-        for number, each in figures.items()
+        f"{shown_number(int(number))}: {', '.join(_properties(figure))}"
+        + (f" ({figure['why']})" if figure["why"] else "")
+        for number, figure in figures.items()
     ]
 
 

@@ -94,8 +94,8 @@ def _is_stage(key: Any) -> bool:
 
 def with_overrides(text: str, path: Path, overrides: Iterable[str]) -> str:
     """Return the text with these overrides, `key.key=value` as `--set` takes them. Raises: ConfigError as `edited`."""
-    for each in overrides:
-        parts, value = parse_override(each)
+    for override in overrides:
+        parts, value = parse_override(override)
         text = edit_text(text, path, {parts: plain(value)})
     return text
 

@@ -55,10 +55,12 @@ def named_method(kind: str, method: M, registry: Registry) -> NamedMethod[M]:
     check_kind(kind, method)
     cls = type(method)
     target = f"{cls.__module__}:{cls.__qualname__}"
-    for each in registry.listings:
-        if (each.kind, each.target) == (kind, target):
-            alone = each.name in registry.names(kind)
-            return NamedMethod(each.name if alone else f"{each.distribution}/{each.name}", each.origin, method)
+    for listing in registry.listings:
+        if (listing.kind, listing.target) == (kind, target):
+            alone = listing.name in registry.names(kind)
+            return NamedMethod(
+                listing.name if alone else f"{listing.distribution}/{listing.name}", listing.origin, method
+            )
     return NamedMethod(cls.__qualname__, "", method)
 
 

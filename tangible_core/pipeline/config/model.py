@@ -274,7 +274,7 @@ class PipelineConfig(BaseModel):
 def without_places(source: Source) -> ConfigError:
     """Return the complaints about a configuration that was made in Python, where nothing has a line."""
     complaints = [each._replace(line=None, column=None) for _, each in source.complaints]
-    return ConfigError(*(each.text for each in complaints), complaints=complaints)
+    return ConfigError(*(complaint.text for complaint in complaints), complaints=complaints)
 
 
 KEYS = keys_of(PipelineConfig)

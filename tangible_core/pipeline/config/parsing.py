@@ -69,7 +69,7 @@ def config_of(
     reading = Reading(source, registry)
     if unknown := next((name for name in arguments if name not in KEYS), None):
         raise ArgumentError(f"{unknown}: is not a key of the pipeline file{did_you_mean(unknown, KEYS)}")
-    taken = {name: KEYS[name].take(reading, each) for name, each in arguments.items() if each is not None}
+    taken = {name: KEYS[name].take(reading, argument) for name, argument in arguments.items() if argument is not None}
     if source.complaints:
         raise without_places(source)
     seen = {} if scene is None else {"scene": scene, "measured": scene.measured}

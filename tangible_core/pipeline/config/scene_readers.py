@@ -17,7 +17,7 @@ GROUP = "tangible.scene"
 def scene_reader_points() -> Mapping[str, EntryPoint]:
     """Return the entry points of all scene readers by the key that marks their form; the first of a name wins."""
     points = sorted(entry_points().select(group=GROUP), key=lambda each: (each.name, str(origin(each.dist))))
-    return {each.name: each for each in reversed(points)}
+    return {point.name: point for point in reversed(points)}
 
 
 def scene_reader_of(block: Any) -> type[SceneReader] | None:

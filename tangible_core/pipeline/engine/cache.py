@@ -210,7 +210,7 @@ def write_record(path: Path, record: Record, notes: Notes | None = None) -> None
     arrays: dict[str, np.ndarray] = {}
     texts = {"record": _pack(record, "", arrays)}
     if notes is not None:
-        texts[NOTES] = {product: [[each.text, each.kind] for each in notes[product]] for product in notes}
+        texts[NOTES] = {product: [[note.text, note.kind] for note in notes[product]] for product in notes}
     packed = {name: np.frombuffer(json.dumps(tree).encode(), np.uint8) for name, tree in texts.items()}
     with atomic_write(path) as file:
         write_arrays(file, packed | arrays)

@@ -57,7 +57,7 @@ def foresee(engine: Outlook, product: str, why: str, steps: dict[str, Outcome]) 
     else:
         for name in stage.needs:
             foresee(engine, name, needed_for(product), steps)
-            if any(each.outcome == "refused" for each in steps.values()):
+            if any(step.outcome == "refused" for step in steps.values()):
                 return steps
         notes = notes_ahead(stage)
         steps[product] = Outcome(product, "ran", with_notes(notes, why), stage.method, notes=notes)
@@ -77,7 +77,7 @@ def notes_ahead(stage: Stage) -> tuple[Note, ...]:
 
 def with_notes(notes: Iterable[Note], why: str) -> str:
     """Append the texts of notes to a reason."""
-    return "; ".join([why, *(each.text for each in notes)])
+    return "; ".join([why, *(note.text for note in notes)])
 
 
 NOT_MADE: Final = object()

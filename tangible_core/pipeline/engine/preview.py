@@ -164,10 +164,10 @@ class PartHeightPreview:
 
 def is_at_hand(engine: Engine, product: Product) -> bool:
     """Return True if a product is available without making it: given, made, or cached."""
-    done = {each.product: each.outcome for each in engine.outcomes}
+    done = {outcome.product: outcome.outcome for outcome in engine.outcomes}
     if done.get(product) in ("given", "ran", "cached"):
         return True
-    steps = {each.product: each.outcome for each in engine.plan(product).steps}
+    steps = {step.product: step.outcome for step in engine.plan(product).steps}
     return steps.get(product) in ("given", "cached")
 
 

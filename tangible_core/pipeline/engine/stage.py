@@ -134,7 +134,7 @@ class Stage(ABC):
     def code(self, *modules: str) -> str:
         """Return the digests of these modules, each with the text of the stage, this module, the grid and the cache."""
         own = (type(self).__module__, __name__, working_grid.__name__, Cache.__module__)
-        return " ".join(closure(each, alone=own).digest for each in modules)
+        return " ".join(closure(module, alone=own).digest for module in modules)
 
     @property
     def reduction(self) -> str:

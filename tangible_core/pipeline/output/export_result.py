@@ -36,16 +36,16 @@ class Export:
     @property
     def files(self) -> dict[str, tuple[Path, ...]]:
         """The files of each exporter by its name; empty for an exporter that wrote none."""
-        return {each.name: each.files for each in self.exports}
+        return {export.name: export.files for export in self.exports}
 
     @property
     def outcomes(self) -> Outcomes:
         """The outcome of each exporter."""
-        return Outcomes(each.outcome for each in self.exports)
+        return Outcomes(export.outcome for export in self.exports)
 
     def document(self) -> dict[str, Any]:
         """Return everything as plain values."""
-        return {"folder": str(self.folder), "exports": [_as_data(each) for each in self.exports]}
+        return {"folder": str(self.folder), "exports": [_as_data(export) for export in self.exports]}
 
     def __repr__(self) -> str:
         return text_table((*HEADINGS, "files"), self._rows())
@@ -54,7 +54,7 @@ class Export:
         return html_table((*HEADINGS, "files"), self._rows())
 
     def _rows(self) -> list[tuple[str, ...]]:
-        return [(*each.outcome.row(), ", ".join(path.name for path in each.files)) for each in self.exports]
+        return [(*export.outcome.row(), ", ".join(path.name for path in export.files)) for export in self.exports]
 
 
 def _as_data(each: Exported) -> dict[str, Any]:

@@ -201,7 +201,7 @@ def work_for(engine: Engine, exporter: Exporter, *, cut: bool = False) -> Work:
     cut: leave the ground of a photograph away.
     Raises: BrokenMethod for a product that nothing makes; TangibleError as `Engine.make`.
     """
-    if odd := [each for each in exporter.needs if each not in EXPORTABLE]:
+    if odd := [need for need in exporter.needs if need not in EXPORTABLE]:
         name = _full_name(exporter)
         raise BrokenMethod(f"{name}: needs {quoted(odd[0])}; an exporter may need {', '.join(EXPORTABLE)}")
     products: dict[str, Record | None] = {name: engine.make_on_grid(name) for name in exporter.needs}

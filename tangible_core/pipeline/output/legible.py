@@ -83,12 +83,12 @@ def with_cures_of(engine: Engine, exporter: NamedMethod[Exporter], found: Legibi
 
 
 def _with_width_of(exporter: NamedMethod[Exporter], verdict: Verdict, aspect: float) -> Verdict:
-    wider = next((each for each in verdict.changes if each.key == WIDTH), None)
+    wider = next((change for change in verdict.changes if change.key == WIDTH), None)
     if wider is None:
         return verdict
     options = exporter.method.options_for_width(float(wider.value), aspect)
     named = [Change(f"export.{exporter.name}.{name}", f"{value}", "is") for name, value in options.items()]
-    changes = tuple(new for each in verdict.changes for new in (named if each is wider else [each]))
+    changes = tuple(new for change in verdict.changes for new in (named if change is wider else [change]))
     cure = verdict.cure.replace(f"{wider}, ", "".join(f"{each}, " for each in named))
     return replace(verdict, cure=cure.replace(f"{wider}", ", ".join(map(str, named))), changes=changes)
 
@@ -147,5 +147,5 @@ def names_of_parts(config: PipelineConfig, products: Mapping[str, Record | None]
     """Return the names of all parts, as many as the products have; none without configured parts."""
     if not config.parts:
         return ()
-    counts = [each.count for each in products.values() if isinstance(each, PartMap)]
+    counts = [product.count for product in products.values() if isinstance(product, PartMap)]
     return names_of(config, max(counts, default=max(config.parts)))

@@ -88,7 +88,7 @@ class Run:
             "title": self.title,
             "language": self.language,
             "versions": self.versions,
-            "outcomes": [asdict(each) for each in self.outcomes],
+            "outcomes": [asdict(outcome) for outcome in self.outcomes],
             "figures": self.figures,
         }
 
@@ -211,7 +211,7 @@ def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | No
     if scene.truth is not None and shown["disparity"] is not None:
         shown["disparity"] = engine.make("disparity")  # pixel by pixel next to its truth
     title = engine.config.title or without_folders(scene.name)
-    if doubts := [each.text.partition(":")[0] for each in engine.outcomes.doubts]:
+    if doubts := [doubt.text.partition(":")[0] for doubt in engine.outcomes.doubts]:
         title = f"{title} (doubtful: {'; '.join(doubts)})"
     extras = {"views": scene.views, "truth": scene.truth, "recording": recording}
     return drawing().draw(Work(title, language, shown, extras=extras), path)

@@ -72,7 +72,7 @@ def as_html(record: Record) -> str:
         rows = [(str(label), material.name, why) for label, (material, why) in materials]
         what = "part" if any(why.startswith("part ") for why in record.reasons) else "segment"
         return html_table((what, "material", "why"), rows)
-    rows = [(each.name, _text(getattr(record, each.name))) for each in fields(cast(Any, record))]
+    rows = [(field.name, _text(getattr(record, field.name))) for field in fields(cast(Any, record))]
     return html_table(("field", "value"), rows)
 
 

@@ -47,7 +47,7 @@ def soften_materials(flight: Flight, materials: Iterable[Material], most_n_per_m
     stable = margin * flight.nominal_n_per_m
     if flight.period_s <= NOMINAL_S and most_n_per_m < stable:  # a slower loop's limits come down with the margin
         return [Change("safety.stiffness_margin", under(margin * most_n_per_m / stable), "at most")]
-    softer = (f"`{each.name}: {{stiffness_n_per_m: {under(most_n_per_m)}}}`" for each in materials)
+    softer = (f"`{material.name}: {{stiffness_n_per_m: {under(most_n_per_m)}}}`" for material in materials)
     return f"in a file for `materials.library`, {', '.join(softer)}"
 
 

@@ -100,7 +100,7 @@ def climbable(flight: Flight) -> float:
 
     Never under GENTLEST: on rougher materials a hand is held up by friction rather than by slopes.
     """
-    friction = max((each.static_friction for each in flight.present_materials), default=0.0)
+    friction = max((present_material.static_friction for present_material in flight.present_materials), default=0.0)
     return max((SIDEWAYS - friction) / (1 + friction * SIDEWAYS), GENTLEST)
 
 

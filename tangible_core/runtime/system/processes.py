@@ -93,7 +93,7 @@ def lower_priority(threads: set[int] | None = None, niceness: int = 10) -> None:
 def all_threads() -> set[int]:
     """Return the system's numbers of this process's threads; none where the system does not list them."""
     tasks = Path("/proc/self/task")
-    return {int(each.name) for each in tasks.iterdir()} if tasks.is_dir() else set()
+    return {int(path.name) for path in tasks.iterdir()} if tasks.is_dir() else set()
 
 
 def exit_with_parent(parent: int, pipe: IO[bytes], code: int = 0) -> None:

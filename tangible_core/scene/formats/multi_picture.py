@@ -42,8 +42,8 @@ def multi_pictures(image: "Image", data: bytes) -> list[bytes]:
     head = _MP_HEAD.search(data)
     start = head.end() - 4 if head else 0
     entries = cast(Any, image).mpinfo[_MP_ENTRIES]
-    starts = [start + each["DataOffset"] if each["DataOffset"] else 0 for each in entries]
-    return [data[at : at + each["Size"]] for each, at in zip(entries, starts, strict=True)]
+    starts = [start + entry["DataOffset"] if entry["DataOffset"] else 0 for entry in entries]
+    return [data[at : at + entry["Size"]] for entry, at in zip(entries, starts, strict=True)]
 
 
 def view_numbers(image: "Image") -> list[int]:

@@ -167,5 +167,5 @@ class CameraFrames(VideoFrames):
 
 def _cameras() -> list[int]:
     """Return the numbers of the cameras that the system lists."""
-    names = (each.name.removeprefix("video") for each in Path("/dev").glob("video*"))
+    names = (path.name.removeprefix("video") for path in Path("/dev").glob("video*"))
     return sorted(int(name) for name in names if name.isdecimal())

@@ -242,7 +242,7 @@ def pictures_of(folder: Path) -> list[Path]:
     """List the pictures in a folder, in the order of the numbers in their names. Raises: PictureError without one."""
     try:
         pictures = [
-            each for each in folder.iterdir() if each.suffix.lower() in PICTURES and not each.name.startswith(".")
+            path for path in folder.iterdir() if path.suffix.lower() in PICTURES and not path.name.startswith(".")
         ]
     except OSError as error:
         raise PictureError(f"{folder}: cannot be read: {error.strerror or error}; check its permissions") from error

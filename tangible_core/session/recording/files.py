@@ -18,7 +18,7 @@ from . import tick_file
 from .tick_file import ARRAYS, NEEDED, NO_INFORMATION, UNKNOWN, About, join_arrays, unknown_rows
 
 SUFFIXES = (".nc", ".npz", ".csv")
-NPZ_NAMES = frozenset(("stopped", *ARRAYS, *(each.name for each in fields(About))))
+NPZ_NAMES = frozenset(("stopped", *ARRAYS, *(field.name for field in fields(About))))
 """Names of the arrays that are read from an .npz."""
 
 
@@ -82,7 +82,7 @@ def _from_npz(path: Path) -> RecordingContents:
     with path.open("rb") as file:
         archive = Archive(file)
         values: dict[str, Any] = archive.read([name for name in archive.names if name in NPZ_NAMES])
-    about = About(**{each.name: str(values.get(each.name, "")) for each in fields(About)})
+    about = About(**{field.name: str(values.get(field.name, "")) for field in fields(About)})
     if missing := [name for name in (*NEEDED, "stopped") if name not in values]:
         raise ValueError(f"it holds no {', '.join(missing)}")
     rows = join_arrays({name: values[name] for name in ARRAYS if name in values})

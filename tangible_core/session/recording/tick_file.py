@@ -128,7 +128,7 @@ def read(path: Path) -> tuple[Float64[np.ndarray, "n columns"], str, About]:
                 rows[:, i] = file.variables[name][:]
         frame = rows[:, ARRAYS["frame"]]
         frame[frame == STILL] = np.nan
-        about = {each.name: _text(file, each.name) for each in fields(About)}
+        about = {field.name: _text(file, field.name) for field in fields(About)}
         return rows, _text(file, "stopped"), About(**about)
 
 

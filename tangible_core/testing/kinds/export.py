@@ -32,7 +32,7 @@ A_DAY_S = 86_400.0
 
 def needs_are_products(method: Exporter) -> None:
     """Check that `needs` names each product once, and only products that exporters can get."""
-    odd = [each for each in method.needs if each not in EXPORTABLE]
+    odd = [need for need in method.needs if need not in EXPORTABLE]
     demand(not odd, f"needs names {', '.join(odd)}; an exporter may need {', '.join(EXPORTABLE)}")
     demand(len(set(method.needs)) == len(method.needs), "needs names a product twice")
 
@@ -132,12 +132,12 @@ def _write(method: Exporter, work: Work) -> Generator[Sequence[Path]]:
     with TemporaryDirectory() as place:
         stem = Path(place) / STEM
         files = method.write(work, stem)
-        for each in files:
-            demand(isinstance(each, Path), f"write returns {each!r}; it must return a tuple of Path")  # pyright: ignore[reportUnnecessaryIsInstance]
-            fits = each.parent == stem.parent and each.name.startswith(stem.name)
-            demand(fits, f"write returns {each}, which is not the stem with an ending")
-            demand(each.is_file() and not each.is_symlink(), f"write returns {each.name}, but there is no such file")
-            demand_whole(each)
+        for file in files:
+            demand(isinstance(file, Path), f"write returns {file!r}; it must return a tuple of Path")  # pyright: ignore[reportUnnecessaryIsInstance]
+            fits = file.parent == stem.parent and file.name.startswith(stem.name)
+            demand(fits, f"write returns {file}, which is not the stem with an ending")
+            demand(file.is_file() and not file.is_symlink(), f"write returns {file.name}, but there is no such file")
+            demand_whole(file)
         demand(len(set(files)) == len(files), "write returns a path twice")
         yield files
 
@@ -149,7 +149,7 @@ def _bytes_of(method: Exporter, work: Work) -> Mapping[str, bytes]:
 
 def _digest(work: Work) -> str:
     parts: list[Record | np.ndarray | None] = [*work.products.values(), work.picture]
-    return " ".join(digest_of(each) for each in parts if each is not None)
+    return " ".join(digest_of(part) for part in parts if part is not None)
 
 
 def _tomorrow(now: float = time.time()) -> float:

@@ -124,7 +124,7 @@ def film_can_be_handed_over(method: ForceRenderer) -> None:
         return
     film, buffers = method.film(_surface(0), PERIOD_S, FRAME_S), list[pickle.PickleBuffer]()
     small = pickle.dumps(film, 5, buffer_callback=buffers.append)
-    shared = [bytearray(each.raw()) for each in buffers]
+    shared = [bytearray(buffer.raw()) for buffer in buffers]
     felt, shown = (pickle.loads(small, buffers=shared) for _ in range(2))
     before = _hold(felt, 100)[-1]
     shown.show(_relief(2), 7)

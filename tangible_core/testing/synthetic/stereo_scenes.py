@@ -150,7 +150,9 @@ def _shares(
     shares = np.zeros((len(surfaces), *x.shape))
     offsets = (np.arange(points) + 0.5) / points - 0.5
     for down, across in product(offsets, offsets):
-        nearest = np.argmax([_depth(each, where(each, x + across, y + down), y + down) for each in surfaces], axis=0)
+        nearest = np.argmax(
+            [_depth(surface, where(surface, x + across, y + down), y + down) for surface in surfaces], axis=0
+        )
         for index in range(len(surfaces)):
             shares[index] += nearest == index
     return shares / points**2

@@ -40,7 +40,7 @@ def print_for_papers(results: Results, form: str) -> None:
     """Print the tables of the standard sets or, where no scene is from a set, the means. form: latex or csv."""
     ways = {"latex": (set_tables.as_latex, files.as_latex), "csv": (set_tables.as_csv, files.as_csv)}
     of_set, of_all = ways[form]
-    for text in [of_set(each) for each in set_tables.set_tables(results)] or [of_all(results)]:
+    for text in [of_set(set_table) for set_table in set_tables.set_tables(results)] or [of_all(results)]:
         show.plain(text.rstrip("\n"))
 
 
@@ -52,8 +52,8 @@ def print_outcome(outcome: ComparisonOutcome, detail: bool) -> None:
         _print_table(table)
     if not any(cell.seconds for cell in results.cells.values()):
         show.say("errors alone were measured: times and memory are left empty")
-    for each in set_tables.set_tables(results):
-        _print_table(set_tables.as_table(each))
+    for set_table in set_tables.set_tables(results):
+        _print_table(set_tables.as_table(set_table))
     show.say(f"{FRONT} Pareto-optimal: no other method is both faster and better")
     show.say(f"{unit}: median of the rounds; peak MB: on top of the scene")
     if results.baseline:

@@ -156,7 +156,7 @@ def parse_comparison(text: str, path: Path, registry: Registry, overrides: Itera
     given = {key: source.tree[key] for key in Protocol.model_fields if key in source.tree}
     protocol = source.model((), Protocol, given)
     methods = read_methods(source, task, registry)
-    labels = [each.label for each in methods]
+    labels = [method.label for method in methods]
     scenes = _scenes(source, task)
     damages = _damages(source, task)
     finishes = {name: frozenset(_labels(source, name, labels)) for name in task.finishes if name in source.tree}

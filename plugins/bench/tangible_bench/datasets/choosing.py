@@ -57,8 +57,8 @@ def pairs(
         raise PictureError(f"{root}: there is no such folder; {known.fetch}")
     read = known.read[next(iter(known.read)) if variant is None else variant]
     by_name = dict[str, list[StandardPair]]()
-    for each in _pairs_of_split(read(root), split):
-        by_name.setdefault(each.name, []).append(each)
+    for pairs_of_word in _pairs_of_split(read(root), split):
+        by_name.setdefault(pairs_of_word.name, []).append(pairs_of_word)
     if not by_name:
         part = f" for {split}" if split else ""
         raise PictureError(f"{root}: holds no pair of {known.title}{part}; {known.fetch}")
@@ -67,8 +67,8 @@ def pairs(
 
 def _pairs_of_split(all_pairs: Iterable[StandardPair], split: str | None) -> list[StandardPair]:
     pairs_of = {True: list[StandardPair](), False: list[StandardPair]()}
-    for each in all_pairs:
-        pairs_of[each.test].append(each)
+    for pair in all_pairs:
+        pairs_of[pair.test].append(pair)
     return pairs_of[split == "test"] if split else pairs_of[False] or pairs_of[True]
 
 
@@ -150,7 +150,7 @@ def _values_of(key: str, block: Mapping[str, Any]) -> Iterable[str]:
     if key != "name" or scene.get("set") not in SETS:
         return ()
     chosen = {key: scene[key] for key in ("resolution", "split", "variant") if key in scene}
-    return (each.name for each in pairs(scene["set"], scene["folder"], **chosen))
+    return (pair.name for pair in pairs(scene["set"], scene["folder"], **chosen))
 
 
 def with_folder_of_set(block: Any) -> Any:

@@ -45,11 +45,11 @@ def folders(root: Path) -> Iterator[Folder]:
                 continue
             seen.add((state.st_dev, state.st_ino))
             with os.scandir(path) as entries:
-                for each in entries:
-                    if each.is_dir():
-                        below.append(each.name)
-                    elif each.is_file():  # a broken link is not a file
-                        files.append(each.name)
+                for entry in entries:
+                    if entry.is_dir():
+                        below.append(entry.name)
+                    elif entry.is_file():  # a broken link is not a file
+                        files.append(entry.name)
         except OSError as error:
             raise PictureError(f"{path}: cannot be listed: {error.strerror}; check its permissions") from error
         count += len(below) + len(files)

@@ -68,7 +68,9 @@ def find_regressions(before: Sequence[Row], after: Sequence[Row]) -> Verdict:
     if not shared:
         raise ResultsError("the files have no method on a scene in common: labels, scenes or pictures all differ")
     measures = load_task(kinds.pop()).measures
-    worse = [each for key in shared for each in _regressions(old[key], new[key], measures, baseline is not None)]
+    worse = [
+        regression for key in shared for regression in _regressions(old[key], new[key], measures, baseline is not None)
+    ]
     missing = [" | ".join(key) for key in {**old, **new} if key not in shared]
     time = f"times as ratios to {baseline}" if baseline else "times in seconds, on the same machine"
     return Verdict(len(shared), tuple(missing), time, tuple(worse))
@@ -94,9 +96,9 @@ def _regressions(old: Cell, new: Cell, measures: Mapping[str, Measure], by_ratio
     times = (old.ratios, new.ratios) if by_ratio else (old.seconds, new.seconds)
     yield from _noisy(new, "time / baseline" if by_ratio else "time s", *times, TIME_FLOOR, 0.0)
     yield from _noisy(new, "memory bytes", old.memory_bytes, new.memory_bytes, MEMORY_FLOOR, MEMORY_FLOOR_BYTES)
-    for name, each in measures.items():
+    for name, measure in measures.items():
         if name in old.measures:
-            yield from _exact(new, each, old.measures[name], new.measures.get(name, math.nan))
+            yield from _exact(new, measure, old.measures[name], new.measures.get(name, math.nan))
 
 
 def _noisy(

@@ -112,7 +112,7 @@ def _mean(cells: Sequence[Cell | None], column: Column) -> float:
     if any(cell is None or cell.error is not None or not cell.seconds for cell in cells):
         return math.nan
     measures = [cell.measures for cell in cells if cell is not None]
-    pairs = [(each.get(column.measure, math.nan), each.get(column.weight, 1.0)) for each in measures]
+    pairs = [(measure.get(column.measure, math.nan), measure.get(column.weight, 1.0)) for measure in measures]
     known = [(value, weight) for value, weight in pairs if not math.isnan(value)]
     whole = sum(weight for _, weight in known)
     return sum(value * weight for value, weight in known) / whole if whole else math.nan
@@ -147,7 +147,7 @@ def write_set_tables(folder: Path, results: Results) -> tuple[Path, ...]:
 
 
 def _headings(table: SetTable) -> tuple[str, ...]:
-    return ("method", *(each.heading for each in table.columns))
+    return ("method", *(column.heading for column in table.columns))
 
 
 def _texts(table: SetTable, values: Sequence[float]) -> Iterator[str]:

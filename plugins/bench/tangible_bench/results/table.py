@@ -67,7 +67,7 @@ class Results:
     def measures_of(self, scene: str) -> tuple[str, ...]:
         """Return the measures of a scene, in order; those of standard sets only if a method has them there."""
         known = {name for cell in self.cells.values() if cell.scene == scene for name in cell.measures}
-        return tuple(name for name, each in self.task.measures.items() if not each.of_sets or name in known)
+        return tuple(name for name, measure in self.task.measures.items() if not measure.of_sets or name in known)
 
     def heading(self, measure: str, scenes: Sequence[str] | None = None) -> str:
         """Return the heading of a column, such as `bad2@Q` for scenes at a quarter of their size.

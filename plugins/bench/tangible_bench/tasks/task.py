@@ -49,7 +49,7 @@ def expand_folder(spec: Spec, folder: Path, first: str, contents: str) -> dict[s
 
     Raises: PictureError if no sub-folder has the file.
     """
-    folders = sorted(each.parent for each in folder.glob(f"*/{first}"))
+    folders = sorted(path.parent for path in folder.glob(f"*/{first}"))
     if not folders:
         raise PictureError(f"{folder}: neither it nor a folder in it holds {contents}")
     return {each.name: spec.model_copy(update={"folder": each}) for each in folders}

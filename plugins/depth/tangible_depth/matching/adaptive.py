@@ -189,9 +189,9 @@ class _Trial:
         """Match these rows and count the speckles; none is removed, as it may extend beyond the rows."""
         self.sweep(rows)
         parts = [StripMatches(self.out.disparity[a:b].copy(), self.out.sums[a:b]) for a, b in rows]
-        matches = max(1, sum(np.count_nonzero(each.disparity != UNKNOWN) for each in parts))
-        specks = sum(remove_speckles(each.disparity, ISLAND_PX) for each in parts)
-        bits = sum(int(np.sum(each.sums * (each.disparity != UNKNOWN), dtype=np.int64)) for each in parts)
+        matches = max(1, sum(np.count_nonzero(part.disparity != UNKNOWN) for part in parts))
+        specks = sum(remove_speckles(part.disparity, ISLAND_PX) for part in parts)
+        bits = sum(int(np.sum(part.sums * (part.disparity != UNKNOWN), dtype=np.int64)) for part in parts)
         return _Health(specks / matches, bits / (4 * self.cost.bits * max(1, matches - specks)))
 
     def levels_apart(self, rows: Rows) -> float:

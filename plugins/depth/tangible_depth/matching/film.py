@@ -73,7 +73,7 @@ class FilmMatcher:
 
     @property
     def _span(self) -> Span:
-        whole = Span(min(each.low for each in self._spans), max(each.high for each in self._spans))
+        whole = Span(min(span.low for span in self._spans), max(span.high for span in self._spans))
         # A range that was given stays as it is.
         return whole.widen() if self._search.most == "auto" and whole.high > 0 else whole
 

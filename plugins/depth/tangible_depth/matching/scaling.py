@@ -68,7 +68,7 @@ def _has_texture(grey: UInt8[np.ndarray, "h w"], y0: int, y1: int) -> bool:
 def _match(pair: Pair, span: Span, options: Scaling, factor: int) -> DenseMatches:
     rows = strips(pair.left.shape, span)
     if options.skip_flat:
-        textured = [each for each in rows if _has_texture(pair.left, *each)]
+        textured = [row for row in rows if _has_texture(pair.left, *row)]
         if len(textured) < len(rows):
             note(log, f"skipped: {len(rows) - len(textured)} of {len(rows)} strips, which have no texture")
         rows = textured

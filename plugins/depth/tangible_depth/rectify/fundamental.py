@@ -197,7 +197,7 @@ def fundamental_from_plane(plane: Plane, matches: Matches, threshold_px: float) 
     left, moved = homogeneous(off.left_px), homogeneous(transform(plane.matrix, off.right_px))
     lines = np.cross(moved, left)
     some = np.arange(len(left))[:: 1 + len(left) // MOST_SAMPLED]
-    one, other = (some[each] for each in np.triu_indices(len(some), 1))
+    one, other = (some[indices] for indices in np.triu_indices(len(some), 1))
     epipoles = np.cross(lines[one], lines[other])
     length = np.linalg.norm(epipoles, axis=1)
     epipoles = epipoles[length > 0] / length[length > 0, None]

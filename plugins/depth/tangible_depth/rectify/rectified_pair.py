@@ -127,7 +127,7 @@ def _border(shape: tuple[int, int], curved: bool) -> Float64[np.ndarray, "n 2"]:
     rows, columns = shape
     steps = np.linspace(0, 1, 33 if curved else 2)
     sides = [np.column_stack([steps, np.full(len(steps), end)]) for end in (0, 1)]
-    return np.vstack([*sides, *(each[:, ::-1] for each in sides)]) * [columns - 1, rows - 1]
+    return np.vstack([*sides, *(side[:, ::-1] for side in sides)]) * [columns - 1, rows - 1]
 
 
 def _translate(homography: np.ndarray, origin: np.ndarray) -> Float64[np.ndarray, "3 3"]:

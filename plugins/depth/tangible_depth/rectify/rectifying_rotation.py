@@ -231,7 +231,7 @@ def _fit(
         left, right = (transform(h, points) for h, points in zip(_pair(values[:7], shape), straight, strict=True))
         return np.concatenate([robust_pull(left[:, 1] - right[:, 1]), (values - start) / prior])
 
-    return np.array([_round_to(each, _FOUND) for each in least_squares(cost, start, prior)])
+    return np.array([_round_to(least_square, _FOUND) for least_square in least_squares(cost, start, prior)])
 
 
 def _disagreement(pair: tuple[np.ndarray, np.ndarray], matches: Matches) -> float:

@@ -20,9 +20,9 @@ class Pair(NamedTuple):
     @classmethod
     def of(cls, *pictures: np.ndarray) -> "Pair":
         """Hold read-only views of both pictures: kernels are compiled anew for arrays that can be written."""
-        views = [each.view() for each in pictures]
-        for each in views:
-            each.flags.writeable = False
+        views = [picture.view() for picture in pictures]
+        for view in views:
+            view.flags.writeable = False
         return cls(*views)
 
     @property
@@ -54,9 +54,9 @@ def grey_pair(views: Views, method: str) -> Pair:
     if views.right is None:
         raise PictureError(f"{method} needs two views, but the right one is missing; give both, or use luminance")
     pictures = (views.left, views.right)
-    if all(each.dtype == np.uint8 and (each.ndim == 2 or each.shape[2] == 3) for each in pictures):
-        return Pair.of(*(_grey8(each) for each in pictures))
-    greys = [to_grey(each) for each in pictures]
+    if all(picture.dtype == np.uint8 and (picture.ndim == 2 or picture.shape[2] == 3) for picture in pictures):
+        return Pair.of(*(_grey8(picture) for picture in pictures))
+    greys = [to_grey(picture) for picture in pictures]
     low = min(0.0, *(float(each.min()) for each in greys))
     peaks = [float(grey.max()) - low for grey in greys]
     if views.left.dtype == views.right.dtype:

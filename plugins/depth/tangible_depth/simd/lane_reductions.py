@@ -23,17 +23,17 @@ from .lanes import (
 def _in_words(b: Any, vec: Vec, value: Any) -> list[tuple[int, Any]]:
     """Divide lanes into pieces of at most 64, whose mask fits a word: first lane and vector of each."""
     pieces = []
-    for (first, part), each in zip(vec.parts, split(b, vec, value), strict=True):
+    for (first, part), word in zip(vec.parts, split(b, vec, value), strict=True):
         count = min(part.count, 64)
-        pieces += [(first + i, shuffle(b, each, each, range(i, i + count))) for i in range(0, part.count, count)]
+        pieces += [(first + i, shuffle(b, word, word, range(i, i + count))) for i in range(0, part.count, count)]
     return pieces
 
 
 def _fold(b: Any, vec: Vec, value: Any, of_two: Callable[[Any, Vec, Any, Any], Any]) -> tuple[Any, Vec]:
     """Fold the parts of lanes into one vector: halve the wider until it is as wide as the next, then combine both."""
     whole, width = None, 0
-    for (_, part), each in zip(vec.parts, split(b, vec, value), strict=True):
-        whole = each if whole is None else of_two(b, part, _halve(b, vec, whole, width, part.count, of_two), each)
+    for (_, part), word in zip(vec.parts, split(b, vec, value), strict=True):
+        whole = word if whole is None else of_two(b, part, _halve(b, vec, whole, width, part.count, of_two), word)
         width = part.count
     return whole, Vec(vec.element, width)
 
@@ -121,16 +121,16 @@ def differences(typing: Any, lanes: LanesType, left: Any, right: Any, x: Any) ->
     whole = Vec(types.uint8, lanes.count)
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        return join(b, whole, [emit_part(c, b, sig, a, *each) for each in whole.parts])
+        return join(b, whole, [emit_part(c, b, sig, a, *part) for part in whole.parts])
 
     def emit_part(c: Any, b: Any, sig: Any, a: Any, first: int, vec: Vec) -> Any:
         rows = [c.make_array(kind)(c, b, array) for kind, array in zip(sig.args[1:3], a[1:3], strict=True)]
-        strides = [b.extract_value(each.shape, 1) for each in rows]
+        strides = [b.extract_value(row.shape, 1) for row in rows]
 
         def of_plane(plane: int) -> tuple[Any, Any]:
             code, codes = (
-                b.gep(each.data, [b.add(a[3], b.mul(stride, ir.Constant(WORD, plane)))])
-                for each, stride in zip(rows, strides, strict=True)
+                b.gep(row.data, [b.add(a[3], b.mul(stride, ir.Constant(WORD, plane)))])
+                for row, stride in zip(rows, strides, strict=True)
             )
             codes = b.gep(codes, [ir.Constant(WORD, first)])
             others = b.load(b.bitcast(codes, vec.llvm.as_pointer()))

@@ -102,8 +102,8 @@ def join(b: Any, vec: Vec, vectors: Sequence[Any]) -> Any:
     if len(vectors) == 1:
         return vectors[0]
     value = ir.Constant(vec.llvm, ir.Undefined)
-    for i, each in enumerate(vectors):
-        value = b.insert_value(value, each, i)
+    for i, vector in enumerate(vectors):
+        value = b.insert_value(value, vector, i)
     return value
 
 
@@ -117,7 +117,7 @@ def emit_splat(b: Any, scalar: Any, count: int) -> Any:
 def emit_call(b: Any, name: str, result: Any, args: Sequence[Any]) -> Any:
     """Emit a call of an LLVM intrinsic."""
     function = b.module.globals.get(name) or ir.Function(
-        b.module, ir.FunctionType(result, [each.type for each in args]), name
+        b.module, ir.FunctionType(result, [arg.type for arg in args]), name
     )
     return b.call(function, args)
 
@@ -178,11 +178,11 @@ def shift_up(typing: Any, vec: Vec, fill: Vec) -> Any:
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
         vectors, moved = split(b, vec, a[0]), []
         before, last = split(b, vec, a[1])[0], 0
-        for (_, part), each in zip(vec.parts, vectors, strict=True):
+        for (_, part), vector in zip(vec.parts, vectors, strict=True):
             n = part.count
             carried = shuffle(b, before, before, [last] * n)
-            moved.append(shuffle(b, each, carried, [n, *range(n - 1)]))
-            before, last = each, n - 1
+            moved.append(shuffle(b, vector, carried, [n, *range(n - 1)]))
+            before, last = vector, n - 1
         return join(b, vec, moved)
 
     return vec(vec, fill), emit
@@ -195,9 +195,9 @@ def shift_down(typing: Any, vec: Vec, fill: Vec) -> Any:
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
         vectors, moved = split(b, vec, a[0]), []
         after = [*vectors[1:], split(b, vec, a[1])[0]]
-        for (_, part), each, following in zip(vec.parts, vectors, after, strict=True):
+        for (_, part), vector, following in zip(vec.parts, vectors, after, strict=True):
             n = part.count
-            moved.append(shuffle(b, each, shuffle(b, following, following, [0] * n), range(1, n + 1)))
+            moved.append(shuffle(b, vector, shuffle(b, following, following, [0] * n), range(1, n + 1)))
         return join(b, vec, moved)
 
     return vec(vec, fill), emit

@@ -43,7 +43,7 @@ def devices(context: typer.Context, as_json: Json = False) -> None:
 
     from ..installed import installed_devices
 
-    rows = [asdict(each) for each in installed_devices(default_registry())]
+    rows = [asdict(device) for device in installed_devices(default_registry())]
     if as_json:
         show.print_json(rows)
         return
@@ -180,16 +180,16 @@ def _print_findings(results: dict[str, Sequence[Finding]]) -> None:
     from tangible_core.cli import show
 
     rows = [
-        (name, each.check, f"[{COLOURS[each.verdict]}]{each.verdict}[/]", escape(each.says))
+        (name, finding.check, f"[{COLOURS[finding.verdict]}]{finding.verdict}[/]", escape(finding.says))
         for name, findings in results.items()
-        for each in findings
+        for finding in findings
     ]
     show.table(("device", "check", "verdict", "finding"), rows)
     for name, findings in results.items():
-        for each in findings:
-            if each.verdict == "failed" and each.cure:
-                show.say(f"\n[bold]{name}, {escape(each.check)}[/]")
-                show.plain(each.cure)
+        for finding in findings:
+            if finding.verdict == "failed" and finding.cure:
+                show.say(f"\n[bold]{name}, {escape(finding.check)}[/]")
+                show.plain(finding.cure)
 
 
 def _ask(text: str) -> str:

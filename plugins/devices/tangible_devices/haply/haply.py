@@ -111,7 +111,7 @@ class Session:
         self._connection = _connect(self._open, uri, timeout_s)
         self._owed = 1  # the snapshot comes without a message
         try:
-            self.arms: tuple[Unit, ...] = tuple(_arm(each) for each in _devices(self._receive(), "inverse3"))
+            self.arms: tuple[Unit, ...] = tuple(_arm(device) for device in _devices(self._receive(), "inverse3"))
         except BaseException:
             self.close()
             raise
@@ -146,12 +146,12 @@ class Session:
         while self._owed:
             message = self._receive()
         with _service_errors(self.uri):
-            states = {str(each["device_id"]): each["state"] for each in _devices(message, "inverse3")}
+            states = {str(device["device_id"]): device["state"] for device in _devices(message, "inverse3")}
             if device_id not in states:
                 raise DeviceError(f"{self.uri}: Inverse3 {device_id} was unplugged; check its plug, then open it again")
             state = states[device_id]
             velocity = state.get("cursor_velocity")
-            pressed = any(each["state"].get("button") is True for each in _devices(message, "verse_grip"))
+            pressed = any(device["state"].get("button") is True for device in _devices(message, "verse_grip"))
             return Answer(_vector(state["cursor_position"]), velocity and _vector(velocity), int(pressed))
 
     def close(self) -> None:
@@ -264,7 +264,7 @@ def _arm(device: Mapping[str, Any]) -> Unit:
 def _devices(message: Mapping[str, Any], kind: str) -> list[dict[str, Any]]:
     """Return the devices of a kind in a message; entries that are not objects are skipped."""
     devices = message.get(kind)
-    return [each for each in devices if isinstance(each, dict)] if isinstance(devices, list) else []
+    return [device for device in devices if isinstance(device, dict)] if isinstance(devices, list) else []
 
 
 def _vector(coordinates: Mapping[str, Any]) -> tuple[float, float, float]:

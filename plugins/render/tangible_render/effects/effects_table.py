@@ -68,11 +68,11 @@ def _rows(materials: Sequence[Material], friction: bool, texture: bool, damping:
     has_friction = friction * (textures[:, STIFFNESS] == 0)
     law_columns = [
         (
-            each.stiffness_n_per_m,
-            damping * each.damping_n_s_per_m,
-            with_friction * each.static_friction,
-            with_friction * each.dynamic_friction,
+            material.stiffness_n_per_m,
+            damping * material.damping_n_s_per_m,
+            with_friction * material.static_friction,
+            with_friction * material.dynamic_friction,
         )
-        for each, with_friction in zip(materials, has_friction, strict=True)
+        for material, with_friction in zip(materials, has_friction, strict=True)
     ]
     return np.hstack([textures, np.reshape(law_columns, (-1, LAW_COLUMNS))])

@@ -18,8 +18,13 @@ def material_table(surface: HapticSurface, plain: Row) -> tuple[Int32[np.ndarray
         return np.zeros((1, 1), np.int32), np.array([plain], np.float64)
     table = np.array(
         [
-            (each.stiffness_n_per_m, each.damping_n_s_per_m, each.static_friction, each.dynamic_friction)
-            for each in surface.materials
+            (
+                material.stiffness_n_per_m,
+                material.damping_n_s_per_m,
+                material.static_friction,
+                material.dynamic_friction,
+            )
+            for material in surface.materials
         ],
         np.float64,
     )

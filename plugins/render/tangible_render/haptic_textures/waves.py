@@ -47,7 +47,7 @@ def waves(material: Material) -> Waves:
     across, along = directions(way)
     parts = Waves(per_m * across, per_m * along, material.roughness_m * np.sqrt(share), phase)
     present = parts.amplitude_m > 0
-    return Waves(*(each[present] for each in parts))
+    return Waves(*(part[present] for part in parts))
 
 
 def powers_of_two(exponents: Float64[np.ndarray, " n"]) -> Float64[np.ndarray, " n"]:
@@ -60,7 +60,7 @@ def directions(
 ) -> tuple[Float64[np.ndarray, " n"], Float64[np.ndarray, " n"]]:
     """Return cosines and sines, correctly rounded: those of C libraries differ from system to system in last bits."""
     angles = angles_rad.tolist()
-    return np.array([_circular(each, 0) for each in angles]), np.array([_circular(each, 1) for each in angles])
+    return np.array([_circular(angle, 0) for angle in angles]), np.array([_circular(angle, 1) for angle in angles])
 
 
 def _circular(angle_rad: float, first: int) -> float:

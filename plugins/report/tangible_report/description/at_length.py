@@ -68,7 +68,7 @@ def describe_at_length(
     lines = [told.title, "", " ".join(told.overview)]
     if told.parts:
         lines += ["", told.heading]
-    lines += [f"- {end_sentence(each.label)} {' '.join(each.sentences)}" for each in told.parts]
+    lines += [f"- {end_sentence(part.label)} {' '.join(part.sentences)}" for part in told.parts]
     return (*lines, told.left_out) if told.left_out else tuple(lines)
 
 
@@ -89,7 +89,7 @@ def page_of(
     other = named_in if named_in and named_in != language else ""
     told = tell(surface, title, language, parts, kind, people, lambda text: _quote(text, other))
     items = "".join(
-        f"<li><strong>{end_sentence(each.label)}</strong> {' '.join(each.sentences)}</li>\n" for each in told.parts
+        f"<li><strong>{end_sentence(part.label)}</strong> {' '.join(part.sentences)}</li>\n" for part in told.parts
     )
     listed = f"<h2>{told.heading}</h2>\n<ul>\n{items}</ul>\n" if told.parts else ""
     left = f"<p>{told.left_out}</p>\n" if told.left_out else ""
@@ -116,10 +116,10 @@ def tell(
     say = Words(language)
     largest = _largest(parts)
     labels = {
-        each.number: given(each.name) if each.name else say("part number", number=shown_number(each.number))
-        for each in parts
+        part.number: given(part.name) if part.name else say("part number", number=shown_number(part.number))
+        for part in parts
     }
-    left = [each for each in parts if each not in largest]
+    left = [part for part in parts if part not in largest]
     share = _percent(sum(each.share for each in left), say)
     left_out = say("small part" if len(left) == 1 else "small parts", count=len(left), share=share) if left else ""
     materials = "" if any(each.material for each in largest) else materials_in_words(surface, say)
@@ -135,10 +135,10 @@ def tell(
 
 def _largest(parts: Sequence[PartFacts]) -> list[PartFacts]:
     """Return the named parts and then the largest, up to MOST_PARTS, in their old order."""
-    large = [each for each in parts if each.name or each.share >= LEAST_SHARE]
+    large = [part for part in parts if part.name or part.share >= LEAST_SHARE]
     ranked = sorted(large, key=lambda each: (not each.name, -each.share))
     chosen = {each.number for each in ranked[:MOST_PARTS]}
-    return [each for each in parts if each.number in chosen]
+    return [part for part in parts if part.number in chosen]
 
 
 def _size(surface: HapticSurface, say: Words) -> str:
@@ -158,7 +158,7 @@ def _sentences(part: PartFacts, labels: dict[int, str], say: Words, given: Calla
     sentences = [end_sentence(f"{place[:1].upper()}{place[1:]}") if place else "", size]
     if part.material:
         sentences.append(say("part feels alone", material=say.material_after_like(part.material, given)))
-    if neighbours := [labels[each] for each in part.neighbours[:MOST_NEIGHBOURS]]:
+    if neighbours := [labels[neighbour] for neighbour in part.neighbours[:MOST_NEIGHBOURS]]:
         sentences.append(say("part beside", parts=", ".join(neighbours)))
     return tuple(filter(None, sentences))
 

@@ -228,7 +228,7 @@ def materials_in_words(surface: HapticSurface, say: Words) -> str:
         return ""
     step = step_of(surface.height_m)
     labels = surface.labels[::step, ::step]
-    names = [each.name for each in surface.materials]
+    names = [material.name for material in surface.materials]
     parts = {
         name: np.isin(labels, [i for i, each in enumerate(names) if each == name]) for name in dict.fromkeys(names)
     }

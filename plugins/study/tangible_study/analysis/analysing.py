@@ -57,7 +57,7 @@ def read_results(folder: Path) -> Kept:
     tables = {
         path.parts[-3].removeprefix("sub-"): read_answers(path) for path in sorted(folder.glob("sub-*/beh/*_beh.tsv"))
     }
-    everything = [each for answers in tables.values() for each in answers]
+    everything = [answer for answers in tables.values() for answer in answers]
     answers = {
         name: [each for each in found if each.phase == "test" and each.rendered] for name, found in tables.items()
     }
@@ -140,7 +140,7 @@ class Analysis:
     @property
     def sentences(self) -> dict[str, list[str]]:
         """What was found, by comparison."""
-        return {each.comparison: sentences(each) for each in self.results}
+        return {result.comparison: sentences(result) for result in self.results}
 
     def document(self) -> dict[str, Any]:
         """Return the results as `--json` prints them."""
@@ -151,12 +151,12 @@ class Analysis:
             "left_out": {"training": self.kept.training, "not_rendered": self.kept.not_rendered},
             "comparisons": [
                 {
-                    "name": each.comparison,
-                    "question": each.question,
-                    "found": sentences(each),
-                    "rows": [as_record(row) for row in each.rows],
+                    "name": result.comparison,
+                    "question": result.question,
+                    "found": sentences(result),
+                    "rows": [as_record(row) for row in result.rows],
                 }
-                for each in self.results
+                for result in self.results
             ],
         }
 
@@ -168,7 +168,14 @@ def analyse(folder: Path) -> Analysis:
 
 def analyse_kept(kept: Kept) -> Analysis:
     """Analyse answers; a comparison without any is left out."""
-    return Analysis(kept, [analyse_comparison(each, kept.of(each)) for each in kept.study.comparisons if kept.of(each)])
+    return Analysis(
+        kept,
+        [
+            analyse_comparison(comparison, kept.of(comparison))
+            for comparison in kept.study.comparisons
+            if kept.of(comparison)
+        ],
+    )
 
 
 def analyse_comparison(comparison: Comparison, answers: ByParticipant) -> Result:

@@ -30,7 +30,7 @@ def write_results(folder: Path, analysis: Analysis) -> list[Path]:
 
 def as_tsv(analysis: Analysis) -> str:
     """Return every figure, of each participant and of all: tab-separated, missing values as BIDS has them."""
-    rows = [{"comparison": each.comparison, **as_record(row)} for each in analysis.results for row in each.rows]
+    rows = [{"comparison": result.comparison, **as_record(row)} for result in analysis.results for row in result.rows]
     lines = [list(rows[0]) if rows else [], *([_cell(value) for value in row.values()] for row in rows)]
     return "".join("\t".join(line) + "\n" for line in lines)
 

@@ -18,7 +18,7 @@ def surface_for_page(surface: HapticSurface, number: int) -> dict[str, Any]:
     shape = reduced_shape(surface.height_m.shape, max(1.0, (surface.height_m.size / MOST_CELLS) ** 0.5))
     height_m = np.ascontiguousarray(reduced_map(surface.height_m, shape), "<f4")
     labels = None if surface.labels is None else middle_pixels(surface.labels, shape)
-    materials = [{**asdict(each), "name": ""} for each in surface.materials or ()] if labels is not None else []
+    materials = [{**asdict(material), "name": ""} for material in surface.materials or ()] if labels is not None else []
     meta = {
         "digest": str(number),
         "name": "",

@@ -250,6 +250,6 @@ def blocks_of(answers: list[Answer], function: Function) -> Blocks:
     hits = [[function.hit(each) or 0 for each in cell] for _, cell in cells]
     return Blocks(
         np.array([level for level, _ in cells], float),
-        np.array([sum(each) for each in hits], float),
-        np.array([len(each) for each in hits], float),
+        np.array([sum(hit) for hit in hits], float),
+        np.array([len(hit) for hit in hits], float),
     )

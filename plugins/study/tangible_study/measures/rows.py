@@ -63,7 +63,7 @@ class Result:
     def of_all(self, measure: str) -> list[Row]:
         """Return the rows of a measure about all participants; those of the only participant if there is one."""
         whom = ALL if len(self.participants) > 1 else self.participants[0]
-        return [each for each in self.rows if each.what.measure == measure and each.participant == whom]
+        return [row for row in self.rows if row.what.measure == measure and row.participant == whom]
 
 
 def proportion_row(what: What, participant: str, hits: Sequence[int], chance: float, one_sided: bool = False) -> Row:

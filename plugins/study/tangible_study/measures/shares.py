@@ -138,7 +138,7 @@ def analyse_pairs(comparison: Comparison, answers: ByParticipant) -> Result:
     rows, _ = of_each_and_all(rows_of, answers)
     dprimes = [with_dprime(row, two_afc) for row in rows]
     notes = note_on_order(together(answers))
-    names = [each for each in comparison.conditions if any(each in (row.what[1:]) for row in rows)]
+    names = [condition for condition in comparison.conditions if any(condition in (row.what[1:]) for row in rows)]
     if len(names) < 3:
         return Result(comparison.name, comparison.question, list(answers), [*rows, *dprimes], CHOSEN, notes=notes)
     scale = fit_scale([wins_of(list(some), names) for some in answers.values()])
@@ -159,16 +159,16 @@ def analyse_pairs(comparison: Comparison, answers: ByParticipant) -> Result:
 def wins_of(answers: list[Answer], names: list[str]) -> Float64[np.ndarray, "n n"]:
     """Return how often each condition (row) was chosen over each other one (column)."""
     wins = np.zeros((len(names), len(names)))
-    for each in answers:
-        if each.other is not None and each.chosen is not None:
-            pair = names.index(each.condition), names.index(each.other)
-            wins[pair if each.chosen else pair[::-1]] += 1
+    for answer in answers:
+        if answer.other is not None and answer.chosen is not None:
+            pair = names.index(answer.condition), names.index(answer.other)
+            wins[pair if answer.chosen else pair[::-1]] += 1
     return wins
 
 
 def note_on_order(answers: list[Answer]) -> list[str]:
     """Return a note if the first of two intervals was chosen more or less often than the second."""
-    first = proportion_row(What("first interval", ""), ALL, [int(each.response == "1") for each in answers], 0.5)
+    first = proportion_row(What("first interval", ""), ALL, [int(answer.response == "1") for answer in answers], 0.5)
     if not answers or first.estimate.holds(0.5):
         return []
     share = first.estimate.value

@@ -41,7 +41,7 @@ class Stimuli:
                 like = next(iter(self._pipelines.values()), None)
                 self._pipelines[recipe] = Pipeline.from_config(config, registry, like=like)
         file.source.settle()
-        devices = {each.config.device.name for each in self._pipelines.values() if each.config.device}
+        devices = {pipeline.config.device.name for pipeline in self._pipelines.values() if pipeline.config.device}
         if len(devices) > 1:
             raise ConfigError(
                 f"{file.path}: its pipelines have different devices, {' and '.join(sorted(devices))}, which would tell "
@@ -55,7 +55,7 @@ class Stimuli:
     @property
     def has_film(self) -> bool:
         """True if anything that may be presented is a film."""
-        return any(each.engine.scene.frames is not None for each in self._pipelines.values())
+        return any(pipeline.engine.scene.frames is not None for pipeline in self._pipelines.values())
 
     def feeling(self, comparison: str, stimulus: Stimulus) -> Feeling:
         """Return the surface of a stimulus on its device."""
@@ -114,6 +114,8 @@ class Stimuli:
 def _problem(verdicts: Preflight) -> str:
     """Return why a device does not render what was requested; "" if it does."""
     wrong = (
-        each for each in verdicts if each.verdict == "unsafe" or (each.verdict != "ok" and each.check in NOT_RENDERED)
+        verdict
+        for verdict in verdicts
+        if verdict.verdict == "unsafe" or (verdict.verdict != "ok" and verdict.check in NOT_RENDERED)
     )
     return next((f"{each.says} ({each.cure})" if each.cure else each.says for each in wrong), "")

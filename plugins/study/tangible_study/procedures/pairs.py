@@ -105,7 +105,7 @@ def odd_one(comparison: Comparison, procedure: str, cell: Cell, number: int) -> 
     if number // 3 % 2 == 0:
         return trial
     others = {cell.test: cell.against, cell.against: cell.test}
-    return replace(trial, intervals=tuple(others[each] for each in trial.intervals))
+    return replace(trial, intervals=tuple(others[interval] for interval in trial.intervals))
 
 
 def standard_among_levels(comparison: Comparison) -> str:

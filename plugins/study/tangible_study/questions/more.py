@@ -48,7 +48,7 @@ class More(Question):
         yield f"From most to least {self.name.removesuffix('er')}: {', '.join(row.what.condition for row in values)}."
         open_pairs = [row.what for row in result.of_all(DIFFERENCE) if not is_sure(row)]
         if open_pairs:
-            listed = "; ".join(f"{each.condition} and {each.other}" for each in open_pairs)
+            listed = "; ".join(f"{open_pair.condition} and {open_pair.other}" for open_pair in open_pairs)
             yield f"Which of these is more is open: {listed}."
         else:
             yield "Each of them differs from each other one: 0 is outside the 95 % interval of every difference."

@@ -94,7 +94,7 @@ class Question(ABC):
         assert self.function is not None
         if generator.random() < self.function.share(trial.level or 0.0, comparison, truth):
             return str(trial.position)
-        return str(generator.choice([each for each in trial.choices if each != str(trial.position)]))
+        return str(generator.choice([choice for choice in trial.choices if choice != str(trial.position)]))
 
     def analyse(self, comparison: Comparison, answers: ByParticipant) -> Result:
         """Analyse the answers of a comparison, whichever procedure asked."""

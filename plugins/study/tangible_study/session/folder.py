@@ -117,7 +117,7 @@ def _prepare(root: Path, file: StudyFile, digest: str) -> None:
                 "pipelines as they were, or name another folder with --out"
             )
         return
-    if any(not each.name.startswith(".") for each in root.iterdir()):
+    if any(not path.name.startswith(".") for path in root.iterdir()):
         raise OutputError(f"{root}: holds other files; name an empty folder with --out")
     program = {"Name": "Tangible Images", "Version": versions()["tangible-images"]}
     description = {
@@ -209,11 +209,13 @@ def faults_before(place: Place) -> list[str]:
 def write_sidecar(place: Place, file: StudyFile, facts: Mapping[str, Any]) -> None:
     """Write the description of the table of answers. facts: of this participant, such as the device."""
     study = file.study
-    units = {each.name: each.unit for each in study.comparisons if each.unit}
+    units = {comparison.name: comparison.unit for comparison in study.comparisons if comparison.unit}
     about = {
         "TaskName": study.study,
         "TaskDescription": study.title,
-        "Instructions": {each.name: each.instruction for each in study.comparisons if each.instruction},
+        "Instructions": {
+            comparison.name: comparison.instruction for comparison in study.comparisons if comparison.instruction
+        },
         "Hears": study.hears,
         "Sees": study.sees,
         "Seed": study.seed,

@@ -86,8 +86,12 @@ class StudyCourse(Course):
     def trials(self) -> int:
         """Number of all trials of a participant."""
         comparisons = self._file.study.comparisons
-        counts = {each.name: self._file.procedures[each.name].trials(each) for each in comparisons}
-        return sum(counts[each.name] + min(each.training, counts[each.name]) for each in comparisons)
+        counts = {
+            comparison.name: self._file.procedures[comparison.name].trials(comparison) for comparison in comparisons
+        }
+        return sum(
+            counts[comparison.name] + min(comparison.training, counts[comparison.name]) for comparison in comparisons
+        )
 
 
 def replay(course: Course, answers: Iterable[Answer]) -> int:

@@ -54,7 +54,9 @@ def decide(trial: Trial, magnitude: Callable[[Stimulus], float], base: float, ge
     magnitude: how strong a stimulus is, in standard deviations of the noise. base: d' between the parts that are named,
     where the magnitude is 0.
     """
-    felt = np.array([magnitude(each) for each in trial.intervals]) + generator.standard_normal(len(trial.intervals))
+    felt = np.array([magnitude(interval) for interval in trial.intervals]) + generator.standard_normal(
+        len(trial.intervals)
+    )
     return load_question(trial.question).decide(trial, Percept(felt, magnitude, base), generator)
 
 

@@ -64,7 +64,7 @@ def fit_scale(wins: Sequence[Float64[np.ndarray, "n n"]]) -> Scale:
     covariance = centre @ inverse @ centre
     degrees = np.inf
     if len(wins) >= FEWEST:
-        scores = np.array([_derivatives(each, values)[0] for each in wins])
+        scores = np.array([_derivatives(win, values)[0] for win in wins])
         spread = scores.T @ scores * len(wins) / (len(wins) - 1)
         robust = covariance @ spread @ covariance
         if np.trace(robust) > np.trace(covariance):

@@ -57,9 +57,9 @@ def classes(
     sets = [planes] if learned is None else [planes, learned.planes]
     steps = join_clusters(sets, labels, shape, most + spent.last, power)
     labels = (
-        likeliest_division(each for each in steps if each.clusters <= most + spent.last)
+        likeliest_division(step for step in steps if step.clusters <= most + spent.last)
         if segments == "auto"
-        else next(each.labels for each in steps if each.clusters <= segments)
+        else next(step.labels for step in steps if step.clusters <= segments)
     )
     shares = interior_shares(labels, shape)
     axes = [axes_between(each, labels, shares) for each in sets]

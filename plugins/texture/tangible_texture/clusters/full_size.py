@@ -37,7 +37,7 @@ def resize_planes(planes: Float32[np.ndarray, "k m"], shape: tuple[int, int], to
     """Interpolate planes of cells between the centres of a coarse grid: (k, n)."""
     with plain_opencv():
         return np.stack(
-            [cv2.resize(each.reshape(shape), to[::-1], interpolation=cv2.INTER_LINEAR).ravel() for each in planes]
+            [cv2.resize(plane.reshape(shape), to[::-1], interpolation=cv2.INTER_LINEAR).ravel() for plane in planes]
         )
 
 

@@ -29,8 +29,10 @@ def smooth_memberships(memberships: Float32[np.ndarray, "k n"], shape: tuple[int
     """Compute Gaussian means of each class's memberships over the grid of cells."""
     result, taps = np.empty(memberships.shape, np.float32), _gaussian(sigma)
     with plain_opencv():
-        for each, out in zip(memberships, result, strict=True):
-            cv2.sepFilter2D(each.reshape(shape), -1, taps, taps, dst=out.reshape(shape), borderType=cv2.BORDER_REFLECT)
+        for membership, out in zip(memberships, result, strict=True):
+            cv2.sepFilter2D(
+                membership.reshape(shape), -1, taps, taps, dst=out.reshape(shape), borderType=cv2.BORDER_REFLECT
+            )
     return result
 
 

@@ -61,8 +61,8 @@ def printed_wavelengths(width_px: int) -> tuple[float, ...]:
     """
     last = floor(log2(max(width_px, 8) / 8) + 1e-9)
     offsets = [2 ** (i - 0.5) / width_px for i in range(last, 0, -1)]
-    frequencies = [0.25 + each for each in offsets] + [0.25 - each for each in reversed(offsets)]
-    return tuple(1 / each for each in frequencies or (0.25,))
+    frequencies = [0.25 + offset for offset in offsets] + [0.25 - offset for offset in reversed(offsets)]
+    return tuple(1 / frequency for frequency in frequencies or (0.25,))
 
 
 def bank(

@@ -103,7 +103,7 @@ def _planes(
     spectrum = spectrum_of(grey, padding(filters, ENERGY_SIGMA_PX))
     means = mean_energies(spectrum, filters)
     numbers = tuple(np.flatnonzero(means >= least_energy * means.sum()).tolist())
-    filters_used = [filters[each] for each in numbers]
+    filters_used = [filters[number] for number in numbers]
     if len(filters_used) < len(filters):
         note(
             log,
@@ -132,7 +132,9 @@ def _colour_planes(picture: np.ndarray, colour: bool | Literal["auto"]) -> Float
     red, green, blue = np.moveaxis(paint, 2, 0)
     opponents = (1 + (red - green) / 2, 1 + (red + green) / 4 - blue / 2)
     with plain_opencv():
-        planes = np.stack([cv2.resize(each, (columns, rows), interpolation=cv2.INTER_AREA) for each in opponents])
+        planes = np.stack(
+            [cv2.resize(opponent, (columns, rows), interpolation=cv2.INTER_AREA) for opponent in opponents]
+        )
     differ = float(np.sqrt(_remove_slope(window_means(planes, MIDDLE_PX / CELL_PX)).var(axis=(1, 2)).sum()))
     if colour == "auto" and differ < COLOURFUL:
         note(log, f"colour left out: it differs between windows by {differ:.3f} of white, under {COLOURFUL:g}")

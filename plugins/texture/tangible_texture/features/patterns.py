@@ -73,7 +73,7 @@ def _pack_bits(flags: Iterable[bool], first_bit: int, width: int) -> int:
 
 def _agreements_of(code: int) -> int:
     dark, bright, *quarters = _pairs_of(code)
-    return _pack_bits(dark, 0, 5) + _pack_bits(bright, 20, 5) + sum(_pack_bits(each, 40, 6) for each in quarters)
+    return _pack_bits(dark, 0, 5) + _pack_bits(bright, 20, 5) + sum(_pack_bits(quarter, 40, 6) for quarter in quarters)
 
 
 _FIRST: UInt64[np.ndarray, "256"] = np.array([1 << 5 * _class_of(code) for code in range(256)], np.uint64)

@@ -50,10 +50,10 @@ def _add_windows(planes: Float32[np.ndarray, "d h w"], result: Float32[np.ndarra
     for level in range(LEVELS):
         if level:
             size = (planes.shape[2] + 1) // 2, (planes.shape[1] + 1) // 2
-            planes = np.stack([cv2.resize(each, size, interpolation=cv2.INTER_AREA) for each in planes])
+            planes = np.stack([cv2.resize(plane, size, interpolation=cv2.INTER_AREA) for plane in planes])
         tensor = np.zeros((3, *planes.shape[1:]), np.float32)
-        for each in planes:
-            _add_outer(np.sqrt(gaussian(each, WINDOW_CELLS) + np.float32(EMPTY)), tensor)
+        for plane in planes:
+            _add_outer(np.sqrt(gaussian(plane, WINDOW_CELLS) + np.float32(EMPTY)), tensor)
         for at in range(3):
             result[level, at] = cv2.resize(tensor[at], result.shape[:1:-1], interpolation=cv2.INTER_LINEAR)
 

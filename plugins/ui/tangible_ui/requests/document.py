@@ -28,7 +28,7 @@ async def begin(session: Session, tab: Tab | None, files: list[str], make_it: bo
     picture = as_path(files[0]) if files else Path()
     session.opening = picture if picture.suffix.lower() in SHOWN_BY_BROWSERS else None
     session.tabs.tell("opening", name=picture.name, picture=session.opening is not None)
-    found = await session.worker.quick("begin", files=[as_path(each) for each in files])
+    found = await session.worker.quick("begin", files=[as_path(file) for file in files])
     if "text" not in found:
         return found
     text, path = found["text"], found["path"]
@@ -139,7 +139,7 @@ async def batch(session: Session, tab: Tab | None) -> str:
 async def open_batch(session: Session, tab: Tab | None, batch: str) -> dict[str, Any]:
     """Open the files of an uploaded batch together."""
     files = await asyncio.to_thread(session.uploads.keep, batch)
-    return await begin(session, tab, [str(each) for each in files])
+    return await begin(session, tab, [str(file) for file in files])
 
 
 @request()

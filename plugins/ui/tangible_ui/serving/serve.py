@@ -123,7 +123,7 @@ class Served:
         session.begin(document.offer(session))
         session.waits_for_file = not self._files
         if self._files:
-            session.begin(document.begin(session, None, [str(each) for each in self._files]))
+            session.begin(document.begin(session, None, [str(file) for file in self._files]))
         session.begin(_start(session))
         gc.freeze()  # the collector skips what was imported
         try:

@@ -52,7 +52,7 @@ def _translate(value: Any, language: str) -> Any:
 
 def _with_notes(why: str, notes: Any, own: Any, language: str) -> str:
     """Return a reason that ends with the notes, so that it ends with them in the language too."""
-    behind, behind_own = ("".join(f"; {each['text']}" for each in all_notes) for all_notes in (notes, own))
+    behind, behind_own = ("".join(f"; {note['text']}" for note in all_notes) for all_notes in (notes, own))
     if not why.endswith(behind):
         return translate(why, language)
     return translate(why.removesuffix(behind), language) + behind_own

@@ -28,7 +28,7 @@ class Block(Key):
     def model(self) -> type[BaseModel]:
         """The model of the options."""
         forms = get_args(self.field.annotation) or (self.field.annotation,)
-        return next(each for each in forms if isinstance(each, type) and issubclass(each, BaseModel))
+        return next(form for form in forms if isinstance(form, type) and issubclass(form, BaseModel))
 
     @property
     def nullable(self) -> bool:

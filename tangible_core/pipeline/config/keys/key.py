@@ -55,7 +55,7 @@ class Forms:
     def of_kind(self, kind: str) -> dict[str, Any]:
         """Return the schema of any method of a kind: its name alone, or its block. A broken plugin is left out."""
         methods = list(self._methods(kind))
-        return {"anyOf": [{"enum": [name for name, _ in methods]}, *(self.of_method(*each) for each in methods)]}
+        return {"anyOf": [{"enum": [name for name, _ in methods]}, *(self.of_method(*method) for method in methods)]}
 
     def _methods(self, kind: str) -> Iterator[tuple[str, type[BaseModel]]]:
         for name in self.registry.names(kind):

@@ -41,7 +41,7 @@ def kitti_2012(root: Path) -> Iterator[StandardPair]:
 
 
 def _pairs(root: Path, layouts: tuple[_Layout, ...]) -> Iterator[StandardPair]:
-    files_in = {each.path: each.files for each in folders(root)}
+    files_in = {folder.path: folder.files for folder in folders(root)}
     for part in dict.fromkeys(path.parent for path in files_in):
         layout = next(
             (each for each in layouts if part / each.left in files_in and part / each.right in files_in), None

@@ -27,19 +27,19 @@ def since_2014(root: Path) -> Iterator[StandardPair]:
     The truth is disp0.pfm or disp0GT.pfm, the mask mask0nocc.png (255: both views). MiddEval3 has a folder for each
     size and part, such as trainingQ; the others are at full size.
     """
-    for each in folders(root):
-        if not each.has("im0.png", "im1.png"):
+    for folder in folders(root):
+        if not folder.has("im0.png", "im1.png"):
             continue
-        part = next((name for name in each.within[::-1] if name in _OF_EVAL3), "trainingF")
-        truth = next((name for name in ("disp0GT.pfm", "disp0.pfm") if name in each.files), None)
-        noc = Mask((each.path / "mask0nocc.png",), "at 255") if "mask0nocc.png" in each.files else None
+        part = next((name for name in folder.within[::-1] if name in _OF_EVAL3), "trainingF")
+        truth = next((name for name in ("disp0GT.pfm", "disp0.pfm") if name in folder.files), None)
+        noc = Mask((folder.path / "mask0nocc.png",), "at 255") if "mask0nocc.png" in folder.files else None
         yield StandardPair(
-            name=each.path.name,
-            left=each.path / "im0.png",
-            right=each.path / "im1.png",
-            truth=None if truth is None else each.path / truth,
+            name=folder.path.name,
+            left=folder.path / "im0.png",
+            right=folder.path / "im1.png",
+            truth=None if truth is None else folder.path / truth,
             noc=noc if truth else None,
-            cameras=partial(if_there, middlebury_cameras, each.path / "calib.txt"),
+            cameras=partial(if_there, middlebury_cameras, folder.path / "calib.txt"),
             resolution=_OF_EVAL3[part],
             test=part in _TEST,
         )
@@ -51,23 +51,23 @@ def of_2005_and_2006(root: Path) -> Iterator[StandardPair]:
     Its grey levels are disparities times 1, 2 or 3 at FullSize, HalfSize, ThirdSize; 0 is unknown. dmin.txt has the
     offset that is added to disparities of a metric pair.
     """
-    for each in folders(root):
-        own = each.has("view1.png", "view5.png")
-        views = each.path if own else each.path.joinpath(*_LIT)
-        lit = any(name.startswith("Illum") for name in each.within)
-        if lit or not (own or ("disp1.png" in each.files and (views / "view1.png").exists())):
+    for folder in folders(root):
+        own = folder.has("view1.png", "view5.png")
+        views = folder.path if own else folder.path.joinpath(*_LIT)
+        lit = any(name.startswith("Illum") for name in folder.within)
+        if lit or not (own or ("disp1.png" in folder.files and (views / "view1.png").exists())):
             continue
-        size = _size_of(each)
+        size = _size_of(folder)
         by = FULL_PX[size]
         yield StandardPair(
-            name=each.path.name,
+            name=folder.path.name,
             left=views / "view1.png",
             right=views / "view5.png",
-            truth=each.path / "disp1.png" if "disp1.png" in each.files else None,
+            truth=folder.path / "disp1.png" if "disp1.png" in folder.files else None,
             truth_scale=float(by),
-            cameras=partial(if_there, old_middlebury_cameras, each.path / "dmin.txt", by),
+            cameras=partial(if_there, old_middlebury_cameras, folder.path / "dmin.txt", by),
             resolution=size,
-            test="disp1.png" not in each.files,
+            test="disp1.png" not in folder.files,
         )
 
 
@@ -84,10 +84,10 @@ def of_2003(root: Path) -> Iterator[StandardPair]:
     Its grey levels are disparities times 4 at a quarter of the size, 2 at half (conesH), 1 at full size (conesF); 0 is
     unknown.
     """
-    for each in folders(root):
-        size = _OF_2003.get(each.path.name)
-        name = each.path.name[:-1] if size else each.path.name
-        yield from _old(each, name, ("im2", "im6", "disp2"), float(FULL_PX[size or "Q"]), size or "Q")
+    for folder in folders(root):
+        size = _OF_2003.get(folder.path.name)
+        name = folder.path.name[:-1] if size else folder.path.name
+        yield from _old(folder, name, ("im2", "im6", "disp2"), float(FULL_PX[size or "Q"]), size or "Q")
 
 
 def of_2001(root: Path) -> Iterator[StandardPair]:
@@ -95,10 +95,10 @@ def of_2001(root: Path) -> Iterator[StandardPair]:
 
     Tsukuba (16 times the disparity) and map have other file names.
     """
-    for each in folders(root):
+    for folder in folders(root):
         tsukuba = ("scene1.row3.col3", "scene1.row3.col4", "truedisp.row3.col3")
         for names, scale in ((("im2", "im6", "disp2"), 8.0), (tsukuba, 16.0), (("im0", "im1", "disp0"), 8.0)):
-            if named := list(_old(each, each.path.name, names, scale, None)):
+            if named := list(_old(folder, folder.path.name, names, scale, None)):
                 yield named[0]
                 break
 

@@ -69,7 +69,7 @@ def sintel(root: Path, variant: Literal["final", "clean"]) -> Iterator[StandardP
     They are final_left/SCENE/frame_0001.png, and the same names in final_right, disparities, occlusions and outofframe
     (0: seen by both views).
     """
-    files_in = {each.path: each.files for each in folders(root)}
+    files_in = {folder.path: folder.files for folder in folders(root)}
     for path in files_in:
         if path.parent.name != f"{variant}_left":
             continue
@@ -78,7 +78,7 @@ def sintel(root: Path, variant: Literal["final", "clean"]) -> Iterator[StandardP
             name: files_in.get(top / name / scene, frozenset[str]())
             for name in (f"{variant}_right", "disparities", "occlusions", "outofframe")
         }
-        for name in sorted(each for each in files_in[path] & parts[f"{variant}_right"] if each.endswith(".png")):
+        for name in sorted(part for part in files_in[path] & parts[f"{variant}_right"] if part.endswith(".png")):
             truth = top / "disparities" / scene / name if name in parts["disparities"] else None
             hidden = [top / each / scene / name for each in ("occlusions", "outofframe") if name in parts[each]]
             yield StandardPair(

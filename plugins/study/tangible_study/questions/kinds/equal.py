@@ -34,7 +34,7 @@ class Equal(Question):
 
     def next_level(self, trial: Trial, key: str, level: float | None) -> float | None:
         """Return the next level above or below, within those that can be set."""
-        levels = [float(each) for each in trial.choices]
+        levels = [float(choice) for choice in trial.choices]
         if key == EQUAL or level is None:
             return None
         return levels[min(max(levels.index(level) + (1 if key == MORE else -1), 0), len(levels) - 1)]

@@ -14,7 +14,7 @@ from .table import job
 @job(page=True)
 def devices(state: WorkerState) -> list[dict[str, Any]]:
     """List the installed devices: facts, connected units, and why one cannot be used."""
-    return [{**asdict(each), "usable": each.usable} for each in installed_devices(state.registry)]
+    return [{**asdict(device), "usable": device.usable} for device in installed_devices(state.registry)]
 
 
 @job(page=True)

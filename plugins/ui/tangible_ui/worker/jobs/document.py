@@ -47,7 +47,7 @@ def check(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[st
         "values": values,
         "scene_kind": kinds[0],
         "relief_from": kinds[1],
-        "complaints": [each._asdict() for each in complaints],
+        "complaints": [complaint._asdict() for complaint in complaints],
     }
 
 
@@ -150,16 +150,16 @@ def begin(state: WorkerState, files: list[Path]) -> dict[str, Any]:
 
     Of a pipeline file and its pictures, the file counts. Raises: ConfigError for files that cannot be opened together.
     """
-    pipelines = [each for each in files if each.suffix.lower() in PIPELINES]
+    pipelines = [file for file in files if file.suffix.lower() in PIPELINES]
     if len(pipelines) > 1:
-        raise ConfigError(f"{', '.join(each.name for each in pipelines)}: open one pipeline file at a time")
+        raise ConfigError(f"{', '.join(pipeline.name for pipeline in pipelines)}: open one pipeline file at a time")
     if pipelines:
         path = pipelines[0].expanduser().absolute()
         return {"text": read_text(path), "path": path}
     if len(files) == 1 and _is_recording(files[0]):
         return {"recording": str(files[0].expanduser().absolute())}
     if not are_pictures(files):
-        odd = next(each for each in files if not are_pictures([each]))
+        odd = next(file for file in files if not are_pictures([file]))
         raise ConfigError(
             f"{odd.name}: is not a picture, video, height map (.npy, .npz, .pfm), recording (.nc, .npz, .csv) or "
             "pipeline file (.yaml); if it is one, give it the right ending"

@@ -61,7 +61,7 @@ def laws(
     first = state.pipeline_of(text, path, sets)
     if first.config.render is None:
         raise first.config.missing("render")
-    with_others = [state.config_of(text, path, [*sets, f"render={json_in_yaml(each)}"]) for each in others]
+    with_others = [state.config_of(text, path, [*sets, f"render={json_in_yaml(other)}"]) for other in others]
     return [loop_input_of(first), *(loop_input_of(Pipeline.from_config(config, like=first)) for config in with_others)]
 
 

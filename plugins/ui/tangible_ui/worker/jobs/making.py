@@ -69,14 +69,14 @@ def plan(state: WorkerState, text: str, path: Path, sets: list[str], want: str) 
 def plan_data(pipeline: Pipeline, text: str, want: str) -> dict[str, Any]:
     """Return the plan as pages have it. Raises: as `Pipeline.plan`."""
     found = pipeline.plan(cast(Any, want))
-    slow = [each.product for each in found.steps if each.outcome == "ran" and each.product in SLOW]
-    steps = [asdict(each) for each in _all_steps(pipeline, found)]
+    slow = [step.product for step in found.steps if step.outcome == "ran" and step.product in SLOW]
+    steps = [asdict(step) for step in _all_steps(pipeline, found)]
     return {"digest": digest_of(text), "want": want, "steps": steps, "slow": slow, "refusal": found.refusal}
 
 
 def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
     """Return the plan's steps, and the products inside a cached one, in the order of making."""
-    steps = {each.product: each for each in found.steps}
+    steps = {step.product: step for step in found.steps}
     if not found.refusal:
         needed = pipeline.engine.inputs_of(found.want)
         for each in pipeline.outcomes:

@@ -169,7 +169,7 @@ def parts_save(
     labels = unpack(sent, pipeline.scene.shape)
     known, segments = saving.compact(labels)
     found = find_parts(SegmentMap(segments))
-    choices, numbers = saving.number_parts(parts, [int(known[each]) for each in found.segments], found.labels)
+    choices, numbers = saving.number_parts(parts, [int(known[segment]) for segment in found.segments], found.labels)
     file = path if saving.is_in_file(path, opened) else saving.new_file(pipeline.config, path, drawn, beside)
     picture = as_png(saving.undo_framing(found.labels, pipeline.config), file.name)
     place = saving.place_next_to(file)

@@ -103,7 +103,7 @@ def description(state: WorkerState, language: Language) -> dict[str, Any] | None
         "title": told.title,
         "overview": " ".join(told.overview),
         "heading": told.heading,
-        "parts": [{"label": each.label, "says": " ".join(each.sentences)} for each in told.parts],
+        "parts": [{"label": part.label, "says": " ".join(part.sentences)} for part in told.parts],
         "left_out": told.left_out,
         "text": "\n".join(describe_at_length(seen.surface, title, language, parts, kind, people)),
         "html": page_of(seen.surface, title, language, parts, kind, people, named_in=config.language),

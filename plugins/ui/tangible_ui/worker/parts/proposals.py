@@ -97,7 +97,7 @@ def propose_region(
 
 def as_points(points: Sequence[Sequence[float]], shape: tuple[int, ...]) -> Float64[np.ndarray, "n 2"]:
     """Return points in the picture, columns and rows, at most MOST_POINTS. Raises: ConfigError for anything else."""
-    found = np.array([list(each) for each in points if len(each) == 2], np.float64).reshape(-1, 2)
+    found = np.array([list(point) for point in points if len(point) == 2], np.float64).reshape(-1, 2)
     if not 0 < len(found) == len(points) or not np.isfinite(found).all():
         raise ConfigError("points: are [[column, row], ...] in pixels of the picture, at least one")
     if len(found) > MOST_POINTS:

@@ -114,7 +114,7 @@ def warn_of_numbers(config: PipelineConfig, before: Opened, found: PartMap) -> N
         now = found.labels[before == label_of_number(number)]  # a slightly moved border does not make it another part
         return not now.size or shown_number(int(np.bincount(now).argmax())) != number
 
-    moved = {each for each in segments if not there or is_elsewhere(each, labels)}
+    moved = {segment for segment in segments if not there or is_elsewhere(segment, labels)}
     moved |= {each for each in named if is_elsewhere(each, before.parts.labels)}
     if moved:
         log.warning(
@@ -132,9 +132,9 @@ def number_parts(
     labels: the label of each part. A label whose pixels are not connected becomes several parts: the largest keeps the
     name, the others get numbered names. Raises: ConfigError if a label has two entries, or has no pixel.
     """
-    if not all(type(each.get("label")) is int for each in parts):
+    if not all(type(part.get("label")) is int for part in parts):
         raise ConfigError("parts: each entry needs the number of its label")
-    told = {each["label"]: each for each in parts}
+    told = {part["label"]: part for part in parts}
     if len(told) < len(parts):
         raise ConfigError("a label has two entries; give each label one")
     of_label: dict[int, list[int]] = {}
@@ -143,7 +143,7 @@ def number_parts(
     if gone := sorted(told.keys() - of_label.keys()):
         raise ConfigError(f"label {gone[0]}: has a name or a height, and no pixel; leave it out, or paint it")
     sizes = np.bincount(numbers.ravel(), minlength=len(labels))
-    taken = {str(each.get("name") or "").strip().casefold() for each in parts}
+    taken = {str(part.get("name") or "").strip().casefold() for part in parts}
     choices: dict[int, dict[str, Any]] = {}
     for label, each in told.items():
         largest_first = sorted(of_label[label], key=lambda number: (-sizes[number], number))
@@ -192,7 +192,7 @@ def _with_block(text: str, path: Path, parts: Mapping[int, Any]) -> str:
 def _another(name: str, taken: set[str]) -> str:
     """Return the name with a number, so that no other part has it."""
     others = (f"{name.strip()} {number}" for number in itertools.count(2))
-    found = next(each for each in others if each.casefold() not in taken)
+    found = next(other for other in others if other.casefold() not in taken)
     taken.add(found.casefold())
     return found
 
@@ -269,7 +269,7 @@ def place_next_to(path: Path) -> Path:
     """Return a path for labels next to a pipeline file: a new one, or one that was written for that very file."""
     names = itertools.chain([NAME], (f"{Path(NAME).stem}-{number}.png" for number in itertools.count(2)))
     places = (path.parent / name for name in names)
-    return next(each for each in places if not os.path.lexists(each) or is_ours(each, path.name))
+    return next(place for place in places if not os.path.lexists(place) or is_ours(place, path.name))
 
 
 def keep_replaced(place: Path, picture: bytes, store: Path, texts: Sequence[str], path: Path) -> dict[str, str]:

@@ -71,9 +71,9 @@ def leave(at: Path, what: str, write: Callable[[Path], None]) -> None:
 def sweep(folder: Path, pattern: str, kept: int) -> None:
     """Remove all but the newest folders that match, or have a file that does; also those of a killed process."""
     found: list[tuple[int, Path]] = []
-    for each in folder.glob(pattern):
+    for path in folder.glob(pattern):
         with suppress(OSError):  # another thread swept it
-            found.append((each.stat().st_mtime_ns, each))
+            found.append((path.stat().st_mtime_ns, path))
     for _, each in sorted(found)[:-kept]:
         shutil.rmtree(each if each.is_dir() else each.parent, ignore_errors=True)
 
@@ -97,19 +97,19 @@ def _about(seen: SurfaceView) -> dict[str, Any]:
         "levels": [{"step": step, "rows": -(-rows // step), "columns": -(-columns // step)} for step in steps],
         "labels": 0 if seen.labels is None else int(seen.labels.max()) + 1,
         "label_bytes": 2 if seen.labels is None else np.dtype(label_type(seen.labels)).itemsize,
-        "materials": [asdict(each) for each in distinct_materials(seen.materials)[0]],
+        "materials": [asdict(distinct_material) for distinct_material in distinct_materials(seen.materials)[0]],
         "parts": None if seen.names is None else list(seen.names),
         "photo": seen.picture is not None,
         "fine_photo": None if seen.picture is None else _fine_size(seen.picture),
         "layers": {
             name: {
-                "unit": each.unit,
-                "low": each.low,
-                "high": each.high,
-                "rows": each.values.shape[0],
-                "columns": each.values.shape[1],
+                "unit": layer.unit,
+                "low": layer.low,
+                "high": layer.high,
+                "rows": layer.values.shape[0],
+                "columns": layer.values.shape[1],
             }
-            for name, each in seen.layers.items()
+            for name, layer in seen.layers.items()
         },
     }
 
@@ -126,7 +126,7 @@ def _put(part: Path, at: Path) -> None:
     try:
         part.rename(at)
     except OSError:
-        if not all((at / each.name).is_file() for each in part.iterdir()):
+        if not all((at / path.name).is_file() for path in part.iterdir()):
             raise
 
 

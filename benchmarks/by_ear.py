@@ -18,9 +18,9 @@ from .tests_path import page_files
 STROKES, FEWER = 60, (10, 20)
 SHARES = ("precision", "recall", "order")
 LEAST = 0.9
-LEAST_BORDER_M = 0.002
+MIN_BORDER_M = 0.002
 """Border from which two parts are neighbours that are to be found: a fingertip is five times as wide."""
-LEAST_STEP_M = 0.0003
+MIN_STEP_M = 0.0003
 """Difference from which the order of two heights is to be found."""
 
 
@@ -69,8 +69,8 @@ def section() -> str:
     head = (
         f"A hand explores ten pictures of parts, 80 mm wide, by {STROKES} strokes of the arrow keys each, through the "
         "page's own narration on a clock of its own. A program that reads the announcements alone, in English, says "
-        f"which parts touch (along {1000 * LEAST_BORDER_M:.0f} mm or more) and how high they are (by "
-        f"{1000 * LEAST_STEP_M:.1f} mm or more). After ±: the standard error."
+        f"which parts touch (along {1000 * MIN_BORDER_M:.0f} mm or more) and how high they are (by "
+        f"{1000 * MIN_STEP_M:.1f} mm or more). After ±: the standard error."
     )
     return "\n".join([head, "", *rows, "", *judged(figures), "", "With fewer strokes:", "", *fewer])
 
@@ -99,14 +99,14 @@ def score(picture: Picture, found: Rebuilt, said: list[str]) -> Score:
     names = picture.names or tuple(f"part {number}" for number in range(1, picture.parts.count + 1))
     borders = neighbours(picture.parts)
     pairs = [frozenset((names[low], names[high])) for low, high in zip(borders.low, borders.high, strict=True)]
-    long = {pair for pair, sides in zip(pairs, borders.sides, strict=True) if sides * PITCH_M >= LEAST_BORDER_M}
+    long = {pair for pair, sides in zip(pairs, borders.sides, strict=True) if sides * PITCH_M >= MIN_BORDER_M}
     height_m = [float(np.median(picture.height_m[picture.parts.labels == each])) for each in range(len(names))]
     order = [
         names[a] in found.height_mm
         and names[b] in found.height_mm
         and (height_m[a] < height_m[b]) == (found.height_mm[names[a]] < found.height_mm[names[b]])
         for a, b in combinations(range(len(names)), 2)
-        if abs(height_m[a] - height_m[b]) >= LEAST_STEP_M
+        if abs(height_m[a] - height_m[b]) >= MIN_STEP_M
     ]
     return Score(
         picture.kind,

@@ -14,9 +14,9 @@ ROWS, COLUMNS, WIDTH_M = 240, 320, 0.08
 PITCH_M = WIDTH_M / COLUMNS
 SMOOTH_M = 0.001
 """Standard deviation by which a pipeline file smooths the borders of parts."""
-LEAST_CELLS = 160
+MIN_CELLS = 160
 """Smallest part, cells, 10 square millimetres: smaller ones go to a neighbour."""
-MOST_HIGH_M = 0.0042
+MAX_HIGH_M = 0.0042
 NAMES = (
     "wall", "table", "cup", "jug", "cloth", "apple", "window", "door", "roof", "tree", "hill", "road", "river", "boat",
     "bird", "head", "hat", "hand", "coat", "chair", "lamp", "book", "bowl", "spoon", "star",
@@ -60,7 +60,7 @@ def _picture(kind: str, labels: np.ndarray, rng: np.random.Generator, named: boo
     parts = find_parts(SegmentMap(_without_specks(labels.astype(np.int32))))
     grain = ndimage.gaussian_filter(rng.random((ROWS, COLUMNS)), 4)
     picture = (255 * (grain - grain.min()) / np.ptp(grain)).astype(np.uint8)
-    heights_m = MOST_HIGH_M * rng.permutation(parts.count) / max(1, parts.count - 1)
+    heights_m = MAX_HIGH_M * rng.permutation(parts.count) / max(1, parts.count - 1)
     relief = Layering(parts, WIDTH_M, HeightChoice(by="given"), picture).relief(heights_m.tolist())
     height_m = ndimage.gaussian_filter(relief.height_m, SMOOTH_M / PITCH_M, mode="nearest").astype(np.float32)
     names = tuple(rng.permutation(NAMES)[: parts.count].tolist()) if named else None
@@ -70,7 +70,7 @@ def _picture(kind: str, labels: np.ndarray, rng: np.random.Generator, named: boo
 
 def _without_specks(labels: Int32[np.ndarray, "r c"]) -> Int32[np.ndarray, "r c"]:
     parts = find_parts(SegmentMap(labels)).labels
-    small = (np.bincount(parts.ravel()) < LEAST_CELLS)[parts]
+    small = (np.bincount(parts.ravel()) < MIN_CELLS)[parts]
     nearest: Any = ndimage.distance_transform_edt(small, return_distances=False, return_indices=True)
     return parts[nearest[0], nearest[1]]
 

@@ -12,7 +12,7 @@ from .depth_pairs import KnownScene, real, synthetic
 from .figures import Figure, table
 
 LARGEST_RATIO = 1.25
-MOST_OFF = 0.05
+MAX_OFF = 0.05
 """Largest difference of a probability and what happens."""
 EDGES = (0.0, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98)
 """Lower ends of ranges of probability; hardly any value is below the second."""
@@ -41,9 +41,9 @@ def _reliability() -> Figure:
     by_range = float(np.abs(stated - right).sum() / pixels.sum())
     return Figure(
         "confidence as a probability of being within 2 px, against the share that is",
-        f"within {MOST_OFF:g} on every scene, and in the mean of its ranges",
+        f"within {MAX_OFF:g} on every scene, and in the mean of its ranges",
         f"{off[worst]:.3f} at most ({worst}); {by_range:.3f} in the mean of the ranges, photographs",
-        max(off[worst], by_range) <= MOST_OFF,
+        max(off[worst], by_range) <= MAX_OFF,
     )
 
 

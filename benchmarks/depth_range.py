@@ -11,7 +11,7 @@ from .depth_pairs import KnownScene, real, synthetic
 from .figures import Figure
 from .turns import in_turns
 
-MOST_SHARE = 0.09
+MAX_SHARE = 0.09
 """Of the time of the match."""
 
 
@@ -22,14 +22,14 @@ def figures() -> list[Figure]:
     shares = {name: cost(each) for name, each in scenes.items()}
     least, dearest = min(covered, key=covered.__getitem__), max(shares, key=shares.__getitem__)
     short = sum(share < 99.9 for share in covered.values())
-    over = sum(share > MOST_SHARE for share in shares.values())
+    over = sum(share > MAX_SHARE for share in shares.values())
     measured = (
         f"covers {covered[least]:.2f} % at least ({least}; {short} of {len(covered)} below 99.9); takes "
         f"{100 * shares['motorcycle']:.1f} % on motorcycle, {100 * shares[dearest]:.1f} % at most "
-        f"({dearest}; {over} over {100 * MOST_SHARE:.0f})"
+        f"({dearest}; {over} over {100 * MAX_SHARE:.0f})"
     )
-    bound = f">= 99.9 % of the truth at <= {100 * MOST_SHARE:.0f} % of the match time"
-    return [Figure("automatic range", bound, measured, covered[least] >= 99.9 and shares[dearest] <= MOST_SHARE)]
+    bound = f">= 99.9 % of the truth at <= {100 * MAX_SHARE:.0f} % of the match time"
+    return [Figure("automatic range", bound, measured, covered[least] >= 99.9 and shares[dearest] <= MAX_SHARE)]
 
 
 def coverage(scene: KnownScene) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 
 from tangible_core import Pipeline, Scene
 from tangible_depth import Luminance
-from tangible_send.page import MOST_BYTES
+from tangible_send.page import MAX_BYTES
 from tangible_texture import Gradient
 
 from .figures import Figure, judged, part
@@ -44,7 +44,7 @@ def _figures() -> Iterator[Figure]:
     with tempfile.TemporaryDirectory(prefix="tangible-bench-") as folder:
         path = part("export", lambda: _sent(Path(folder)))
         size = path.stat().st_size
-        yield Figure("file", f"<= {MOST_BYTES / 1e6:g} MB", f"{size / 1e6:.2f} MB", size <= MOST_BYTES)
+        yield Figure("file", f"<= {MAX_BYTES / 1e6:g} MB", f"{size / 1e6:.2f} MB", size <= MAX_BYTES)
         with browser() as chromium:
             runs = [part(f"open {n + 1}", partial(_opened, chromium, path)) for n in range(RUNS + 1)][1:]
     open_s, p50, p95 = (statistics.median(column) for column in zip(*runs, strict=True))

@@ -35,8 +35,8 @@ PICTURES = ("astronaut", "coffee", "motorcycle", "chelsea", "rocket", "camera")
 WIDTH_M, TALL_M = 0.16, 0.006
 GIVEN, GUESS = HeightChoice(by="given"), HeightChoice(by="guess")
 TOP_M = TALL_M - GIVEN.bulge_m - GIVEN.detail_m
-LEAST_SHARE, MOST_PARTS, LEAST_WIDTH = 0.89, 12, 1 / 16
-LEAST_FOUND, LEAST_TRUE = 0.75, 0.60
+MIN_SHARE, MAX_PARTS, MIN_WIDTH = 0.89, 12, 1 / 16
+MIN_FOUND, MIN_TRUE = 0.75, 0.60
 """Of automatic parts: share of drawn borders that are felt, and share of what is felt that is a drawn border."""
 SIZES = {0.4: (500, 741), 5: (2000, 2667), 12: (3000, 4000)}
 """Rows and columns, by megapixels."""
@@ -81,20 +81,20 @@ def _borders() -> tuple[list[str], list[Figure]]:
             rows.append((name, relief, of, *(f"{value:.2f}" for value in found.values())))
         for made, before, after in (("drawn", shares[0], shares[2]), ("automatic", shares[1], shares[3])):
             was, share = before["steps_at_borders"], after["steps_at_borders"]
-            told, bound = f"{was:.2f} -> {share:.2f}", f">= {LEAST_SHARE}"
+            told, bound = f"{was:.2f} -> {share:.2f}", f">= {MIN_SHARE}"
             what = f"{name}: felt steps that are borders of {made} parts, by luminance -> by layers"
-            figures.append(Figure(what, bound, told, share >= LEAST_SHARE))
+            figures.append(Figure(what, bound, told, share >= MIN_SHARE))
         share = shares[5]["steps_at_borders"]
         what = f"{name}: the same, drawn, as a pipeline makes them by default"
-        figures.append(Figure(what, f">= {LEAST_SHARE}", f"{share:.2f}", share >= LEAST_SHARE))
+        figures.append(Figure(what, f">= {MIN_SHARE}", f"{share:.2f}", share >= MIN_SHARE))
         of_automatic.append((shares[4]["borders_found"], shares[4]["steps_at_borders"]))
     found, true = zip(*of_automatic, strict=True)
     figures.append(
         Figure(
             f"drawn borders that automatic parts find, and felt steps that are drawn borders, mean of {len(PICTURES)}",
-            f">= {LEAST_FOUND:.2f}, >= {LEAST_TRUE:.2f}",
+            f">= {MIN_FOUND:.2f}, >= {MIN_TRUE:.2f}",
             f"{mean_and_error(found)}, {mean_and_error(true)}",
-            fmean(found) >= LEAST_FOUND and fmean(true) >= LEAST_TRUE,
+            fmean(found) >= MIN_FOUND and fmean(true) >= MIN_TRUE,
         )
     )
     return table(("picture", "relief", "borders of", "found", "of felt steps", "area stepped"), rows), figures
@@ -167,8 +167,8 @@ def _luminance(name: str) -> np.ndarray:
 def _automatic(name: str) -> PartMap:
     """As `tangible parts` finds them."""
     picture = drawn_parts.drawn(name).picture
-    segments = Hierarchy(segments=ceil(SEGMENTS_PER_PART * MOST_PARTS)).segment(picture)
-    return large_parts(segments, picture, LEAST_WIDTH * max(picture.shape[:2]), MOST_PARTS)
+    segments = Hierarchy(segments=ceil(SEGMENTS_PER_PART * MAX_PARTS)).segment(picture)
+    return large_parts(segments, picture, MIN_WIDTH * max(picture.shape[:2]), MAX_PARTS)
 
 
 def _layers(

@@ -46,7 +46,7 @@ BOUNDS = {
 }
 SIZES = {(741, 500): 20.0, (2667, 1800): 150.0}
 """Milliseconds of a processor at most, by columns and rows."""
-BEST, LEAST_ORDER_BEST = "`effort: best`", 0.92
+BEST, MIN_ORDER_BEST = "`effort: best`", 0.92
 """The other effort, and the share of borders that have the right order with it."""
 DEVICES = "mock", "falcon-simulated"
 SMALL, LARGE = 461, 741
@@ -139,9 +139,9 @@ def _borders() -> tuple[list[str], list[Figure]]:
     figures.append(
         Figure(
             f"order, {BEST}, mean of {len(order)} pairs of photographs",
-            f">= {LEAST_ORDER_BEST}",
+            f">= {MIN_ORDER_BEST}",
             mean_and_error(order),
-            fmean(order) >= LEAST_ORDER_BEST,
+            fmean(order) >= MIN_ORDER_BEST,
         )
     )
     return table(("pair", "relief", *BOUNDS), rows), figures

@@ -10,7 +10,7 @@ import numpy as np
 from tangible_core.data import Spread
 from tangible_core.servo import Ring
 from tangible_core.servo.reports import spread
-from tangible_core.servo.ring import MOST_LATE_S
+from tangible_core.servo.ring import MAX_LATE_S
 
 from .figures import Figure
 
@@ -34,7 +34,7 @@ class Round(NamedTuple):
     @classmethod
     def of(cls, ring: Ring) -> Self:
         """Return the counts of the loop that wrote to this ring."""
-        return cls(ring.late.copy(), ring.overruns, float(ring.sums[MOST_LATE_S]))
+        return cls(ring.late.copy(), ring.overruns, float(ring.sums[MAX_LATE_S]))
 
     @property
     def late_percent(self) -> float:

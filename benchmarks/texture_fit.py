@@ -38,7 +38,7 @@ KIND_SHARES = {"straight": 0.15, "curved": 0.2, "letters": 0.25, "grid": 0.1, "r
 """The share of mosaics of each kind of region."""
 KEPT_BACK = 12
 """One of so many textures is not fitted to."""
-NOISY, MOST_NOISE = 0.25, 10.0
+NOISY, MAX_NOISE = 0.25, 10.0
 """The share of mosaics with noise, and its largest standard deviation in grey levels."""
 PAIRED = 384
 """The number of cells of a mosaic of which all pairs are judged."""
@@ -100,7 +100,7 @@ def example(variants: Sequence[Sequence[np.ndarray]], seed: int) -> Example | No
         part = np.rot90(part[:, ::-1] if random.random() < 0.5 else part, int(random.integers(4)))
         np.copyto(picture, part, where=labels == label)
     if random.random() < NOISY:
-        noise = random.normal(0, random.uniform(2, MOST_NOISE), picture.shape)
+        noise = random.normal(0, random.uniform(2, MAX_NOISE), picture.shape)
         picture = np.rint(picture + noise).clip(0, 255).astype(np.uint8)
     found = features(picture, 24.0, 0.0, colour=False)
     if found is None:

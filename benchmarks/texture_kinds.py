@@ -27,7 +27,7 @@ SMALL_PX, LARGE_PX, FEW = 384, 512, 4
 LETTERS = "AOBHERSTUXZK"
 THICK = 0.2
 """The width of a letter's strokes, as a share of its square."""
-LEAST_SHARE = 0.006
+MIN_SHARE = 0.006
 """The least share of the area of a segment; regions are drawn again until none is smaller."""
 TRIES = 50
 TUNING_SEED, REPORTED_SEED = 1000, 3000
@@ -89,7 +89,7 @@ def _possible(kind: str, segments: int) -> str:
 def _large_enough(regions: Regions, segments: int, side: int, random: np.random.Generator) -> np.ndarray:
     labels = regions(segments, side, random)
     for _ in range(TRIES):
-        if _least_share(labels, segments) >= LEAST_SHARE:
+        if _least_share(labels, segments) >= MIN_SHARE:
             break
         labels = regions(segments, side, random)
     return labels

@@ -16,7 +16,7 @@ import cv2
 import numpy as np
 from PIL import Image
 
-LEAST_PX, MOST_PX, CROP_PX = 256, 900, 640
+MIN_PX, MAX_PX, CROP_PX = 256, 900, 640
 """The least side of a picture; the least side above which it is halved; what is kept of it."""
 SPREAD, TURN = 0.3, 0.14
 """The largest deviation, between 16 parts of a texture, of the logarithm of energies, and of their directions."""
@@ -78,7 +78,7 @@ def _open(place: tuple[Path, str]) -> Texture | None:
     try:
         data = _archive(path).read(member) if member else path.read_bytes()
         with Image.open(io.BytesIO(data)) as opened:
-            if min(opened.size) < LEAST_PX or ("A" in opened.mode and _is_cut_out(opened)):
+            if min(opened.size) < MIN_PX or ("A" in opened.mode and _is_cut_out(opened)):
                 return None
             colours = np.asarray(opened.convert("RGB"), np.float32)
     except (OSError, ValueError, SyntaxError, BadZipFile):  # what Pillow raises for what it cannot read
@@ -86,10 +86,10 @@ def _open(place: tuple[Path, str]) -> Texture | None:
     if (np.abs(np.linalg.norm(colours / 127.5 - 1, axis=2) - 1) < 0.08).mean() > 0.8:  # normals, of length 1
         return None
     grey = colours @ np.array([0.299, 0.587, 0.114], np.float32)
-    while min(grey.shape) > MOST_PX:
+    while min(grey.shape) > MAX_PX:
         grey = cv2.resize(grey, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
     grey = grey[:CROP_PX, :CROP_PX]
-    return _texture(grey) if min(grey.shape) >= LEAST_PX and grey.std() >= 4 and _is_even(grey) else None
+    return _texture(grey) if min(grey.shape) >= MIN_PX and grey.std() >= 4 and _is_even(grey) else None
 
 
 def _is_cut_out(picture: Image.Image) -> bool:

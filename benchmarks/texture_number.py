@@ -22,7 +22,7 @@ PENALTY = 0.01
 """What the sum of the weights' squares, without the constant's, costs beside the mean log-likelihood."""
 
 
-CROPS_PX, CROP_TRIES, LEAST_SHARE, CROP_SEED = (96, 128, 192, 256, 320), 60, 0.04, 7
+CROPS_PX, CROP_TRIES, MIN_SHARE, CROP_SEED = (96, 128, 192, 256, 320), 60, 0.04, 7
 """Sides of the crops, one a mosaic in turn; tries to find one in which each segment has this share; seed of places."""
 
 
@@ -60,7 +60,7 @@ def crops(scenes: Iterable[KnownSegments]) -> Iterator[KnownSegments]:
             top, left = (random.integers(0, each - side + 1) for each in scene.labels.shape)
             inside = np.s_[top : top + side, left : left + side]
             _, labels, sizes = np.unique(scene.labels[inside], return_inverse=True, return_counts=True)
-            if sizes.min() >= LEAST_SHARE * side * side:
+            if sizes.min() >= MIN_SHARE * side * side:
                 labels = labels.reshape(side, side).astype(np.int32)
                 yield KnownSegments(np.ascontiguousarray(scene.picture[inside]), labels)
                 break

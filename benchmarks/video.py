@@ -37,7 +37,7 @@ MINUTES, SLICES = (
 SLICE_S = 10.0
 BOUNDS = {(320, 240): (80.0, 9.0, 120.0), (640, 480): (30.0, 27.0, 60.0)}
 """Frames a second at least, milliseconds of a processor for one at most, and frames a second of the file, by size."""
-MOST_GROWN_MB = 10.0
+MAX_GROWN_MB = 10.0
 
 
 def section() -> str:
@@ -186,4 +186,4 @@ def _memory() -> Iterator[Figure]:
     film = report.film
     assert film is not None
     told = f"{grown[0]:+.1f} MB where frames are made, {grown[1]:+.1f} MB in the loop; {film.shown} frames"
-    yield Figure(f"memory, {MINUTES:g} minutes", f"<= {MOST_GROWN_MB:g} MB", told, max(grown) <= MOST_GROWN_MB)
+    yield Figure(f"memory, {MINUTES:g} minutes", f"<= {MAX_GROWN_MB:g} MB", told, max(grown) <= MAX_GROWN_MB)

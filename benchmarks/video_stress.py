@@ -25,7 +25,7 @@ STEP_N, GAIN_J, GAIN_SHARE = 0.08, 1e-2, 1e-4
 """What is allowed: of a force on a hand at rest; and of energy beyond what the surface did, once and as a share of all
 work that was done back and forth, of which sampling loses track."""
 DAMPED = int(TickFlag.DAMPED)
-(NOT_FINITE, STEP, WORK, SURFACE, SIZE, MOVED, GAIN, TOUCHED, BRAKED, GUARDED, MOST_GUARDED, AT_REST) = range(12)
+(NOT_FINITE, STEP, WORK, SURFACE, SIZE, MOVED, GAIN, TOUCHED, BRAKED, GUARDED, MAX_GUARDED, AT_REST) = range(12)
 FORCE, LEFT, FOUND = 12, 15, 18
 """What is kept of a film: figures, and the forces of the law and of the guard in the last tick."""
 
@@ -127,7 +127,7 @@ def _film(random: np.random.Generator, ticks: int) -> Worst:
         )
         film.show(Relief(next(scene), surface.extent_m), frame := frame + 1)
         first = last
-    may_j = settings[at.MOST_SURFACE_J] + settings[at.SURFACE_W] * ticks * PERIOD_S
+    may_j = settings[at.MAX_SURFACE_J] + settings[at.SURFACE_W] * ticks * PERIOD_S
     return Worst(
         ticks,
         int(found[TOUCHED]),
@@ -135,7 +135,7 @@ def _film(random: np.random.Generator, ticks: int) -> Worst:
         found[STEP],
         found[GAIN] - GAIN_SHARE * found[SIZE],
         found[MOVED],
-        found[MOST_GUARDED] - may_j,
+        found[MAX_GUARDED] - may_j,
         found[BRAKED] / ticks,
     )
 
@@ -171,7 +171,7 @@ def walk(fixed, tick, moving, settings, memory, hands, first, last, stiffness, f
             found[MOVED] += abs(surface_j)
             found[GAIN] = max(found[GAIN], found[WORK] - found[SURFACE] + held_j)
             found[GUARDED] += found[LEFT] * dx + found[LEFT + 1] * dy + found[LEFT + 2] * dz
-            found[MOST_GUARDED] = max(found[MOST_GUARDED], found[GUARDED])
+            found[MAX_GUARDED] = max(found[MAX_GUARDED], found[GUARDED])
             if at_rest > 1.0:
                 step_n = np.sqrt((fx - px) ** 2 + (fy - py) ** 2 + (fz - pz) ** 2)
                 found[STEP] = max(found[STEP], step_n)

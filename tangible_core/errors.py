@@ -9,11 +9,11 @@ from sys import stdlib_module_names
 from traceback import walk_tb
 from typing import Any, NamedTuple
 
-MOST_QUOTED = 80
+MAX_QUOTED = 80
 """The most characters of a name or a value that a message quotes."""
-MOST_IN_LINE = 1000
+MAX_IN_LINE = 1000
 """The most characters of a line of a message."""
-MOST_LINES = 40
+MAX_LINES = 40
 """The most complaints that are printed; the others are counted."""
 
 
@@ -24,7 +24,7 @@ class TangibleError(Exception):
     """
 
     def __str__(self) -> str:
-        lines = [shown(str(arg), MOST_IN_LINE) for arg in self.args[:MOST_LINES]]
+        lines = [shown(str(arg), MAX_IN_LINE) for arg in self.args[:MAX_LINES]]
         if more := len(self.args) - len(lines):
             lines.append(f"and {more} more")
         return "\n".join(lines)
@@ -53,7 +53,7 @@ class ConfigError(TangibleError):
         super().__init__(*sentences)
         records = tuple(complaints) or tuple(Complaint((), str(sentence)) for sentence in sentences)
         self.complaints: tuple[Complaint, ...] = tuple(
-            record._replace(text=shown(record.text, MOST_IN_LINE)) for record in records
+            record._replace(text=shown(record.text, MAX_IN_LINE)) for record in records
         )
 
 
@@ -188,7 +188,7 @@ def exit_error(error: SystemExit) -> BrokenMethod:
     )
 
 
-def shown(text: str, most: int = MOST_QUOTED) -> str:
+def shown(text: str, most: int = MAX_QUOTED) -> str:
     """Return foreign text in a form that a message may hold: one printable line, without the middle of a long text.
 
     >>> shown("two\\nlines"), shown("x" * 1000, 20)
@@ -224,13 +224,13 @@ class _ShortRepr(Repr):
             return self.repr_list(x, level)  # pyright: ignore[reportUnknownArgumentType]
         if isinstance(x, str):
             return self.repr_str(x, level)
-        if isinstance(x, int) and x.bit_length() > 8 * MOST_QUOTED:  # Python prints no more than 4,300 digits
+        if isinstance(x, int) and x.bit_length() > 8 * MAX_QUOTED:  # Python prints no more than 4,300 digits
             return f"a number of {x.bit_length()} bits"
         return super().repr1(x, level)
 
 
 _REPR = _ShortRepr()
-_REPR.maxstring = _REPR.maxother = _REPR.maxlong = MOST_QUOTED
+_REPR.maxstring = _REPR.maxother = _REPR.maxlong = MAX_QUOTED
 _REPR.maxlevel = 3
 
 
@@ -240,7 +240,7 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     >>> did_you_mean("stifness", ["stiffness", "damping"]), did_you_mean("cat.yaml", ["sky.yaml"])
     (" (did you mean 'stiffness'?)", '')
     """
-    near = get_close_matches(word, list(known), n=1) if len(word) <= MOST_QUOTED else []
+    near = get_close_matches(word, list(known), n=1) if len(word) <= MAX_QUOTED else []
     return f" (did you mean {quoted(near[0])}?)" if near and _are_near(word, near[0]) else ""
 
 

@@ -74,11 +74,11 @@ def table(
 def is_narrow(terminal: Console, grid: Table) -> bool:
     """Return True if a table would break words, or squeeze most of its text into a few letters a line."""
     wanted = Measurement.get(terminal, terminal.options.update(max_width=WIDEST), grid)
-    return wanted.minimum > terminal.width or wanted.maximum > MOST_FOLDS * terminal.width
+    return wanted.minimum > terminal.width or wanted.maximum > MAX_FOLDS * terminal.width
 
 
 WIDEST = 1000
-MOST_FOLDS = 3
+MAX_FOLDS = 3
 """The largest ratio of a table's unfolded width to that of the terminal."""
 
 

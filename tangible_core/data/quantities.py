@@ -41,7 +41,7 @@ class _Blocks(type(BaseModel)):
 
         def __call__(cls, *values: Any, **options: Any) -> Any:
             if values:
-                names = ", ".join(f"{name}=..." for name in list(cls.model_fields)[:MOST_NAMED]) or "it has none"
+                names = ", ".join(f"{name}=..." for name in list(cls.model_fields)[:MAX_NAMED]) or "it has none"
                 raise OptionError(f"{cls.__name__}: write options with their names, such as {names}")
             try:
                 return super().__call__(**options)
@@ -52,7 +52,7 @@ class _Blocks(type(BaseModel)):
 
 _TEXTS = WeakKeyDictionary[type, str | None]()
 """The documentation of classes with that of their options, once it was requested."""
-MOST_NAMED = 3
+MAX_NAMED = 3
 """The most options that a message about their names quotes."""
 
 

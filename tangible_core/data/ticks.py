@@ -37,7 +37,7 @@ class TickFlag(IntFlag):
 
 BEACON_SHIFT = 11
 """The lowest bit of the number of a beacon's part in the flags of a tick."""
-MOST_BEACON_PARTS = 1 << 20
+MAX_BEACON_PARTS = 1 << 20
 """The number of parts that a beacon can pull to: larger numbers do not fit into the flags."""
 
 

@@ -14,7 +14,7 @@ NOISY = 3.5
 """The same in standard deviations of the noise that a blur leaves."""
 SAME = 14.0
 """The greatest difference of two areas of one colour, of 255."""
-LEAST_SIDE = 1 / 110
+MIN_SIDE = 1 / 110
 """The side of a square as large as the least area, as a share of the longer side; less is a speck."""
 REACH_PX = 3
 """How far a pixel on an edge looks for the areas on both sides of the edge, px."""
@@ -53,7 +53,7 @@ def find_areas(picture: np.ndarray) -> Areas:
         stroke = np.asarray(cv2.dilate(ink, np.ones((5, 5), np.uint8))) > 0
         inside: Bool[np.ndarray, "h w"] = (change <= max(ALIKE, NOISY * noise / sigma)) & ~stroke
         _, found, about, _ = cv2.connectedComponentsWithStats(np.asarray(inside, np.uint8), connectivity=4)
-        large = np.asarray(about, np.int64)[:, cv2.CC_STAT_AREA] >= max(9.0, (LEAST_SIDE * longer) ** 2)
+        large = np.asarray(about, np.int64)[:, cv2.CC_STAT_AREA] >= max(9.0, (MIN_SIDE * longer) ** 2)
     large[0] = False
     pieces = np.asarray(found, np.int32)
     if not large.any():

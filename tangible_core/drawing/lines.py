@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float32
 from ..runtime.opencv import plain_opencv
 from .ink import Ink
 
-LEAST_LONG = 1 / 60
+MIN_LONG = 1 / 60
 """The least length of a line, as a share of the longer side; what is shorter is a speck."""
 
 
@@ -51,7 +51,7 @@ def find_lines(ink: Ink, letters: Bool[np.ndarray, "r c"]) -> Lines:
         drawn |= np.asarray(cv2.medianBlur(drawn, 3), np.uint8)  # fills pin holes, which would be loops
         _, pieces, about, _ = cv2.connectedComponentsWithStats(drawn, connectivity=8)
         sides = np.asarray(about, np.float64)[:, [cv2.CC_STAT_WIDTH, cv2.CC_STAT_HEIGHT]]
-        long = np.hypot(sides[:, 0], sides[:, 1]) >= LEAST_LONG * max(ink.mask.shape)
+        long = np.hypot(sides[:, 0], sides[:, 1]) >= MIN_LONG * max(ink.mask.shape)
         long[0] = False
         mask = long[np.asarray(pieces, np.int32)]
         inside = np.asarray(cv2.distanceTransform(mask.astype(np.uint8), cv2.DIST_L2, 5), np.float32)

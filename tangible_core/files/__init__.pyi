@@ -7,9 +7,9 @@ from .line_file import read_rows as read_rows
 from .paths import as_path as as_path
 from .paths import plain_line as plain_line
 from .paths import without_folders as without_folders
-from .reading import MOST_BYTES as MOST_BYTES
-from .reading import MOST_PIXELS as MOST_PIXELS
-from .reading import MOST_TEXT_BYTES as MOST_TEXT_BYTES
+from .reading import MAX_BYTES as MAX_BYTES
+from .reading import MAX_PIXELS as MAX_PIXELS
+from .reading import MAX_TEXT_BYTES as MAX_TEXT_BYTES
 from .reading import check_file as check_file
 from .reading import content_digest as content_digest
 from .reading import in_words as in_words

@@ -17,7 +17,7 @@ _CHUNK = 1 << 20
 _ZIP = b"PK"
 _SAMPLES, _SAMPLE = 8, 1 << 14
 """The number of samples that decide whether an array is worth compressing, and the bytes of each."""
-_MOST_SHARE = 0.4
+_MAX_SHARE = 0.4
 """The largest share of its size that the samples may have after compression for an array to be compressed."""
 
 
@@ -42,7 +42,7 @@ class Archive:
     def read(self, names: Collection[str]) -> dict[str, np.ndarray]:
         """Read the arrays of these names.
 
-        Raises: TooLargeError if they hold more than `MOST_BYTES` together; ValueError with a message for people if an
+        Raises: TooLargeError if they hold more than `MAX_BYTES` together; ValueError with a message for people if an
         array is missing, is damaged, or holds neither numbers nor text.
         """
         if missing := [name for name in names if name not in self._members]:
@@ -79,7 +79,7 @@ def _is_compressible(array: np.ndarray) -> bool:
     flat = np.ascontiguousarray(array).reshape(-1).view(np.uint8)
     starts = np.linspace(0, max(0, flat.size - _SAMPLE), _SAMPLES).astype(int)
     samples = [flat[start : start + _SAMPLE].tobytes() for start in dict.fromkeys(starts.tolist())]
-    return sum(len(zlib.compress(sample, 1)) for sample in samples) <= _MOST_SHARE * sum(map(len, samples))
+    return sum(len(zlib.compress(sample, 1)) for sample in samples) <= _MAX_SHARE * sum(map(len, samples))
 
 
 def read_array(file: IO[bytes]) -> np.ndarray:

@@ -10,10 +10,10 @@ from ..errors import ConfigError, did_you_mean, quoted, shown, wrong_argument
 
 CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff]")
 """Characters that a line of text, or an XML file, cannot have: controls, line breaks, halves of characters."""
-MOST_NAME_BYTES = 255
+MAX_NAME_BYTES = 255
 """The most bytes of a file's name; every common file system allows as many and no more."""
 
-MOST_PATH_BYTES = 4095
+MAX_PATH_BYTES = 4095
 """The most bytes of a path on Linux; other systems allow fewer, and then their own message is shown."""
 
 
@@ -69,7 +69,7 @@ def _check_name(path: Path) -> None:
         sizes = []
     if "\0" in str(path) or (path.parts and not sizes):
         raise ConfigError(f"{quoted(str(path))}: no file can have this name; use letters, digits and other characters")
-    if max(sizes, default=0) > MOST_NAME_BYTES:
-        raise ConfigError(f"{quoted(str(path))}: a file's name has at most {MOST_NAME_BYTES} bytes; use a shorter one")
-    if len(fsencode(path)) > MOST_PATH_BYTES:
-        raise ConfigError(f"{quoted(str(path))}: a path has at most {MOST_PATH_BYTES} bytes; use fewer folders")
+    if max(sizes, default=0) > MAX_NAME_BYTES:
+        raise ConfigError(f"{quoted(str(path))}: a file's name has at most {MAX_NAME_BYTES} bytes; use a shorter one")
+    if len(fsencode(path)) > MAX_PATH_BYTES:
+        raise ConfigError(f"{quoted(str(path))}: a path has at most {MAX_PATH_BYTES} bytes; use fewer folders")

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import xxhash
 
-MOST_PIXELS = 89_000_000
+MAX_PIXELS = 89_000_000
 """The most pixels of a picture or an array in a file. A method may need a hundred bytes for each pixel."""
-MOST_BYTES = 16 * MOST_PIXELS
+MAX_BYTES = 16 * MAX_PIXELS
 """The most bytes of a file, and of all its numbers once they are decoded: four channels of 32 bits a pixel."""
-MOST_TEXT_BYTES = 250_000
+MAX_TEXT_BYTES = 250_000
 """The most bytes of a file that people write by hand; the time to parse YAML grows faster than its length."""
-TOO_MANY_PIXELS = f"is larger than {MOST_PIXELS // 1_000_000} megapixels"
+TOO_MANY_PIXELS = f"is larger than {MAX_PIXELS // 1_000_000} megapixels"
 
 _UNKNOWN_SIZE = 1 << 16
 """The most bytes to read from a file whose size is given as 0; some files of Linux say so and have no end."""
@@ -28,18 +28,18 @@ class TooLargeError(ValueError):
 
 def check_size(shape: Sequence[int], itemsize: int) -> None:
     """Check the shape of an array that a header announces, pixels first. Raises: TooLargeError."""
-    if len(shape) > 1 and math.prod(shape[:2]) > MOST_PIXELS:
+    if len(shape) > 1 and math.prod(shape[:2]) > MAX_PIXELS:
         raise TooLargeError(TOO_MANY_PIXELS)
     check_bytes(math.prod(shape) * itemsize)
 
 
 def check_bytes(count: int) -> None:
     """Check the number of bytes that several headers announce together. Raises: TooLargeError."""
-    if count > MOST_BYTES:
-        raise TooLargeError(f"holds more than {in_words(MOST_BYTES)}")
+    if count > MAX_BYTES:
+        raise TooLargeError(f"holds more than {in_words(MAX_BYTES)}")
 
 
-def check_file(path: Path, most: int = MOST_BYTES) -> None:
+def check_file(path: Path, most: int = MAX_BYTES) -> None:
     """Check that a path leads to a regular file of at most this many bytes.
 
     A device or a pipe may have no end, or block its reader.
@@ -55,7 +55,7 @@ def check_file(path: Path, most: int = MOST_BYTES) -> None:
         raise OSError(errno.EFBIG, f"it holds more than {in_words(most)}")
 
 
-def read_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
+def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
     """Read a whole file. Raises: OSError as `check_file`, or if it cannot be read."""
     check_file(path, most)
     with path.open("rb") as file:
@@ -65,7 +65,7 @@ def read_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
 def in_words(count: int) -> str:
     """Return a number of bytes as text.
 
-    >>> in_words(MOST_BYTES), in_words(MOST_TEXT_BYTES)
+    >>> in_words(MAX_BYTES), in_words(MAX_TEXT_BYTES)
     ('1424 MB', '0.25 MB')
     """
     return f"{count / 1e6:g} MB"

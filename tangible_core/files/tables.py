@@ -8,11 +8,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ..errors import quoted
-from .reading import MOST_BYTES, read_bytes
+from .reading import MAX_BYTES, read_bytes
 
 log: logging.Logger = logging.getLogger(__name__)
 SEPARATORS = ",;\t"
-csv.field_size_limit(MOST_BYTES)  # the file as a whole has this limit; a cell needs none of its own
+csv.field_size_limit(MAX_BYTES)  # the file as a whole has this limit; a cell needs none of its own
 DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
 
 

@@ -14,7 +14,7 @@ from typing import IO
 from ..errors import OutputError
 from ..runtime.system.files import BINARY, folder_lock, is_in_use, left_by_others, lock, wait_for_lock
 
-MOST_OF_NAME = 50
+MAX_OF_NAME = 50
 """Number of characters of a file's name in the name of its temporary file: of four bytes each, they still fit."""
 TEMPORARY = re.compile(r"\..*\.[0-9a-f]{12}\.tangible")
 """Pattern of the names of temporary files and folders."""
@@ -157,7 +157,7 @@ def open_alone(path: Path, *, private: bool = False) -> FileIO:
 
 
 def _temporary(path: Path, digits: str = "") -> Path:
-    return path.parent / f".{path.name[:MOST_OF_NAME]}.{digits or os.urandom(6).hex()}.tangible"
+    return path.parent / f".{path.name[:MAX_OF_NAME]}.{digits or os.urandom(6).hex()}.tangible"
 
 
 def _is_taken(file: FileIO) -> bool:

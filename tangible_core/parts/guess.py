@@ -25,7 +25,7 @@ OWN = 0.5
 """Weight of a part's own cues; those of its neighbours have weight 1."""
 ROUNDS = 40
 """Number of relaxation steps."""
-SURE, MOST_NAMED = 0.3, 3
+SURE, MAX_NAMED = 0.3, 3
 """Smallest certainty of an occlusion that the reasons name, and how many they name."""
 LONGEST_PX = 1000
 """Longest side of the grid on which the cues are measured, pixels."""
@@ -170,7 +170,7 @@ def _list(verb: str, parts: list[int]) -> str:
     """Return words such as `; it is behind parts 1, 2 and 5`; nothing for no part."""
     if len(parts) == 1:
         return f"; {verb} {name_part(parts[0])}"
-    *others, last = [str(shown_number(part)) for part in parts[:MOST_NAMED]] or [""]
+    *others, last = [str(shown_number(part)) for part in parts[:MAX_NAMED]] or [""]
     return f"; {verb} parts {', '.join(others)} and {last}" if others else ""
 
 

@@ -10,7 +10,7 @@ from ..data import PartMap
 
 REACH = 0.012
 """Radius of the disc in which the angles at a junction are measured, as a share of the picture's diagonal."""
-MOST_JUNCTIONS, ACROSS = 20_000, 15
+MAX_JUNCTIONS, ACROSS = 20_000, 15
 """Largest number of junctions that are examined, evenly chosen, and points across the disc of each."""
 STRAIGHT, THIN = 0.15, 0.08
 """Largest difference of a front part's share of the disc from a half, and smallest share of each of the three parts."""
@@ -75,7 +75,7 @@ def _junctions(labels: Int32[np.ndarray, "h w"]) -> tuple[Int64[np.ndarray, "k 3
     radius = max(2, round(REACH * sqrt(rows * rows + columns * columns)))
     row, column = np.nonzero(_three_meet(labels))
     inside = (np.minimum(row, column) >= radius - 1) & (row < rows - radius) & (column < columns - radius)
-    step = np.count_nonzero(inside) // MOST_JUNCTIONS + 1
+    step = np.count_nonzero(inside) // MAX_JUNCTIONS + 1
     row, column = row[inside][::step], column[inside][::step]
     corner = np.stack([labels[row + y, column + x] for y, x in np.ndindex(2, 2)], axis=1).astype(np.int64)
     corner.sort(axis=1)

@@ -57,8 +57,8 @@ when values change."""
 STEEPEST = 0.6
 """The slope that at most a twentieth of the relief exceeds: from 1 on, 45 degrees, the sideways force is larger than
 the force down."""
-LEAST_MM = 2.0
-MOST_MM: Mapping[str, float] = {"photo": 8.0, "heights": 15.0}
+MIN_MM = 2.0
+MAX_MM: Mapping[str, float] = {"photo": 8.0, "heights": 15.0}
 """The greatest height of the relief by kind of scene, mm; less for photos, as their brightness is not a depth."""
 CELLS = 400
 """The cells along the longer side, at which slopes are measured."""
@@ -184,7 +184,7 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
         lengths_m = zip(("width_mm", "length_mm", "relief_mm"), scene.own_size, strict=True)
         return size | {name: f"{1e3 * length_m:.3g}" for name, length_m in lengths_m}
     slope = _slope(shades, SMOOTH_MM[kind])
-    least, most = LEAST_MM, MOST_MM[kind]
+    least, most = MIN_MM, MAX_MM[kind]
     relief_mm = max(least, min(most, floor(2 * STEEPEST / slope) / 2)) if slope > 0 else most
     size |= {"relief_mm": f"{relief_mm:g}", "smooth_mm": f"{SMOOTH_MM[kind]:g}"}
     if kind == "photo":

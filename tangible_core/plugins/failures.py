@@ -11,7 +11,7 @@ from traceback import walk_tb
 from types import FrameType
 from typing import Any, NamedTuple
 
-from ..errors import MOST_IN_LINE, TangibleError, shown
+from ..errors import MAX_IN_LINE, TangibleError, shown
 from ..runtime.failure_log import where_kept
 from .interfaces import KINDS, Link, Touch
 from .naming import package, plugin_name, points
@@ -74,7 +74,7 @@ def remember_place(error: BaseException, trace: str) -> None:
 
 def sentence(error: BaseException) -> str:
     """Describe an error in a sentence for a person, and write its traceback to a file."""
-    place, text = place_of(error), shown(str(error), MOST_IN_LINE // 2)
+    place, text = place_of(error), shown(str(error), MAX_IN_LINE // 2)
     if missing := missing_package(error):
         who = "tangible" if place is None else plugin_name(place.kind, place.module, place.owner)
         return f"{who} needs the package {missing}, which is not installed; pip install {missing}"

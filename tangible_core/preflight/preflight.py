@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Self
 
 from .verdict import Change, Grade, Verdict, as_data
 
-MOST_REASONS = 3
+MAX_REASONS = 3
 """Number of reasons in a sentence; further ones are counted."""
 
 
@@ -93,8 +93,8 @@ def reasons(verdicts: Iterable[Verdict]) -> str:
     verdicts = list(verdicts)
     grade = worst(verdicts)
     texts = list(dict.fromkeys(verdict.says for verdict in verdicts if verdict.verdict == grade and verdict.says))
-    more = len(texts) - MOST_REASONS
-    named = texts[:MOST_REASONS] + ([f"{more} more thing{'s' * (more > 1)}"] if more > 0 else [])
+    more = len(texts) - MAX_REASONS
+    named = texts[:MAX_REASONS] + ([f"{more} more thing{'s' * (more > 1)}"] if more > 0 else [])
     return " and ".join(filter(None, [", ".join(named[:-1]), named[-1]]))
 
 

@@ -12,7 +12,7 @@ from ..plugins.interfaces import Touch
 
 LINES = 6
 """Strokes from left to right, and as many from the front to the back."""
-MOST_TICKS = 1000
+MAX_TICKS = 1000
 """The most ticks of a stroke; a stroke over a wider surface is shorter than the surface, about its middle."""
 MASS_KG, SPRING_N_PER_M, DAMPING_N_S_PER_M = 0.1, 300.0, 6.0
 """The hand: that of the simulated devices, of the order of a relaxed hand that holds a handle."""
@@ -60,7 +60,7 @@ def _ways(surface: HapticSurface, step_m: float) -> list[Float64[np.ndarray, "n 
     ways: list[np.ndarray] = []
     for axis in (0, 1):
         length_m, across_m = surface.extent_m[axis], surface.extent_m[1 - axis]
-        ticks = min(MOST_TICKS, max(2, math.ceil((1 - 2 * MARGIN) * length_m / step_m)))
+        ticks = min(MAX_TICKS, max(2, math.ceil((1 - 2 * MARGIN) * length_m / step_m)))
         along = (np.arange(ticks) - (ticks - 1) / 2) * min(step_m, (1 - 2 * MARGIN) * length_m / ticks)
         for line in range(LINES):
             way = np.empty((ticks, 2))

@@ -136,7 +136,7 @@ def _two_digits(value: float, whole: Callable[[float], int]) -> str:
     return f"{whole(round(value * 10.0**decimals, 9)) / 10.0**decimals:.15g}"
 
 
-MOST_DIGITS = 13
+MAX_DIGITS = 13
 PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "u"))
 
 
@@ -155,7 +155,7 @@ def relation(verdict: Verdict) -> str:
     numbers = verdict.value, verdict.bound
     if any(map(math.isnan, numbers)):
         return f"{verdict.value:g} must be {verdict.relation} {verdict.bound:g} {verdict.unit}"
-    texts = ([quantity(number, verdict.unit, digits) for number in numbers] for digits in range(MOST_DIGITS))
+    texts = ([quantity(number, verdict.unit, digits) for number in numbers] for digits in range(MAX_DIGITS))
     value, bound = next(
         (pair for pair in texts if pair[0] != pair[1]), [f"{number!r} {verdict.unit}" for number in numbers]
     )

@@ -11,7 +11,7 @@ from pathlib import Path
 from ..errors import OutputError
 
 NAME, OLDER = "failures.log", "failures.old.log"
-MOST_BYTES = 1_000_000
+MAX_BYTES = 1_000_000
 """The size from which the log is rotated to the older file."""
 
 
@@ -34,7 +34,7 @@ def keep(error: BaseException) -> Path:
     text = f"{when} {shlex.join(sys.argv)}\n{''.join(traceback.format_exception(error))}\n"
     try:
         path.parent.mkdir(0o700, parents=True, exist_ok=True)
-        if path.exists() and path.stat().st_size > MOST_BYTES:
+        if path.exists() and path.stat().st_size > MAX_BYTES:
             path.replace(path.with_name(OLDER))
         private = partial(os.open, mode=0o600)
         with open(path, "a", encoding="utf-8", errors="backslashreplace", opener=private) as file:

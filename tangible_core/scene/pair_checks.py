@@ -19,22 +19,22 @@ MATCHED = 0.15
 """Confidence above which a disparity was matched, not filled in."""
 NEGATIVE_PX = -2.0
 """Disparities count as negative throughout if all but one in twenty are below this."""
-MOST_ROWS = 512
+MAX_ROWS = 512
 """Largest number of rows that are examined, evenly spread."""
-LEAST_STEP_PX = 3.0
+MIN_STEP_PX = 3.0
 """Smallest step between two depths that is examined."""
 STEP_SHARE = 0.4
 """Largest difference between a step and the width of its strip, as a share of the step; 2 px are always allowed."""
-CLEARER, LEAST_EDGE = 1.5, 0.01
+CLEARER, MIN_EDGE = 1.5, 0.01
 """Factor by which the edge at one end of a strip must exceed the other, plus this share of white."""
-LEAST_MATCHED_TO_JUDGE = 0.2
+MIN_MATCHED_TO_JUDGE = 0.2
 """Smallest matched share of the picture for a judgement on the order."""
 MIN_STRIPS, MAJORITY = 20, 1.8
 """Fewest strips that decide where disparities are negative throughout, and the ratio of their votes."""
 MIN_STRIPS_AGAINST, MAJORITY_MIXED, MAJORITY_POSITIVE = 50, 2.0, 3.0
 """The same for what overrules an order that the signs allow: signs of both kinds, as of cameras that look towards each
 other, and positive ones throughout, as of parallel cameras. Real pairs reach 2 to 40."""
-LEAST_MATCHED = 0.25
+MIN_MATCHED = 0.25
 """Share of the picture below which hardly anything was matched: good pairs reach 0.5 to 0.9, noise 0.02 to 0.12."""
 
 
@@ -66,11 +66,11 @@ def view_order(disparity: DisparityMap, left: np.ndarray, offset_px: float | Non
     """
     if disparity.unit != "px":
         return IN_ORDER
-    count = min(MOST_ROWS, left.shape[0])
+    count = min(MAX_ROWS, left.shape[0])
     rows = np.arange(count) * left.shape[0] // count
     values, confidence = disparity.disparity_px[rows], disparity.confidence[rows]
     matched = np.isfinite(values) & (confidence > MATCHED)
-    if matched.mean() < LEAST_MATCHED_TO_JUDGE:
+    if matched.mean() < MIN_MATCHED_TO_JUDGE:
         return IN_ORDER
     low, high = np.percentile(values[matched], [5, 95])
     if offset_px is not None and low > NEGATIVE_PX:
@@ -121,14 +121,14 @@ def _votes(values: Float32[np.ndarray, "h w"], grey: Float32[np.ndarray, "h w"])
     same_row = known_rows[1:] == known_rows[:-1]
     row, before, after = (each[same_row] for each in (known_rows[1:], known_columns[:-1], known_columns[1:]))
     step, width = values[row, after] - values[row, before], after - before - 1
-    fits = (step >= LEAST_STEP_PX) & (np.abs(width - step) <= np.maximum(2, STEP_SHARE * step))
+    fits = (step >= MIN_STEP_PX) & (np.abs(width - step) <= np.maximum(2, STEP_SHARE * step))
     inside = (before >= 3) & (after < values.shape[1] - 3)
     row, before, after = (each[fits & inside] for each in (row, before, after))
     slope = _slope(grey)
     at_before, at_after = slope[row, before], slope[row, after]
     return _Votes(
-        int(np.count_nonzero(at_after > CLEARER * at_before + LEAST_EDGE)),
-        int(np.count_nonzero(at_before > CLEARER * at_after + LEAST_EDGE)),
+        int(np.count_nonzero(at_after > CLEARER * at_before + MIN_EDGE)),
+        int(np.count_nonzero(at_before > CLEARER * at_after + MIN_EDGE)),
     )
 
 
@@ -159,7 +159,7 @@ def few_matches(disparity: DisparityMap, known: Bool[np.ndarray, "h w"] | None =
     """
     matched = np.isfinite(disparity.disparity_px) & (disparity.confidence > MATCHED)
     shown = matched if known is None else matched[known]
-    if disparity.unit != "px" or shown.size == 0 or (share := float(shown.mean())) >= LEAST_MATCHED:
+    if disparity.unit != "px" or shown.size == 0 or (share := float(shown.mean())) >= MIN_MATCHED:
         return ""
     return (
         f"hardly anything matches in the two pictures: a depth was found for {share:.0%} of the left one, and the rest "

@@ -16,15 +16,15 @@ from jaxtyping import Float32, Float64
 from ..data import HapticSurface
 from ..data.part_words import label_of_number, name_part, shown_number
 from ..data.records import Record
-from ..data.ticks import MOST_BEACON_PARTS
+from ..data.ticks import MAX_BEACON_PARTS
 from ..errors import ConfigError, GeometryError, did_you_mean, quoted
 
-PULL_N, MOST_N = 0.8, 1.0
+PULL_N, MAX_N = 0.8, 1.0
 """The pull far away from the part, N; and the greatest force of a beacon, with its damping."""
 SOFT_M = 0.005
 """Distance at which the pull is 0.7 of PULL_N, and the spring changes into a constant pull."""
 DAMPING_N_S_PER_M = 0.5
-"""Damping along the surface, wherever the beacon pulls; its force is at most MOST_N - PULL_N."""
+"""Damping along the surface, wherever the beacon pulls; its force is at most MAX_N - PULL_N."""
 BRAKED_FROM = 0.125
 """Share of the pull from which on the damping is whole: sampling a spring adds energy where it is steep, next to the
 part, where the pull itself is nearly zero."""
@@ -36,7 +36,7 @@ ROUNDED_M = 0.0015
 """Standard deviation of the Gaussian that rounds the ridges of the distance."""
 MARGIN_M = 0.03
 """Margin of the grid around the picture, in which a hand is pulled back; beyond it the pull is along the edge alone."""
-MOST_CELLS = 1 << 20
+MAX_CELLS = 1 << 20
 """Greatest number of cells of a beacon's grid, margins included: cells of 0.2 mm on a picture of 160 mm."""
 ALL_BUTTONS = 0x7FFFFFFF
 """Bits of every button of a device."""
@@ -150,7 +150,7 @@ def part_number(surface: HapticSurface, part: str | int) -> int:
     if names is None or surface.labels is None:
         raise ConfigError("a beacon pulls to a part, and this surface has no parts; add `parts:` or `heights:`")
     if isinstance(part, int):
-        if 0 <= part < min(len(names), MOST_BEACON_PARTS):
+        if 0 <= part < min(len(names), MAX_BEACON_PARTS):
             return part
         raise ConfigError(f"there is no {name_part(part)}; the parts are {_list_parts(names)}")
     wanted = part.strip()
@@ -196,7 +196,7 @@ def _step(shape: tuple[int, int], pitch_m: tuple[float, float]) -> int:
     """Return the number of surface cells in one cell of the beacon, along each side."""
     step = 1
     while np.prod([-(-cells // step) + 2 * _margin(step * pitch)
-                   for cells, pitch in zip(shape, reversed(pitch_m), strict=True)]) > MOST_CELLS:  # fmt: skip
+                   for cells, pitch in zip(shape, reversed(pitch_m), strict=True)]) > MAX_CELLS:  # fmt: skip
         step += 1
     return step
 
@@ -238,9 +238,9 @@ def _list_parts(names: tuple[str, ...]) -> str:
     named = [f"{shown_number(number)}: {quoted(name)}" for number, name in enumerate(names) if name]
     if not named:
         return f"1 to {len(names)}, none of which has a name"
-    more = f" and {len(named) - MOST_LISTED} others" if len(named) > MOST_LISTED else ""
-    return ", ".join(named[:MOST_LISTED]) + more
+    more = f" and {len(named) - MAX_LISTED} others" if len(named) > MAX_LISTED else ""
+    return ", ".join(named[:MAX_LISTED]) + more
 
 
-MOST_LISTED = 20
+MAX_LISTED = 20
 """Greatest number of parts in a message."""

@@ -108,8 +108,8 @@ def pull(words, numbers, field, memory, period_s, x, y, vx, vy, buttons):
     numbers[at.RAMP] = share = min(numbers[at.RAMP] + period_s / at.RAMP_S, 1.0)
     steep = np.sqrt(ux * ux + uy * uy)
     brake = at.DAMPING_N_S_PER_M * min(steep / (at.BRAKED_FROM * at.PULL_N), 1.0)
-    bx, by, _, _ = clip(brake * vx, brake * vy, 0.0, at.MOST_N - at.PULL_N)
-    fx, fy, _, _ = clip(-share * (ux + bx), -share * (uy + by), 0.0, at.MOST_N)
+    bx, by, _, _ = clip(brake * vx, brake * vy, 0.0, at.MAX_N - at.PULL_N)
+    fx, fy, _, _ = clip(-share * (ux + bx), -share * (uy + by), 0.0, at.MAX_N)
     memory[layout.PULL], memory[layout.PULL + 1] = fx, fy
     memory[layout.PULL_STIFFNESS] = share * at.STIFFNESS_N_PER_M
     return flags

@@ -13,7 +13,7 @@ from jaxtyping import Float64, Int64
 from ..data import TICK_COLUMNS, Force, HapticState, ServoReport, Spread, TickFlag, Vector, beacon_part
 from .beacon import TICKS
 from .guard import safety
-from .ring import LONGEST_S, MOST_LATE_S, PEAK_N, WORK_J, Ring
+from .ring import LONGEST_S, MAX_LATE_S, PEAK_N, WORK_J, Ring
 
 AT = {name: column for column, name in enumerate(TICK_COLUMNS)}
 """Column of each name in a row of ticks."""
@@ -47,7 +47,7 @@ class LoopTotals(NamedTuple):
             overruns=ring.overruns,
             peak_force_n=float(ring.sums[PEAK_N]),
             work_j=float(ring.sums[WORK_J]),
-            most_late_s=float(ring.sums[MOST_LATE_S]),
+            most_late_s=float(ring.sums[MAX_LATE_S]),
             longest_s=float(ring.sums[LONGEST_S]),
             late=ring.late.copy(),
             period=ring.period.copy(),

@@ -33,7 +33,7 @@ from ..data import TICK_COLUMNS
 from ..errors import DeviceError
 from ..runtime.system import shared_memory
 from ..runtime.system.shared_memory import shared_folder
-from .beacon import HELD, MOST_CELLS, BeaconMemory
+from .beacon import HELD, MAX_CELLS, BeaconMemory
 
 MAGIC, LAYOUT = 0x54414E47_49424C45, 5
 """The first word of every ring, and the version of this layout."""
@@ -58,7 +58,7 @@ MAGIC, LAYOUT = 0x54414E47_49424C45, 5
 ended; the period; the time of its first tick and of the next one, in nanoseconds of the monotonic clock; number of
 periods without a tick; lead with which the loop wakes before a tick; number of ticks after which it ends; time of the
 last tick; 1 if it may spin before a tick; flags for the next tick; 1 if another scene is ready."""
-PEAK_N, WORK_J, MOST_LATE_S, LONGEST_S = range(4)
+PEAK_N, WORK_J, MAX_LATE_S, LONGEST_S = range(4)
 """Indices of the sums: greatest force; work on the hand; greatest lateness of a tick; longest period."""
 WIDEST_US = 4096
 """Number of bins of `late` and `period`, 1 us each."""
@@ -95,7 +95,7 @@ class Ring:
         """Create a ring of zeros, with slots for this number of ticks. Raises: DeviceError if there is no room."""
         shared_memory.delete_stale()
         try:
-            path, memory = shared_memory.create("ring", _size(slots), _padded_size(4 * MOST_CELLS))
+            path, memory = shared_memory.create("ring", _size(slots), _padded_size(4 * MAX_CELLS))
         except OSError as error:
             why = error.strerror or error
             raise DeviceError(f"{shared_folder()}: no room for the loop's shared memory: {why}") from error
@@ -185,7 +185,7 @@ def _sections(slots: int) -> dict[str, tuple[type, tuple[int, ...]]]:
         "ticks": (np.float64, (slots, len(TICK_COLUMNS))),
         "asked": (np.int64, (16,)),
         "pull": (np.float64, (16,)),
-        "field": (np.float32, (MOST_CELLS,)),
+        "field": (np.float32, (MAX_CELLS,)),
     }
 
 

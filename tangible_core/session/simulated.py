@@ -24,7 +24,7 @@ from .recording import INTERRUPTED, STOPPED, Recording
 from .recording.replay import proxy_of
 
 log: logging.Logger = logging.getLogger(__name__)
-MOST_TICKS = 3_600_000
+MAX_TICKS = 3_600_000
 """Greatest number of ticks of a recording in memory, at which the loop stops: an hour at 1 kHz, half a gigabyte."""
 FIRST_S = 0.001
 """Assumed period of the first tick."""
@@ -47,7 +47,7 @@ def run_simulated(
 
     The guard enforces the limits. `on_report` is called ten times a second of the device's time, and at the end.
     Ctrl-C, `stop` set from another thread, a device that stops answering or whose clock stands still, and a full
-    recording (`MOST_TICKS`) end the session early: the force is zero, the recording so far is returned, and
+    recording (`MAX_TICKS`) end the session early: the force is zero, the recording so far is returned, and
     `Recording.stopped` has the reason.
     Raises: ConfigError if seconds is not positive and finite, DeviceError if the device cannot be opened, and whatever
     a faulty touch, `on_report` or `frames` raises, once the force is zero.
@@ -99,8 +99,8 @@ def _feel(
                 return
             elif stop_asked():
                 tape.stopped = STOPPED
-            elif tape.ticks >= MOST_TICKS:
-                tape.stopped = f"the recording is full, {MOST_TICKS} ticks; use a shorter time"
+            elif tape.ticks >= MAX_TICKS:
+                tape.stopped = f"the recording is full, {MAX_TICKS} ticks; use a shorter time"
     except KeyboardInterrupt:
         tape.stopped = INTERRUPTED
     except DeviceError as error:

@@ -10,7 +10,7 @@ from .recording import Recording
 
 EVERY = 10
 """Interval of the ticks that are examined."""
-MOST_LOOKS = 360_000
+MAX_LOOKS = 360_000
 """Greatest number of ticks that are examined: an hour at 1 kHz."""
 OFF_M, OFF_PART = 0.01, 8
 """Tracking error above which a hand is off its path; at most this fraction, 1 / 8, of the surface's shorter side."""
@@ -56,7 +56,7 @@ class TickSampler:
 
     def keep(self, rows: np.ndarray) -> None:
         """Sample these ticks, which follow the ticks of the call before."""
-        if self._ticks < MOST_LOOKS * EVERY:
+        if self._ticks < MAX_LOOKS * EVERY:
             self._samples.append(rows[-self._ticks % EVERY :: EVERY].copy())
         self._ticks += len(rows)
 

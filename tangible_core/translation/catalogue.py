@@ -15,9 +15,9 @@ JOINTS = ("; ", ": ", " -> ", ", ", " (", " <= ", " >= ", " < ", " > ", " ≥ ",
 """The marks between texts that stand in one line, those that bind least first."""
 WEAK = 9
 """Fewest letters of a template that are recognised between words which are not known."""
-MOST_WORDS = 2
+MAX_WORDS = 2
 """Most words of a name, which stays as it is between texts that are known."""
-MOST_CHARACTERS = 3000
+MAX_CHARACTERS = 3000
 """Longest text that is taken apart."""
 MAX_JOINTS = 30
 """Most marks of one kind at which a text is taken apart: a longer list stays as it is."""
@@ -37,7 +37,7 @@ class Catalogue:
         self._endings = [each for each in varied if each.english[0] in MARKS]
         self._words: dict[str, list[str]] = {}
         for english in self._exact:
-            if english.count(" ") >= MOST_WORDS or english[0] in MARKS:
+            if english.count(" ") >= MAX_WORDS or english[0] in MARKS:
                 self._words.setdefault(english[-LAST:], []).append(english)
         self._numerals = numerals
         self.find: Callable[[str], str | None] = lru_cache(CACHED)(self._find)
@@ -49,7 +49,7 @@ class Catalogue:
     def _find(self, text: str) -> str | None:
         """Return a text in the language, or None if it is not known."""
         bare = text.strip()
-        if not bare or len(bare) > MOST_CHARACTERS:
+        if not bare or len(bare) > MAX_CHARACTERS:
             return None
         before, after = text[: text.index(bare)], text[text.index(bare) + len(bare) :]
         ways = (

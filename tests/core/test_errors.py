@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangible_core.errors import (
-    MOST_IN_LINE,
-    MOST_LINES,
-    MOST_QUOTED,
+    MAX_IN_LINE,
+    MAX_LINES,
+    MAX_QUOTED,
     Complaint,
     ConfigError,
     TangibleError,
@@ -24,8 +24,8 @@ from tangible_core.errors import (
 @given(st.lists(st.text(st.characters(), max_size=2000), max_size=50))
 def test_complaint_of_any_text_is_one_printable_line(complaints: list[str]):
     lines = str(TangibleError(*complaints)).split("\n")
-    assert all(line.isprintable() and len(line) <= MOST_IN_LINE for line in lines)
-    assert len(lines) == min(max(1, len(complaints)), MOST_LINES + (len(complaints) > MOST_LINES))
+    assert all(line.isprintable() and len(line) <= MAX_IN_LINE for line in lines)
+    assert len(lines) == min(max(1, len(complaints)), MAX_LINES + (len(complaints) > MAX_LINES))
 
 
 def test_complaint_of_plain_text_is_unchanged():
@@ -33,8 +33,8 @@ def test_complaint_of_plain_text_is_unchanged():
 
 
 def test_message_of_many_complaints_shows_the_first_and_counts_the_rest():
-    lines = str(ConfigError(*map(str, range(MOST_LINES + 7)))).splitlines()
-    assert lines == [*map(str, range(MOST_LINES)), "and 7 more"]
+    lines = str(ConfigError(*map(str, range(MAX_LINES + 7)))).splitlines()
+    assert lines == [*map(str, range(MAX_LINES)), "and 7 more"]
 
 
 def test_control_characters_are_escaped():
@@ -43,13 +43,13 @@ def test_control_characters_are_escaped():
 
 def test_long_line_keeps_both_ends():
     line = str(TangibleError("the place: " + "x" * 10_000 + "; the cure"))
-    assert len(line) == MOST_IN_LINE
+    assert len(line) == MAX_IN_LINE
     assert line.startswith("the place: xxx")
     assert line.endswith("xxx; the cure")
 
 
 def test_escaped_text_keeps_the_maximum_length():
-    assert len(shown("\U000e0001" * 70)) == MOST_QUOTED
+    assert len(shown("\U000e0001" * 70)) == MAX_QUOTED
 
 
 def test_pickled_error_has_the_same_message():
@@ -61,7 +61,7 @@ def test_pickled_config_error_keeps_printable_complaints_with_places():
     error = ConfigError("p.yaml:3:1: a\x1b", complaints=[Complaint(("render", "use"), "a\x1b" * 999, 3, 1)])
     (complaint,) = pickle.loads(pickle.dumps(error)).complaints
     assert (complaint.location, complaint.line, complaint.column) == (("render", "use"), 3, 1)
-    assert complaint.text.isprintable() and len(complaint.text) <= MOST_IN_LINE
+    assert complaint.text.isprintable() and len(complaint.text) <= MAX_IN_LINE
     assert ConfigError("no place").complaints == (Complaint((), "no place"),)
 
 
@@ -70,7 +70,7 @@ LONG = ("x" * 10**6, 10**5000, -(10**5000), [[[[1] * 99] * 99] * 99] * 99, {"k":
 
 @pytest.mark.parametrize("value", LONG, ids=lambda each: type(each).__name__)
 def test_quoted_value_of_any_size_is_short(value: object):
-    assert len(quoted(value)) <= MOST_QUOTED
+    assert len(quoted(value)) <= MAX_QUOTED
 
 
 def test_quoted_values_of_a_parser_look_like_plain_ones():

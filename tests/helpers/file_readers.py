@@ -128,7 +128,7 @@ def _large(path: Path) -> object:
     """Read as if a picture of more than a hundred pixels were too large to be held."""
     from tangible_core.scene.formats import reducing
 
-    with patch.object(reducing, "MOST_PIXELS", 100):
+    with patch.object(reducing, "MAX_PIXELS", 100):
         return _picture(path)
 
 

@@ -14,7 +14,7 @@ from tangible_core.plugins.touch import Film, Touch
 AT_M, GOAL_M, STEP_M, SHOWN, GOING = range(5)
 """Height, where it goes, by how much a tick, the frame that was shown last, and the one that it goes to."""
 ARRAY = types.Array(float64, 1, "C")
-FRAME_TICKS, MOST_M = 33, 1e-4
+FRAME_TICKS, MAX_M = 33, 1e-4
 """Ticks of 1 ms over which a frame moves the plane, and the most that it moves in one."""
 
 
@@ -51,7 +51,7 @@ class MovingPlane(Film):
     def show(self, relief: Relief, frame: int) -> None:
         self._dropped += self.plane[SHOWN] != self.plane[GOING]
         goal = float(relief.height_m[0, 0])
-        self.plane[STEP_M] = min(abs(goal - self.plane[AT_M]) / FRAME_TICKS, MOST_M)
+        self.plane[STEP_M] = min(abs(goal - self.plane[AT_M]) / FRAME_TICKS, MAX_M)
         self.plane[GOAL_M], self.plane[SHOWN] = goal, frame
 
     @property

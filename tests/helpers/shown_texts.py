@@ -16,7 +16,7 @@ FOR_PROGRAMMERS = {
     "field_validator", "mark", "fullmatch", "match", "search", "sub", "Popen",
 }  # fmt: skip
 """Calls whose texts are not for people who use the program."""
-MOST_FORMS = 6
+MAX_FORMS = 6
 """The most texts that one template with conditions stands for; with more, a condition is a placeholder."""
 CODE = re.compile(
     r"</|/>|=\"|^[a-z_]+\.[a-z_]+|^\W*$|::|\\\\|^:root|'self'|^<img|^import |^%\(|max-age|^\S+: \[|^Glyph|^compare: "
@@ -155,7 +155,7 @@ def _forms(node: ast.AST) -> list[str] | None:
     forms = 1
     for each in pieces:
         forms *= len(each) if isinstance(each, list) else 1
-    if forms > MOST_FORMS:
+    if forms > MAX_FORMS:
         pieces = [_placeholder(each) if isinstance(each, list) else each for each in pieces]
     choices = [each if isinstance(each, list) else [each] for each in pieces]
     return [_unique("".join(each)) for each in product(*choices)]

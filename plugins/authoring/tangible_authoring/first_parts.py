@@ -31,7 +31,7 @@ from .listed_parts import ListedPart, list_rows
 from .parts_starter import RELIEF_MM, parts_starter, title_of
 
 LABELS, NUMBERED = "parts.png", "parts-numbered.png"
-MOST_PARTS = 12
+MAX_PARTS = 12
 """The most parts by default: a person names these in a few minutes, and fingers can tell them apart."""
 SMALLEST_MM = 5.0
 """The diameter of a disc, mm, that each part must hold: a narrower part is felt as an edge rather than as a thing."""
@@ -95,7 +95,7 @@ def first_parts(
     *,
     method: str = "",
     overrides: Sequence[str] = (),
-    most: int = MOST_PARTS,
+    most: int = MAX_PARTS,
     smallest_mm: float = SMALLEST_MM,
     registry: Registry | None = None,
     cache: Cache | None = None,
@@ -126,7 +126,7 @@ def first_parts(
     return FirstParts(scene, parts, rows, title, chosen.name if chosen else "", contents)
 
 
-def proposed_parts(pipeline: Pipeline, most: int = MOST_PARTS, smallest_mm: float = SMALLEST_MM) -> PartMap:
+def proposed_parts(pipeline: Pipeline, most: int = MAX_PARTS, smallest_mm: float = SMALLEST_MM) -> PartMap:
     """Find the parts of a pipeline's picture: the segments of its texture method, joined until they are few and large.
 
     Where a network for figures is here, segments are divided along the outline of what it sees.
@@ -150,7 +150,7 @@ def _figure(pipeline: Pipeline) -> Figure:
     return pipeline.make("figure") if one_picture and networks_here("figure") else Figure()
 
 
-def segments_for(most: int = MOST_PARTS) -> int:
+def segments_for(most: int = MAX_PARTS) -> int:
     """Return the number of segments that is requested of a texture method for at most this many parts."""
     return ceil(SEGMENTS_PER_PART * most)
 

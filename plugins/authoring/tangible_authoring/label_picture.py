@@ -5,7 +5,7 @@ from io import BytesIO
 import numpy as np
 from jaxtyping import Int32
 
-from tangible_core.scene.formats import MOST_IN_PALETTE, SPARE, distinct_colours
+from tangible_core.scene.formats import MAX_IN_PALETTE, SPARE, distinct_colours
 
 
 def label_picture(labels: Int32[np.ndarray, "h w"]) -> bytes:
@@ -17,11 +17,11 @@ def label_picture(labels: Int32[np.ndarray, "h w"]) -> bytes:
     from PIL import Image
 
     count = int(labels.max()) + 1
-    if count > MOST_IN_PALETTE:
+    if count > MAX_IN_PALETTE:
         image = Image.fromarray(distinct_colours(count)[labels])
     else:
         image = Image.fromarray(labels.astype(np.uint8))
-        image.putpalette(distinct_colours(min(count + SPARE, MOST_IN_PALETTE)).tobytes())
+        image.putpalette(distinct_colours(min(count + SPARE, MAX_IN_PALETTE)).tobytes())
     file = BytesIO()
     image.save(file, format="PNG")
     return file.getvalue()

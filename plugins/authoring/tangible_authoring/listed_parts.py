@@ -12,7 +12,7 @@ from tangible_core.pipeline.engine import check_parts, heights_of, parts_of
 from tangible_legibility.words.places import place_in_words
 from tangible_report.numbered_parts import numbered_parts
 
-MOST_CELLS = 512
+MAX_CELLS = 512
 """The most cells of a map's side that the place of a part is found on: more show no other place."""
 
 
@@ -57,7 +57,7 @@ def list_rows(parts: PartMap, heights: PartHeights | None, choices: Mapping[int,
 
     heights: None where the relief is not made of parts. choices: what the file has for parts, by label.
     """
-    step = -(-max(parts.labels.shape) // MOST_CELLS)
+    step = -(-max(parts.labels.shape) // MAX_CELLS)
     shown, sizes = parts.labels[::step, ::step], part_sizes(parts)
 
     def row(number: int) -> ListedPart:

@@ -18,7 +18,7 @@ from tangible_report.numbered_parts import Before, as_drawn
 from .first_parts import check_free
 from .listed_parts import ListedPart, ListedParts, list_parts
 
-MOST_NAMED = 6
+MAX_NAMED = 6
 """The most parts that a message names: more do not fit its line."""
 
 
@@ -124,9 +124,9 @@ def in_words(moved: Sequence[Moved]) -> str:
     changes = (
         f"{shown_number(each.before)}{each.name and f' ({each.name})'} is "
         f"{'no more' if each.now is None else f'now {shown_number(each.now)}'}"
-        for each in moved[:MOST_NAMED]
+        for each in moved[:MAX_NAMED]
     )
-    more = [f"and {len(moved) - MOST_NAMED} more"] if len(moved) > MOST_NAMED else []
+    more = [f"and {len(moved) - MAX_NAMED} more"] if len(moved) > MAX_NAMED else []
     return f"numbers of parts have changed: {', '.join([*changes, *more])}"
 
 

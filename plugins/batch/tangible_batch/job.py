@@ -31,7 +31,7 @@ Row = dict[str, Any]
 (seconds of each that ran), `notes`, `files`."""
 FULL = "full"
 """The key of an error that is not a scene's fault: the disk is full."""
-MOST_IN_ERROR = 500
+MAX_IN_ERROR = 500
 """The most characters of an error message in a row."""
 
 
@@ -69,7 +69,7 @@ def make_scene(job: Job) -> Row:
         if not isinstance(error, TangibleError):
             log.warning("%s: %s", job.id, error, exc_info=True)
         message = str(error) if isinstance(error, TangibleError) else f"{type(error).__name__}: {error}"
-        row |= {"outcome": "failed", "error": shown(" ".join(message.split()), MOST_IN_ERROR)}
+        row |= {"outcome": "failed", "error": shown(" ".join(message.split()), MAX_IN_ERROR)}
     row["seconds"] = round(perf_counter() - start_s, 4)
     return row
 

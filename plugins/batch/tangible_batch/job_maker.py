@@ -18,7 +18,7 @@ from .manifest import FILES, SceneRow, file_of
 
 SCENES = "scenes"
 SAFE = re.compile(r"[^\w.+-]")
-MOST_IN_NAME = 60
+MAX_IN_NAME = 60
 """The most characters of a folder's name: four bytes each, with a digest, are allowed on any file system."""
 
 
@@ -77,7 +77,7 @@ def folder_name(name: str) -> str:
     >>> folder_name("vase-12.front"), folder_name("a/b")
     ('vase-12.front', 'a_b-c14cddc0')
     """
-    plain = SAFE.sub("_", name).strip(".")[:MOST_IN_NAME]
+    plain = SAFE.sub("_", name).strip(".")[:MAX_IN_NAME]
     digest = hashlib.sha256(name.encode(errors="surrogateescape")).hexdigest()
     return plain if plain == name else f"{plain}-{digest[:8]}"
 

@@ -82,7 +82,7 @@ class SemiGlobal(DepthEstimator, Following):
 
     def _search_and_matcher(self) -> "tuple[Search, Matcher]":
         """Return the options of the chain, and the matcher."""
-        from .matching.adaptive import MOST_ROW_OFFSET_PX
+        from .matching.adaptive import MAX_ROW_OFFSET_PX
         from .matching.chain import Search
         from .matching.scaling import Scaling, match_scaled
 
@@ -91,7 +91,7 @@ class SemiGlobal(DepthEstimator, Following):
             self.max_disparity_px,
             self.rectify,
             self.fill,
-            most_row_offset_px=MOST_ROW_OFFSET_PX if self.realign_rows and self.resolution != "half" else 0.0,
+            most_row_offset_px=MAX_ROW_OFFSET_PX if self.realign_rows and self.resolution != "half" else 0.0,
             skip_identical=self.skip_identical,
         )
         options = Scaling(self.resolution, self.effort, self.cost, self.check, self.realign_rows, self.skip_flat)

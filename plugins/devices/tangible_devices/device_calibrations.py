@@ -8,7 +8,7 @@ from urllib.parse import quote
 from pydantic import BaseModel, ValidationError
 
 from tangible_core.errors import DeviceError
-from tangible_core.files import MOST_TEXT_BYTES, as_path, read_bytes, write_text
+from tangible_core.files import MAX_TEXT_BYTES, as_path, read_bytes, write_text
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -46,7 +46,7 @@ def load_calibration(device: str, serial: str, model: type[M]) -> M | None:
     """
     path = calibration_path(device, serial)
     try:
-        return model.model_validate_json(read_bytes(path, MOST_TEXT_BYTES))
+        return model.model_validate_json(read_bytes(path, MAX_TEXT_BYTES))
     except FileNotFoundError:
         return None
     except OSError as error:

@@ -16,7 +16,7 @@ from tangible_core.plugins.registry import Listing, Registry
 
 WARM_UP = 100
 """Number of cycles before the measurement."""
-MOST_CYCLES = 10_000_000
+MAX_CYCLES = 10_000_000
 """Greatest number of cycles, as all of their times are in memory."""
 
 
@@ -86,7 +86,7 @@ def stress_device(device: HapticDevice, seconds: float) -> dict[str, Any]:
             link.write(NO_FORCE)
         start = last = time.perf_counter_ns()
         end = start + round(seconds * 1e9)
-        while last < end and len(spent_ns) < MOST_CYCLES:
+        while last < end and len(spent_ns) < MAX_CYCLES:
             link.read()
             link.write(NO_FORCE)
             now = time.perf_counter_ns()

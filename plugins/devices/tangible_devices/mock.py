@@ -17,7 +17,7 @@ from .simulated import LIKE_A_FALCON, SimulatedLink
 
 Height = Annotated[float, Field(ge=-1, le=1)]
 Size = Annotated[float, Field(ge=1e-6, le=1)]
-MOST_M = (0.06, 0.04)
+MAX_M = (0.06, 0.04)
 
 
 class Mock(HapticDevice, Scripted):
@@ -70,7 +70,7 @@ class Mock(HapticDevice, Scripted):
 
     def over(self, extent_m: tuple[float, float]) -> "Mock":
         """Return the device with its path within this width and length, unless it has a `size_m`."""
-        return self if self.size_m else self.model_copy(update={"size_m": path_size(extent_m, MOST_M)})
+        return self if self.size_m else self.model_copy(update={"size_m": path_size(extent_m, MAX_M)})
 
     def wanted(self, ticks: Int64[np.ndarray, " n"]) -> Float64[np.ndarray, "n 3"]:
         """Return the path at these reads, with its tremor."""
@@ -80,7 +80,7 @@ class Mock(HapticDevice, Scripted):
     def _stroke(self) -> Stroke:
         if self.csv_file is not None:
             return read_csv(self.csv_file, self.period_s)
-        points = DRAWN[self.path](self.size_m or MOST_M, self.lines, self.z_m, self.lift_m)
+        points = DRAWN[self.path](self.size_m or MAX_M, self.lines, self.z_m, self.lift_m)
         return walk(points, self.speed_m_per_s, self.period_s)
 
 

@@ -34,7 +34,7 @@ class Glb(SolidExporter):
 
 RIM_GREY = 225
 """Grey level of the rim in the texture."""
-MOST_PX = 4096
+MAX_PX = 4096
 """Largest side of the texture in pixels: graphics processors of phones take no more."""
 _ARRAY, _ELEMENTS = 34962, 34963
 _FLOAT, _UINT = 5126, 5125
@@ -120,11 +120,11 @@ def _texture(
 
 
 def _shrink(colours: UInt8[np.ndarray, "h w 3"], layout: "Layout") -> UInt8[np.ndarray, "h2 w2 3"]:
-    """Shrink the picture so that the texture of the whole plate has no side longer than `MOST_PX`."""
+    """Shrink the picture so that the texture of the whole plate has no side longer than `MAX_PX`."""
     import cv2
 
     sides = zip(colours.shape[1::-1], layout.picture_m, layout.size_m, strict=True)
-    scale = min(1.0, *((MOST_PX - 4) * own_m / (px * whole_m) for px, own_m, whole_m in sides))
+    scale = min(1.0, *((MAX_PX - 4) * own_m / (px * whole_m) for px, own_m, whole_m in sides))
     rows, columns = (max(1, int(scale * px)) for px in colours.shape[:2])
     if (rows, columns) == colours.shape[:2]:
         return colours

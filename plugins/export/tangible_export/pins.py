@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 log: logging.Logger = logging.getLogger(__name__)
 
-LEAST_PINS = 3
+MIN_PINS = 3
 """Shortest side of a picture in pins; fewer leave nothing between two borders."""
 
 
@@ -98,7 +98,7 @@ class Pins(Exporter, Previewing):
         array, parts = self._array, _parts(work, self._array)
         place = raising.place_of(array, parts.labels.shape)
         rows, columns = (each.stop - each.start for each in place)
-        if min(rows, columns) < LEAST_PINS:
+        if min(rows, columns) < MIN_PINS:
             raise PictureError(
                 f"the picture would be {columns} pins wide and {rows} long; take a part of it that is less long "
                 "and narrow"

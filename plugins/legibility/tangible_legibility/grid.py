@@ -11,7 +11,7 @@ from tangible_core.parts import reduced_parts
 
 FINEST_M, COARSEST_M = 0.0625e-3, 0.25e-3
 """Smallest and largest side of a cell: a finger does not notice a tenth of a millimetre."""
-MOST_CELLS, MOST_COARSE_CELLS = 2560, 1280
+MAX_CELLS, MAX_COARSE_CELLS = 2560, 1280
 """Limit of the number of smallest and of largest cells along a side; a longer side has larger cells."""
 
 
@@ -34,8 +34,8 @@ def on_grid(parts: PartMap, width_m: float, *, worked: bool = False) -> Grid:
         raise GeometryError(f"width_m must be a positive length in metres, not {width_m}")
     rows, columns = parts.labels.shape
     pitch_m, longest_m = width_m / columns, width_m * max(1, rows / columns)
-    coarsest_m = max(COARSEST_M, longest_m / MOST_COARSE_CELLS)
-    finest_m = coarsest_m / 2 if worked else min(coarsest_m / 2, max(FINEST_M, longest_m / MOST_CELLS))
+    coarsest_m = max(COARSEST_M, longest_m / MAX_COARSE_CELLS)
+    finest_m = coarsest_m / 2 if worked else min(coarsest_m / 2, max(FINEST_M, longest_m / MAX_CELLS))
     if pitch_m > coarsest_m:
         times = 2 ** ceil(log2(pitch_m / coarsest_m))
         return Grid(PartMap(parts.labels.repeat(times, 0).repeat(times, 1), parts.segments), pitch_m / times)

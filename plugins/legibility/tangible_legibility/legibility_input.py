@@ -16,9 +16,9 @@ from .simplifying.large import count_textures
 from .widths import Widths, measure
 from .words.places import describe_part, describe_place
 
-MOST_EACH = 4
+MAX_EACH = 4
 """Number of failing verdicts of one check; further ones are gathered into one."""
-MOST_PLACES = 64
+MAX_PLACES = 64
 """Number of places in such a gathered verdict."""
 
 
@@ -92,7 +92,7 @@ class LegibilityInput:
         wrong = [each for each in measurements if not _meets(each.value, rule.relation, rule.bound)]
         wrong.sort(key=lambda each: each.value, reverse=rule.relation == "<=")
         worst = max if rule.relation == "<=" else min
-        single = wrong if len(wrong) <= MOST_EACH + 1 else wrong[:MOST_EACH]
+        single = wrong if len(wrong) <= MAX_EACH + 1 else wrong[:MAX_EACH]
         found: list[tuple[str, float, str, tuple[tuple[float, float], ...]]] = [
             (
                 ", ".join(filter(None, [each.of, each.place])),
@@ -103,7 +103,7 @@ class LegibilityInput:
             for each in single
         ]
         if rest := wrong[len(single) :]:
-            places = tuple(dict.fromkeys(each.at for each in rest if each.at))[:MOST_PLACES]
+            places = tuple(dict.fromkeys(each.at for each in rest if each.at))[:MAX_PLACES]
             found.append((f"{len(rest)} more {of}", rest[0].value, f"{len(rest)} {others}", places))
         if not found:
             found = [(of, float(worst((each.value for each in measurements), default=none)), "", ())]

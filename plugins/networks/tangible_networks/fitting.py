@@ -56,7 +56,7 @@ Colours = Float32[np.ndarray, "h w 3"]
 """A picture, red, green and blue in 0..1."""
 OVERLAP = 0.25
 """Share of a strip that overlaps with the next, where one map fades into the other."""
-LEAST_ROWS = 64
+MIN_ROWS = 64
 """Smallest rows of a strip: a network needs context."""
 
 
@@ -128,7 +128,7 @@ def map_in_strips(shape: tuple[int, int], most_px: int, multiple: int, work: Cal
 
     Only for values with the same meaning in every strip, such as pixels of disparity.
     """
-    rows = max(LEAST_ROWS, most_px // shape[1] // multiple * multiple)
+    rows = max(MIN_ROWS, most_px // shape[1] // multiple * multiple)
     if rows >= shape[0]:
         return work(slice(0, shape[0]))
     total: list[Map] = []

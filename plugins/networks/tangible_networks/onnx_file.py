@@ -17,7 +17,7 @@ from tangible_core.errors import ConfigError, quoted
 Shape: TypeAlias = tuple[int | None, ...]
 """Declared size of an input; None for a dimension of any size."""
 Value: TypeAlias = int | memoryview
-MOST_NUMBERS = 2**31
+MAX_NUMBERS = 2**31
 """Largest number of numbers of one weight: more than the largest file holds."""
 
 GRAPH, WEIGHTS, INPUTS = 7, 5, 11
@@ -95,7 +95,7 @@ def _name(tensor: memoryview) -> str:
 def _check_tensor(model: Path, tensor: memoryview) -> None:
     """Check a weight. Raises: ConfigError for an impossible size, or numbers in a file that is elsewhere."""
     sizes = [size for number, value in _fields(tensor) if number == SIZES for size in _numbers(value)]
-    if min(sizes, default=0) < 0 or math.prod(sizes) > MOST_NUMBERS:
+    if min(sizes, default=0) < 0 or math.prod(sizes) > MAX_NUMBERS:
         raise ConfigError(f"model: {model}: the weight {quoted(_name(tensor))} has the impossible size {quoted(sizes)}")
     for entry in _parts(tensor, PLACES):
         key, value = ("".join(map(_text, _parts(entry, number))) for number in (1, 2))

@@ -18,7 +18,7 @@ from .surface.coefficients import spline_surface
 from .surface.dequantise import Filter
 from .surface.tiles import tile_bounds
 
-MOST_RADIUS_M = 0.002
+MAX_RADIUS_M = 0.002
 """The largest ball, m: nothing narrower than twice this, a fingertip's width, would be left in a groove."""
 
 
@@ -64,7 +64,7 @@ class Proxy(ForceRenderer, Filming):
     """Render friction; if false, there is none at all, that of materials included."""
     texture: bool = True
     """Render the fine textures of materials; if false, their drag and their own friction are left out too."""
-    radius_m: Annotated[float, Field(ge=0, le=MOST_RADIUS_M)] = 0.0
+    radius_m: Annotated[float, Field(ge=0, le=MAX_RADIUS_M)] = 0.0
     """Radius of a ball in place of a point at the hand's tip, which rounds edges and bridges grooves narrower than
     itself, as a fingertip does; a tick takes no longer. Not for films."""
     dequantise: Filter = "auto"

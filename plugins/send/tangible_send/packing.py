@@ -24,9 +24,9 @@ from tangible_web.materials import distinct_materials
 
 from .surface import SentSurface
 
-MOST_SIDE_PX = 1600
+MAX_SIDE_PX = 1600
 """The longest side of the picture: more than a phone shows, and opened a quarter sooner in software than 2048."""
-LEAST_PHOTO = 200_000
+MIN_PHOTO = 200_000
 """The room that is left for a picture at least, bytes: the surface is made coarser for it."""
 QUALITIES = (88, 80, 70, 60)
 SMALLER = 0.8
@@ -134,7 +134,7 @@ def description(surface: HapticSurface, work: Work, language: Language) -> dict[
 def photo(picture: np.ndarray, most_bytes: int) -> str:
     """Return a JPEG in base64, as large and as good as fits into this number of bytes of base64."""
     image = Image.fromarray(to_rgb8(picture))
-    share = min(1.0, MOST_SIDE_PX / max(image.size))
+    share = min(1.0, MAX_SIDE_PX / max(image.size))
     while True:
         size = tuple(max(1, round(share * side)) for side in image.size)
         small = image.resize((size[0], size[1]), Image.Resampling.BOX, reducing_gap=2.0)

@@ -16,7 +16,7 @@ from tangible_web.address import page_file
 
 log: logging.Logger = logging.getLogger(__name__)
 
-MOST_BYTES = 2_000_000
+MAX_BYTES = 2_000_000
 """The size of a whole file that mail programs and phones take without a question, bytes."""
 
 
@@ -31,12 +31,12 @@ class Page(Exporter):
 
     needs: ClassVar[tuple[str, ...]] = ("surface", "materials")
 
-    most_bytes: Annotated[int, Field(ge=1_000_000, le=100_000_000)] = MOST_BYTES
+    most_bytes: Annotated[int, Field(ge=1_000_000, le=100_000_000)] = MAX_BYTES
     """The largest size of the file: the picture is compressed, and the surface made coarser, until it fits."""
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
         """Write one file. Raises: ConfigError if the page was not built; OutputError if it cannot be small enough."""
-        from .packing import LEAST_PHOTO, pack, page_of, photo
+        from .packing import MIN_PHOTO, pack, page_of, photo
         from .surface import fits, surface_to_send
 
         script, style, licences = map(page_file, ("send.js", "send.css", "LICENSES.txt"))
@@ -48,7 +48,7 @@ class Page(Exporter):
         for sent in surface_to_send(work):
             data = pack(sent, work)
             room = self.most_bytes - len(page(data).encode())
-            if room >= (0 if work.picture is None else LEAST_PHOTO):
+            if room >= (0 if work.picture is None else MIN_PHOTO):
                 break
         else:
             raise OutputError(f"this picture does not fit into {self.most_bytes} bytes; make `most_bytes` larger")

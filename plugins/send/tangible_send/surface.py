@@ -11,13 +11,13 @@ from tangible_core.scene import middle_pixels, reduced_map, reduced_shape
 from tangible_render.surface.coefficients import spline_coefficients
 from tangible_render.surface.dequantise import dequantise
 
-MOST_CELLS = 400_000
+MAX_CELLS = 400_000
 """The most cells: software draws them in a fraction of a second, and the page is one for old phones too."""
 STEPS_M = (1e-6, 2e-6, 4e-6)
 """Steps of heights: half of one is what a height is off by. Fingers feel no height below 10 um on a smooth surface."""
 COARSER = 1.25
 """The factor from one size of cells to the next."""
-MOST_COARSER = 12
+MAX_COARSER = 12
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,8 @@ class SentSurface:
 def surface_to_send(work: Work) -> Iterator[SentSurface]:
     """Yield the surface in finer and coarser forms, the finest first."""
     surface = work.surface
-    first = max(1.0, (surface.height_m.size / MOST_CELLS) ** 0.5)
-    for coarser in range(MOST_COARSER):
+    first = max(1.0, (surface.height_m.size / MAX_CELLS) ** 0.5)
+    for coarser in range(MAX_COARSER):
         small = _reduce(surface, first * COARSER**coarser)
         for step_m in STEPS_M:
             yield _quantise(small, step_m)

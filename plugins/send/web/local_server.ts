@@ -5,7 +5,7 @@ import { LEAP_M, type ProxyLaw } from "./touch/law";
 
 /** Longest way of the hand in a tick of the law, metres: a part of what it takes for a leap. */
 const STEP_M = LEAP_M / 20;
-const MOST_TICKS = 200;
+const MAX_TICKS = 200;
 /** Times between two positions that give a velocity, seconds. */
 const BETWEEN_S = { least: 0.001, most: 0.1 };
 /** Time after which a hand that left is reported once more, ms: the narration waits for it to come back. */
@@ -33,7 +33,7 @@ export class LocalServer {
     const seconds = Math.min(Math.max((ms - (this.last?.ms ?? ms)) / 1000, BETWEEN_S.least), BETWEEN_S.most);
     const velocity = hand.map((each, axis) => (each - before[axis]!) / seconds) as Vec;
     const far = Math.hypot(...hand.map((each, axis) => each - before[axis]!));
-    const ticks = Math.min(Math.max(Math.ceil(far / STEP_M), 1), MOST_TICKS);
+    const ticks = Math.min(Math.max(Math.ceil(far / STEP_M), 1), MAX_TICKS);
     const on = (share: number): Vec => before.map((each, axis) => each + share * (hand[axis]! - each)) as Vec;
     let touched = null;
     for (let tick = 1; tick <= ticks; tick++) touched = this.law.tick(on(tick / ticks), velocity);

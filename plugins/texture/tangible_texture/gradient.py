@@ -97,7 +97,7 @@ class Gradient(Dividing):
 
     def _regions(self, land: "Landscape", step: int) -> Int32[np.ndarray, "h w"] | None:
         """Return labels of every step-th pixel; None where there is only one region."""
-        from .regions.basins import MOST_SEGMENTS, STEEPER, basins
+        from .regions.basins import MAX_SEGMENTS, STEEPER, basins
         from .regions.borders import borders, canny_edges
         from .regions.merging import merge, weakest_border
         from .regions.watershed import watershed
@@ -108,7 +108,7 @@ class Gradient(Dividing):
             return None
         labels = watershed(land.steep, markers)
         edges = canny_edges(land, self.canny_low, self.canny_high, self._max_steepness)
-        most = MOST_SEGMENTS if self.segments == "auto" else self.segments
+        most = MAX_SEGMENTS if self.segments == "auto" else self.segments
         areas = np.bincount(labels.ravel(), minlength=count).tolist()
         between = borders(labels, land, edges, self.canny_high)
         parts = merge(areas, between, most)

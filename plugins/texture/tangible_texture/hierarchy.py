@@ -15,7 +15,7 @@ from .signal.skipping import Dividing, one_segment
 
 log: logging.Logger = logging.getLogger(__name__)
 
-LEAST_LEVEL = 0.12
+MIN_LEVEL = 0.12
 """The level of a border that chance makes: such regions are joined, however many segments are requested."""
 
 
@@ -58,13 +58,13 @@ class Hierarchy(Dividing, Hierarchical):
         Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1.
         Raises: PictureError as `check_picture`.
         """
-        from .regions.basins import MOST_SEGMENTS
+        from .regions.basins import MAX_SEGMENTS
         from .regions.merging import number_in_reading_order
 
         if self.segments == 1:
             return one_segment(check_picture(picture).shape[:2])
         tree = self.tree(picture)
-        most, level = (MOST_SEGMENTS, self.level) if self.segments == "auto" else (self.segments, LEAST_LEVEL)
+        most, level = (MAX_SEGMENTS, self.level) if self.segments == "auto" else (self.segments, MIN_LEVEL)
         found = tree.cut(most, level)
         if self.segments == "auto" and found.count > 1:
             weakest = tree.levels[len(tree.levels) + 1 - found.count]

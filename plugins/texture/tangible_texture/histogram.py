@@ -15,7 +15,7 @@ from .signal.skipping import Dividing, one_segment
 BINS = 256
 """The number of grey levels between the darkest and the brightest: that of 8 bits."""
 
-MOST_LEVELS = 16
+MAX_LEVELS = 16
 """The largest number of segments under `auto`: more than the modes of any histogram seen."""
 
 FLAT_SHARE = 0.8
@@ -142,7 +142,7 @@ class Histogram(Dividing):
         used = np.flatnonzero(pixels)
         levels = np.bincount(bins[flat], grey[flat])[used] / pixels[used]
         divisions = OtsuClasses(
-            levels, pixels[used], min(most, MOST_LEVELS if self.segments == "auto" else self.segments)
+            levels, pixels[used], min(most, MAX_LEVELS if self.segments == "auto" else self.segments)
         )
         starts = divisions.starts(self._number(divisions))[1:]
         thresholds = (levels[starts] + levels[starts - 1]) / 2

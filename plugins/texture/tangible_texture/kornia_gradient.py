@@ -93,11 +93,11 @@ class KorniaGradient(Dividing):
 
         If there are too many, the largest are kept; labels are -1 elsewhere.
         """
-        from .regions.basins import MOST_SEGMENTS, STEEPER, basins
+        from .regions.basins import MAX_SEGMENTS, STEEPER, basins
 
         levels = [self.canny_low * times for times in STEEPER]
         basin_labels, count = basins(steep, levels, max(4, min(self.smallest_px, steep.size // 16)))
-        most = min(count, MOST_SEGMENTS if self.segments == "auto" else self.segments)
+        most = min(count, MAX_SEGMENTS if self.segments == "auto" else self.segments)
         largest = np.argsort(-np.bincount(basin_labels[basin_labels >= 0], minlength=count), kind="stable")[:most]
         names = np.full(count + 1, -1, np.int32)  # the last one is indexed by -1
         names[largest] = np.arange(most)

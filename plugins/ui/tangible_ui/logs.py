@@ -17,7 +17,7 @@ OWN = (
 """Packages whose information pages get too; from others, warnings and errors."""
 KNOWN = "tangible_core.plugins.observers.log"
 """The logger of stages, left out because pages get events of stages."""
-MOST_A_SECOND = 50
+MAX_A_SECOND = 50
 
 
 Tell = Callable[..., None]
@@ -26,7 +26,7 @@ Tell = Callable[..., None]
 
 @final
 class PageHandler(logging.Handler):
-    """A handler that forwards records, at most MOST_A_SECOND, and never raises."""
+    """A handler that forwards records, at most MAX_A_SECOND, and never raises."""
 
     def __init__(self, tell: Tell) -> None:
         super().__init__(logging.INFO)
@@ -42,12 +42,12 @@ class PageHandler(logging.Handler):
         """Forward a record at once; count those of a flood, and report the count when it is over."""
         try:
             if (second := int(time.monotonic())) != self._second:
-                left_out, self._second, self._count = self._count - MOST_A_SECOND, second, 0
+                left_out, self._second, self._count = self._count - MAX_A_SECOND, second, 0
                 if left_out > 0:
                     text = f"{left_out} more lines came in one second and are left out"
                     self._tell(level="warning", logger=__name__, text=text)
             self._count += 1
-            if self._count <= MOST_A_SECOND:
+            if self._count <= MAX_A_SECOND:
                 self._tell(level=_level(record.levelno), logger=record.name, text=_text(record))
         except Exception:  # noqa: BLE001 - what is logged must never stop what logs
             self.handleError(record)

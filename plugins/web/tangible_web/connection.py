@@ -11,7 +11,7 @@ from starlette.websockets import WebSocket
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
-MOST_STRANGERS = 256
+MAX_STRANGERS = 256
 """Maximum number of connections that have not shown the key."""
 HEAD_S = 10.0
 """Time within which the head of a request must be complete, s."""
@@ -35,7 +35,7 @@ class Strangers:
     def add(self, transport: Any) -> None:
         """Add the transport of a new connection."""
         self._open[transport] = None
-        if len(self._open) > MOST_STRANGERS:
+        if len(self._open) > MAX_STRANGERS:
             longest = next(iter(self._open))
             del self._open[longest]
             longest.abort()

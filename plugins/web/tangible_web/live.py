@@ -28,9 +28,9 @@ IDLE_SPACING_S = 0.1
 """Minimum time between two states without force, s: nothing moves, and loop and surface need the processor to start."""
 BEAT_S = 1.0
 """Longest time without an event or a beat, s: a page that hears nothing for three times as long says so."""
-MOST_WAITING, MOST_WAITING_CHARACTERS = 2000, 16_000_000
+MAX_WAITING, MAX_WAITING_CHARACTERS = 2000, 16_000_000
 """Limits of unread events, in number and characters; a tab that reads none is cut off."""
-MOST_ASKS = 32
+MAX_ASKS = 32
 """Maximum number of requests that a tab may wait for at once; `stop` is always taken."""
 
 
@@ -109,7 +109,7 @@ class LiveTab:
             return
         text = _as_json(self._program.translate(event, self._language))
         self._waiting += len(text)
-        if self._events.qsize() >= MOST_WAITING or self._waiting > MOST_WAITING_CHARACTERS:
+        if self._events.qsize() >= MAX_WAITING or self._waiting > MAX_WAITING_CHARACTERS:
             self._gone = True
             cut_off(self._socket)
         else:
@@ -157,11 +157,11 @@ class LiveTab:
         except BadRequest as error:
             self._refuse(error.number, str(error))
             return
-        if self._asks < MOST_ASKS or asked.name == "stop":
+        if self._asks < MAX_ASKS or asked.name == "stop":
             self._asks += 1
             self._program.begin(self._answer(asked))
         else:
-            self._refuse(asked.number, f"{MOST_ASKS} requests are not done yet; wait for them")
+            self._refuse(asked.number, f"{MAX_ASKS} requests are not done yet; wait for them")
 
     async def _answer(self, asked: ParsedRequest) -> None:
         try:

@@ -21,7 +21,7 @@ from .hand import KEEP_S, Hand
 
 ASK_AGAIN = "no-cache"
 """Cache rule: a browser may keep the file, and asks each time if it is still current."""
-MOST_MESSAGE_BYTES = 2**20
+MAX_MESSAGE_BYTES = 2**20
 """Size limit of a message, bytes; pipeline files are smaller."""
 T = TypeVar("T")
 
@@ -33,7 +33,7 @@ def settings(app: ASGIApp, log_level: str = "warning") -> uvicorn.Config:
     sockets: Any = partial(Connection, strangers)
     return uvicorn.Config(
         app, log_level=log_level, access_log=False, server_header=False, loop="asyncio", http=http, lifespan="on",
-        ws=sockets, ws_per_message_deflate=False, ws_max_size=MOST_MESSAGE_BYTES,
+        ws=sockets, ws_per_message_deflate=False, ws_max_size=MAX_MESSAGE_BYTES,
         ws_ping_interval=PING_S, ws_ping_timeout=PING_S,
         timeout_graceful_shutdown=1,
     )  # fmt: skip

@@ -81,7 +81,7 @@ def _print(
     law: str,
 ) -> None:
     from ... import session
-    from ...errors import MOST_IN_LINE, shown
+    from ...errors import MAX_IN_LINE, shown
     from .. import sentences, show
 
     if as_json:
@@ -94,7 +94,7 @@ def _print(
         show.print_json({"recorded": recorded, "figures": figures, "parts": touched, "file": record and str(record)})
         return
     if before.stopped:
-        show.note(f"the recording ended early: {shown(before.stopped, MOST_IN_LINE)}")
+        show.note(f"the recording ended early: {shown(before.stopped, MAX_IN_LINE)}")
     show.sentence(sentences.replay_summary(law, figures))
     show.table(("figure", "value", ""), [(name, f"{value:.6g}", MEANINGS[name]) for name, value in figures.items()])
     show.parts_felt(parts)

@@ -11,12 +11,12 @@ from ruamel.yaml.scanner import RoundTripScanner
 
 from ...errors import quoted
 
-MOST_DEPTH = 20
+MAX_DEPTH = 20
 """The most levels of nested blocks; files for this program need six."""
-TOO_DEEP = f"more than {MOST_DEPTH} blocks are nested"
-MOST_NODES = 40_000
+TOO_DEEP = f"more than {MAX_DEPTH} blocks are nested"
+MAX_NODES = 40_000
 """The most keys, values and blocks with aliases expanded: enough for a rule for each of 4,096 segments."""
-MOST_DIGITS = 64
+MAX_DIGITS = 64
 """The most characters of a number, with its sign, point and exponent."""
 
 _TAG = "tag:yaml.org,2002:"
@@ -72,7 +72,7 @@ def check_events(events: Iterable[Any]) -> None:
 def _open(count: _Count, event: Any, is_mapping: bool) -> None:
     if count.open and _is_key(count.open[-1]):
         raise _refusal(event, "a key must be a word or a number, not a list or a mapping")
-    if len(count.open) >= MOST_DEPTH:
+    if len(count.open) >= MAX_DEPTH:
         raise _refusal(event, TOO_DEEP)
     count.open.append(_Block(event.anchor, is_mapping))
 
@@ -94,8 +94,8 @@ def _add(count: _Count, event: Any, nodes: int, anchor: str | None) -> None:
         return
     count.open[-1].parts += 1
     count.open[-1].nodes += nodes
-    if sum(block.nodes for block in count.open) > MOST_NODES:
-        raise _refusal(event, f"there are more than {MOST_NODES} values, aliases expanded")
+    if sum(block.nodes for block in count.open) > MAX_NODES:
+        raise _refusal(event, f"there are more than {MAX_NODES} values, aliases expanded")
 
 
 def _is_key(block: _Block) -> bool:
@@ -117,7 +117,7 @@ class BoundedScanner(RoundTripScanner):
     def fetch_flow_collection_start(self, TokenClass: Any, to_push: str) -> None:
         """Read an opening bracket. Raises: MarkedYAMLError if it is too deep."""
         scanner: Any = self
-        if len(scanner.flow_context) >= MOST_DEPTH:
+        if len(scanner.flow_context) >= MAX_DEPTH:
             raise MarkedYAMLError(None, None, TOO_DEEP, scanner.reader.get_mark())
         cast(Any, super()).fetch_flow_collection_start(TokenClass, to_push)
 
@@ -128,8 +128,8 @@ class BoundedConstructor(RoundTripConstructor):
 
     def construct_non_recursive_object(self, node: Any, tag: str | None = None) -> Any:
         """Return the value of a node."""
-        if node.tag in _NUMBERS and len(node.value) > MOST_DIGITS:
-            raise MarkedYAMLError(None, None, f"a number of more than {MOST_DIGITS} digits", node.start_mark)
+        if node.tag in _NUMBERS and len(node.value) > MAX_DIGITS:
+            raise MarkedYAMLError(None, None, f"a number of more than {MAX_DIGITS} digits", node.start_mark)
         try:
             value: Any = cast(Any, super()).construct_non_recursive_object(node, tag)
             is_mark = isinstance(value, TaggedScalar)  # `<<` in place of a value

@@ -13,7 +13,7 @@ from ruamel.yaml.nodes import MappingNode, ScalarNode
 
 from ...errors import ConfigError, quoted, wrong_argument
 from ..paths import CONTROLS
-from .bounds import MOST_DEPTH
+from .bounds import MAX_DEPTH
 from .source import Location, Shorthand, expand_shorthand, key_of, no_shorthand, parse_value, plain_tree
 
 Node = Any
@@ -43,7 +43,7 @@ def change_text(text: str, path: Path, changes: Changes, shorthand: Shorthand = 
     wanted = plain_tree(text, path)
     for key, value in changes.items():
         parts = tuple(key.split(".")) if isinstance(key, str) else tuple(key)
-        if not 0 < len(parts) <= MOST_DEPTH or "" in parts:
+        if not 0 < len(parts) <= MAX_DEPTH or "" in parts:
             raise ConfigError(f"{quoted(key)}: is not a key; write one such as render.stiffness_n_per_m")
         value, before = _with_label_keys(value), deepcopy(wanted)
         _change(wanted, parts, value, shorthand)
@@ -59,8 +59,8 @@ def change_text(text: str, path: Path, changes: Changes, shorthand: Shorthand = 
 
 def _with_label_keys(value: Any, depth: int = 0) -> Any:
     """Return a value of JSON with the labels of material maps as whole numbers; keys in JSON are words."""
-    if depth > MOST_DEPTH:
-        raise ConfigError(f"more than {MOST_DEPTH} blocks are nested")
+    if depth > MAX_DEPTH:
+        raise ConfigError(f"more than {MAX_DEPTH} blocks are nested")
     if isinstance(value, dict):
         return {
             key_of(key, {}): _with_label_keys(each, depth + 1) for key, each in cast("dict[Any, Any]", value).items()
@@ -274,16 +274,14 @@ def json_in_yaml(value: Any) -> str:
 
 
 _NUMBERS = {"None": "null", "True": "true", "False": "false", "nan": ".nan", "inf": ".inf", "-inf": "-.inf"}
-_MOST_PLAIN = 100
+_MAX_PLAIN = 100
 """The most characters of a word without quotes."""
 _PLAIN = re.compile(r"[\w./~]([\w./~ +-]*[\w./~])?")
 
 
 def _is_plain(text: str) -> bool:
     """Return True if a text means itself in YAML without quotes."""
-    return (
-        len(text) <= _MOST_PLAIN and bool(_PLAIN.fullmatch(text)) and text.isprintable() and parse_value(text) == text
-    )
+    return len(text) <= _MAX_PLAIN and bool(_PLAIN.fullmatch(text)) and text.isprintable() and parse_value(text) == text
 
 
 def _escape(character: str) -> str:

@@ -16,8 +16,8 @@ from ...data.option_errors import Location as Location
 from ...data.option_errors import has, sentences_about
 from ...errors import Complaint, ConfigError, did_you_mean, quoted, shown
 from ..paths import as_path, what_is_missing
-from ..reading import MOST_TEXT_BYTES, in_words, read_bytes
-from .bounds import MOST_DEPTH, MOST_DIGITS, BoundedConstructor, BoundedScanner, check_events
+from ..reading import MAX_TEXT_BYTES, in_words, read_bytes
+from .bounds import MAX_DEPTH, MAX_DIGITS, BoundedConstructor, BoundedScanner, check_events
 
 CONFLICT = re.compile(r"(<{7}|>{7}|={7}|\|{7})( |$)")
 CURES = {
@@ -153,7 +153,7 @@ class Source:
 def read_text(path: Path) -> str:
     """Read the text of a YAML file. Raises: ConfigError; if there is no such file, with a similar name that exists."""
     try:
-        return read_bytes(path, MOST_TEXT_BYTES).decode("utf-8-sig")
+        return read_bytes(path, MAX_TEXT_BYTES).decode("utf-8-sig")
     except FileNotFoundError as error:
         missing = what_is_missing(path, (each.name for each in path.parent.glob("*.y*ml")))
         raise ConfigError(f"{path}: {missing}") from error
@@ -195,7 +195,7 @@ def parse_override(text: str) -> tuple[tuple[str, ...], Any]:
     """Return the keys and the value of `key.key=value`. Raises: ConfigError if the text has another form."""
     keys, equals, value = text.partition("=")
     parts = tuple(keys.strip().split("."))
-    if not equals or not all(parts) or len(parts) > MOST_DEPTH:
+    if not equals or not all(parts) or len(parts) > MAX_DEPTH:
         raise _override_error(text, (), "write key.key=value, such as render.stiffness_n_per_m=500")
     try:
         return parts, parse_value(value)
@@ -205,8 +205,8 @@ def parse_override(text: str) -> tuple[tuple[str, ...], Any]:
 
 def parse_value(text: str) -> Any:
     """Parse a YAML text into the parser's own values. Raises: YAMLError."""
-    if len(text) > MOST_TEXT_BYTES:
-        raise YAMLError(f"it holds more than {in_words(MOST_TEXT_BYTES)}")
+    if len(text) > MAX_TEXT_BYTES:
+        raise YAMLError(f"it holds more than {in_words(MAX_TEXT_BYTES)}")
     yaml: Any = YAML(typ="rt")  # the one loader of ruamel that keeps lines and columns
     yaml.Constructor = BoundedConstructor
     parser: Any = YAML(typ="rt")
@@ -257,7 +257,7 @@ def key_of(part: Any, node: Mapping[Any, Any]) -> Any:
     """Return a key as the tree has it: a word, or a whole number for the labels of a material map."""
     if not isinstance(part, str) or part in node:
         return part
-    return int(part) if part.isdecimal() and len(part) <= MOST_DIGITS else part
+    return int(part) if part.isdecimal() and len(part) <= MAX_DIGITS else part
 
 
 def _word_or_number(part: Any) -> str | int:

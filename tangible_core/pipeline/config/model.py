@@ -46,7 +46,7 @@ from .methods import NamedMethod
 
 Wrong = tuple[Location, str]
 """A complaint: the keys that it is about, and a sentence."""
-MOST_TITLE = 200
+MAX_TITLE = 200
 """The most characters of a title: what a person reads at a glance, and what fits a line of braille or two."""
 LANGUAGE_TAG = "^[A-Za-z]{2,8}(-[A-Za-z0-9]{1,8})*$"
 """The form of a language's tag, as BCP 47 has it."""
@@ -89,7 +89,7 @@ class PipelineConfig(BaseModel):
     """The pictures, or the heights, that the surface is made of."""
     title: Annotated[
         str,
-        Field(max_length=MOST_TITLE, coerce_numbers_to_str=True),  # a title may be a year
+        Field(max_length=MAX_TITLE, coerce_numbers_to_str=True),  # a title may be a year
         AfterValidator(_check_title),
         NULL_IS_DEFAULT,
         Word(),

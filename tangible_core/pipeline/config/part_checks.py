@@ -5,7 +5,7 @@ from contextlib import suppress
 
 from ...data import Material
 from ...data.part_words import label_of_number, name_part, shown_number
-from ...errors import MOST_QUOTED, ConfigError, MaterialError, did_you_mean, quoted
+from ...errors import MAX_QUOTED, ConfigError, MaterialError, did_you_mean, quoted
 from ...materials.assignment import find, load_library
 from ...parts import PartChoice
 from ...scene.scene import Scene
@@ -66,7 +66,7 @@ def _wrong_name(name: str) -> str:
         return f"{quoted(name)} would be taken for the number of a part; put a word before it"
     if not name.isprintable():
         return f"{quoted(name)} contains a control character; a name is one line of plain text"
-    return f"{quoted(name)} is over {MOST_QUOTED} characters; use fewer" if len(name) > MOST_QUOTED else ""
+    return f"{quoted(name)} is over {MAX_QUOTED} characters; use fewer" if len(name) > MAX_QUOTED else ""
 
 
 def _wrong_materials(parts: Mapping[int, PartChoice], library: Mapping[str, Material]) -> Iterator[Wrong]:

@@ -35,7 +35,7 @@ DEFAULT_BYTES = 2 << 30
 LEFT = 7 / 8
 """The share of the limit that is left after pruning: the next results then fit without counting the files."""
 TALLY = ".tally"
-MOST_NUMBERS = 1 << 17
+MAX_NUMBERS = 1 << 17
 """The numbers of a tally that are read; a longer one is unknown, and counting the folder again makes it short."""
 NOTES = "notes"
 _OURS = re.compile(r"[0-9a-f]{32,64}\.npz")
@@ -79,10 +79,10 @@ class Tally:
         try:
             os.write(file, size.to_bytes(8, "little"))
             os.lseek(file, 0, os.SEEK_SET)
-            content = os.read(file, 8 * MOST_NUMBERS)
+            content = os.read(file, 8 * MAX_NUMBERS)
         finally:
             os.close(file)
-        if len(content) % 8 or len(content) in (8, 8 * MOST_NUMBERS):  # this number alone, or more than is read
+        if len(content) % 8 or len(content) in (8, 8 * MAX_NUMBERS):  # this number alone, or more than is read
             return None
         numbers = np.frombuffer(content, "<i8")
         return None if numbers.min() < 0 else int(numbers.sum())

@@ -16,7 +16,7 @@ log: logging.Logger = logging.getLogger(__name__)
 
 FINEST_DIGITS = 5
 """The decimals of a computed height in metres: a hundredth of a millimetre cannot be felt, and is easy to read."""
-MOST_NAMED = 8
+MAX_NAMED = 8
 """The most parts that a note names."""
 
 
@@ -82,6 +82,6 @@ def in_words(numbers: list[int]) -> str:
     """
     if len(numbers) == 1:
         return name_part(numbers[0])
-    first, rest = map(shown_number, numbers[:MOST_NAMED]), len(numbers) - MOST_NAMED
+    first, rest = map(shown_number, numbers[:MAX_NAMED]), len(numbers) - MAX_NAMED
     *most, last = map(str, first) if rest <= 0 else (*map(str, first), f"{rest} more")
     return f"parts {', '.join(most)} and {last}"

@@ -18,21 +18,21 @@ from ..config.part_checks import ROUNDING_M, names_of, numbers_of
 
 log: logging.Logger = logging.getLogger(__name__)
 
-MOST_PARTS = 4096
+MAX_PARTS = 4096
 """The most parts, as many as a label picture may have labels: more are the grain of a photograph."""
 FEW_PIXELS, FEW_SHARE = 9, 1e-5
 """The least size of a part, in pixels and as a share of the picture: smaller ones are slips of the brush."""
-MOST_SLIPS = 3
+MAX_SLIPS = 3
 """The most small parts whose places a warning has."""
 
 
 @lru_cache(maxsize=1)
 def parts_of(segments: SegmentMap) -> PartMap:
-    """Find the parts of segments; the last result is remembered. Raises: PictureError for more than MOST_PARTS."""
+    """Find the parts of segments; the last result is remembered. Raises: PictureError for more than MAX_PARTS."""
     parts = find_parts(segments)
-    if parts.count > MOST_PARTS:
+    if parts.count > MAX_PARTS:
         raise PictureError(
-            f"the segments fall into {parts.count} parts, and at most {MOST_PARTS} can be felt; paint each part in one "
+            f"the segments fall into {parts.count} parts, and at most {MAX_PARTS} can be felt; paint each part in one "
             "flat colour and save the picture losslessly, as PNG, or choose fewer and smoother segments"
         )
     return parts
@@ -45,9 +45,9 @@ def warn_small_parts(parts: PartMap) -> None:
     if not small:
         return
     texts = [
-        f"{name_part(each)} at {place_of(parts, each)} ({_pixels(int(sizes[each]))})" for each in small[:MOST_SLIPS]
+        f"{name_part(each)} at {place_of(parts, each)} ({_pixels(int(sizes[each]))})" for each in small[:MAX_SLIPS]
     ]
-    more = f", and {len(small) - MOST_SLIPS} more" if len(small) > MOST_SLIPS else ""
+    more = f", and {len(small) - MAX_SLIPS} more" if len(small) > MAX_SLIPS else ""
     few = "one part has few pixels" if len(small) == 1 else f"{len(small)} parts have few pixels"
     cure = "paint over them, or choose smoother segments; the numbers of the parts after them then change"
     note(log, f"{few}: {', '.join(texts)}{more}; {cure}", logging.WARNING)

@@ -16,7 +16,7 @@ from ...session import run_simulated
 from ..config.model import PipelineConfig
 from .engine import Engine
 
-MOST_PX = 768
+MAX_PX = 768
 """The most rows and columns of the crop."""
 STRIPES = 6
 """Segments of the made-up map: enough for every material that a rule may choose."""
@@ -39,7 +39,7 @@ def _work(engine: Engine, want: str) -> Work | None:
     touch = want == "touch" and config.render is not None and "touch" not in engine.begun
     if views is None or min(thread_count(), engine.threads or 2) < 2 or not (segments or touch):
         return None
-    rows, columns = (slice(max(0, (size - MOST_PX) // 2), (size + MOST_PX) // 2) for size in views.shape)
+    rows, columns = (slice(max(0, (size - MAX_PX) // 2), (size + MAX_PX) // 2) for size in views.shape)
     part = Views(np.ascontiguousarray(views.left[rows, columns]))
     depth = config.depth is not None and "disparity" in engine.begun
     names = frozenset([LATE_STEPS] * depth + ["segments"] * segments + ["touch", FELT] * touch)

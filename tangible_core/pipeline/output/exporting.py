@@ -41,7 +41,7 @@ log: logging.Logger = logging.getLogger(__name__)
 
 PREFIX = "export: "
 """The prefix of an exporter's name in the product of its outcome."""
-MOST_STEM_BYTES = 120
+MAX_STEM_BYTES = 120
 """The most bytes of a file's name before its ending: systems take 255, and endings are added."""
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
 """The errors of a disk, for which the exporter is not to blame."""
@@ -256,7 +256,7 @@ def stem_of(config: PipelineConfig, scene: Scene) -> str:
     """
     name = title_of(config, scene) if config.path is None else default_name(config.path)
     plain = re.sub(r"[^\w -]+", "-", name).strip("- ")
-    return plain.encode()[:MOST_STEM_BYTES].decode(errors="ignore") or "export"
+    return plain.encode()[:MAX_STEM_BYTES].decode(errors="ignore") or "export"
 
 
 def _fault(error: BaseException, folder: Path) -> tuple[OutcomeKind, str]:

@@ -14,7 +14,7 @@ from ..engine.engine import Engine
 from ..engine.stage import Context
 from ..engine.stages.relief import ReliefStage
 
-MOST_REASON = 300
+MAX_REASON = 300
 """The most characters of the reason behind a part."""
 SOURCES = {
     "guess": "The heights are guessed: a picture does not show which parts are in front.",
@@ -52,7 +52,7 @@ def to_correct(engine: Engine) -> str:
         rest = ""
     head = f"# {SOURCES[config.heights.by]} Correct what is wrong, and give names.\n"
     given = config.heights.model_copy(update={"by": "given"}).model_dump(mode="json")
-    reasons = {n: f"{name_part(n - 1)}: {shown(why, MOST_REASON)}" for n, why in enumerate(heights.reasons, 1)}
+    reasons = {n: f"{name_part(n - 1)}: {shown(why, MAX_REASON)}" for n, why in enumerate(heights.reasons, 1)}
     parts = with_parts(rest, Path(), _blocks(config, heights), reasons)
     return f"{head}{parts}heights: {on_one_line(given)}\n"
 

@@ -17,7 +17,7 @@ from typing import Any, cast
 
 from ...data.products import PRODUCTS
 from ...errors import OutputError
-from ...files.reading import MOST_TEXT_BYTES, content_digest, read_bytes
+from ...files.reading import MAX_TEXT_BYTES, content_digest, read_bytes
 from ...files.writing import sweep, write_text
 from ...runtime.system.files import folder_lock
 
@@ -57,7 +57,7 @@ class Manifest:
 def read_manifest(folder: Path) -> Manifest | None:
     """Read the manifest of a folder; None where it is missing or damaged."""
     try:
-        plain = json.loads(read_bytes(folder / MANIFEST, MOST_TEXT_BYTES))
+        plain = json.loads(read_bytes(folder / MANIFEST, MAX_TEXT_BYTES))
         files = cast("dict[Any, Any]", plain["files"])
         own = {name: digest for name, digest in files.items() if isinstance(digest, str) and Path(name).name == name}
         return Manifest(str(plain["source"]), own, plain["complete"] is True)

@@ -6,8 +6,8 @@ from .kinds import MAPS as MAPS
 from .kinds import PICTURES as PICTURES
 from .kinds import VIDEOS as VIDEOS
 from .kinds import file_kind as file_kind
+from .pictures import MAX_IN_PALETTE as MAX_IN_PALETTE
 from .pictures import MAX_LABELS as MAX_LABELS
-from .pictures import MOST_IN_PALETTE as MOST_IN_PALETTE
 from .pictures import SPARE as SPARE
 from .pictures import TruthScale as TruthScale
 from .pictures import distinct_colours as distinct_colours

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...files.reading import MOST_TEXT_BYTES, check_size, read_bytes
+from ...files.reading import MAX_TEXT_BYTES, check_size, read_bytes
 from .map_numbers import is_nodata
 from .tiff import UnreadableError
 
@@ -56,7 +56,7 @@ def grid_header(path: Path, data: bytes) -> Mapping[str, str]:
         beside = next((path.with_suffix(end) for end in (".hdr", ".HDR") if path.with_suffix(end).is_file()), None)
         if beside is None:
             raise UnreadableError(f"its header {path.with_suffix('.hdr').name} is missing; put it next to the file")
-        data = read_bytes(beside, MOST_TEXT_BYTES) + b"\n"
+        data = read_bytes(beside, MAX_TEXT_BYTES) + b"\n"
     words: dict[str, str] = {}
     at = 0
     while line := _LINE.match(data, at):

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from ...data import Relief
 from ...data.pictures import size_in_words
 from ...errors import PictureError, quoted
-from ...files.reading import MOST_TEXT_BYTES, read_bytes
+from ...files.reading import MAX_TEXT_BYTES, read_bytes
 from .multi_picture import Notify, ignore
 from .tiff import tiff_description
 
@@ -93,7 +93,7 @@ def read_heights_metadata(path: Path) -> HeightsMetadata | None:
     kind = path.suffix.lower()
     try:
         if kind == ".json":
-            return _parse(read_bytes(path, MOST_TEXT_BYTES), path)
+            return _parse(read_bytes(path, MAX_TEXT_BYTES), path)
         if kind == ".png":
             metadata = metadata_beside(path)
             return metadata if metadata is not None and metadata.file == path.name else None
@@ -108,7 +108,7 @@ def metadata_beside(path: Path) -> HeightsMetadata | None:
     """Read the metadata in the JSON text beside a picture, whatever picture they describe. Raises: PictureError."""
     text_path = path.with_suffix(".json")
     try:
-        return _parse(read_bytes(text_path, MOST_TEXT_BYTES), text_path)
+        return _parse(read_bytes(text_path, MAX_TEXT_BYTES), text_path)
     except OSError:
         return None
 

@@ -170,13 +170,13 @@ def truth_of(
     return 4 * red + green / 64 + blue / 16384
 
 
-MOST_IN_PALETTE = 256
+MAX_IN_PALETTE = 256
 """Largest number of colours in the palette of a PNG."""
 SPARE = 24
 """Number of unused colours in the palette, for new parts in a paint program that keeps to the palette."""
 STEPS = 21
 """Levels of red, green and blue among which colours are chosen: more colours than a label picture may have labels."""
-DARKEST, LIGHTEST, MOST_CHROMA = 30.0, 92.0, 85.0
+DARKEST, LIGHTEST, MAX_CHROMA = 30.0, 92.0, 85.0
 """Bounds of the colours in CIELAB: black and white are a paint program's defaults, and strong colours glare."""
 
 
@@ -193,7 +193,7 @@ def distinct_colours(count: int) -> UInt8[np.ndarray, "n 3"]:
     with plain_opencv():
         lab = cv2.cvtColor(colours[None].astype(np.float32) / 255, cv2.COLOR_RGB2LAB)[0]
     chroma = np.hypot(lab[:, 1], lab[:, 2])
-    pleasant = (lab[:, 0] >= DARKEST) & (lab[:, 0] <= LIGHTEST) & (chroma <= MOST_CHROMA)
+    pleasant = (lab[:, 0] >= DARKEST) & (lab[:, 0] <= LIGHTEST) & (chroma <= MAX_CHROMA)
     colours, lab, chroma = colours[pleasant], lab[pleasant], chroma[pleasant]
     chosen = [int(chroma.argmax())]
     far = np.linalg.norm(lab - lab[chosen[0]], axis=1)
@@ -211,8 +211,8 @@ def labels_by_colour(picture: UInt8[np.ndarray, "h w c"], name: str) -> Int32[np
     Raises: PictureError for one whose colours were mixed.
     """
     codes, places = np.unique(_codes(picture), return_inverse=True)
-    ours = {int(code): number for number, code in enumerate(_codes(distinct_colours(MOST_IN_PALETTE)))}
-    numbers = np.array([ours.get(int(code), -1) for code in codes[: 2 * MOST_IN_PALETTE]])
+    ours = {int(code): number for number, code in enumerate(_codes(distinct_colours(MAX_IN_PALETTE)))}
+    numbers = np.array([ours.get(int(code), -1) for code in codes[: 2 * MAX_IN_PALETTE]])
     known = numbers >= 0
     if known.sum() < 2 or numbers.max() >= 2 * known.sum() + SPARE:
         return None

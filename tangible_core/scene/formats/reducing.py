@@ -6,22 +6,22 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import PictureError
-from ...files.reading import MOST_PIXELS, TOO_MANY_PIXELS, check_size
+from ...files.reading import MAX_PIXELS, TOO_MANY_PIXELS, check_size
 from .decoding import decode_plain, image_values, meaning, orientation, picture_errors, png_size, upright
 from .kinds import JPEG, PNG
 from .multi_picture import Notify, ignore
 from .tiff import TIFF, tiff_picture, tiff_size
 
-MOST_REDUCED = 10 * MOST_PIXELS
+MAX_REDUCED = 10 * MAX_PIXELS
 """The most pixels of a picture that is reduced while it is decoded: more would take minutes."""
 
 
 def decode_reduced(path: Path, data: bytes, notify: Notify = ignore) -> np.ndarray | None:
-    """Decode a JPEG, PNG or TIFF of more than MOST_PIXELS at a half, a quarter or an eighth of its sides.
+    """Decode a JPEG, PNG or TIFF of more than MAX_PIXELS at a half, a quarter or an eighth of its sides.
 
     The whole picture is never in memory: the decoder of JPEG leaves out the finer waves of each block, and a PNG or
     TIFF is decoded in bands of rows.
-    Returns: None for a picture that is not too large, larger than MOST_REDUCED, or of another format.
+    Returns: None for a picture that is not too large, larger than MAX_REDUCED, or of another format.
     """
     with picture_errors(path):
         if data[:3] == JPEG:
@@ -69,9 +69,9 @@ def _reduced_bands(path: Path, data: bytes, notify: Notify) -> np.ndarray | None
 
 def _times(rows: int, columns: int) -> int | None:
     """Return the factor by which the sides of a picture are reduced; None if it is not too large, or much too large."""
-    if not MOST_PIXELS < columns * rows <= MOST_REDUCED:
+    if not MAX_PIXELS < columns * rows <= MAX_REDUCED:
         return None
-    return next((each for each in (2, 4, 8) if -(-rows // each) * -(-columns // each) <= MOST_PIXELS), None)
+    return next((each for each in (2, 4, 8) if -(-rows // each) * -(-columns // each) <= MAX_PIXELS), None)
 
 
 def _notify_reduced(path: Path, rows: int, columns: int, times: int, notify: Notify) -> None:

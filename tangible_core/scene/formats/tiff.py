@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 import numpy as np
 from jaxtyping import Bool
 
-from ...files.reading import MOST_PIXELS, check_size
+from ...files.reading import MAX_PIXELS, check_size
 
 if TYPE_CHECKING:
     from tifffile import TiffFile, TiffPage
@@ -231,7 +231,7 @@ def _bands(page: "TiffPage", data: bytes) -> Iterator[np.ndarray]:
         yield from (whole[:, :, top : top + high].astype(dtype) for top in range(0, rows, high))
         return
     high, wide = (page.tilelength, page.tilewidth) if page.is_tiled else (min(rows, page.rowsperstrip), columns)
-    if high * columns > MOST_PIXELS:
+    if high * columns > MAX_PIXELS:
         raise WholePieceError("save it in strips or in tiles, or as PNG")
     together = max(1, BAND_PIXELS // (columns * high)) * high
     tables = {"jpegtables": page.jpegtables, "jpegheader": page.jpegheader} if page.compression in _JPEG else {}

@@ -20,7 +20,7 @@ AGAIN_S = 0.5
 """Pause between two attempts to reach an unplugged camera, seconds."""
 SLICE_S = 0.2
 """Longest single wait, seconds: some systems deliver a signal only between two waits."""
-MOST_DAMAGED = 30
+MAX_DAMAGED = 30
 """Number of damaged pictures in a row after which a camera counts as lost."""
 ENDED_S = 0.8
 """Time that `close` waits for the thread, seconds; if the camera's driver hangs, the thread ends when it returns."""
@@ -151,7 +151,7 @@ class CameraFrames(VideoFrames):
 
     def _take_all(self, capture: Capture) -> None:
         damaged = 0
-        while damaged < MOST_DAMAGED and not self._closed.is_set() and grab(capture):
+        while damaged < MAX_DAMAGED and not self._closed.is_set() and grab(capture):
             taken_s = monotonic()
             if (picture := retrieve(capture, f"camera {self._camera}")) is None:
                 damaged += 1

@@ -22,9 +22,9 @@ from ..formats.decoding import absent
 
 USUAL_FPS = 30.0
 """Frames a second of a folder, and of a source that states no plausible rate."""
-LEAST_FPS, MOST_FPS = 0.1, 480.0
+MIN_FPS, MAX_FPS = 0.1, 480.0
 """Bounds of a plausible rate; some sources state 0, or the ticks of their clock."""
-MOST_THREADS = 4
+MAX_THREADS = 4
 """Largest number of threads of a decoder, as each holds frames of its own."""
 
 
@@ -46,7 +46,7 @@ def open_file(path: Path) -> Capture:
 
     _check_is_file(path)
     with silent_opencv():
-        threads = [cv2.CAP_PROP_N_THREADS, min(thread_limit() or processors(), MOST_THREADS)]
+        threads = [cv2.CAP_PROP_N_THREADS, min(thread_limit() or processors(), MAX_THREADS)]
         capture = cv2.VideoCapture(str(path.absolute()), cv2.CAP_FFMPEG, threads)
     if not capture.isOpened():
         raise PictureError(
@@ -94,7 +94,7 @@ def stated_fps(capture: Capture) -> float | None:
     import cv2
 
     fps = capture.get(cv2.CAP_PROP_FPS)
-    return fps if isfinite(fps) and LEAST_FPS <= fps <= MOST_FPS else None
+    return fps if isfinite(fps) and MIN_FPS <= fps <= MAX_FPS else None
 
 
 def stated_count(capture: Capture) -> int | None:

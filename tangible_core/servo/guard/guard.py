@@ -45,7 +45,7 @@ def _count(memory, flags):
 @inner(forceinline=True)
 def _stop(memory, flag):
     """Return zero force and clear all memory that a fault may have corrupted; afterwards the force fades in again."""
-    for i in range(3 * (at.MOST_DELAY + 1)):
+    for i in range(3 * (at.MAX_DELAY + 1)):
         memory[at.HELD + i] = 0.0
     memory[at.FORCE] = memory[at.FORCE + 1] = memory[at.FORCE + 2] = 0.0
     _forget(memory)

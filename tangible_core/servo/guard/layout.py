@@ -1,6 +1,6 @@
 """The layout of a guard's two arrays: indices of its settings and of its memory."""
 
-MOST_DELAY = 8
+MAX_DELAY = 8
 """Greatest delay of a force, ticks; the memory holds one force for each."""
 
 (
@@ -14,19 +14,19 @@ MOST_DELAY = 8
     DELAY,
     BRAKE,
     CREDIT,
-    MOST_DEBT_J,
+    MAX_DEBT_J,
     COUPLING,
     COUPLING_DAMPING,
     COUPLING_LAW,
     SURFACE_W,
-    MOST_SURFACE_J,
+    MAX_SURFACE_J,
     SETTINGS,
 ) = range(17)
 """Indices of the settings, which a guard reads; the last is their number. N/m and N s/m where the name has no unit.
 
 STIFFNESS_TIMES_PERIOD, N s/m: divided by the period, it is the greatest stable stiffness. CREDIT: the damping whose
 dissipation the loop is credited with. COUPLING: stiffness of the coupling, 0 for none; COUPLING_LAW: stiffness of the
-force law behind it. SURFACE_W, MOST_SURFACE_J: limits of the work of a moving surface, as sustained power and as energy
+force law behind it. SURFACE_W, MAX_SURFACE_J: limits of the work of a moving surface, as sustained power and as energy
 at once.
 """
 
@@ -39,7 +39,7 @@ RAMP, GAIN, MEAN_S, MEAN_S2, ENERGY_J, AGE_S, SLOT = range(6, 13)
 that the loop received and may return; time without a fresh position; slot in HELD of the oldest delayed force."""
 HELD = 13
 """Memory: the forces that are delayed on their way to the hand, or act on it."""
-TOOL = HELD + 3 * (MOST_DELAY + 1)
+TOOL = HELD + 3 * (MAX_DELAY + 1)
 """Memory: the tool of the coupling: position, with x NaN if it has none, velocity, and the law's force on it."""
 COUNTS = TOOL + 9
 """Memory: ticks with each flag of the guard, by the flag's bit."""

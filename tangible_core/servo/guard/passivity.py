@@ -30,10 +30,10 @@ def _surface_work(settings, memory, elapsed_s, rise):
     no more than it did, which it may do again: energy that the hand put into the spring and a sinking surface releases
     is lost to the hand.
     """
-    may_j = min(memory[at.MAY_GIVE_J] + settings[at.SURFACE_W] * elapsed_s, settings[at.MOST_SURFACE_J])
+    may_j = min(memory[at.MAY_GIVE_J] + settings[at.SURFACE_W] * elapsed_s, settings[at.MAX_SURFACE_J])
     work = _limit_work(memory, 0.5 * memory[at.SURFACE_FORCE_N] * (memory[at.LAST_RISE_M] + rise), may_j)
     memory[at.GIVEN_J] += work
-    memory[at.MAY_GIVE_J] = min(may_j - work, settings[at.MOST_SURFACE_J])
+    memory[at.MAY_GIVE_J] = min(may_j - work, settings[at.MAX_SURFACE_J])
     return work
 
 
@@ -55,7 +55,7 @@ def _observe(settings, memory, elapsed_s, rise, x, y, z):
         work = memory[slot] * dx + memory[slot + 1] * dy + memory[slot + 2] * dz
         work -= _surface_work(settings, memory, elapsed_s, rise)
         memory[at.ENERGY_J] = max(
-            memory[at.ENERGY_J] - work + settings[at.CREDIT] * way / elapsed_s, -settings[at.MOST_DEBT_J]
+            memory[at.ENERGY_J] - work + settings[at.CREDIT] * way / elapsed_s, -settings[at.MAX_DEBT_J]
         )
     memory[at.PLACE], memory[at.PLACE + 1], memory[at.PLACE + 2] = x, y, z
 

@@ -57,7 +57,7 @@ class Safety(Quantities):
     stiffness_margin: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 0.8
     """Fraction of the stiffness limit that a force law may use. The rest compensates for the law's own damping, whose
     delay adds energy too."""
-    delay_ticks: Annotated[int, Field(ge=0, le=at.MOST_DELAY)] = 0
+    delay_ticks: Annotated[int, Field(ge=0, le=at.MAX_DELAY)] = 0
     """Delay, in whole ticks, from reading a position to its force on the hand, beyond the tick itself."""
     friction_n: Positive | None = None
     """Coulomb friction of the handle, if it was measured: it limits the stiffness that coarse encoders allow."""
@@ -90,9 +90,9 @@ class Safety(Quantities):
         settings[at.DELAY] = self.delay_ticks
         settings[at.BRAKE] = 0 if self.passivity == "off" else BRAKE_TIMES * damping
         settings[at.CREDIT] = self.stiffness_margin * damping if self.passivity == "coupled" else 0
-        settings[at.MOST_DEBT_J] = settings[at.MAX_FORCE_N] * DEBT_M
+        settings[at.MAX_DEBT_J] = settings[at.MAX_FORCE_N] * DEBT_M
         settings[at.SURFACE_W] = settings[at.MAX_FORCE_N] * SURFACE_M_PER_S
-        settings[at.MOST_SURFACE_J] = memory[at.MAY_GIVE_J] = settings[at.MAX_FORCE_N] * SURFACE_M
+        settings[at.MAX_SURFACE_J] = memory[at.MAY_GIVE_J] = settings[at.MAX_FORCE_N] * SURFACE_M
         settings[at.STIFFNESS] = stiffness_n_per_m
         if self.coupling is not None:
             self._couple(settings, damping, stiffness_n_per_m)

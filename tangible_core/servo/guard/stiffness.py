@@ -22,7 +22,7 @@ LAYERS = 24
 """Number of heights at which the surface is searched, from the top of the workspace to just under its floor."""
 HALVINGS = 10
 """Number of bisections between two of these heights, until the surface is known within some micrometres."""
-MOST_S = 3.0
+MAX_S = 3.0
 """Longest time of a measurement; what was measured by then counts. Most force laws take a twentieth of it."""
 GOLDEN = (0.7548776662466927, 0.5698402909980532)
 """1 / g and 1 / g^2 with g^3 = g + 1: their multiples fill a square evenly, in step with no grid of cells.
@@ -40,7 +40,7 @@ class Stiffness(NamedTuple):
 
 
 def stiffness_of(touch: Touch, spec: DeviceSpec) -> Stiffness:
-    """Return the stiffness that a force law states, or else measure that of a copy, in MOST_S at most.
+    """Return the stiffness that a force law states, or else measure that of a copy, in MAX_S at most.
 
     If the law cannot be copied, or raises, the slopes measured until then count; the loop will report the fault.
     Raises: BrokenMethod for a stiffness that is negative or not finite.
@@ -56,7 +56,7 @@ def stiffness_of(touch: Touch, spec: DeviceSpec) -> Stiffness:
 
 
 def _measure(touch: Touch, spec: DeviceSpec) -> Stiffness:
-    steepest, trouble = 0.0, f"; it took longer than {MOST_S:g} s"
+    steepest, trouble = 0.0, f"; it took longer than {MAX_S:g} s"
 
     def probe() -> None:
         nonlocal steepest, trouble
@@ -70,7 +70,7 @@ def _measure(touch: Touch, spec: DeviceSpec) -> Stiffness:
 
     probing = threading.Thread(target=probe, daemon=True)  # a law that never answers must not block the host
     probing.start()
-    probing.join(MOST_S)
+    probing.join(MAX_S)
     how = f"{type(touch).__name__} does not state its stiffness; {steepest:.4g} N/m was measured{trouble}"
     log.log(logging.WARNING if trouble else logging.INFO, "%s", how)
     return Stiffness(steepest, how)

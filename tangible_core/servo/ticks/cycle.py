@@ -25,7 +25,7 @@ from ..ring import (
     LEAD_NS,
     LONGEST_S,
     MARKS,
-    MOST_LATE_S,
+    MAX_LATE_S,
     NEXT_NS,
     PEAK_N,
     PERIOD_NS,
@@ -75,7 +75,7 @@ def publish(header, sums, late, period, contact, stamps, ticks, row, at_ns, late
     if force_n > 0:
         contact[int(min(1000 * force_n, STRONGEST_MN - 1.0))] += 1
     late[min(max(late_ns, 0) // 1000, WIDEST_US - 1)] += 1
-    sums[MOST_LATE_S] = max(sums[MOST_LATE_S], late_ns / SECOND_NS)
+    sums[MAX_LATE_S] = max(sums[MAX_LATE_S], late_ns / SECOND_NS)
     if count > 0:
         last = ticks[(count - 1) % stamps.shape[0]]
         sums[WORK_J] += last[11] * (row[2] - last[2]) + last[12] * (row[3] - last[3]) + last[13] * (row[4] - last[4])

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..ring import COUNT, LAST, LEAD_NS, NEXT_NS, OVERRUNS, PERIOD_NS, SPINS, STOP, SWAP
 
-MOST_LEAD_NS = 150_000
+MAX_LEAD_NS = 150_000
 """Longest time for which a loop spins before a tick: 15 % of a period of 1 ms."""
 
 
@@ -24,7 +24,7 @@ def begin_tick(header: np.ndarray, at_ns: int) -> int:
     late_ns = at_ns - header[NEXT_NS]
     if header[SPINS] != 0:
         lead_ns = header[LEAD_NS]
-        header[LEAD_NS] = min(lead_ns + 10_000, MOST_LEAD_NS) if late_ns > 1_000 else max(lead_ns - 10, 0)
+        header[LEAD_NS] = min(lead_ns + 10_000, MAX_LEAD_NS) if late_ns > 1_000 else max(lead_ns - 10, 0)
     missed = late_ns // header[PERIOD_NS]
     header[OVERRUNS] += missed
     header[NEXT_NS] += (missed + 1) * header[PERIOD_NS]

@@ -25,7 +25,7 @@ OPEN_AGAIN_S = 1.0
 """Interval of attempts to open a source."""
 NICENESS = 5
 """Niceness of the thread, so that the force loop's process goes first; on systems with a niceness per thread."""
-MOST_WAIT_S = 0.01
+MAX_WAIT_S = 0.01
 """Longest time between two checks for a frame."""
 AGES = 1000
 """Number of frames over which the median age is computed."""
@@ -151,7 +151,7 @@ class Player:
                 self._screen.repeat()
                 again_s = now_s + frame_s
             else:
-                self._ending.wait(min(frame_s / 8, MOST_WAIT_S))
+                self._ending.wait(min(frame_s / 8, MAX_WAIT_S))
             self._skipped = reliefs.frames.skipped
 
     def _due(self, frames: VideoFrames) -> VideoFrame | None:

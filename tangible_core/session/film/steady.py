@@ -11,7 +11,7 @@ AVERAGED = 0.2
 """Weight of a new value in the average, where it differs little: after five frames, two thirds are new."""
 GATE_PX, GATE_SHARE = 1.0, 0.03
 """Threshold between noise and change: pixels of the pictures, or a share of the range of a relative map."""
-MOST_DOUBTS, MOST_MISSING = 2, 5
+MAX_DOUBTS, MAX_MISSING = 2, 5
 """Greatest number of frames for which a value is kept while other values, or none, are seen in its place."""
 CUT_SHARE = 0.5
 """Share of the known pixels above which a simultaneous change is a cut to another scene."""
@@ -64,7 +64,7 @@ class Steady:
         from . import steady_kernels
 
         out = np.empty_like(new)
-        how = (np.float32(AVERAGED), np.float32(self._gate), MOST_DOUBTS, MOST_MISSING)
+        how = (np.float32(AVERAGED), np.float32(self._gate), MAX_DOUBTS, MAX_MISSING)
         changed, known = cast(Any, steady_kernels).step(new, self._kept, self._waiting, self._doubts, out, *how)
         return out, changed > CUT_SHARE * known
 

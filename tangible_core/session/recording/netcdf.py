@@ -12,7 +12,7 @@ import numpy as np
 Attributes = Mapping[str, str | np.ndarray]
 COUNT_AT = 4
 """Offset of the number of records in the file, bytes."""
-MOST_RECORDS = 2**31 - 1
+MAX_RECORDS = 2**31 - 1
 """Greatest number of records of the format."""
 DIMENSION, VARIABLE, ATTRIBUTE = 10, 11, 12
 """Tags of the lists in a header."""

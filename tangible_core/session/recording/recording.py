@@ -171,7 +171,7 @@ class Recording(Record):
         """Load a recording that was saved, or written by a `Writer`; `stopped` notes if it was cut off.
 
         It needs memory for all ticks: half a gigabyte for an hour at 1 kHz.
-        Raises: OutputError if the file cannot be read, is not a recording, or is larger than `reading.MOST_BYTES`.
+        Raises: OutputError if the file cannot be read, is not a recording, or is larger than `reading.MAX_BYTES`.
         """
         return cls(*files.read(as_path(path)))
 

@@ -83,7 +83,7 @@ def compare_replay(before: Recording, after: Recording) -> dict[str, float]:
 
 NEAR_M = 1e-3
 """Greatest distance of two places that count as one: no hand finds a place again more exactly."""
-MOST_COMPARED = 100_000
+MAX_COMPARED = 100_000
 """Greatest number of ticks that are compared; a longer recording is thinned evenly."""
 SHOWN = ("ticks", "seconds", "contact_share", "median_contact_force_n", "peak_force_n", "work_j")
 """Names of the figures of each recording in the comparison."""
@@ -103,7 +103,7 @@ def compare_recordings(first: Recording, second: Recording, near_m: float = NEAR
     """
     check_positive("near_m", near_m)
     ours, theirs = (each.rows[np.isfinite(_places(each, near_m)).all(axis=1)] for each in (first, second))
-    ours = ours[:: max(1, -(-len(ours) // MOST_COMPARED))]
+    ours = ours[:: max(1, -(-len(ours) // MAX_COMPARED))]
     here, there = Recording(ours), Recording(theirs)
     partner, apart_m = _partners(here, there, near_m)
     near = apart_m <= near_m

@@ -218,7 +218,7 @@ class Writer:
             raise OutputError(f"ticks have shape (n, {len(TICK_COLUMNS)}), as TICK_COLUMNS, not {rows.shape}")
         if self.closed:
             raise OutputError(f"{self.path}: the recording is closed; start another one")
-        if self.ticks + len(rows) > netcdf.MOST_RECORDS:
+        if self.ticks + len(rows) > netcdf.MAX_RECORDS:
             self.close("the recording is full")
             raise OutputError(f"{self.path}: is full, with {self.ticks} ticks; start another one")
         if len(rows):

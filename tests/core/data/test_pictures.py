@@ -319,8 +319,8 @@ def test_picture_without_finite_pixels_cannot_be_filled():
 
 def test_jpeg_that_is_too_large_is_reduced_while_it_is_read(tmp_path, monkeypatch):
     """A picture of 96 x 64 pixels where 2000 are the most: half of its sides have 1536."""
-    monkeypatch.setattr(reducing, "MOST_PIXELS", 2000)
-    monkeypatch.setattr(reducing, "MOST_REDUCED", 20_000)
+    monkeypatch.setattr(reducing, "MAX_PIXELS", 2000)
+    monkeypatch.setattr(reducing, "MAX_REDUCED", 20_000)
     grey = np.repeat(np.linspace(0, 255, 96).astype(np.uint8)[None], 64, axis=0)
     path = put(tmp_path, "wide.jpg", encode(Image.fromarray(grey), "JPEG", quality=95))
     said = []
@@ -329,7 +329,7 @@ def test_jpeg_that_is_too_large_is_reduced_while_it_is_read(tmp_path, monkeypatc
     np.testing.assert_allclose(reduced, grey[::2, ::2], atol=6)
     assert said == ["wide.jpg has 0 megapixels; it is reduced to 48 x 32 pixels while it is read"]
     assert read_picture(path).shape == (64, 96), "labels, truths and pairs keep their pixels"
-    monkeypatch.setattr(reducing, "MOST_REDUCED", 4000)
+    monkeypatch.setattr(reducing, "MAX_REDUCED", 4000)
     assert read_picture(path, reduce=True).shape == (64, 96)
 
 
@@ -385,8 +385,8 @@ def test_png_and_tiff_that_are_too_large_are_reduced_while_they_are_read(tmp_pat
     REDUCED[name](path)
     whole = read_picture(path)
     monkeypatch.setattr(bands, "BAND_PIXELS", 600)
-    monkeypatch.setattr(reducing, "MOST_PIXELS", 1600)
-    monkeypatch.setattr(reducing, "MOST_REDUCED", 20_000)
+    monkeypatch.setattr(reducing, "MAX_PIXELS", 1600)
+    monkeypatch.setattr(reducing, "MAX_REDUCED", 20_000)
     said = []
     picture = read_picture(path, notify=said.append, reduce=True)
     turn = {"turned.png": 6, "turned.tif": 8}.get(name, 1)
@@ -434,7 +434,7 @@ def test_png_with_two_different_headers_is_refused(tmp_path):
 def test_large_picture_that_cannot_be_cut_into_bands_is_refused(tmp_path, monkeypatch, name, write, word):
     write(tmp_path / name)
     monkeypatch.setattr(bands, "BAND_PIXELS", 600)
-    monkeypatch.setattr(tiff_format, "MOST_PIXELS", 1600)
-    monkeypatch.setattr(reducing, "MOST_PIXELS", 1600)
+    monkeypatch.setattr(tiff_format, "MAX_PIXELS", 1600)
+    monkeypatch.setattr(reducing, "MAX_PIXELS", 1600)
     with pytest.raises(PictureError, match=word):
         read_picture(tmp_path / name, reduce=True)

@@ -15,7 +15,7 @@ from hypothesis.extra import numpy as arrays
 
 from hostile import npy_header, npz, npz_bomb
 from tangible_core.files.arrays import Archive, read_array, write_arrays
-from tangible_core.files.reading import MOST_BYTES, TooLargeError
+from tangible_core.files.reading import MAX_BYTES, TooLargeError
 
 ONE = npy_header((2, 3)) + np.arange(6.0).tobytes()
 
@@ -110,7 +110,7 @@ def archive_with_field(at: int, directory_at: int, what: bytes) -> bytes:
         (archive_with_field(8, 10, b"\x63\x00"), "its compression is not one"),
         (archive_with_field(14, 16, b"\x00\x00\x00\x00"), "Bad CRC-32"),
         (archive_with_field(22, 24, struct.pack("<I", 1000)), "bytes of numbers"),
-        (archive_with_field(22, 24, struct.pack("<I", MOST_BYTES + 1)), "more than 1424 MB"),
+        (archive_with_field(22, 24, struct.pack("<I", MAX_BYTES + 1)), "more than 1424 MB"),
         (archive_with_field(26, 28, b"\xff\xff"), ""),
     ],
     ids=map(str, range(99)),  # an archive holds the time at which it was made

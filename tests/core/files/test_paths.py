@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tangible_core.errors import ArgumentError, ConfigError
-from tangible_core.files.paths import MOST_NAME_BYTES, MOST_PATH_BYTES, as_path
+from tangible_core.files.paths import MAX_NAME_BYTES, MAX_PATH_BYTES, as_path
 
 
 def test_path_with_a_tilde_starts_in_that_users_home(monkeypatch: pytest.MonkeyPatch):
@@ -32,7 +32,7 @@ def test_name_that_no_file_can_have_is_refused(name: str):
 
 @pytest.mark.parametrize("letter", ["a", "ä", "漢", "🙂"])
 def test_longest_name_is_counted_in_bytes(letter: str):
-    most = MOST_NAME_BYTES // len(letter.encode())
+    most = MAX_NAME_BYTES // len(letter.encode())
     assert as_path("b/" + letter * most) == Path("b") / (letter * most)
     for name in (letter * (most + 1), letter * (most + 1) + "/b"):
         with pytest.raises(ConfigError, match="has at most 255 bytes; use a shorter one"):
@@ -40,7 +40,7 @@ def test_longest_name_is_counted_in_bytes(letter: str):
 
 
 def test_longest_path_is_counted_in_bytes():
-    most = "d/" * (MOST_PATH_BYTES // 2) + "x"
+    most = "d/" * (MAX_PATH_BYTES // 2) + "x"
     assert as_path(most) == Path(most)
     with pytest.raises(ConfigError, match="a path has at most 4095 bytes; use fewer folders"):
         as_path(most + "x")

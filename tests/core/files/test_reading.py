@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from tangible_core.files.reading import (
-    MOST_BYTES,
-    MOST_PIXELS,
+    MAX_BYTES,
+    MAX_PIXELS,
     TooLargeError,
     check_size,
     content_digest,
@@ -45,17 +45,17 @@ def test_file_of_unknown_size_is_read_up_to_a_bound(tmp_path: Path, monkeypatch:
     assert len(read_bytes(tmp_path / "a")) == 1 << 16
 
 
-SIDE = int(MOST_PIXELS**0.5)
+SIDE = int(MAX_PIXELS**0.5)
 
 
 @pytest.mark.parametrize(
     ("shape", "itemsize", "why"),
     [
         ((SIDE + 1, SIDE + 1), 1, "89 megapixels"),
-        ((1, MOST_PIXELS + 1), 1, "89 megapixels"),
-        ((1, MOST_PIXELS, 4), 5, "1424 MB"),
-        ((MOST_BYTES + 1,), 1, "1424 MB"),
-        ((MOST_BYTES // 8 + 1,), 8, "1424 MB"),
+        ((1, MAX_PIXELS + 1), 1, "89 megapixels"),
+        ((1, MAX_PIXELS, 4), 5, "1424 MB"),
+        ((MAX_BYTES + 1,), 1, "1424 MB"),
+        ((MAX_BYTES // 8 + 1,), 8, "1424 MB"),
         ((1 << 62, 1 << 62, 1 << 62), 8, "89 megapixels"),
         ((3, 3, 1 << 62), 8, "1424 MB"),
     ],
@@ -67,7 +67,7 @@ def test_array_size_over_a_limit_is_refused(shape: tuple[int, ...], itemsize: in
 
 @pytest.mark.parametrize(
     ("shape", "itemsize"),
-    [((1, MOST_PIXELS, 4), 4), ((1, MOST_PIXELS), 8), ((MOST_BYTES,), 1), ((), 8), ((0, 1 << 62), 8)],
+    [((1, MAX_PIXELS, 4), 4), ((1, MAX_PIXELS), 8), ((MAX_BYTES,), 1), ((), 8), ((0, 1 << 62), 8)],
 )
 def test_array_size_at_the_limit_is_accepted(shape: tuple[int, ...], itemsize: int):
     check_size(shape, itemsize)

@@ -6,7 +6,7 @@ import pytest
 from flights import fly, level, of, shape
 from tangible_core import load_method
 from tangible_core.preflight.checks.slopes import cliffs
-from tangible_core.preflight.strokes import DAMPING_N_S_PER_M, LINES, MOST_TICKS, SIDEWAYS, stroke
+from tangible_core.preflight.strokes import DAMPING_N_S_PER_M, LINES, MAX_TICKS, SIDEWAYS, stroke
 
 PERIOD_S, SPEED = 0.001, 0.12
 
@@ -30,7 +30,7 @@ def test_each_line_is_stroked_at_the_speed_of_the_hand():
         == found.held_up.size
         == 2 * LINES * round(0.92 * 0.08 / SPEED * 1000 + 0.5)
     )
-    assert strokes_of(level(), speed=0.001).force_n.size == 2 * LINES * MOST_TICKS
+    assert strokes_of(level(), speed=0.001).force_n.size == 2 * LINES * MAX_TICKS
 
 
 def test_hand_climbs_a_slope_with_the_push_of_the_formula():

@@ -13,7 +13,7 @@ from tangible_core.plugins.registry import load_method
 from tangible_core.servo import Beacon, Safety, beacon_to
 from tangible_core.servo.beacon import (
     BRAKED_FROM,
-    MOST_N,
+    MAX_N,
     PULL_N,
     RAMP_S,
     SOFT_M,
@@ -39,12 +39,12 @@ class TestPull:
         assert np.allclose(still_n, -slopes, atol=1e-12)
         assert np.hypot(*still_n.T).max() <= 1.01 * PULL_N
         fast_n = pulls(faded_in(part), np.hstack([places, random.uniform(-3, 3, places.shape)]))
-        assert np.hypot(*fast_n.T).max() <= MOST_N
+        assert np.hypot(*fast_n.T).max() <= MAX_N
 
         steep = np.hypot(*still_n.T)
         full = steep > BRAKED_FROM * PULL_N
         away_n = pulls(faded_in(part), np.hstack([places, -3 * still_n / np.maximum(steep, 1e-9)[:, None]]))
-        assert np.hypot(*away_n[full].T) == pytest.approx(np.minimum(steep[full] + MOST_N - PULL_N, MOST_N), rel=1e-9)
+        assert np.hypot(*away_n[full].T) == pytest.approx(np.minimum(steep[full] + MAX_N - PULL_N, MAX_N), rel=1e-9)
         assert full.any()
 
     @pytest.mark.parametrize("part", PARTS)
@@ -137,7 +137,7 @@ class TestFadingAndRelease:
                 state = np.zeros((1, 4))
                 state[0, axis] = bad
                 found = pulls(memory, state)
-                assert np.isfinite(found).all() and np.hypot(*found.T).max() <= MOST_N
+                assert np.isfinite(found).all() and np.hypot(*found.T).max() <= MAX_N
                 assert abs(bad) < math.inf or not found.any()
         assert pulls(memory, np.array([[-0.03, 0.0, 0.0, 0.0]])).any()
 

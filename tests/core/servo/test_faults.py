@@ -28,11 +28,11 @@ from waiting import until
 pytestmark = pytest.mark.usefixtures("own_memory")
 
 AT_ONCE = Safety(ramp_s=0, max_step_n=10)
-MOST_TICKS_AFTER = 500
+MAX_TICKS_AFTER = 500
 """Of 1 ms each, after whatever ends a loop: on a machine that is busy elsewhere, and far from the 3 s of one that is
 not stopped but killed. How few they are on a machine that is not busy, the benchmark `servo_faults` says."""
 
-MOST_AFTER_S = 2.0
+MAX_AFTER_S = 2.0
 """Time that a busy machine takes, after a watchdog's time-out, to clear a process away and open the device again."""
 
 
@@ -92,7 +92,7 @@ class TestInterruptedStart:
             if ran_through:
                 servo.stop()
                 assert interrupt.ticks == -1
-            assert ticks(servo) - max(interrupt.ticks, 0) <= MOST_TICKS_AFTER or ran_through, line
+            assert ticks(servo) - max(interrupt.ticks, 0) <= MAX_TICKS_AFTER or ran_through, line
             assert not held_force(record) > 0, line
             assert left_behind() == before, line
         assert line > 25
@@ -206,7 +206,7 @@ class TestStandstill:
             still_s = min([*killed, time.time()]) - last_s  # a killed process may take long to be gone
             assert servo.report().stopped == watchdog.STOOD_STILL
             assert held_force(record) == 0
-        assert limit_s - 0.05 <= still_s < limit_s + MOST_AFTER_S
+        assert limit_s - 0.05 <= still_s < limit_s + MAX_AFTER_S
 
     @pytest.mark.usefixtures("loop_in_thread")
     def test_law_that_compiles_on_first_use_is_not_a_standstill(self) -> None:

@@ -6,7 +6,7 @@ import pytest
 from ring_ticks import put
 from tangible_core.data import TICK_COLUMNS, TickFlag
 from tangible_core.servo import Ring
-from tangible_core.servo.ring import COUNT, MARKS, MOST_LATE_S, PERIOD_NS, WIDEST_US
+from tangible_core.servo.ring import COUNT, MARKS, MAX_LATE_S, PERIOD_NS, WIDEST_US
 from tangible_core.servo.ticks import cycle
 from tangible_core.servo.ticks.loop import sections
 
@@ -141,4 +141,4 @@ class TestWriting:
         assert {int(each): int(small.period[each]) for each in np.flatnonzero(small.period)} == {
             0: 1, 1000: 1, WIDEST_US - 1: 1,
         }  # fmt: skip
-        assert small.sums[MOST_LATE_S] == 10.0
+        assert small.sums[MAX_LATE_S] == 10.0

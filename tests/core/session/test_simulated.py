@@ -223,7 +223,7 @@ class TestEndings:
         assert link.held == NO_FORCE
 
     def test_recording_that_is_full_ends_the_session(self, monkeypatch: pytest.MonkeyPatch):
-        monkeypatch.setattr(simulated, "MOST_TICKS", 30)
+        monkeypatch.setattr(simulated, "MAX_TICKS", 30)
         recording, link = feel(lambda _: PUSH, 1e9)
         assert "full, 30 ticks" in recording.stopped
         assert recording.time_s.size == 30

@@ -67,7 +67,7 @@ def test_tick_sampler_takes_every_tenth_tick(monkeypatch: pytest.MonkeyPatch):
     for part in np.split(rows, [3, 4, 17, 120, 121, 500]):
         looks.keep(part)
     assert np.array_equal(looks.recording().rows, rows[::EVERY])
-    monkeypatch.setattr(import_module("tangible_core.session.tracking_error"), "MOST_LOOKS", 50)
+    monkeypatch.setattr(import_module("tangible_core.session.tracking_error"), "MAX_LOOKS", 50)
     looks = TickSampler()
     for part in np.split(rows, 10):
         looks.keep(part)

@@ -3,17 +3,17 @@
 import cv2
 import numpy as np
 
-from tangible_authoring.listed_parts import MOST_CELLS, ListedPart, list_rows
+from tangible_authoring.listed_parts import MAX_CELLS, ListedPart, list_rows
 from tangible_authoring.renumbering import Moved, moves
 from tangible_core.data import PartMap
 from tangible_core.parts import PartChoice, PartHeights
-from tangible_core.scene.formats.pictures import DARKEST, LIGHTEST, MOST_CHROMA, STEPS, distinct_colours
+from tangible_core.scene.formats.pictures import DARKEST, LIGHTEST, MAX_CHROMA, STEPS, distinct_colours
 from tangible_report.numbered_parts import Before
 
 
 def test_rows_have_place_share_height_and_material_of_each_part():
     """A speck between the cells on which places are found has its place all the same."""
-    labels = np.zeros((100, 2 * MOST_CELLS + 100), np.int32)
+    labels = np.zeros((100, 2 * MAX_CELLS + 100), np.int32)
     labels[:, 900:], labels[99, 1], labels[40:60, 500:600] = 1, 2, 3
     heights = PartHeights((0.001, 0.002, 0.0, 0.003), ("a", "b", "c", "d"))
     choices = {1: PartChoice(name=" sea ", material="wood"), 3: PartChoice(name="sun")}
@@ -36,7 +36,7 @@ def test_each_colour_is_the_farthest_of_all_from_those_before_it():
     lab = cv2.cvtColor(cube[None].astype(np.float32) / 255, cv2.COLOR_RGB2LAB)[0]
     chroma = np.hypot(lab[:, 1], lab[:, 2])
     cube, lab = (
-        each[(lab[:, 0] >= DARKEST) & (lab[:, 0] <= LIGHTEST) & (chroma <= MOST_CHROMA)] for each in (cube, lab)
+        each[(lab[:, 0] >= DARKEST) & (lab[:, 0] <= LIGHTEST) & (chroma <= MAX_CHROMA)] for each in (cube, lab)
     )
     chosen = distinct_colours(30)
     at = [int(np.flatnonzero((cube == each).all(axis=1))[0]) for each in chosen]

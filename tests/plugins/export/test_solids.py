@@ -227,7 +227,7 @@ class TestNotes:
         assert ("steeper than 45 degrees" in notes) == is_noted
 
     def test_solid_of_noise_has_limited_triangles(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-        monkeypatch.setattr(making, "MOST_TRIANGLES", 500)
+        monkeypatch.setattr(making, "MAX_TRIANGLES", 500)
         sample = work(rough(), 0.05)
         with collected() as notes:
             mesh = write_and_read(bare(Stl), sample, tmp_path)

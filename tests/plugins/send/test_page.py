@@ -22,9 +22,9 @@ from tangible_core.plugins.notes import collect_notes
 from tangible_depth import Luminance
 from tangible_legibility.words.languages import Language, Words, one_line
 from tangible_render.surface.coefficients import spline_coefficients
-from tangible_send.packing import LEAST_PHOTO, deflate, page_of
+from tangible_send.packing import MIN_PHOTO, deflate, page_of
 from tangible_send.page import Page
-from tangible_send.surface import MOST_CELLS, surface_to_send
+from tangible_send.surface import MAX_CELLS, surface_to_send
 from videos import write_video
 
 pytestmark = pytest.mark.usefixtures("built")
@@ -100,7 +100,7 @@ def test_file_is_as_small_as_is_asked(tmp_path: Path):
     assert "of 960 x 720" in said and "steps of" in said
     photo = json.loads(Elements(path.read_text("utf-8")).texts("script")[0])["photo"]
     assert Image.open(BytesIO(b64decode(photo))).size[0] > 300
-    assert len(photo) > 0.6 * LEAST_PHOTO, "the surface leaves room for it"
+    assert len(photo) > 0.6 * MIN_PHOTO, "the surface leaves room for it"
     with pytest.raises(OutputError, match="make `most_bytes` larger"):
         Page.model_construct(most_bytes=700_000).write(work, tmp_path / "it")
 
@@ -151,7 +151,7 @@ def test_surface_without_parts_is_sent_plainly(tmp_path: Path):
     assert data["labels"] == "" and data["kinds"] == data["meta"]["materials"] == []
     assert (data["meta"]["labels"], data["meta"]["parts"]) == (0, None)
     assert data["rows"] == [[800.0, 0.0, 0.0, 0.0]]
-    assert data["meta"]["rows"] * data["meta"]["columns"] == pytest.approx(MOST_CELLS, rel=0.01)
+    assert data["meta"]["rows"] * data["meta"]["columns"] == pytest.approx(MAX_CELLS, rel=0.01)
 
 
 @pytest.mark.parametrize(

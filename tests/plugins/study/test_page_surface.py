@@ -7,7 +7,7 @@ import pytest
 
 from tangible_core import HapticSurface
 from tangible_core.materials.assignment import library
-from tangible_study.desks.page_surface import MOST_CELLS, surface_for_page
+from tangible_study.desks.page_surface import MAX_CELLS, surface_for_page
 
 
 def test_surface_is_packed_without_what_would_name_it():
@@ -35,7 +35,7 @@ def test_large_surface_has_fewer_cells_of_which_labels_are_of_the_middles():
     surface = HapticSurface.from_heights(np.float32(labels * 0.001), 0.12, labels, made_of)
     sent = surface_for_page(surface, 1)
     rows, columns = sent["meta"]["rows"], sent["meta"]["columns"]
-    assert 0.8 * MOST_CELLS < rows * columns <= MOST_CELLS and columns / rows == pytest.approx(4 / 3, rel=0.01)
+    assert 0.8 * MAX_CELLS < rows * columns <= MAX_CELLS and columns / rows == pytest.approx(4 / 3, rel=0.01)
     at = np.frombuffer(b64decode(sent["labels"]), "<u2").reshape(rows, columns)
     middle = ((np.arange(columns) + 0.5) * 1200 / columns).astype(int)
     assert np.array_equal(at[0], middle >= 700)

@@ -13,7 +13,7 @@ from broken_messages import broken_request, send_broken
 from participants import Participant
 from tangible_study.desks.page import Page
 from tangible_web import connection
-from tangible_web.connection import MOST_STRANGERS
+from tangible_web.connection import MAX_STRANGERS
 from waiting import LONGEST_S, until
 
 
@@ -71,7 +71,7 @@ def test_half_open_connections_keep_nobody_from_the_stop(page: Page, monkeypatch
     with ExitStack() as open_ones:
         known = open_ones.enter_context(Browser(page))
         assert known.ask("GET", known.path) == 200
-        strangers = [open_ones.enter_context(Browser(page)) for _ in range(MOST_STRANGERS + 20)]
+        strangers = [open_ones.enter_context(Browser(page)) for _ in range(MAX_STRANGERS + 20)]
         for stranger, said in zip(strangers, (b"", b"GET / HT", b"POST / HTTP/1.1\r\nHost: ") * 1000, strict=False):
             stranger.socket.sendall(said)
         assert all(not each.status() for each in strangers[:20]), "the longest open are cut off"

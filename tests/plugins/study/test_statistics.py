@@ -10,7 +10,7 @@ from tangible_study.statistics.intervals import Estimate, difference, mean, p_of
 from tangible_study.statistics.psychometric import (
     GAUSSIAN,
     JND,
-    MOST_LAPSES,
+    MAX_LAPSES,
     Blocks,
     fit_choice,
     fit_difference,
@@ -156,7 +156,7 @@ def test_bounds_of_a_width_are_where_the_likelihood_ratio_has_its_quantile():
 
     def lack(width: float) -> float:
         def negative(free: np.ndarray) -> float:
-            lapses = MOST_LAPSES / (1 + np.exp(-free[1]))
+            lapses = MAX_LAPSES / (1 + np.exp(-free[1]))
             share = lapses + (1 - 2 * lapses) * stats.norm.cdf((levels - free[0]) / (width / GAUSSIAN))
             return -float((counts * np.log(share) + (trials - counts) * np.log1p(-share)).sum())
 

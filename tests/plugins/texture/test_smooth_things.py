@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from label_maps import rand_index
 from tangible_texture import Hierarchy
 from tangible_texture.gradient import Gradient
-from tangible_texture.histogram import MOST_LEVELS, Histogram, OtsuClasses
-from tangible_texture.regions.basins import MOST_SEGMENTS
+from tangible_texture.histogram import MAX_LEVELS, Histogram, OtsuClasses
+from tangible_texture.regions.basins import MAX_SEGMENTS
 from tangible_texture.regions.small_parts import remove_small_parts
 from wavy_cells import cells, smooth_scene
 
@@ -81,7 +81,7 @@ class TestGradient:
     def test_auto_stops_at_its_bound(self):
         levels = np.random.default_rng(0).permutation(np.linspace(0, 255, 144)).reshape(12, 12)
         picture = np.kron(levels, np.ones((24, 24))).astype(np.uint8)
-        assert Gradient().segment(picture).count == MOST_SEGMENTS
+        assert Gradient().segment(picture).count == MAX_SEGMENTS
         assert Gradient(segments=144, sigma_px=1.5).segment(picture).count > 120
 
     def test_confidence_falls_towards_edges(self):
@@ -174,8 +174,8 @@ class TestHierarchy:
         numbers = np.kron(np.arange(100).reshape(10, 10) * 37 % 100, np.ones((20, 20), int))
         colours = np.random.default_rng(0).permutation(np.indices((5, 5, 4)).reshape(3, -1).T * [60, 60, 80])
         picture = colours[numbers].astype(np.uint8)
-        assert Hierarchy(segments=200).segment(picture).count > MOST_SEGMENTS
-        assert Hierarchy(level=0.02).segment(picture).count == MOST_SEGMENTS == 64
+        assert Hierarchy(segments=200).segment(picture).count > MAX_SEGMENTS
+        assert Hierarchy(level=0.02).segment(picture).count == MAX_SEGMENTS == 64
 
 
 def spread(levels: np.ndarray, counts: np.ndarray, starts: tuple[int, ...]) -> float:
@@ -204,12 +204,12 @@ class TestOtsuClasses:
     def test_levels_even_or_of_one_gaussian_are_one_class(self):
         levels = np.arange(256.0)
         for counts in (np.full(256, 9), np.rint(9999 * np.exp(-(((levels - 128) / 30) ** 2) / 2)).astype(int) + 1):
-            assert OtsuClasses(levels, counts, MOST_LEVELS).clearest() == (1, 1.0)
+            assert OtsuClasses(levels, counts, MAX_LEVELS).clearest() == (1, 1.0)
 
     def test_humps_are_counted(self):
         levels = np.arange(256.0)
         humps = sum(np.exp(-(((levels - mean) / 5) ** 2) / 2) for mean in (40, 110, 200))
-        number, ratio = OtsuClasses(levels, np.rint(9999 * humps).astype(int) + 1, MOST_LEVELS).clearest()
+        number, ratio = OtsuClasses(levels, np.rint(9999 * humps).astype(int) + 1, MAX_LEVELS).clearest()
         assert number == 3
         assert ratio < 0.2
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.nightly
 DOCS = ROOT / "docs"
-MOST_BYTES = 150_000
+MAX_BYTES = 150_000
 KEPT = bool(os.environ.get("TANGIBLE_UI_PICTURES"))
 COLOURS = 200
 """Colours of a palette: the photograph is small, and the rest has few."""
@@ -188,7 +188,7 @@ def keep(picture: Image.Image, folder: Path, name: str) -> None:
     path = (DOCS if KEPT else folder) / f"{name}.png"
     path.parent.mkdir(exist_ok=True)
     picture.quantize(COLOURS, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).save(path, optimize=True)
-    assert path.stat().st_size < MOST_BYTES
+    assert path.stat().st_size < MAX_BYTES
 
 
 def touched(page: "Page") -> Image.Image:

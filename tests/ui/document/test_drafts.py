@@ -16,8 +16,8 @@ from tangible_core.errors import OutputError
 from tangible_ui import stale_files as left_behind
 from tangible_ui.stale_files import channel_of_this_process, folder_of_this_process, left_in
 from tangible_ui.state import drafts
-from tangible_ui.state.drafts import MOST_LEFT, Drafts
-from tangible_ui.state.texts import MOST_STEPS, Text, Texts
+from tangible_ui.state.drafts import MAX_LEFT, Drafts
+from tangible_ui.state.texts import MAX_STEPS, Text, Texts
 from tangible_ui.worker import jobs, process
 from tangible_ui.worker.messages import JobFailure, JobRequest
 
@@ -81,7 +81,7 @@ class TestDrafts:
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(left_behind, "is_alive", lambda process: False)
-        for number in range(1, MOST_LEFT + 4):
+        for number in range(1, MAX_LEFT + 4):
             file = tmp_path / f"{number}.json"
             file.write_text(f'{{"text": "{number}", "path": "/a"}}')
             os.utime(file, (number, number))
@@ -89,8 +89,8 @@ class TestDrafts:
             (tmp_path / f"{number}.json").write_text(wrong)
         draft = Drafts(tmp_path).look()
         assert draft is not None
-        assert (draft.text.text, draft.at_s) == (str(MOST_LEFT + 3), MOST_LEFT + 3)
-        assert len(list(tmp_path.glob("*.json"))) == MOST_LEFT + 3
+        assert (draft.text.text, draft.at_s) == (str(MAX_LEFT + 3), MAX_LEFT + 3)
+        assert len(list(tmp_path.glob("*.json"))) == MAX_LEFT + 3
 
     def test_full_disk_is_warned_of_once(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
@@ -193,6 +193,6 @@ def test_texts_are_rewritten_on_both_sides_and_stay_bounded():
     texts.step(text(3), back=True)
     texts.rewrite({text(number).text: f"moved {number}\n" for number in (0, 3)})
     assert texts.all == ["moved 0\n", text(1).text, "moved 3\n"]
-    for number in range(MOST_STEPS + 5):
+    for number in range(MAX_STEPS + 5):
         texts.leave(text(number))
-    assert len(texts.all) == MOST_STEPS
+    assert len(texts.all) == MAX_STEPS

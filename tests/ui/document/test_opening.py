@@ -107,7 +107,7 @@ class TestUploadStore:
         put(store, batch, "0.png", b"again")
         with pytest.raises(ConfigError, match="more than 16 files at once"):
             put(store, batch, "more.png", b"x")
-        monkeypatch.setattr("tangible_ui.state.uploads.MOST_BYTES", 10)
+        monkeypatch.setattr("tangible_ui.state.uploads.MAX_BYTES", 10)
         with pytest.raises(ConfigError, match="holds more than"):
             put(store, batch, "0.png", b"x" * 6, b"x" * 5)
         put(store, batch, "1.png", b"x" * 6, b"x" * 4)

@@ -25,7 +25,7 @@ PAGE |= {"start.css", "study.css", "study.js", *LATER}
 DIGEST = re.compile(r"-[A-Z0-9]{8}(?=\.(js|css)$)")
 """Part of the name of a script that another one imports."""
 UNREACHABLE = "npm error code ECONNREFUSED\nnpm error syscall connect\n"
-MOST_BYTES = 280_000
+MAX_BYTES = 280_000
 """Limit of the script and style that a browser fetches first, compressed."""
 NAMES = {f"http://www.w3.org/{name}" for name in ("1999/xhtml", "1999/xlink", "1998/Math/MathML", "2000/svg")}
 """Addresses in the bundle that are names, from which nothing is requested."""
@@ -196,7 +196,7 @@ class TestPage:
         page = built_page()
         first = fetched_first(page)
         size = sum(len(gzip.compress((page / name).read_bytes(), 9)) for name in first)
-        assert 1_000 < size <= MOST_BYTES
+        assert 1_000 < size <= MAX_BYTES
         sent = {"send.js", "study.js"}  # which `export --to page` and `study run --page` read
         later = {DIGEST.sub("", path.name) for path in page.glob("*.js") if path.name not in first} - sent
         assert LATER - {"chunk.js"} <= later <= LATER, "what comes when it is opened"

@@ -246,7 +246,7 @@ class TestOpening:
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         """Four squares, of which every second pixel is looked at, and two parts in odd rows."""
-        monkeypatch.setattr(opening, "MOST_LOOKED_AT", 100)
+        monkeypatch.setattr(opening, "MAX_LOOKED_AT", 100)
         labels = np.zeros((20, 20), np.int32)
         labels[:, 10:], labels[10:, :10], labels[10:, 10:] = 1, 2, 3
         labels[3, 7], labels[15, 3:7] = 4, 5

@@ -193,9 +193,9 @@ class TestProposals:
             np.testing.assert_array_equal(inside.reshape(mask.shape), mask)
 
     def test_stroke_of_too_many_points_is_thinned_between_its_ends(self) -> None:
-        most = [[float(each % 300), each / 100] for each in range(proposals.MOST_POINTS)]
+        most = [[float(each % 300), each / 100] for each in range(proposals.MAX_POINTS)]
         np.testing.assert_array_equal(as_points(most, (*SHAPE, 3)), most)
-        many = [[each / 100, 0.0] for each in range(2 * proposals.MOST_POINTS - 1)]
+        many = [[each / 100, 0.0] for each in range(2 * proposals.MAX_POINTS - 1)]
         np.testing.assert_array_equal(as_points(many, (*SHAPE, 3)), many[::2])
         assert as_points([[400.0, 300.0], [-1.0, -1.0]], (*SHAPE, 3)).tolist() == [[319, 239], [0, 0]]
 

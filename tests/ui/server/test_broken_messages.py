@@ -12,7 +12,7 @@ from broken_messages import BINARY, CLOSE, TEXT, broken_frames, broken_request, 
 from page_server import KEY, PageServer
 from tangible_ui.serving import routes
 from tangible_web.address import HOST
-from tangible_web.server import MOST_MESSAGE_BYTES
+from tangible_web.server import MAX_MESSAGE_BYTES
 from waiting import LONGEST_S, until
 
 
@@ -34,9 +34,9 @@ FRAMES = {
     "parts that are not UTF-8 together": (frame(TEXT, b"\xc3", last=False) + frame(0, b"("), 1007),
     "text that is not UTF-8, and a close": (frame(TEXT, b"\xff") + frame(CLOSE, b"\x03\xe8"), 1000),
     "close with a code that nobody may send": (frame(CLOSE, b"\x03\xed"), 1002),
-    "text of one byte too many": (frame(TEXT, size=MOST_MESSAGE_BYTES + 1), 1009),
+    "text of one byte too many": (frame(TEXT, size=MAX_MESSAGE_BYTES + 1), 1009),
     "parts of one byte too many": (
-        frame(BINARY, bytes(MOST_MESSAGE_BYTES), last=False) + frame(0, b"\0"),
+        frame(BINARY, bytes(MAX_MESSAGE_BYTES), last=False) + frame(0, b"\0"),
         1009,
     ),
     "compressed text, which was not agreed": (frame(TEXT, b"x", rsv=4), 1002),

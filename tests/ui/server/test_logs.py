@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from tangible_ui.feeling.feeling import Feeling
-from tangible_ui.logs import MOST_A_SECOND, PageHandler, silence, tell_pages
+from tangible_ui.logs import MAX_A_SECOND, PageHandler, silence, tell_pages
 from tangible_ui.state.session import Session
-from tangible_ui.state.tabs import MOST_LOGGED
+from tangible_ui.state.tabs import MAX_LOGGED
 
 
 @pytest.fixture
@@ -58,12 +58,12 @@ class TestPageHandler:
     ):
         now = [10.0]
         monkeypatch.setattr("tangible_ui.logs.time.monotonic", lambda: now[0])
-        for _ in range(MOST_A_SECOND + 7):
+        for _ in range(MAX_A_SECOND + 7):
             logging.getLogger("a").warning("again")
-        assert len(told) == MOST_A_SECOND
+        assert len(told) == MAX_A_SECOND
         now[0] += 1
         logging.getLogger("a").warning("another")
-        assert [each["text"] for each in told[MOST_A_SECOND:]] == [
+        assert [each["text"] for each in told[MAX_A_SECOND:]] == [
             "7 more lines came in one second and are left out",
             "another",
         ]
@@ -91,7 +91,7 @@ def test_history_of_a_flooded_log_keeps_the_other_events(tmp_path: Path, monkeyp
     assert Counter(each["event"] for each in session.tabs.history) == {
         "document": 1,
         "maker": 1,
-        "log": MOST_LOGGED,
+        "log": MAX_LOGGED,
         "touch": 1,
     }
     assert [each["at_s"] for each in session.tabs.history] == sorted(each["at_s"] for each in session.tabs.history)

@@ -15,15 +15,15 @@ from starlette.routing import Mount, Route, WebSocketRoute
 from websockets.exceptions import InvalidStatus
 
 from page_server import KEY, PageServer
-from tangible_core.files.reading import MOST_BYTES
+from tangible_core.files.reading import MAX_BYTES
 from tangible_ui.serving import routes
 from tangible_ui.serving.routes import WRONG_KEY
 from tangible_web import connection, server
 from tangible_web.access import HEADERS
 from tangible_web.address import Address, new_key
-from tangible_web.connection import AT_ONCE_BYTES, MOST_STRANGERS
+from tangible_web.connection import AT_ONCE_BYTES, MAX_STRANGERS
 from tangible_web.framing import ACK, ACK_FRAME, POINTER, POINTER_FRAME
-from tangible_web.live import IN_FLIGHT, MOST_ASKS
+from tangible_web.live import IN_FLIGHT, MAX_ASKS
 from waiting import LONGEST_S, until
 
 NAMES = {"digest": "abc", "name": "a.f32", "batch": "0" * 16, "folder": "export-1", "panel": "glove"}
@@ -192,7 +192,7 @@ class TestWhoIsLetIn:
         assert page.ask(with_key("/stop")).status == 404
 
     def test_upload_that_is_too_large_is_refused_before_it_is_sent(self, page: PageServer) -> None:
-        answer = page.ask(with_key(f"/upload/{NAMES['batch']}/a.png"), "PUT", content_length=str(MOST_BYTES + 1))
+        answer = page.ask(with_key(f"/upload/{NAMES['batch']}/a.png"), "PUT", content_length=str(MAX_BYTES + 1))
         assert (answer.status, "holds more than" in answer.text) == (413, True)
 
 
@@ -264,7 +264,7 @@ class TestFloods:
         worker: Any = page.session.worker
         page.done(lambda: setattr(worker, "wait", asyncio.Event()))
         with page.tab() as tab:
-            for _ in range(MOST_ASKS):
+            for _ in range(MAX_ASKS):
                 tab.ask("examples")
             refused = tab.ask("examples")
             assert "not done yet" in tab.until(event="refused", number=refused)["text"]
@@ -272,13 +272,13 @@ class TestFloods:
             tab.until(event="loop", running=False)
             tab.until(event="answer", number=stop)
             page.done(worker.wait.set)
-            tab.until(event="answer", number=MOST_ASKS)
+            tab.until(event="answer", number=MAX_ASKS)
             tab.until(event="answer", number=tab.ask("examples"))
 
     def test_unfinished_connections_stop_nobody(self, page: PageServer) -> None:
         with page.tab() as tab:
             tab.until(event="holding", holding=True)
-            slow = [socket.create_connection(("127.0.0.1", page.port)) for _ in range(MOST_STRANGERS + 44)]
+            slow = [socket.create_connection(("127.0.0.1", page.port)) for _ in range(MAX_STRANGERS + 44)]
             for each in slow:
                 each.sendall(b"GET / HT")
             tab.socket.send(pointer(0.01, 0, 0))

@@ -16,7 +16,7 @@ from tangible_ui.prestart import _prestarted, prestart_worker, take_worker_proce
 from tangible_ui.requests import REQUESTS
 from tangible_ui.state.session import Session
 from tangible_ui.worker import handle
-from tangible_ui.worker.handle import MOST_DEATHS, Worker, WorkerAbsent, WorkerKilled
+from tangible_ui.worker.handle import MAX_DEATHS, Worker, WorkerAbsent, WorkerKilled
 from tangible_ui.worker.jobs import JOBS
 from tangible_ui.worker.messages import Event
 from tangible_ui.worker.state import WorkerState
@@ -95,11 +95,11 @@ class TestHandle:
     ) -> None:
         heard: list[Event] = []
         worker = Worker(tmp_path, heard.append)
-        for _ in range(MOST_DEATHS - 1):
+        for _ in range(MAX_DEATHS - 1):
             self.die(worker)
         self.die(worker, **last)
-        assert len(started) == MOST_DEATHS + 1
-        for _ in range(MOST_DEATHS - 1 if "ready" in last else 0):
+        assert len(started) == MAX_DEATHS + 1
+        for _ in range(MAX_DEATHS - 1 if "ready" in last else 0):
             self.die(worker)
         assert "maker_gone" not in [each.event for each in heard]
         self.die(worker)
@@ -109,9 +109,9 @@ class TestHandle:
         count = len(started)
         worker.try_again()
         assert len(started) == count + 1
-        for _ in range(MOST_DEATHS - 1):
+        for _ in range(MAX_DEATHS - 1):
             self.die(worker)
-        assert len(started) == count + MOST_DEATHS
+        assert len(started) == count + MAX_DEATHS
 
     async def test_requests_of_a_killed_worker_are_told_and_quick_ones_repeated(
         self, started: list[Worker], tmp_path: Path

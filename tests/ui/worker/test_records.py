@@ -99,7 +99,7 @@ class TestShown:
     def test_shown_recording_that_is_long_is_thinned(
         self, worker_state: WorkerState, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        monkeypatch.setattr(records, "MOST_ROWS", 20)
+        monkeypatch.setattr(records, "MAX_ROWS", 20)
         long, flags = some(50), np.arange(50) % 8 + 8 * (FLAG_BITS + 1)  # with some of a later version
         rows = long.rows.copy()
         rows[:, records.AT_FLAGS] = flags
@@ -123,7 +123,7 @@ class TestShown:
         found = records.records(worker_state)
         assert [each["name"] for each in found] == ["broken.nc", "old.nc"]
         assert found[0]["trouble"] and found[1]["figures"]["ticks"] == 5
-        monkeypatch.setattr(records, "MOST_LISTED", 1)
+        monkeypatch.setattr(records, "MAX_LISTED", 1)
         assert [each["name"] for each in records.records(worker_state)] == ["broken.nc"]
 
 

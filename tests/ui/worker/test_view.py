@@ -284,7 +284,7 @@ class TestWindow:
         return path
 
     def test_window_is_the_rectangle(self, path: Path, monkeypatch: pytest.MonkeyPatch):
-        monkeypatch.setattr(routes, "MOST_ITEMS", 12)
+        monkeypatch.setattr(routes, "MAX_ITEMS", 12)
         whole = np.arange(77).reshape(7, 11)
         for row, column in ((2, 5), (0, 0), (0, 7), (4, 0), (4, 7)):
             found = np.frombuffer(read_window(path, ASKED | {"row": row, "column": column}), "<u2").reshape(3, 4)

@@ -148,8 +148,8 @@ def _print(tally: Tally, files: Sequence[str], as_json: bool) -> None:
         kept = f", {tally.kept} of them before" if tally.kept else ""
         again = f"; {tally.failed} failed: --retry repeats these" if tally.failed else ""
         show.sentence(f"{good} of {tally.wanted} scenes are made{kept}{again}.")
-        for path in files[:MOST_FILES]:
+        for path in files[:MAX_FILES]:
             show.plain(f"written: {path}")
 
 
-MOST_FILES = 4
+MAX_FILES = 4

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from tangible_core.data import Calibration
 from tangible_core.errors import GeometryError, PictureError, shown
-from tangible_core.files import MOST_TEXT_BYTES, read_bytes
+from tangible_core.files import MAX_TEXT_BYTES, read_bytes
 
 
 class Cameras(NamedTuple):
@@ -67,7 +67,7 @@ def _values(path: Path, line: str) -> Mapping[str, str]:
 
 def _text(path: Path) -> str:
     try:
-        return read_bytes(path, MOST_TEXT_BYTES).decode()
+        return read_bytes(path, MAX_TEXT_BYTES).decode()
     except (OSError, UnicodeDecodeError) as error:
         why = getattr(error, "strerror", None) or "it is not a text file"
         raise PictureError(f"{path}: cannot be read as a calibration: {why}; unpack it again") from error

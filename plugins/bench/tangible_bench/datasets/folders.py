@@ -10,9 +10,9 @@ from typing import NamedTuple
 from tangible_core.errors import ConfigError, PictureError, quoted
 from tangible_core.files import as_path
 
-MOST_DEPTH = 10
+MAX_DEPTH = 10
 """The number of levels of folders that are searched; no kit has more than six."""
-MOST_ENTRIES = 500_000
+MAX_ENTRIES = 500_000
 """The number of names at which a search is refused, after some seconds; the largest kit has 60,000."""
 
 
@@ -53,10 +53,10 @@ def folders(root: Path) -> Iterator[Folder]:
         except OSError as error:
             raise PictureError(f"{path}: cannot be listed: {error.strerror}; check its permissions") from error
         count += len(below) + len(files)
-        if count > MOST_ENTRIES:
-            raise PictureError(f"{root}: holds more than {MOST_ENTRIES} files; name the folder of the set alone")
+        if count > MAX_ENTRIES:
+            raise PictureError(f"{root}: holds more than {MAX_ENTRIES} files; name the folder of the set alone")
         yield Folder(Path(path), within, frozenset(files))
-        if len(within) <= MOST_DEPTH:
+        if len(within) <= MAX_DEPTH:
             below.sort(reverse=True)
             waiting += [(os.path.join(path, name), (*within, name)) for name in below]  # noqa: PTH118
 

@@ -14,7 +14,7 @@ AGREEMENT = 16
 """Largest difference, in sixteenths of a pixel, at which a final value still counts as its match."""
 FLAT_REACH = 2
 """Radius, in pixels, of the window of `flat_pixels`: that of a census code."""
-LEAST_MATCHED = 0.2
+MIN_MATCHED = 0.2
 """Confidence of the worst match."""
 FILLED = 0.1
 """Highest confidence of a value that comes from neighbours."""
@@ -58,7 +58,7 @@ def confidence(
     quality: UInt8[np.ndarray, "h w"],
     by_quality: Float[np.ndarray, "256"],
 ) -> Float32[np.ndarray, "h w"]:
-    """Rate each pixel: LEAST_MATCHED to by_quality[quality] where it agrees with its match, 0 to FILLED elsewhere.
+    """Rate each pixel: MIN_MATCHED to by_quality[quality] where it agrees with its match, 0 to FILLED elsewhere.
 
     Either range is scaled by (1 - SHARE_LOST m) / sqrt(1 + s), where s is the depth step in pixels between the nearest
     and the farthest value near the pixel, and m the share of pixels near it without a match. The form comes from a
@@ -92,7 +92,7 @@ def zero_disparity(grey: UInt8[np.ndarray, "h w"], fill: bool) -> DisparityMap:
 
 @njit(**KERNEL)
 def _judge(matched, final, quality, table, near, far, gaps, out):
-    least, filled = np.float32(LEAST_MATCHED), np.float32(FILLED)
+    least, filled = np.float32(MIN_MATCHED), np.float32(FILLED)
     for y in range(final.shape[0]):
         for x in range(final.shape[1]):  # without the table, so that the loop vectorises
             step = np.float32(int32(near[y, x]) - int32(far[y, x])) * np.float32(1 / 16)

@@ -20,7 +20,7 @@ from ..dense.filling.gaps import Effort
 from ..dense.span import UNKNOWN, Span
 from ..dense.speckles import ISLAND_PX, remove_speckles
 from ..row_alignment.common_rows import shift_rows
-from ..row_alignment.row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, row_offset
+from ..row_alignment.row_offset import CELL_PX, MIN_ROW_OFFSET_PX, row_offset
 from ..search.bands import match_bands
 from ..search.pairs import Pair
 from ..sgm.costs import HEAVY, LEVELS, LIGHT, SHARP, Cost
@@ -38,7 +38,7 @@ LEVELS_APART = 0.6
 """Share of matches whose levels differ by the most that counts from which the views were exposed differently."""
 EVERY_ROW = 16
 """Distance of the trial's rows in which levels are compared."""
-MOST_ROW_OFFSET_PX = 1.0
+MAX_ROW_OFFSET_PX = 1.0
 """Largest row offset, in pixels, that the trial measures and corrects."""
 PROBE_ROWS = 64
 """Rows of a strip that a trial matches."""
@@ -109,7 +109,7 @@ def _match(pair: Pair, span: Span, rows: Rows, fixed: Fixed) -> "_Trial":
     probes, rest = _probes(rows)
     health = trial.health(probes)
     row_offset_px = _row_offset(trial, probes, span, health) if realign_rows else 0.0
-    if abs(row_offset_px) > LEAST_ROW_OFFSET_PX:
+    if abs(row_offset_px) > MIN_ROW_OFFSET_PX:
         note(log, f"rows realigned by {row_offset_px:.2f} px")
         trial = trial.with_pair(shift_rows(pair, row_offset_px))
         health = trial.health(probes)

@@ -26,7 +26,7 @@ Matcher = Callable[[Pair, Span], DenseMatches]
 Rectify = Literal["auto", "never"]
 LOW_CONFIDENCE = 0.15
 """Confidence below which a pixel was filled, not matched."""
-MOST_LOW_CONFIDENCE = 0.5
+MAX_LOW_CONFIDENCE = 0.5
 """Share of pixels of low confidence above which the pair is tried again with rectification."""
 
 
@@ -82,7 +82,7 @@ def _match_rectified(
 
 def _is_reliable(pair: Pair, disparity: DisparityMap) -> bool:
     """Test whether most pixels were matched, or at least the matched ones show that the rows correspond."""
-    if low_confidence_share(disparity) <= MOST_LOW_CONFIDENCE:
+    if low_confidence_share(disparity) <= MAX_LOW_CONFIDENCE:
         return True
     correspond = rows_correspond(pair, disparity.disparity_px, disparity.confidence >= LOW_CONFIDENCE)
     if correspond:

@@ -19,7 +19,7 @@ from ..rectify.fundamental import Fit
 from ..rectify.rectification import rectify
 from ..rectify.rectified_pair import RectifiedPair
 from ..sparse.assembling import assemble
-from ..sparse.corner_range import MOST_CORNERS, MaxDisparity, range_of_shifts
+from ..sparse.corner_range import MAX_CORNERS, MaxDisparity, range_of_shifts
 from ..sparse.harris import corners, least_response, row_edges
 from ..sparse.matches import Matches, corner_matches
 
@@ -49,7 +49,7 @@ def disparity_by_features(
         raise PictureError("matching features needs two views; give a right one")
     left, right = to_grey(views.left), to_grey(views.right)
     least = least_response(least_contrast)
-    seen = [corners(parts.response(grey), least, MOST_CORNERS) for grey in (left, right)]
+    seen = [corners(parts.response(grey), least, MAX_CORNERS) for grey in (left, right)]
     matches = corner_matches(left, right, seen[0], seen[1])
     rectified = rectify(views, matches=matches, fit=parts.fit)
     span = _range(matches, rectified, max_disparity_px)

@@ -16,7 +16,7 @@ from ..row_alignment.common_rows import align_rows, common_row_offset, shift_row
 from ..search.bands import match_bands
 from ..search.disparity_range import find_disparity_range
 from ..search.pairs import grey_pair
-from .chain import MOST_LOW_CONFIDENCE, Matcher, Search, low_confidence_share, match_in_order
+from .chain import MAX_LOW_CONFIDENCE, Matcher, Search, low_confidence_share, match_in_order
 
 SEARCH_EVERY = 30
 """Frames after which the search range is estimated again, so that it follows objects that come nearer."""
@@ -48,7 +48,7 @@ class FilmMatcher:
             self._rectify(views)
         elif aligned is not pair:
             self._row_offset_px = common_row_offset(pair, bands) or 0.0
-        if aligned is not None and low_confidence_share(first := self._match_frame(views)) > MOST_LOW_CONFIDENCE:
+        if aligned is not None and low_confidence_share(first := self._match_frame(views)) > MAX_LOW_CONFIDENCE:
             self._rectify_if_better(views, low_confidence_share(first))
 
     def __call__(self, views: Views) -> DisparityMap:

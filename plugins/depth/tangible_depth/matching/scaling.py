@@ -8,13 +8,13 @@ from jaxtyping import UInt8
 
 from tangible_core.plugins import note
 
-from ..dense.confidence import FILLED, FLAT_REACH, LEAST_MATCHED
+from ..dense.confidence import FILLED, FLAT_REACH, MIN_MATCHED
 from ..dense.filling.gaps import Effort
 from ..dense.refinement import Cleaning, DenseMatches, complete, enlarge
 from ..dense.span import UNKNOWN, Span
 from ..search.pairs import Pair
 from ..sgm.costs import COSTS, SHARP, Penalties, p2_by_grey_step
-from ..sgm.strips import MOST_LANES, strips
+from ..sgm.strips import MAX_LANES, strips
 from .adaptive import Fixed, match
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -22,7 +22,7 @@ CHECK_TOLERANCE = {"soft": 1.08, "strict": 1.0}
 """Factor on the best cost of the right pixel that a match may have, by the option `check`."""
 HALVED = SHARP._replace(penalties=Penalties(np.uint8(8), np.uint8(8), p2_by_grey_step(40, 10, 2.0)))
 """Cost of a preview: at half the size noise is averaged away, and surfaces end within fewer pixels."""
-MOST_AT_FULL_SIZE = 256
+MAX_AT_FULL_SIZE = 256
 """Largest number of disparities that `resolution: auto` matches at full size; wider ranges hardly need it."""
 
 
@@ -51,7 +51,7 @@ def match_scaled(pair: Pair, span: Span, options: Scaling) -> DenseMatches:
 def _factor(span: Span, options: Scaling) -> int:
     """Choose the factor by which the pictures are downsampled before the matching: a power of two."""
     factor = 2 if options.resolution == "half" else 1
-    most = MOST_AT_FULL_SIZE if options.resolution == "auto" else MOST_LANES
+    most = MAX_AT_FULL_SIZE if options.resolution == "auto" else MAX_LANES
     while span.downsample(factor).size > most:
         factor *= 2
     if factor > 1:
@@ -76,7 +76,7 @@ def _match(pair: Pair, span: Span, options: Scaling, factor: int) -> DenseMatche
     cost = HALVED if preview and options.cost == "auto" else COSTS.get(options.cost)
     realign_rows = options.realign_rows and not preview
     found = match(pair, span, rows, Fixed(cost, CHECK_TOLERANCE[options.check], realign_rows, options.effort))
-    by_sum = np.maximum(1 - np.arange(256) / (4 * found.cost.bits), LEAST_MATCHED)
+    by_sum = np.maximum(1 - np.arange(256) / (4 * found.cost.bits), MIN_MATCHED)
     cleaning = Cleaning(not preview, found.cost.specks, factor, options.effort)
     from_right = None
     if (mirrored := found.mirrored_right) is not None:  # its matches at its own pixels, cleaned as the default does it

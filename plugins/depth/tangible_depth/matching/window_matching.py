@@ -7,7 +7,7 @@ from jaxtyping import Float32
 
 from tangible_core.compiled import exponentials, in_blocks
 
-from ..dense.confidence import LEAST_MATCHED
+from ..dense.confidence import MIN_MATCHED
 from ..dense.refinement import DenseMatches, complete
 from ..dense.span import Span
 from ..search.pairs import Pair
@@ -15,7 +15,7 @@ from ..sgm.strips import unknown_matches
 from ..simd.lanes import Lanes
 from ..windows.correlation import correlate_strip
 
-LEAST_VARIANCE = 1.0
+MIN_VARIANCE = 1.0
 """Smallest variance of a window that is matched, in grey levels squared."""
 SSD_SCALE = 400.0
 """Mean squared difference of grey levels at which the confidence has fallen to 1/e."""
@@ -40,10 +40,10 @@ def _match(pair: Pair, span: Span, window_px: int, squared: bool | None, least: 
     scores = np.full(pair.left.shape, -1e30, np.float32)
 
     def block(y0: int, y1: int) -> None:
-        how = (window_px // 2, span, np.float32(least), LEAST_VARIANCE)
+        how = (window_px // 2, span, np.float32(least), MIN_VARIANCE)
         correlate_strip(Lanes(span.lanes), squared, *pair, (y0, y1), *how, disparity, scores)
         quality[y0:y1] = np.rint(255 * trust(scores[y0:y1]))
 
     if min(pair.left.shape) >= window_px:
         in_blocks(pair.left.shape[0], block)
-    return complete(disparity, quality, np.maximum(np.arange(256) / 255, LEAST_MATCHED), pair.left)
+    return complete(disparity, quality, np.maximum(np.arange(256) / 255, MIN_MATCHED), pair.left)

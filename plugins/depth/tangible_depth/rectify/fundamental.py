@@ -23,7 +23,7 @@ CHANCE_SCENES = 1000
 """Scenes of which chance may produce a parallax in one."""
 CELL_PX = 6
 """Side of the cells, in pixels, in which matches off a plane count once."""
-MOST_SAMPLED = 100
+MAX_SAMPLED = 100
 """Largest number of matches off a plane whose pairs are tried for an epipole."""
 FEWEST = 8
 """Fewest matches of the eight-point method."""
@@ -196,7 +196,7 @@ def fundamental_from_plane(plane: Plane, matches: Matches, threshold_px: float) 
     off = matches.select(~plane.near)
     left, moved = homogeneous(off.left_px), homogeneous(transform(plane.matrix, off.right_px))
     lines = np.cross(moved, left)
-    some = np.arange(len(left))[:: 1 + len(left) // MOST_SAMPLED]
+    some = np.arange(len(left))[:: 1 + len(left) // MAX_SAMPLED]
     one, other = (some[indices] for indices in np.triu_indices(len(some), 1))
     epipoles = np.cross(lines[one], lines[other])
     length = np.linalg.norm(epipoles, axis=1)

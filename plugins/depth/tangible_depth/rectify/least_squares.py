@@ -14,7 +14,7 @@ _STEP = 1e-5
 """Step of the finite differences, in units of each parameter's scale."""
 _STILL = 1e-5
 """Step at which the fit has converged, in units of each parameter's scale."""
-_LEAST_GAIN = 0.05
+_MIN_GAIN = 0.05
 """Lowest share of its expected gain with which a step is accepted."""
 
 
@@ -45,7 +45,7 @@ def least_squares(cost: Callable[[np.ndarray], np.ndarray], start: np.ndarray, s
             move = -solve(normal + damping * np.trace(normal) / len(start) * np.eye(len(start)), down[None])[0]
             then = cost(values + scale * move)
             gain, expected = np.square(found).sum() - np.square(then).sum(), -(down * move).sum()
-            if gain > 0 and gain >= _LEAST_GAIN * expected:
+            if gain > 0 and gain >= _MIN_GAIN * expected:
                 break
             damping *= 4
         else:

@@ -17,17 +17,17 @@ from ..sparse.matches import NO_MATCHES, Matches, flow_matches, match_off_plane,
 from .fundamental import Fit, best_plane, eight_point
 from .projective import homogeneous, inverse, is_pure_rotation, product, transform
 from .rectified_pair import RectifiedPair, unchanged_pair, warp_pair
-from .rectifying_rotation import LEAST_TRUSTED, RectificationError, find_rotation, threshold_px
+from .rectifying_rotation import MIN_TRUSTED, RectificationError, find_rotation, threshold_px
 
 logger: logging.Logger = logging.getLogger(__name__)
 
 FEWEST_TO_TELL = 20
 """Fewest matches that decide about a pair; with fewer, it is taken as rectified."""
-LEAST_GAIN_PX = 0.2
+MIN_GAIN_PX = 0.2
 """Smallest gain in median row offset, in pixels, above the noise of the matches; for less, warping would only blur."""
 MOSTLY = 0.8
 """Share of the matches on one plane from which more matches off the plane are searched."""
-NEIGHBOURS, LEAST_LIKE = 8, 4
+NEIGHBOURS, MIN_LIKE = 8, 4
 """Nearest matches of a match, and how many must have a similar disparity for it to widen the range."""
 STRAY = 0.5
 """Percentage of similar matches at either end that is dropped as stray."""
@@ -66,7 +66,7 @@ def rectify(
 
     Skipped, with the reason in `why`, if the views have a calibration, if the median vertical offset of their
     matches is within tolerance_px (in large pictures: within 1/8000 of the longer side) already, if rectifying would
-    not reduce it by LEAST_GAIN_PX, or if there are too few matches to decide.
+    not reduce it by MIN_GAIN_PX, or if there are too few matches to decide.
     matches: those to use; by optical flow and SIFT if None. fit: estimates F from trusted matches. quick: False leaves
     out optical flow, as repetitive texture misleads it, unlike SIFT.
     A flat scene is aligned as well, with a warning: the cameras' poses stay ambiguous, so the left picture stays
@@ -122,9 +122,9 @@ def _rotate(
     rotation, doubt = find_rotation(matches, views.shape, fit)
     disparity, offsets = rotation.shifts(matches, views.shape)[rotation.trusted].T
     offsets = np.abs(offsets)
-    if (after := float(np.median(offsets))) > before - LEAST_GAIN_PX:
+    if (after := float(np.median(offsets))) > before - MIN_GAIN_PX:
         return _keep_pair(views, f"rectifying would not help: median vertical offset {before:.2f} px, then {after:.2f}")
-    if len(offsets) >= LEAST_TRUSTED:
+    if len(offsets) >= MIN_TRUSTED:
         check_homographies(rotation.homographies, views.shape, offsets)
     if doubt is not None:
         why = f"matches lie {before:.1f} px off their rows, but the rectification is uncertain: {doubt}"
@@ -164,7 +164,7 @@ def verified_range(points_px: np.ndarray, disparity_px: np.ndarray) -> tuple[int
 
     away, nearest = KDTree(points_px).query(points_px, min(NEIGHBOURS + 1, len(points_px)))
     differing = np.abs(disparity_px[nearest] - disparity_px[:, None])
-    like = np.count_nonzero(differing <= LIKE_PX + LIKE_SLOPE * away, axis=1) > LEAST_LIKE
+    like = np.count_nonzero(differing <= LIKE_PX + LIKE_SLOPE * away, axis=1) > MIN_LIKE
     kept = disparity_px[like] if like.any() else disparity_px
     low, high = np.percentile(kept, [STRAY, 100 - STRAY])
     return int(np.floor(low)), int(np.ceil(high))

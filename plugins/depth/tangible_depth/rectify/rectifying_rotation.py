@@ -22,23 +22,23 @@ from .fundamental import DegenerateMatches, Fit, Fundamental, best_plane, robust
 from .least_squares import least_squares, robust_pull
 from .projective import Plane, product, transform, undistort
 
-LEAST_TRUSTED = 30
+MIN_TRUSTED = 30
 """Fewest inliers of a trusted geometry: a few wrong matches agree on one by chance."""
 PARTS = 4
 """Rows and columns into which the left picture is divided."""
-LEAST_PARTS = 5
+MIN_PARTS = 5
 """Fewest of the PARTS x PARTS parts that must contain inliers."""
-LEAST_KEPT = 0.5
+MIN_KEPT = 0.5
 """Lowest share of held-out matches that a geometry must explain, relative to its own matches."""
-LEAST_MORE = 0.05
+MIN_MORE = 0.05
 """Smallest gain in held-out matches on their rows with which lens distortion is accepted."""
 RADIALS = (0.0, -0.02, 0.02, -0.04, 0.04, -0.08, 0.08, -0.14, 0.14, -0.22)
 """Distortion coefficients to start from, as a fit from 0 misses strong ones. The first three detect distortion."""
 FINE = 0.5
 """Share of the threshold used to compare distortions."""
-MOST_RADIAL = 0.3
+MAX_RADIAL = 0.3
 """Largest plausible distortion coefficient of a lens."""
-MOST_FITTED = 800
+MAX_FITTED = 800
 """Largest number of matches that lenses are fitted to; more do not improve the fit."""
 _PRIOR = np.array([0.5, 0.2, 0.5, 0.2, 0.2, 0.5, 0.5])
 """Standard deviations of the parameters about the start: left roll and tilt along x; right roll, tilts along x and y,
@@ -101,10 +101,10 @@ def find_rotation(matches: Matches, shape: tuple[int, int], fit: Fit) -> tuple[R
     Raises: RectificationError if no geometry explains the matches.
     """
     plain = _fit_rotation(matches, shape, fit)
-    if (count := np.count_nonzero(plain.trusted)) < LEAST_TRUSTED:
-        return plain, f"only {count} of {len(plain.trusted)} matches agree, {LEAST_TRUSTED} are needed"
-    if (parts := _count_parts(matches.left_px[plain.trusted], shape)) < LEAST_PARTS:
-        doubt = f"the matches that agree lie in {parts} of {PARTS**2} parts of the picture, {LEAST_PARTS} are needed"
+    if (count := np.count_nonzero(plain.trusted)) < MIN_TRUSTED:
+        return plain, f"only {count} of {len(plain.trusted)} matches agree, {MIN_TRUSTED} are needed"
+    if (parts := _count_parts(matches.left_px[plain.trusted], shape)) < MIN_PARTS:
+        doubt = f"the matches that agree lie in {parts} of {PARTS**2} parts of the picture, {MIN_PARTS} are needed"
         return plain, doubt
     learnt, judges = (matches.select(slice(first, None, 2)) for first in (0, 1))
     try:
@@ -113,10 +113,10 @@ def find_rotation(matches: Matches, shape: tuple[int, int], fit: Fit) -> tuple[R
         return plain, "half of the matches contradict the rest"
     lenses = _fit_lenses(half, learnt, shape, fit)
     kept = max(np.mean(rotation.on_rows(judges, shape)) for rotation in (half, lenses))
-    if kept < LEAST_KEPT * np.mean(half.trusted):
+    if kept < MIN_KEPT * np.mean(half.trusted):
         return plain, f"it explains {kept:.0%} of the held-out matches"
     near, better = (np.mean(rotation.on_rows(judges, shape, FINE)) for rotation in (half, lenses))
-    if better > (1 + LEAST_MORE) * near:
+    if better > (1 + MIN_MORE) * near:
         return _fit_lenses(plain, matches, shape, fit), None
     return plain, None
 
@@ -142,9 +142,9 @@ def _fit_lenses(rotation: Rotation, matches: Matches, shape: tuple[int, int], fi
 
     Tries the coefficient of RADIALS that explains most matches; none if weak ones explain hardly more than 0.
     """
-    few = matches.select(slice(None, None, 1 + len(matches.left_px) // MOST_FITTED))
+    few = matches.select(slice(None, None, 1 + len(matches.left_px) // MAX_FITTED))
     none, *weak = (_count_explained(few, each, shape, fit) for each in RADIALS[:3])
-    if max(weak) <= (1 + LEAST_MORE) * none:
+    if max(weak) <= (1 + MIN_MORE) * none:
         return rotation
     radial = max(RADIALS, key=lambda each: _count_explained(few, each, shape, fit))
     found = _fit_straight(matches, radial, shape, threshold_px(shape), fit) if radial else None
@@ -153,9 +153,9 @@ def _fit_lenses(rotation: Rotation, matches: Matches, shape: tuple[int, int], fi
     roll, trusted = epipole_roll(found.matrix, shape), found.inliers
     lenses = Rotation(rotation.homographies, (radial, radial), trusted)
     for _ in range(3):
-        some = np.flatnonzero(trusted)[:: 1 + np.count_nonzero(trusted) // MOST_FITTED]
+        some = np.flatnonzero(trusted)[:: 1 + np.count_nonzero(trusted) // MAX_FITTED]
         lenses = Rotation(*aligning_lenses(matches.select(some), shape, roll, lenses.radials), trusted)
-        if max(map(abs, lenses.radials)) > MOST_RADIAL:
+        if max(map(abs, lenses.radials)) > MAX_RADIAL:
             return rotation
         trusted = lenses.on_rows(matches, shape)
         if np.count_nonzero(trusted) < np.count_nonzero(rotation.trusted) / 2:

@@ -18,7 +18,7 @@ from ..dense.span import UNKNOWN
 from ..search.bands import Bands
 from ..search.pairs import Pair
 from ..sparse.matches import track
-from .row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, LEAST_VOTES, row_votes
+from .row_offset import CELL_PX, MIN_ROW_OFFSET_PX, MIN_VOTES, row_votes
 
 Points = Float32[np.ndarray, "n 1 2"]
 
@@ -98,7 +98,7 @@ REACH = 1 / 6
 """Largest shift tried up and down, as a share of the picture's height."""
 NEAR = 1 / 200
 """Largest accepted shift, as a share of the picture's height and at least 2 px: other tests correct it."""
-LEAST_BETTER = 0.05
+MIN_BETTER = 0.05
 """Smallest gain in correlation of another height that fails the test."""
 LESS_LEFT = 0.6
 """Share of the unexplained part at the own height below which another height fails the test too: courses repeat."""
@@ -120,7 +120,7 @@ def rows_match_elsewhere(pair: Pair) -> bool:
     left, right = (_profile(view) for view in pair)
     scores = _correlations(left, right, reach)
     best, own = float(scores.max()), float(scores[reach - near : reach + near + 1].max())
-    return own < NO_BETTER and (best > own + LEAST_BETTER or 1 - best < LESS_LEFT * (1 - own))
+    return own < NO_BETTER and (best > own + MIN_BETTER or 1 - best < LESS_LEFT * (1 - own))
 
 
 def _profile(view: UInt8[np.ndarray, "h w"]) -> Float64[np.ndarray, "h"]:
@@ -149,16 +149,16 @@ def _correlations(
 
 log: logging.Logger = logging.getLogger(__name__)
 
-LEAST_AGREED = 0.45
+MIN_AGREED = 0.45
 """Lowest share of the edges with a row offset in a pair whose rows correspond."""
-MOST_SPREAD_PX = 0.3
+MAX_SPREAD_PX = 0.3
 """Largest median deviation of these offsets, in pixels. Damaged pairs reach 0.21; a roll of 0.3 degrees has 0.47."""
 SMOOTHING_PX = 1.2
 """Sigma of the Gaussian that averages noise away before a whole map is tested; bands are averages already."""
-LEAST_AGREED_OF_MAP, MOST_SPREAD_OF_MAP_PX = 0.5, 0.4
-"""LEAST_AGREED and MOST_SPREAD_PX for a whole map. With noise of sd 5 to 15 two thirds agree, with a deviation of 0.18
+MIN_AGREED_OF_MAP, MAX_SPREAD_OF_MAP_PX = 0.5, 0.4
+"""MIN_AGREED and MAX_SPREAD_PX for a whole map. With noise of sd 5 to 15 two thirds agree, with a deviation of 0.18
 to 0.43 px; of rows that lie two lower, which bands take for common, a quarter agree."""
-MOST_OFF_PX = 0.5
+MAX_OFF_PX = 0.5
 """Largest row offset of a whole map whose rows correspond, in pixels."""
 
 
@@ -174,7 +174,7 @@ def align_rows(pair: Pair, bands: Bands, most_row_offset_px: float) -> Pair | No
     row_offset_px = common_row_offset(pair, bands)
     if row_offset_px is None:
         return pair if corners_correspond(pair, most_row_offset_px) else None
-    if most_row_offset_px > 0 or abs(row_offset_px) <= LEAST_ROW_OFFSET_PX:
+    if most_row_offset_px > 0 or abs(row_offset_px) <= MIN_ROW_OFFSET_PX:
         return pair
     note(log, f"rows realigned by {row_offset_px:.2f} px")
     return shift_rows(pair, row_offset_px)
@@ -195,9 +195,9 @@ def shift_rows(pair: Pair, row_offset_px: float) -> Pair:
 def common_row_offset(pair: Pair, bands: Bands) -> float | None:
     """Measure by how many pixels the right rows lie below the left ones, 1.5 at most; None if it varies.
 
-    LEAST_AGREED of the matched horizontal edges must have an offset, half of these within MOST_SPREAD_PX.
+    MIN_AGREED of the matched horizontal edges must have an offset, half of these within MAX_SPREAD_PX.
     """
-    return _agreed_offset_px(row_votes(pair, bands.rows, bands.disparity, bands.factor), LEAST_AGREED, MOST_SPREAD_PX)
+    return _agreed_offset_px(row_votes(pair, bands.rows, bands.disparity, bands.factor), MIN_AGREED, MAX_SPREAD_PX)
 
 
 def rows_correspond(pair: Pair, disparity_px: Float32[np.ndarray, "h w"], matched: Bool[np.ndarray, "h w"]) -> bool:
@@ -207,14 +207,14 @@ def rows_correspond(pair: Pair, disparity_px: Float32[np.ndarray, "h w"], matche
     with plain_opencv():
         left, right = (cv2.GaussianBlur(each, (0, 0), SMOOTHING_PX) for each in pair)
     votes = row_votes(Pair.of(left, right), rows, sixteenths)
-    row_offset_px = _agreed_offset_px(votes, LEAST_AGREED_OF_MAP, MOST_SPREAD_OF_MAP_PX)
-    return row_offset_px is not None and abs(row_offset_px) <= MOST_OFF_PX
+    row_offset_px = _agreed_offset_px(votes, MIN_AGREED_OF_MAP, MAX_SPREAD_OF_MAP_PX)
+    return row_offset_px is not None and abs(row_offset_px) <= MAX_OFF_PX
 
 
 def _agreed_offset_px(votes: Float32[np.ndarray, "votes"], least_agreed: float, most_spread_px: float) -> float | None:
     """Return the median of `row_votes`; None if there are too few, or their deviation is too large."""
     agreed = votes[np.isfinite(votes)]
-    if agreed.size < max(LEAST_VOTES, least_agreed * votes.size):
+    if agreed.size < max(MIN_VOTES, least_agreed * votes.size):
         return None
     row_offset_px = float(np.median(agreed))
     return row_offset_px if np.median(np.abs(agreed - row_offset_px)) <= most_spread_px else None

@@ -16,30 +16,30 @@ CELL_PX = 12
 """Width of a cell, in columns; the strongest edge of a cell has a vote."""
 NEAR_PX = 1
 """Rows above and below a given row in which its edges are sought."""
-MOST_POINTS = 250
+MAX_POINTS = 250
 """Largest number of edges that vote, for speed."""
-LEAST_VOTES = 20
+MIN_VOTES = 20
 """Fewest votes that determine an offset."""
-LEAST_ROW_OFFSET_PX = 0.3
+MIN_ROW_OFFSET_PX = 0.3
 """Smallest offset that is corrected, in pixels."""
-LEAST_EDGE = 40
+MIN_EDGE = 40
 """Smallest Sobel response across rows, in grey levels, of a pixel that determines its row."""
 RADIUS, REACH = 3, 2
 """Radius of the correlation window, and rows tried up and down, in pixels."""
-LEAST_CORRELATION, LEAST_BEND = 0.7, 0.02
+MIN_CORRELATION, MIN_BEND = 0.7, 0.02
 """Lowest correlation of a match, and smallest curvature of its peak, which a vote needs."""
 
 
 def row_votes(
     pair: Pair, rows: Int64[np.ndarray, "n"], disparity: Int16[np.ndarray, "n columns"], factor: int = 1
 ) -> Float32[np.ndarray, "votes"]:
-    """Return right row - left row, in pixels, of up to MOST_POINTS horizontal edges on or near `rows`; NaN: no match.
+    """Return right row - left row, in pixels, of up to MAX_POINTS horizontal edges on or near `rows`; NaN: no match.
 
     disparity: those of these rows, in sixteenths of `factor` pixels, UNKNOWN without one.
     """
     points = np.empty((len(rows) * (pair.width // CELL_PX), 3), np.int64)
     points = points[: _edge_points(pair.left, rows, disparity, factor, points)]
-    points = np.ascontiguousarray(points[:: 1 + len(points) // MOST_POINTS])
+    points = np.ascontiguousarray(points[:: 1 + len(points) // MAX_POINTS])
     votes = np.full(len(points), np.nan, np.float32)
 
     def block(first: int, last: int) -> None:
@@ -53,7 +53,7 @@ def row_offset(pair: Pair, rows: Int64[np.ndarray, "n"], disparity: Int16[np.nda
     """Return the median of the `row_votes`, in pixels; 0 if there are too few."""
     votes = row_votes(pair, rows, disparity, factor)
     agreed = votes[np.isfinite(votes)]
-    return float(np.median(agreed)) if agreed.size >= LEAST_VOTES else 0.0
+    return float(np.median(agreed)) if agreed.size >= MIN_VOTES else 0.0
 
 
 @njit(**KERNEL)
@@ -63,7 +63,7 @@ def _edge_points(left, rows, disparity, factor, points):
     count = 0
     for i in range(rows.size):
         for first in range(1, w - CELL_PX, CELL_PX):
-            strongest = np.int64(LEAST_EDGE)
+            strongest = np.int64(MIN_EDGE)
             for y in range(max(rows[i] - NEAR_PX, 1), min(rows[i] + NEAR_PX + 1, h - 1)):
                 up, down = left[y - 1], left[y + 1]
                 for x in range(first, first + CELL_PX):
@@ -74,7 +74,7 @@ def _edge_points(left, rows, disparity, factor, points):
                         strongest = edge
                         points[count, 0], points[count, 1] = y, x
                         points[count, 2] = (np.int64(here) * factor + 8) >> 4
-            count += strongest > LEAST_EDGE
+            count += strongest > MIN_EDGE
     return count
 
 
@@ -97,9 +97,9 @@ def _vote(left, right, points, slack, first, last, scores, votes):
         best = 0
         for i in range(1, scores.size):
             best = i if scores[i] > scores[best] else best
-        if 0 < best < 2 * reach and scores[best] >= LEAST_CORRELATION:
+        if 0 < best < 2 * reach and scores[best] >= MIN_CORRELATION:
             before, at, after = scores[best - 1], scores[best], scores[best + 1]
-            if 2 * at - before - after > LEAST_BEND:
+            if 2 * at - before - after > MIN_BEND:
                 votes[p] = best - reach + parabola(before, at, after)
 
 

@@ -22,7 +22,7 @@ COUNT = 16
 """Bands of a picture."""
 FINE_WIDTH = 1280
 """Largest number of columns of a band by default."""
-MOST_DISPARITIES = 256
+MAX_DISPARITIES = 256
 """Largest number of disparities tried in a band: of more, columns are averaged."""
 HIGH_PX = 3
 """Rows of the picture averaged into one row of a band."""
@@ -30,7 +30,7 @@ TALL = 2 * RADIUS + 1
 """Rows of a band: the window of a census code."""
 STRIDE = 3
 """Distance of matched columns in wide bands."""
-LEAST_STRIDDEN = 200
+MIN_STRIDDEN = 200
 """Columns from which a band is wide."""
 LARGEST_SPECK = 8
 """Largest speckle, in pixels of the bands: thin near objects have hardly more in so few rows."""
@@ -54,11 +54,11 @@ def match_bands(pair: Pair, span: Span, width: int = FINE_WIDTH) -> Bands:
     """Match COUNT bands of a pair; columns are averaged until a band is at most `width` wide.
 
     Of a wide band every STRIDE-th column is matched, for the columns next to it too.
-    span: in pixels of the picture. If it has more than MOST_DISPARITIES, more columns are averaged.
+    span: in pixels of the picture. If it has more than MAX_DISPARITIES, more columns are averaged.
     """
-    factor = max(-(-pair.width // width), -(-span.size // MOST_DISPARITIES))
+    factor = max(-(-pair.width // width), -(-span.size // MAX_DISPARITIES))
     columns = -(-pair.width // factor)
-    stride = STRIDE if columns >= LEAST_STRIDDEN else 1
+    stride = STRIDE if columns >= MIN_STRIDDEN else 1
     rows = np.empty(COUNT, np.int64)
     codes = np.empty((2, COUNT, PLANES, columns + -columns % BLOCK), np.uint8)
     grey = np.empty((COUNT, -(-columns // stride)), np.uint8)

@@ -92,11 +92,11 @@ def _range_of_bands(pair: Pair, span: Span, width: int, margin: int) -> RangeEst
 
 log: logging.Logger = logging.getLogger(__name__)
 Auto = Literal["auto"]
-LEAST_BEYOND = 0.01
+MIN_BEYOND = 0.01
 """Lowest share of the bands' matches in a step beyond verified ones that extends the range by that step."""
-LEAST_STEP_PX = 8
+MIN_STEP_PX = 8
 """Smallest width, in pixels, of such a step."""
-MOST_FILLED = 256
+MAX_FILLED = 256
 """Disparities up to which the range of a rectified pair is extended to all lanes: a larger one shrinks the pictures."""
 
 ALL_NEGATIVE = "every disparity is negative, as of exchanged views (left is right) and of pictures that were shifted"
@@ -153,14 +153,14 @@ def _estimate_range(pair: Pair, least: int | Auto, verified_px: tuple[int, int] 
     )
     notes.append((f"skipped: disparities outside {low}..{high} px, {why}", logging.INFO))
     span = Span(low, high)
-    if high > 0 and (verified_px is None or span.size <= MOST_FILLED):
+    if high > 0 and (verified_px is None or span.size <= MAX_FILLED):
         span = span.fill_lanes()
     return SearchRange(span.within(pair.width), estimate and estimate.bands, tuple(notes))
 
 
 def _range_around_matches(seen: Span, bands: Bands | None) -> Span:
     """Widen the range of verified matches at either end as far as the matches of the bands continue."""
-    step = max(LEAST_STEP_PX, seen.size // 8)
+    step = max(MIN_STEP_PX, seen.size // 8)
     known = np.empty(0)
     if bands is not None:
         known = np.sort(bands.disparity[bands.disparity != UNKNOWN]) * (bands.factor / 16)
@@ -168,8 +168,8 @@ def _range_around_matches(seen: Span, bands: Bands | None) -> Span:
 
 
 def _extend_end(last: int, known: np.ndarray, step: int) -> int:
-    """Extend `last` upwards while each step holds LEAST_BEYOND of the sorted `known` disparities; then add a step."""
-    least = max(1, int(LEAST_BEYOND * known.size))
+    """Extend `last` upwards while each step holds MIN_BEYOND of the sorted `known` disparities; then add a step."""
+    least = max(1, int(MIN_BEYOND * known.size))
     end = last
     while np.searchsorted(known, end + step) - np.searchsorted(known, end) >= least:
         end += step

@@ -47,14 +47,14 @@ SHARP = Cost(
     Penalties(np.uint8(10), np.uint8(8), p2_by_grey_step(50, 12, 1.5)),
 )
 """Census of the original picture: the most precise on clean pictures."""
-MOST_LEVEL = 4
+MAX_LEVEL = 4
 """Largest value that the difference of two halved grey levels counts, in bits."""
 LEVELS = Cost(
     "levels",
-    BITS + MOST_LEVEL,
+    BITS + MAX_LEVEL,
     census_with_levels,
     Penalties(np.uint8(10), np.uint8(9), p2_by_grey_step(40, 12, 2.0)),
-    MOST_LEVEL,
+    MAX_LEVEL,
 )
 """Census and grey levels: more precise still, if both views have the same exposure."""
 NOISY = Specks(among_many_px=30, alone_px=200)

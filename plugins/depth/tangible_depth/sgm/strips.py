@@ -22,7 +22,7 @@ VOLUME_BYTES = 256 << 20
 """Largest memory for the cost volumes of all threads together, bytes."""
 AT_ONCE = 4
 """Fewest strips in memory at once; more run in parallel only if they are small."""
-MOST_LANES = 512
+MAX_LANES = 512
 """Largest number of SIMD lanes, so of disparities at full size."""
 
 

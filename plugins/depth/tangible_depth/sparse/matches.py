@@ -13,7 +13,7 @@ from tangible_core.runtime import plain_opencv
 
 from .harris import corners, harris_response, least_response
 
-MOST_PIXELS = 2_000_000
+MAX_PIXELS = 2_000_000
 """Largest picture for SIFT, in pixels; larger ones are reduced, as it needs about 300 bytes a pixel."""
 FLOW_PIXELS = 60_000
 """Largest picture in which optical flow detects its corners, in pixels."""
@@ -23,11 +23,11 @@ STEPS = 2.0**24
 """Steps per unit to which normalised windows are rounded before they are correlated all against all."""
 WINDOW_PX = 7
 """Side of the matched windows, in pixels, small enough for small objects."""
-MOST_CORNERS = 1000
+MAX_CORNERS = 1000
 """Largest number of corners of each picture that are matched all against all."""
-LEAST_ALIKE = 0.7
+MIN_ALIKE = 0.7
 """Lowest correlation of windows at the same place that lie on the plane."""
-LEAST_SCORE = 0.85
+MIN_SCORE = 0.85
 """Lowest correlation of a match."""
 SMALLEST_SIDE = 16
 """Smallest side of a picture, in pixels, in which features are matched."""
@@ -57,7 +57,7 @@ def sift_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h
     """Match SIFT features that are mutual best and pass the ratio test (Lowe, IJCV 2004, sec. 7.1)."""
     if min(left.shape) < SMALLEST_SIDE:
         return NO_MATCHES
-    scale = min(1.0, (MOST_PIXELS / left.size) ** 0.5)
+    scale = min(1.0, (MAX_PIXELS / left.size) ** 0.5)
     detector = cv2.SIFT.create(4000)
     full = stretch8(left), stretch8(right)
     with plain_opencv():
@@ -241,9 +241,9 @@ def match_off_plane(
         shown = cv2.warpPerspective(np.ones_like(right), homography, size, flags=cv2.INTER_NEAREST) > 0
     off = shown & ~_correlating(left, moved)
     seen = [
-        corners(np.where(off, harris_response(grey), 0), least_response(0.005), MOST_CORNERS) for grey in (left, moved)
+        corners(np.where(off, harris_response(grey), 0), least_response(0.005), MAX_CORNERS) for grey in (left, moved)
     ]
-    return corner_matches(left, moved, seen[0], seen[1], WINDOW_PX, LEAST_SCORE)
+    return corner_matches(left, moved, seen[0], seen[1], WINDOW_PX, MIN_SCORE)
 
 
 def _correlating(one: Float32[np.ndarray, "h w"], other: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
@@ -254,4 +254,4 @@ def _correlating(one: Float32[np.ndarray, "h w"], other: Float32[np.ndarray, "h 
             cv2.boxFilter(each, cv2.CV_64F, side, borderType=cv2.BORDER_REPLICATE) for each in (one, other, one * other)
         )
     spread = (both - mean * its) * WINDOW_PX**2
-    return spread * inverse_lengths(one, half) * inverse_lengths(other, half) >= LEAST_ALIKE
+    return spread * inverse_lengths(one, half) * inverse_lengths(other, half) >= MIN_ALIKE

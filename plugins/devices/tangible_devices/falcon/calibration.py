@@ -19,7 +19,7 @@ CENTRE_M = 0.125
 """The workspace's origin on the device's axis: the middle of its reach."""
 LEVER_M = 0.0672
 """Torque of the busiest motor, N m, for a force of 1 N in the least favourable direction, at the centre."""
-MOST_COUNTS, MOST_N = 4095, 8.0
+MAX_COUNTS, MAX_N = 4095, 8.0
 """The greatest torque that is sent; the greatest force, as in CHAI3D's table of devices."""
 
 
@@ -59,9 +59,9 @@ class Calibration(BaseModel):
 
     def spec(self, simulated: bool = False) -> DeviceSpec:
         """Return a Falcon's limits, as in CHAI3D's table; the force is what the motors can give in every direction."""
-        greatest_n = MOST_COUNTS / (LEVER_M * self.counts_per_newton_metre * max(self.motor_gain))
+        greatest_n = MAX_COUNTS / (LEVER_M * self.counts_per_newton_metre * max(self.motor_gain))
         return DeviceSpec(
-            max_force_n=min(MOST_N, math.floor(100 * greatest_n) / 100),
+            max_force_n=min(MAX_N, math.floor(100 * greatest_n) / 100),
             max_stiffness_n_per_m=3000.0,
             damping_n_s_per_m=20.0,
             workspace_m=(0.08, 0.08, 0.08),

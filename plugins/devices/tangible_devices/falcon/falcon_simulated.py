@@ -17,7 +17,7 @@ from .simulator.faults import Fault
 
 Size = Annotated[float, Field(ge=1e-3, le=0.06)]
 Height = Annotated[float, Field(ge=-0.03, le=0.03)]
-MOST_M = (0.05, 0.035)
+MAX_M = (0.05, 0.035)
 
 
 class FalconSimulated(HapticDevice, Scripted):
@@ -56,7 +56,7 @@ class FalconSimulated(HapticDevice, Scripted):
 
     def over(self, extent_m: tuple[float, float]) -> "FalconSimulated":
         """Return the device with its path within this width and length, unless it has a `size_m`."""
-        return self if self.size_m else self.model_copy(update={"size_m": path_size(extent_m, MOST_M)})
+        return self if self.size_m else self.model_copy(update={"size_m": path_size(extent_m, MAX_M)})
 
     def wanted(self, ticks: Int64[np.ndarray, " n"]) -> None:
         """Return None, as the path begins when the device is homed, at a tick that is not known before."""
@@ -72,7 +72,7 @@ class FalconSimulated(HapticDevice, Scripted):
         from .simulator.falcons import simulated_falcon, synthetic_image
 
         clock = RealClock() if self.real_time else SimulatedClock()
-        points = DRAWN[self.path](self.size_m or MOST_M, self.lines, self.z_m, self.lift_m)
+        points = DRAWN[self.path](self.size_m or MAX_M, self.lines, self.z_m, self.lift_m)
         unit = simulated_falcon(clock, walk(points, self.speed_m_per_s, 0.001), self.lift_m, self.hand)
         image = self.driver.image() or synthetic_image()
         return open_falcon(self.driver.settings(), image, Bus([unit], self.faults), clock)

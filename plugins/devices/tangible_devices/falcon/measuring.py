@@ -16,7 +16,7 @@ from .kernels import kinematics
 
 Ask = Callable[[str], str]
 DIRECTIONS = ("to the right", "away from you", "up")
-LEAST_M = 0.010
+MIN_M = 0.010
 """Shortest move that identifies an axis."""
 SETTLING = 20
 """Reads that are skipped after a question to the user, during which no packets were sent."""
@@ -111,8 +111,8 @@ def _place(link: Link) -> Vector:
 
 def _axis(moved_m: Sequence[float], direction: str) -> Axis:
     farthest = max(range(3), key=lambda axis: abs(moved_m[axis]))
-    if abs(moved_m[farthest]) < LEAST_M:
-        raise DeviceError(f"the grip did not move {direction} by {1000 * LEAST_M:.0f} mm; calibrate again")
+    if abs(moved_m[farthest]) < MIN_M:
+        raise DeviceError(f"the grip did not move {direction} by {1000 * MIN_M:.0f} mm; calibrate again")
     return get_args(Axis)[2 * farthest + (moved_m[farthest] < 0)]
 
 

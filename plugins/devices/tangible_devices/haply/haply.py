@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 INSTALL = "pip install websockets"
 START = "start Haply Hub or the Haply Inverse Service, or give its address with option uri"
-MOST_BYTES = 1 << 22
+MAX_BYTES = 1 << 22
 PROBLEMS = {
     "ready": "is not ready",
     "power_supply": "has no power; plug in its power supply",
@@ -244,7 +244,7 @@ def _connect(until: ExitStack, uri: str, timeout_s: float) -> "ClientConnection"
             compression=None,
             proxy=None,
             ping_interval=None,
-            max_size=MOST_BYTES,
+            max_size=MAX_BYTES,
         )
         return until.enter_context(connection)
     except (ConnectionRefusedError, TimeoutError) as error:

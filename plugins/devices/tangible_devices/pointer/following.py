@@ -19,7 +19,7 @@ from .client import PointerClient
 PERIOD_S = 0.005
 SHOWN_EVERY = 20
 """Sends per printed line: ten lines a second."""
-MOST_BUTTONS = 1 << 31
+MAX_BUTTONS = 1 << 31
 """Exclusive upper bound of a sum of the bits of 31 buttons."""
 Step = tuple[Vector, int]
 
@@ -107,7 +107,7 @@ def parse(line: str) -> Step:
         x, y, z, *rest = line.replace(",", " ").split()
         buttons = int(*rest)
         position_m = float(x) / 1000, float(y) / 1000, float(z) / 1000
-        if not all(map(math.isfinite, position_m)) or not 0 <= buttons < MOST_BUTTONS:
+        if not all(map(math.isfinite, position_m)) or not 0 <= buttons < MAX_BUTTONS:
             raise ValueError
         return position_m, buttons
     except (ValueError, TypeError) as error:

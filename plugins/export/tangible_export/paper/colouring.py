@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 
-MOST_STEPS = 1000
+MAX_STEPS = 1000
 """Largest number of steps of the search with backtracking; then the first colouring is taken as it is."""
 
 Neighbours = Sequence[Collection[int]]
@@ -43,10 +43,10 @@ def _colour_greedily(neighbours: Neighbours, allowed: Allowed, sizes: Sequence[f
 
 
 def _search(neighbours: Neighbours, allowed: Allowed, sizes: Sequence[float]) -> dict[int, str] | None:
-    """Search with backtracking; None if no colouring exists, or none was found in MOST_STEPS."""
+    """Search with backtracking; None if no colouring exists, or none was found in MAX_STEPS."""
     fills, uses = dict[int, str](), Counter[str]()
     open_choices = list[tuple[int, list[str]]]()
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         if len(fills) == len(neighbours):
             return fills
         vertex = _next(neighbours, allowed, sizes, fills)

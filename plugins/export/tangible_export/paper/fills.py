@@ -13,7 +13,7 @@ from jaxtyping import Float64
 
 from .sheet import CLEAR_MM, LINE_MM
 
-LEAST_DOTS, LEAST_STROKES_MM = 4, 16.0
+MIN_DOTS, MIN_STROKES_MM = 4, 16.0
 """Smallest number of dots and smallest length of all strokes of a fill. Conventions of ours."""
 DOT_MM, DOTS_APART_MM = 2.4, 6.0
 """Diameter of the dots of a fill, larger than in braille; and their distance."""
@@ -61,7 +61,7 @@ def _dots(inner: Any) -> Fill:
     columns, rows = _amid(left, right, DOTS_APART_MM), _amid(top, bottom, DOTS_APART_MM * np.sqrt(3) / 2)
     at = np.array([(x + row % 2 * DOTS_APART_MM / 2, y) for row, y in enumerate(rows) for x in columns])
     at = _without_single_dots(at[shapely.contains_xy(room, at)])
-    return Fill(dots_mm=at) if len(at) >= LEAST_DOTS else Fill()
+    return Fill(dots_mm=at) if len(at) >= MIN_DOTS else Fill()
 
 
 def _amid(start: float, end: float, pitch: float) -> Float64[np.ndarray, " n"]:
@@ -82,7 +82,7 @@ def _lines(inner: Any, kind: Lines) -> Fill:
     if room.is_empty:
         return Fill()
     strokes = _clear_strokes(shapely.get_parts(shapely.intersection(_parallels(room.bounds, kind), room)), kind)
-    if sum(each.length for each in strokes) < LEAST_STROKES_MM or len(strokes) < 2:
+    if sum(each.length for each in strokes) < MIN_STROKES_MM or len(strokes) < 2:
         return Fill()
     return Fill(strokes=tuple(strokes), stroke_mm=kind.width_mm)
 

@@ -7,7 +7,7 @@ import shapely
 
 from ..braille import CELL_PITCH_M, Cells, height_m, translate, wrapped
 from .fills import fill_shape
-from .lettering import MOST_TITLE_LINES, lines_at, title_at, words
+from .lettering import MAX_TITLE_LINES, lines_at, title_at, words
 from .marks.svg import Area, Braille, Drawing
 from .sheet import CLEAR_MM, LINE_MM, MARGIN_MM, Page, Sheet, empty_sheet
 
@@ -32,7 +32,7 @@ def key_pages(entries: list[Entry], title: str, language: str, page: Page, like:
     """Return the pages of the key, in the order of the letters. Raises: BrailleError as `wrapped`."""
     heading = f"{title}: {words(language).key}" if title else words(language).key
     sheet = empty_sheet(page, like)
-    lines = wrapped(heading, language, sheet.title_width_mm / 1000)[:MOST_TITLE_LINES]
+    lines = wrapped(heading, language, sheet.title_width_mm / 1000)[:MAX_TITLE_LINES]
     below = MARGIN_MM + 1000 * height_m(len(lines)) + BESIDE_MM
     rows = sorted(entries, key=lambda each: (not each.letter, each.letter, each.name))
     described = "; ".join(f"{each.letter} {each.name}".strip() for each in rows)

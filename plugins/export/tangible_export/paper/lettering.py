@@ -10,7 +10,7 @@ from ..braille import DOT_DIAMETER_M, LINE_PITCH_M, Cells, dots, wrapped
 from .marks.svg import BRAILLE_DOT_MM, Braille
 from .sheet import CLEAR_MM, LINE_MM, MARGIN_MM, Sheet
 
-MOST_TITLE_LINES = 4
+MAX_TITLE_LINES = 4
 """Largest number of lines in the title of a key; the rest is left out."""
 FREE_MM = 5.0
 """Distance between a letter and a fill: larger than between other marks, or the dots of a fill are read as part of the

@@ -10,11 +10,11 @@ import numpy as np
 from tangible_core.data import PartMap, Work
 from tangible_legibility.words.languages import part_label
 
-MOST_LISTED = 6
+MAX_LISTED = 6
 """Largest number of labels in a note."""
 LETTERS = ascii_lowercase[1:] + ascii_lowercase[0]
 """Letters in the order of their use. The last, `a`, is a single dot, which a finger takes for a stray one."""
-MOST_NAMES = 100
+MAX_NAMES = 100
 """Largest number of names on a page: their key has nine pages, and nobody remembers more. A convention of ours."""
 
 
@@ -27,8 +27,8 @@ def label_of(number: int, work: Work) -> str:
 def first_labels(labels: Iterable[str]) -> str:
     """Return the first labels, each once, and the number of the others."""
     each = list(dict.fromkeys(labels))
-    more = f" and {len(each) - MOST_LISTED} more" if len(each) > MOST_LISTED else ""
-    return ", ".join(each[:MOST_LISTED]) + more
+    more = f" and {len(each) - MAX_LISTED} more" if len(each) > MAX_LISTED else ""
+    return ", ".join(each[:MAX_LISTED]) + more
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def group_by_name(work: Work, parts: PartMap) -> list[NamedParts]:
 def key_letters(names: Sequence[str]) -> list[str]:
     """Return a different letter for each name: its first letter, else another of its letters, else any.
 
-    Pairs of letters if there are more names than letters; there are pairs for MOST_NAMES.
+    Pairs of letters if there are more names than letters; there are pairs for MAX_NAMES.
     """
     if len(names) <= len(LETTERS):
         return _choose([_letters_in(name) for name in names], list(LETTERS))

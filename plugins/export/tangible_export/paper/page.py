@@ -22,7 +22,7 @@ from .lettering import around, place_letter, title_at, title_lines, words
 from .marks.gaps import Near, narrow_places, too_near
 from .marks.reading import read
 from .marks.svg import NO_DOTS, Area, Braille, Drawing, svg
-from .named_parts import LETTERS, MOST_NAMES, NamedParts, first_labels, group_by_name, key_letters
+from .named_parts import LETTERS, MAX_NAMES, NamedParts, first_labels, group_by_name, key_letters
 from .opening import open_at
 from .sheet import CLEAR_MM, GAP_MM, LINE_MM, Page, Sheet
 from .smoothing import smooth_borders
@@ -61,9 +61,9 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[Dr
             "the picture is one part, and its page would be an empty frame; "
             "choose another texture method, give `parts:` by hand, or make smaller parts fit with `simplify:`"
         )
-    if len(groups) > MOST_NAMES:
+    if len(groups) > MAX_NAMES:
         raise PictureError(
-            f"{len(groups)} parts are more than anybody can tell apart on a page, which takes {MOST_NAMES}; have "
+            f"{len(groups)} parts are more than anybody can tell apart on a page, which takes {MAX_NAMES}; have "
             "fewer, by a texture method with fewer segments or by one name for several in `parts:`"
         )
     blank, title = _blank_page(work, sheet)

@@ -24,7 +24,7 @@ CORNER_MM = 8.0
 """Legs of the triangle that marks the upper right corner."""
 LOWERED_MM = 10.0
 """Limit to moving a picture down where there is room: a hand that comes from the title still finds it."""
-LEAST_MM = 12.7
+MIN_MM = 12.7
 """Shorter side of a picture. Source for the least size of a shape that is recognised: APH, 1997."""
 
 
@@ -74,10 +74,10 @@ def check_readable(page: Page, sheet: Sheet) -> None:
             f"width_m: a picture {width:.4g} mm wide has no room on {page}, which takes {most:.4g} mm; make it "
             "smaller or the page larger"
         )
-    if min(width, length) < LEAST_MM:
+    if min(width, length) < MIN_MM:
         raise GeometryError(
             f"the picture would be {width:.3g} mm wide and {length:.3g} mm long on {page}, and a finger needs "
-            f"{LEAST_MM} mm; take a part of the picture that is less long and narrow, or make it larger"
+            f"{MIN_MM} mm; take a part of the picture that is less long and narrow, or make it larger"
         )
 
 

@@ -8,7 +8,7 @@ from tangible_core.data import PartMap, Relief
 
 from .displays import Display
 
-LEAST_CELLS = 4
+MIN_CELLS = 4
 """Smallest number of pixels of the map along a pin's side; a smaller map is enlarged."""
 
 Place = tuple[slice, slice]
@@ -39,7 +39,7 @@ def most_of(parts: PartMap, rows: int, columns: int) -> Int32[np.ndarray, "{rows
 
 def _enlarge(labels: Int32[np.ndarray, "h w"], rows: int, columns: int) -> Int32[np.ndarray, "k l"]:
     down, right = (
-        -(-LEAST_CELLS * pins // cells) if cells < LEAST_CELLS * pins else 1
+        -(-MIN_CELLS * pins // cells) if cells < MIN_CELLS * pins else 1
         for pins, cells in zip((rows, columns), labels.shape, strict=True)
     )
     return labels.repeat(down, 0).repeat(right, 1)

@@ -15,23 +15,23 @@ from tangible_core.runtime import plain_opencv
 
 from ..braille import Cells, title_in_braille, width_m, wrapped, written_by
 from .closed import Solid, close_solid
-from .plate import LEAST_RIM_M, Layout, plate
+from .plate import MIN_RIM_M, Layout, plate
 from .triangles import Triangles, all_triangles, few_triangles, sample_nodes
 
 log: logging.Logger = logging.getLogger(__name__)
 
 INSTALL = "pip install pydelatin"
-MOST_NODES = 24_000_000
+MAX_NODES = 24_000_000
 """Largest number of nodes: 5333 x 4500 take a gibibyte."""
-MOST_TRIANGLES = 2_000_000
+MAX_TRIANGLES = 2_000_000
 """Largest number of triangles, in files of 100 MB, that slicers still read."""
-MOST_IN_GRID = MOST_TRIANGLES // 2
+MAX_IN_GRID = MAX_TRIANGLES // 2
 """Largest number of nodes without pydelatin: each takes two triangles."""
-LEAST_LINE_M = width_m((0,) * 3)
+MIN_LINE_M = width_m((0,) * 3)
 """Shortest line of braille: a letter, its capital sign, and a hyphen."""
 NARROWEST_M = 1e-4
 """Narrowest rim; a narrower one is left out."""
-MOST_LINES = 6
+MAX_LINES = 6
 """Largest number of lines of braille: nobody reads a longer text on a plate."""
 
 THIN_BASE_M = 0.0008
@@ -41,7 +41,7 @@ LARGEST_BED_M = 0.25
 """Bed of most printers for homes and schools. A convention of ours."""
 NOZZLE_M, LAYER_M = 0.0004, 0.00015
 """Nozzle and layer of most printers. A convention of ours."""
-LEAST_AREA_M2, LEAST_SHARE = 2.5e-7, 0.001
+MIN_AREA_M2, MIN_SHARE = 2.5e-7, 0.001
 """Smallest area of thin shapes and smallest share of steep pixels that are reported."""
 STEEPEST_DEG = 45
 """Largest overhang, from the upright, that plastic holds without support."""
@@ -73,13 +73,13 @@ def make_solid(options: PlateOptions, work: Work) -> tuple[Solid, Layout]:
             "would be flat; take a picture that is not of one shade, or give its parts heights"
         )
     if few := find_spec("pydelatin") is not None:
-        surface = sample_nodes(relief, MOST_NODES, "make the picture smaller")
+        surface = sample_nodes(relief, MAX_NODES, "make the picture smaller")
     else:
         fault = (
             "pydelatin is not installed: the solid has two triangles for each pixel, some ten times as many as it needs"
         )
         note(log, f"{fault}; {INSTALL}", logging.WARNING)
-        surface = sample_nodes(relief, MOST_IN_GRID, INSTALL)
+        surface = sample_nodes(relief, MAX_IN_GRID, INSTALL)
     layout = _layout(options, work)
     note_print_problems(surface, layout.size_m, options.base_m)
     triangles = _few(surface, options.error_m) if few else all_triangles(surface.height_m)
@@ -90,10 +90,10 @@ def make_solid(options: PlateOptions, work: Work) -> tuple[Solid, Layout]:
 
 
 def _few(surface: Relief, error_m: float) -> Triangles:
-    triangles = few_triangles(surface.height_m, surface.pitch_m, error_m, MOST_TRIANGLES)
+    triangles = few_triangles(surface.height_m, surface.pitch_m, error_m, MAX_TRIANGLES)
     if triangles.off_m > error_m:
         fault = f"the solid is off by up to {1000 * triangles.off_m:.2g} mm"
-        why = f"it would take more than {MOST_TRIANGLES:,} triangles"
+        why = f"it would take more than {MAX_TRIANGLES:,} triangles"
         cure = "smooth the relief with workspace.smooth_m, or make error_m larger"
         note(log, f"{fault}, as {why}; {cure}", logging.WARNING)
     return triangles
@@ -104,10 +104,10 @@ def _layout(options: PlateOptions, work: Work) -> Layout:
     rim_m = options.rim_m if options.rim_m >= NARROWEST_M else 0.0
     has_title = options.braille and bool(work.title.strip())
     wanted = [name for name, on in (("title", has_title), ("corner mark", options.corner_mark)) if on]
-    if options.rim_m < LEAST_RIM_M:
+    if options.rim_m < MIN_RIM_M:
         if wanted:
             fault = f"a rim of {1000 * options.rim_m:.2g} mm has no room for the {' and the '.join(wanted)}"
-            note(log, f"{fault}; make rim_m {1000 * LEAST_RIM_M:.0f} mm or more", logging.WARNING)
+            note(log, f"{fault}; make rim_m {1000 * MIN_RIM_M:.0f} mm or more", logging.WARNING)
         return Layout(picture_m, rim_m)
     return Layout(picture_m, rim_m, _title(options, work) if has_title else (), options.corner_mark)
 
@@ -115,7 +115,7 @@ def _layout(options: PlateOptions, work: Work) -> Layout:
 def _title(options: PlateOptions, work: Work) -> tuple[Cells, ...]:
     """Return the title in lines of braille."""
     language, room_m = options.braille_language or work.language, work.relief.extent_m[0]
-    if room_m < LEAST_LINE_M:
+    if room_m < MIN_LINE_M:
         raise OutputError(
             f"the picture is {1000 * room_m:.3g} mm wide, too narrow for its title in braille; make longer_side_m "
             "larger, or set braille: false"
@@ -123,10 +123,10 @@ def _title(options: PlateOptions, work: Work) -> tuple[Cells, ...]:
     if not (title := title_in_braille(work.title, language)):
         return ()
     lines = tuple(wrapped(title, language, room_m))
-    if len(lines) > MOST_LINES:
+    if len(lines) > MAX_LINES:
         raise OutputError(
             f"the title {quoted(work.title)} takes {len(lines)} lines of braille of {1000 * room_m:.0f} mm; a plate "
-            f"has {MOST_LINES}: shorten it, make longer_side_m larger, or set braille: false"
+            f"has {MAX_LINES}: shorten it, make longer_side_m larger, or set braille: false"
         )
     note(log, f"the title is in braille by {written_by(language)}, {len(lines)} line{'s' if len(lines) > 1 else ''}")
     return lines
@@ -157,7 +157,7 @@ def _note_thin(picture: Relief) -> None:
         kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE if min(size) > 2 else cv2.MORPH_RECT, size)
         lost_m = heights - cv2.dilate(cv2.erode(heights, kernel, anchor=middle), kernel, anchor=back)
     area_m2 = np.count_nonzero(lost_m > LAYER_M) * picture.pitch_m[0] * picture.pitch_m[1]
-    if area_m2 < LEAST_AREA_M2:
+    if area_m2 < MIN_AREA_M2:
         return
     fault = f"the printer may leave out shapes thinner than a nozzle of {1000 * NOZZLE_M:.1g} mm"
     where = f"{1e6 * area_m2:,.1f} square mm of the picture, up to {1000 * lost_m.max():.2g} mm high"
@@ -176,6 +176,6 @@ def _note_steep(picture: Relief) -> None:
         down = np.diff(strip, axis=0)[:, :-1] / picture.pitch_m[1]
         steep += np.count_nonzero(np.hypot(right, down) > limit)
     share = steep / max(1, (rows - 1) * (columns - 1))
-    if share >= LEAST_SHARE:
+    if share >= MIN_SHARE:
         fault = f"{100 * share:.2g} % of the picture is steeper than {STEEPEST_DEG} degrees"
         note(log, f"{fault}: print the plate lying flat; standing up, it would need supports there")

@@ -15,7 +15,7 @@ from ..braille import height_m as braille_height_m
 from .closed import Patch, flat, join_patches, rectangle, strip, wall
 from .triangles import Triangles
 
-LEAST_RIM_M = 0.004
+MIN_RIM_M = 0.004
 """Narrowest rim with room for braille and the corner mark."""
 ABOVE_BRAILLE_M = 0.005
 """Distance from the picture to its title: at this distance, raised shapes are felt as two (Round Table, Guidelines for

@@ -14,7 +14,7 @@ from .closed import Solid
 
 COARSE_M = 2e-4
 """Largest distance of the pictured solid from the relief: less than a pixel."""
-MOST_NODES = 300
+MAX_NODES = 300
 """Largest number of nodes along a side of the pictured relief."""
 WIDTH_PX = 640
 MARGIN_PX = 8
@@ -28,9 +28,9 @@ DARKEST, LIGHTEST = 70, 250
 
 
 def coarse_work(work: Work) -> Work:
-    """Return the work with a relief of at most MOST_NODES along each side."""
+    """Return the work with a relief of at most MAX_NODES along each side."""
     relief = work.relief
-    step = -(-max(relief.height_m.shape) // MOST_NODES)
+    step = -(-max(relief.height_m.shape) // MAX_NODES)
     coarse = Relief(np.ascontiguousarray(relief.height_m[::step, ::step]), relief.extent_m)
     return replace(work, products=cast("Mapping[str, Record | None]", {**work.products, "relief": coarse}))
 

@@ -17,7 +17,7 @@ from tangible_core.runtime import plain_opencv
 
 log: logging.Logger = logging.getLogger(__name__)
 
-LEAST_NODES = 2
+MIN_NODES = 2
 """Nodes along a side at least: one pixel is a surface too."""
 ROUNDING_M = 2.5e-8
 """Rounding error of a coordinate in a file: half a step of `closed`, and half a step of STL's floating point."""
@@ -40,12 +40,12 @@ def sample_nodes(relief: Relief, most_nodes: int, cure: str) -> Relief:
 
     Heights are averaged where there are more; a note reports that, with the cure.
     """
-    rows, columns = (side if side >= LEAST_NODES else 3 for side in relief.height_m.shape)
+    rows, columns = (side if side >= MIN_NODES else 3 for side in relief.height_m.shape)
     if (nodes := rows * columns) > most_nodes:
         scale = sqrt(most_nodes / nodes)
-        rows, columns = (max(LEAST_NODES, int(scale * side)) for side in (rows, columns))
-        rows = min(rows, max(LEAST_NODES, most_nodes // columns))  # of a strip that is as narrow as it may be,
-        columns = min(columns, max(LEAST_NODES, most_nodes // rows))  # the length is cut further
+        rows, columns = (max(MIN_NODES, int(scale * side)) for side in (rows, columns))
+        rows = min(rows, max(MIN_NODES, most_nodes // columns))  # of a strip that is as narrow as it may be,
+        columns = min(columns, max(MIN_NODES, most_nodes // rows))  # the length is cut further
         side_mm = 1000 * max(relief.extent_m[0] / columns, relief.extent_m[1] / rows)
         fault = f"heights are averaged over squares of {side_mm:.2g} mm, as {nodes / 1e6:.3g} million nodes"
         note(log, f"{fault} would take too much memory and too large a file; {cure}", logging.WARNING)

@@ -113,7 +113,7 @@ def _relabel(parts: PartMap, belongs: Int[np.ndarray, "n"]) -> PartMap:
     return PartMap(numbers.astype(np.int32)[parts.labels], tuple(range(names.size)))
 
 
-MOST_COMPARED = 256
+MAX_COMPARED = 256
 """Textures that are compared pairwise; the smallest of more go to the most similar of these."""
 FAR = 1000.0
 """Difference in colour that is added between the figure and the ground: more than any two colours have."""
@@ -172,7 +172,7 @@ def _merge(
 ) -> Int64[np.ndarray, "k"]:
     """Merge kinds until at most `most` are left; return the kind that each goes into."""
     into = np.arange(size.size)
-    alive = np.sort(np.argsort(-size, kind="stable")[:MOST_COMPARED])
+    alive = np.sort(np.argsort(-size, kind="stable")[:MAX_COMPARED])
     for each in np.setdiff1d(into, alive).tolist():
         into[each] = alive[np.square(colour[alive] - colour[each]).sum(axis=1).argmin()]
     size = np.bincount(into, size, into.size)

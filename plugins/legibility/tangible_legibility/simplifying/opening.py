@@ -24,7 +24,7 @@ MARGIN = 1.1
 """Width of the surroundings that are removed with a narrow place, in gaps: leaves no crumbs of them."""
 MARGIN_GROWTH = 0.15
 """Growth of that width per round from the third on: ends rounds in which two parts exchange a place in turns."""
-MOST_GROWTH = 6
+MAX_GROWTH = 6
 """Rounds after which the width no longer grows."""
 NOISY = 0.05
 """Share of the surface that is too small or narrow from which on, in the first round, every cell is voted on."""
@@ -81,7 +81,7 @@ class Opening(NamedTuple):
 
     def _margin(self, number: int) -> float:
         """Return the width of the surroundings of a narrow place in a round, in gaps."""
-        return MARGIN + MARGIN_GROWTH * min(max(0, number - 2), MOST_GROWTH)
+        return MARGIN + MARGIN_GROWTH * min(max(0, number - 2), MAX_GROWTH)
 
     def _find_removed(self, wide: Widths, rims: Rims, number: int) -> Bool[np.ndarray, "h w"]:
         """Find the cells of small pieces and of narrow places with their surroundings."""

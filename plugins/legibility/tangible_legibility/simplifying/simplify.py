@@ -21,7 +21,7 @@ from .opening import NOISY, Opening, too_small
 log: logging.Logger = logging.getLogger(__name__)
 SIZE_STEP = 1.1
 """Ratio of one size to the next when a size that would pass is searched."""
-MOST_STEPS = 40
+MAX_STEPS = 40
 """Sizes that are tried: up to 41 times the width."""
 
 
@@ -98,7 +98,7 @@ def _failure_message(failures: Failures, grid: Grid, width_m: float, choice: Sim
 
 def _find_scale(grid: Grid, choice: SimplifyChoice) -> float:
     """Return the factor by which the whole must grow to pass, by trial in steps of a tenth; 0 if none does."""
-    for times in (SIZE_STEP**step for step in range(MOST_STEPS)):
+    for times in (SIZE_STEP**step for step in range(MAX_STEPS)):
         wide = measure(grid.parts.labels, grid.pitch_m * times, choice.gap_m)
         if not wide.places and not too_small(wide, choice).any():
             return times

@@ -48,7 +48,7 @@ def _third(counts: np.ndarray) -> str:
     return "0" if first >= NEARLY else "2" if second >= NEARLY else "-"
 
 
-MOST_NAMED = 4
+MAX_NAMED = 4
 """Number of texts of a list that are written out."""
 PLACES = 9
 """Rows and columns of the grid on which a place gets its words."""
@@ -69,7 +69,7 @@ def join_texts(texts: Sequence[str]) -> str:
     >>> join_texts(["a"]), join_texts(["a", "b", "c"]), join_texts(list("abcdef"))
     ('a', 'a, b and c', 'a, b, c, d and 2 more')
     """
-    shown = [*texts[:MOST_NAMED], *([f"{len(texts) - MOST_NAMED} more"] if len(texts) > MOST_NAMED else [])]
+    shown = [*texts[:MAX_NAMED], *([f"{len(texts) - MAX_NAMED} more"] if len(texts) > MAX_NAMED else [])]
     return " and ".join(filter(None, [", ".join(shown[:-1]), shown[-1]]))
 
 

@@ -14,7 +14,7 @@ COUNT, DRAG, STIFFNESS, DYNAMIC, SWING, PER_M = range(6)
 friction), the dynamic friction, the share by which friction swings about it, and slips per metre."""
 HEAD = 8
 """Number of columns before the waves: fx, fy, amplitude and phase, WAVES of each (see `waves`)."""
-MOST_SWING = 0.9
+MAX_SWING = 0.9
 """Largest swing: friction that reached 0 would have to stay there to be passive."""
 
 
@@ -32,7 +32,7 @@ def compile_textures(materials: Sequence[Material]) -> Float64[np.ndarray, "n p"
         if material.texture == "stick-slip":
             excess = material.static_friction / material.dynamic_friction - 1
             row[STIFFNESS : PER_M + 1] = (
-                material.stiffness_n_per_m, material.dynamic_friction, min(excess, MOST_SWING), 1 / material.grain_m,
+                material.stiffness_n_per_m, material.dynamic_friction, min(excess, MAX_SWING), 1 / material.grain_m,
             )  # fmt: skip
         for start, part in zip(range(HEAD, len(row), WAVES), parts, strict=True):
             row[start : start + len(part)] = part

@@ -13,7 +13,7 @@ Filter = Literal["auto", "never"] | Annotated[float, Field(gt=0, le=64)]
 
 FEWEST_STEPS = 16
 """The least number of steps that are smoothed: fewer are intended terraces."""
-MOST_STEPS = 255
+MAX_STEPS = 255
 """The largest number of steps that are smoothed, that of 8 bits: more are fine enough."""
 SIGMA_CELLS = 4.0
 """The standard deviation of the Gaussian for `auto`, cells."""
@@ -49,13 +49,13 @@ def lattice_step(height_m: Float32[np.ndarray, "h w"]) -> float:
     0.5
     """
     sample = np.unique(height_m.ravel()[:: 1 + height_m.size // 2**16])
-    if sample.size > MOST_STEPS + 1:  # a sample is enough to see that there are too many
+    if sample.size > MAX_STEPS + 1:  # a sample is enough to see that there are too many
         return 0.0
     levels = np.unique(height_m).astype(np.float64)
-    if not FEWEST_STEPS < levels.size <= MOST_STEPS + 1:
+    if not FEWEST_STEPS < levels.size <= MAX_STEPS + 1:
         return 0.0
     span = levels[-1] - levels[0]
-    steps = np.arange(levels.size - 1, MOST_STEPS + 1)
+    steps = np.arange(levels.size - 1, MAX_STEPS + 1)
     places = np.outer(steps, (levels - levels[0]) / span)
     fits = np.abs(places - np.rint(places)).max(axis=1) <= 0.01  # the rounding of float32
     return float(span / steps[fits.argmax()]) if fits.any() else 0.0

@@ -10,7 +10,7 @@ from .coefficients import BORDER
 
 TILE_CELLS = 16
 """The side of a tile, cells."""
-MOST_TILES = 256
+MAX_TILES = 256
 """The largest number of tiles along a side; larger grids have larger tiles."""
 
 
@@ -30,6 +30,6 @@ def _reduce(extreme: Callable[..., np.ndarray], values: np.ndarray, axis: int) -
     """Return one value for each tile along this axis, over all coefficients of the points in it and at its edge."""
     lines = np.moveaxis(values, axis, 0)
     cells = len(lines) - 2 * BORDER
-    count = min(-(-cells // TILE_CELLS), MOST_TILES)
+    count = min(-(-cells // TILE_CELLS), MAX_TILES)
     edges = np.floor(np.arange(count + 1) * cells / count).astype(int) + BORDER
     return np.moveaxis(np.stack([extreme(lines[max(a - 3, 0) : b + 4], axis=0) for a, b in pairwise(edges)]), 0, axis)

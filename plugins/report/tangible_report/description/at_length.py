@@ -15,13 +15,13 @@ from tangible_legibility.words.places import NOWHERE
 
 from .describing import FLAT_M, PartFacts, heights_in_words, materials_in_words, people_in_words
 
-MOST_PARTS = 60
+MAX_PARTS = 60
 """The number of parts that are described, the largest; the others are counted."""
-LEAST_SHARE = 0.001
+MIN_SHARE = 0.001
 """The share of the picture below which a part without a name is left out."""
-LEAST_HIGH_M = 5e-5
+MIN_HIGH_M = 5e-5
 """The height below which a part belongs to the ground, so that its height is left out."""
-MOST_NEIGHBOURS = 4
+MAX_NEIGHBOURS = 4
 """The number of neighbours of a part that are named, those with the longest borders."""
 SHARES = (0.5, 0.25, 0.08, 0.0)
 """The shares of the picture from which on another word describes the size of a part."""
@@ -134,10 +134,10 @@ def tell(
 
 
 def _largest(parts: Sequence[PartFacts]) -> list[PartFacts]:
-    """Return the named parts and then the largest, up to MOST_PARTS, in their old order."""
-    large = [part for part in parts if part.name or part.share >= LEAST_SHARE]
+    """Return the named parts and then the largest, up to MAX_PARTS, in their old order."""
+    large = [part for part in parts if part.name or part.share >= MIN_SHARE]
     ranked = sorted(large, key=lambda each: (not each.name, -each.share))
-    chosen = {each.number for each in ranked[:MOST_PARTS]}
+    chosen = {each.number for each in ranked[:MAX_PARTS]}
     return [part for part in parts if part.number in chosen]
 
 
@@ -152,13 +152,13 @@ def _sentences(part: PartFacts, labels: dict[int, str], say: Words, given: Calla
     """Return sentences on the place, size, height, material and neighbours of a part."""
     width, length = (say.number(1000 * each) for each in part.size_m)
     share = say(f"part share {next(round(100 * least) for least in SHARES if part.share >= least)}")
-    high = say("part size high", height=say.number(1000 * part.height_m)) if part.height_m >= LEAST_HIGH_M else ""
+    high = say("part size high", height=say.number(1000 * part.height_m)) if part.height_m >= MIN_HIGH_M else ""
     size = say("part size", share=share, percent=_percent(part.share, say), width=width, length=length, high=high)
     place = say(part.place) if part.place != NOWHERE else ""
     sentences = [end_sentence(f"{place[:1].upper()}{place[1:]}") if place else "", size]
     if part.material:
         sentences.append(say("part feels alone", material=say.material_after_like(part.material, given)))
-    if neighbours := [labels[neighbour] for neighbour in part.neighbours[:MOST_NEIGHBOURS]]:
+    if neighbours := [labels[neighbour] for neighbour in part.neighbours[:MAX_NEIGHBOURS]]:
         sentences.append(say("part beside", parts=", ".join(neighbours)))
     return tuple(filter(None, sentences))
 

@@ -14,7 +14,7 @@ from tangible_legibility.cells import resampled
 from tangible_legibility.words.languages import LANGUAGES, Language, Words
 from tangible_legibility.words.places import NOWHERE, place_of, place_of_counts
 
-MOST_CELLS = 512
+MAX_CELLS = 512
 """The most cells along a side: surfaces are described on a grid of at most this size."""
 
 
@@ -83,8 +83,8 @@ def facts(
 
 
 def step_of(cells: np.ndarray) -> int:
-    """Return the n such that every n-th row and column have at most MOST_CELLS cells a side."""
-    return math.ceil(max(cells.shape) / MOST_CELLS)
+    """Return the n such that every n-th row and column have at most MAX_CELLS cells a side."""
+    return math.ceil(max(cells.shape) / MAX_CELLS)
 
 
 def median_heights_m(
@@ -139,9 +139,9 @@ ALIKE = 0.1
 """The share of the relief's height by which the highest places, or the lowest, may differ."""
 LEVEL_SLOPE = 0.02
 """The largest slope that counts as level, about one degree: a hand does not feel it."""
-MOST_NAMED = 4
+MAX_NAMED = 4
 """The number of materials that are named; the others are counted."""
-MOST_PARTS = 12
+MAX_PARTS = 12
 """The number of parts that are named, the nearest; the others are counted."""
 FLAT_M = 1e-6
 """The height up to which a relief counts as flat: a hand does not feel it."""
@@ -238,9 +238,9 @@ def materials_in_words(surface: HapticSurface, say: Words) -> str:
     ranked = sorted(shares, key=lambda name: (-shares[name], name))
     phrases = [
         say("part", material=say.material(name), share=percent(shares[name]), where=_place(parts[name], " ({})", say))
-        for name in ranked[:MOST_NAMED]
+        for name in ranked[:MAX_NAMED]
     ]
-    if others := ranked[MOST_NAMED:]:
+    if others := ranked[MAX_NAMED:]:
         key = "another" if len(others) == 1 else "others"
         phrases.append(say(key, count=len(others), share=percent(sum(shares[name] for name in others))))
     return say("materials", count=len(shares), parts=say.join(phrases))
@@ -254,7 +254,7 @@ def _parts(surface: HapticSurface, say: Words) -> str:
     height_m = median_heights_m(labels, surface.height_m[::step, ::step], len(names))
     present = np.flatnonzero(np.isfinite(height_m))
     named = [number for number in present[np.argsort(-height_m[present], kind="stable")].tolist() if names[number]]
-    phrases = [_part(surface, labels == number, number, float(height_m[number]), say) for number in named[:MOST_PARTS]]
+    phrases = [_part(surface, labels == number, number, float(height_m[number]), say) for number in named[:MAX_PARTS]]
     left, unnamed = len(named) - len(phrases), len(present) - len(named)
     phrases += [say("part left" if left == 1 else "parts left", count=left)] if left else []
     phrases += [say("unnamed" if unnamed == 1 else "all unnamed", count=unnamed)] if unnamed else []

@@ -9,13 +9,13 @@ import numpy as np
 from tangible_core.data import HapticSurface
 from tangible_core.scene import middle_pixels, reduced_map, reduced_shape
 
-MOST_CELLS = 200_000
+MAX_CELLS = 200_000
 """The most cells: the page draws nothing, and needs heights only to hold the hand over the surface."""
 
 
 def surface_for_page(surface: HapticSurface, number: int) -> dict[str, Any]:
     """Return heights, labels and materials as JSON data. number: of the surface in this session."""
-    shape = reduced_shape(surface.height_m.shape, max(1.0, (surface.height_m.size / MOST_CELLS) ** 0.5))
+    shape = reduced_shape(surface.height_m.shape, max(1.0, (surface.height_m.size / MAX_CELLS) ** 0.5))
     height_m = np.ascontiguousarray(reduced_map(surface.height_m, shape), "<f4")
     labels = None if surface.labels is None else middle_pixels(surface.labels, shape)
     materials = [{**asdict(material), "name": ""} for material in surface.materials or ()] if labels is not None else []

@@ -26,7 +26,7 @@ GAUSSIAN = 3.28970725
 """Width from 5 to 95 % of a cumulative Gaussian, in standard deviations."""
 FARTHEST = 6.0
 """Factor from the width to the farthest bound that is looked for."""
-MOST_LAPSES = 0.15
+MAX_LAPSES = 0.15
 """Most lapses on each side, as a share of the trials, for which the likelihood of a width is looked for."""
 
 
@@ -87,7 +87,7 @@ def width_interval(blocks: Blocks, threshold: Estimate, width: float) -> Estimat
     reach = threshold.high - threshold.low
     thresholds = np.linspace(threshold.low - reach, threshold.high + reach, 61)
     widths = width * np.geomspace(1 / FARTHEST, FARTHEST, 121)
-    lapses = np.linspace(0, MOST_LAPSES, 16)
+    lapses = np.linspace(0, MAX_LAPSES, 16)
     likelihood = np.zeros((len(lapses), len(thresholds), len(widths)))
     for level, count, trials in zip(*blocks, strict=True):
         rise = stats.norm.cdf((level - thresholds[:, None]) / (widths / GAUSSIAN))

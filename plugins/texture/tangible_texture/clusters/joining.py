@@ -15,7 +15,7 @@ from .planes import add_planes, inner_products, scatter_matrix_in_kernel
 
 RIDGE = 0.05
 """The ridge added to each pair's scatter, as a share of the mean variance within clusters."""
-LEAST_WEIGHT = 1e-3
+MIN_WEIGHT = 1e-3
 """What is added to the weight of every cell, so that no cluster weighs nothing."""
 
 
@@ -90,7 +90,7 @@ def measure_pairs(
 
 
 def _weights(shares: Float32[np.ndarray, "m"]) -> Float32[np.ndarray, "m"]:
-    return shares**2 + np.float32(LEAST_WEIGHT)
+    return shares**2 + np.float32(MIN_WEIGHT)
 
 
 @njit(cache=True, nogil=True)

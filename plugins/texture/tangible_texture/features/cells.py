@@ -15,7 +15,7 @@ ENERGY_SIGMA_PX = 4.0
 """The standard deviation of the window in which energies are averaged before windows of cells, px."""
 RARE = 0.985
 """The quantile of a plane that limits its values: a scratch is not a texture."""
-LEAST_RARE = 1.5
+MIN_RARE = 1.5
 """The largest value of a plane, as a multiple of its RARE quantile."""
 LANES = 64
 """The number of parallel partial sums: a constant, so that the order of sums is the same on every processor."""
@@ -29,7 +29,7 @@ def cap_rare_values(planes: Float32[np.ndarray, "d h w"]) -> Float32[np.ndarray,
     def work(share: Iterable[int]) -> None:
         for i in share:
             at = int(RARE * (planes[i].size - 1))
-            highest = LEAST_RARE * np.partition(planes[i], at, axis=None)[at]
+            highest = MIN_RARE * np.partition(planes[i], at, axis=None)[at]
             np.minimum(planes[i], highest, out=planes[i])
 
     in_turns(list(range(len(planes))), work)

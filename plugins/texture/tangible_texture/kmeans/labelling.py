@@ -58,7 +58,7 @@ def _silhouette(rows: Float32[np.ndarray, "n d"], labels: np.ndarray) -> float:
 
 
 log: logging.Logger = logging.getLogger(__name__)
-MOST_SEGMENTS = 8
+MAX_SEGMENTS = 8
 """The largest number of segments under `auto`."""
 
 
@@ -66,7 +66,7 @@ def choose_segments(rows: Float32[np.ndarray, "n d"], segments: int | Literal["a
     """Return the requested number, or for `auto` an estimate, reported with its confidence."""
     if segments != "auto":
         return segments
-    number, confidence, reason = choose_count(rows, MOST_SEGMENTS, seed)
+    number, confidence, reason = choose_count(rows, MAX_SEGMENTS, seed)
     note(log, f"segments: {number}, estimated with confidence {confidence:.2f}: {reason}")
     return number
 

@@ -25,7 +25,7 @@ from ..features.patterns import PATTERNS
 
 FILTERS = 24
 """The number of filters that the weights were fitted with: six directions of four octaves."""
-LEAST_CELLS = 64
+MIN_CELLS = 64
 """The least side of the narrow grid, in cells: the weights were fitted to pictures of 256 pixels or more."""
 GROUP = 16
 """The number of planes that are reduced, or averaged in windows, at once: all of them would take too much memory."""
@@ -58,11 +58,11 @@ def _weights() -> Weights:
 
 
 def learned_values(features: Features) -> Window | None:
-    """Compute the values of each cell of 8 pixels, centred; None for a picture smaller than LEAST_CELLS.
+    """Compute the values of each cell of 8 pixels, centred; None for a picture smaller than MIN_CELLS.
 
     A filter that was left out counts as one without differences; filters from FILTERS on are left out.
     """
-    if min(features.narrow.shape) < LEAST_CELLS:
+    if min(features.narrow.shape) < MIN_CELLS:
         return None
     filters, shape = features.filters, features.middle.shape
     known = [at for at, each in enumerate(filters) if each < FILTERS]

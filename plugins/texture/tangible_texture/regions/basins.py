@@ -10,7 +10,7 @@ from tangible_core.compiled import KERNEL, inner, njit
 
 from .watershed import UNSEEN
 
-MOST_SEGMENTS = 64
+MAX_SEGMENTS = 64
 """The largest number of segments under `auto`, far more than touch can distinguish."""
 STEEPER = (1, 4, 16)
 """The multiples of the flat threshold, tried in turn where nothing is flat enough."""

@@ -14,7 +14,7 @@ from .document import change
 from .making import long_job
 from .table import request
 
-LEAST_TICKS = 1000
+MIN_TICKS = 1000
 """Minimum number of ticks of a loop whose lateness is judged."""
 
 
@@ -56,4 +56,4 @@ def _loop(session: Session) -> dict[str, Any]:
     rows, _ = servo.ring.since(0)
     header = servo.ring.header
     late = Late(rows[:, TICK_COLUMNS.index("late_s")], float(header[PERIOD_NS]) / 1e9, bool(header[SPINS]))
-    return {"own": own, "late": late if len(rows) >= LEAST_TICKS else None}
+    return {"own": own, "late": late if len(rows) >= MIN_TICKS else None}

@@ -14,7 +14,7 @@ from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from tangible_core.errors import TangibleError
-from tangible_core.files import MOST_BYTES, in_words
+from tangible_core.files import MAX_BYTES, in_words
 from tangible_core.translation import translate
 from tangible_web.access import Guarded
 from tangible_web.address import static
@@ -35,7 +35,7 @@ NOT_YOURS = "the key in the address is not this program's; open the address it p
 
 WINDOW = frozenset({"row", "rows", "column", "columns", "of", "bytes"})
 """Query of a window: first row and number of rows, first column and number, columns of the file, bytes of an item."""
-MOST_ITEMS = 4_000_000
+MAX_ITEMS = 4_000_000
 
 Answer = Callable[[Request], Awaitable[Response]]
 
@@ -102,8 +102,8 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
     async def upload(request: Request) -> Response:
         name = request.path_params["name"]
         said = request.headers.get("content-length", "0")
-        if int(said) > MOST_BYTES:  # before the first byte is read
-            return refusal(request, f"{name}: holds more than {in_words(MOST_BYTES)}; open a smaller one", 413)
+        if int(said) > MAX_BYTES:  # before the first byte is read
+            return refusal(request, f"{name}: holds more than {in_words(MAX_BYTES)}; open a smaller one", 413)
         try:
             await session().uploads.put(request.path_params["batch"], name, request.stream())
         except TangibleError as error:
@@ -154,7 +154,7 @@ def read_window(path: Path, asked: dict[str, int]) -> bytes:
     """Return the rectangle, row by row. asked: a number for each of WINDOW. Raises: ValueError if it is not there."""
     row, rows, column, columns, of, size = (asked[key] for key in ("row", "rows", "column", "columns", "of", "bytes"))
     inside = min(row, column) >= 0 and min(rows, columns, size) > 0 and column + columns <= of
-    if not inside or rows * columns > MOST_ITEMS or (row + rows) * of * size > path.stat().st_size:
+    if not inside or rows * columns > MAX_ITEMS or (row + rows) * of * size > path.stat().st_size:
         raise ValueError("no such window")
     with path.open("rb") as file:
         parts: list[bytes] = []

@@ -15,7 +15,7 @@ from ..stale_files import left_in
 from .texts import Text
 
 log: logging.Logger = logging.getLogger(__name__)
-MOST_LEFT = 10
+MAX_LEFT = 10
 """Number of drafts that are kept; older ones are removed."""
 
 
@@ -62,7 +62,7 @@ class Drafts:
     def look(self) -> Draft | None:
         """Return the newest draft of an earlier program, and remove old ones."""
         found = sorted(filter(None, map(_read, left_in(self._folder, "*.json"))), key=lambda draft: draft.at_s)
-        for draft in found[:-MOST_LEFT]:
+        for draft in found[:-MAX_LEFT]:
             _remove(draft.file)
         self.left = found[-1] if found else None
         return self.left

@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, Protocol, final, runtime_checkable
 
-MOST_HISTORY, MOST_LOGGED = 500, 200
+MAX_HISTORY, MAX_LOGGED = 500, 200
 """Numbers of past events and of log lines that a tab opened later gets."""
 LATEST_ONLY = frozenset(
     {"restored", "document", "plan", "materials", "preflight", "legible", "exported", "beacon", "described"}
@@ -34,8 +34,8 @@ class Tabs:
         self.scene: dict[str, Any] | None = None
         self._latest: dict[str, dict[str, Any]] = {}
         """The latest event of each kind in `LATEST_ONLY`."""
-        self._history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
-        self._logged: deque[dict[str, Any]] = deque(maxlen=MOST_LOGGED)
+        self._history: deque[dict[str, Any]] = deque(maxlen=MAX_HISTORY)
+        self._logged: deque[dict[str, Any]] = deque(maxlen=MAX_LOGGED)
 
     def tell(self, event: str, **told: Any) -> None:
         """Send an event to all tabs, and to those opened later."""

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple, final
 
-MOST_STEPS = 100
+MAX_STEPS = 100
 
 
 class Text(NamedTuple):
@@ -23,7 +23,7 @@ class Texts:
     def __init__(self) -> None:
         self.lock: Lock = Lock()
         """Lock for reading the document, computing another text of it, and replacing it."""
-        self._before: deque[Text] = deque(maxlen=MOST_STEPS)
+        self._before: deque[Text] = deque(maxlen=MAX_STEPS)
         self._after: list[Text] = []
 
     @property
@@ -44,7 +44,7 @@ class Texts:
     def rewrite(self, others: Mapping[str, str]) -> None:
         """Replace texts by equivalent ones, after a file that they name was moved."""
         before = [each._replace(text=others.get(each.text, each.text)) for each in self._before]
-        self._before = deque(before, maxlen=MOST_STEPS)
+        self._before = deque(before, maxlen=MAX_STEPS)
         self._after = [each._replace(text=others.get(each.text, each.text)) for each in self._after]
 
     def leave(self, now: Text) -> None:

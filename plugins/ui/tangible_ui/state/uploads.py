@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import final
 
 from tangible_core.errors import ConfigError, quoted
-from tangible_core.files import MOST_BYTES, in_words
+from tangible_core.files import MAX_BYTES, in_words
 
-MOST_FILES = 16
+MAX_FILES = 16
 """Maximum number of files of one drop: two pictures with their maps, or a pipeline file and its pictures."""
-MOST_NAME = 120
+MAX_NAME = 120
 AT_ONCE_BYTES = 1 << 22
 """Bytes collected before they are written."""
 WRONG = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*]')
@@ -47,8 +47,8 @@ class UploadStore:
                 waiting, size = bytearray(), 0
                 async for part in body:
                     size += len(part)
-                    if size > MOST_BYTES:
-                        raise ConfigError(f"{name}: holds more than {in_words(MOST_BYTES)}; open a smaller one")
+                    if size > MAX_BYTES:
+                        raise ConfigError(f"{name}: holds more than {in_words(MAX_BYTES)}; open a smaller one")
                     waiting += part
                     if len(waiting) >= AT_ONCE_BYTES:
                         await asyncio.to_thread(file.write, waiting)
@@ -99,10 +99,10 @@ class UploadStore:
     def _place(self, batch: str, name: str) -> Path:
         here = self._batch(batch)
         path = here / name
-        if not name.strip(". ") or WRONG.search(name) or len(os.fsencode(name)) > MOST_NAME:
+        if not name.strip(". ") or WRONG.search(name) or len(os.fsencode(name)) > MAX_NAME:
             raise ConfigError(f"{quoted(name)}: a file of this name cannot be kept; give it a short, plain one")
-        if not path.exists() and len(list(here.iterdir())) >= MOST_FILES:
-            raise ConfigError(f"more than {MOST_FILES} files at once; open a pair, or a pipeline file and its pictures")
+        if not path.exists() and len(list(here.iterdir())) >= MAX_FILES:
+            raise ConfigError(f"more than {MAX_FILES} files at once; open a pair, or a pipeline file and its pictures")
         return path
 
 

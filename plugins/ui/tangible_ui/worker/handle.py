@@ -17,7 +17,7 @@ from tangible_core.servo import receive, send
 from ..prestart import take_worker_process
 from .messages import Event, JobFailure, JobRequest, JobResult
 
-MOST_DEATHS = 3
+MAX_DEATHS = 3
 """Failed starts in a row after which the worker is given up until `try_again`."""
 
 
@@ -142,7 +142,7 @@ class Worker:
         if self._closed:
             return
         self._deaths += not (self._ready or self._killed)
-        if self._deaths < MOST_DEATHS:
+        if self._deaths < MAX_DEATHS:
             self._start()
             error: TangibleError = WorkerKilled("computation was stopped; finished products are kept")
         else:

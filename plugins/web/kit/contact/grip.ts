@@ -18,7 +18,7 @@ export const MOVES_M_PER_S = 0.003;
 export const RESTS_M_PER_S = 0.0015;
 export const SMOOTH_S = 0.05;
 export const HELD_SHARE = 0.05;
-const LEAST_N = 0.02;
+const MIN_N = 0.02;
 /** Longest time between two states from which a speed is taken. */
 const LONGEST_S = 0.25;
 
@@ -43,7 +43,7 @@ export class GripRule {
 
   update(held: ContactSample): Grip {
     const normalN = dot(held.force, held.normal);
-    if (!held.touching || !(normalN > LEAST_N)) return this.reset();
+    if (!held.touching || !(normalN > MIN_N)) return this.reset();
     this.move(held);
     this.before = held;
     const pull = tangential(held.force, held.normal);

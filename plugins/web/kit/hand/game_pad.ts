@@ -2,7 +2,7 @@
 import type { Hand } from "./hand";
 
 /** Speed at full deflection: along, and up or down, metres per second. */
-const MOST_M_PER_S = 0.1;
+const MAX_M_PER_S = 0.1;
 const RISE_M_PER_S = 0.02;
 /** Greatest deflection of a stick at rest. */
 export const DEAD_ZONE = 0.15;
@@ -10,7 +10,7 @@ export const DEAD_ZONE = 0.15;
 const TRIGGER_REST = 0.05;
 /** Force of the strongest rumble, and its magnitude. */
 const FULL_N = 4;
-const MOST_SHAKE = 0.8;
+const MAX_SHAKE = 0.8;
 const SHAKE_MS = 120;
 const SHAKE_EVERY_MS = 60;
 /** Buttons of the standard mapping: the lower, right, left and upper one of four, and the right trigger. */
@@ -40,7 +40,7 @@ export function readPad({ axes, buttons }: PadState): PadMotion {
   const [x = 0, y = 0, , z = 0] = axes;
   const trigger = buttons[TRIGGER]?.value ?? 0;
   const far = Math.hypot(x, y);
-  const along = far > 0 ? (applyDeadZone(far) / far) * MOST_M_PER_S : 0;
+  const along = far > 0 ? (applyDeadZone(far) / far) * MAX_M_PER_S : 0;
   return {
     x: x * along,
     y: 0 - y * along,
@@ -66,7 +66,7 @@ export class Rumble {
   private shaking = false;
 
   play(shaker: Shaker, forceN: number, nowMs: number): void {
-    const share = Number.isFinite(forceN) ? Math.min(1, Math.max(0, forceN / FULL_N)) * MOST_SHAKE : 0;
+    const share = Number.isFinite(forceN) ? Math.min(1, Math.max(0, forceN / FULL_N)) * MAX_SHAKE : 0;
     if (share < 0.01) return this.stop(shaker);
     if (nowMs - this.atMs < SHAKE_EVERY_MS) return;
     this.atMs = nowMs;

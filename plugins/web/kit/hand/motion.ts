@@ -11,7 +11,7 @@ const ABOVE_M = 0.05;
 const BELOW_M = 0.01;
 /** Rounding allowed in the depth of a step. */
 const SLACK_M = 1e-6;
-const MOST_STEPS = 2000;
+const MAX_STEPS = 2000;
 
 /** The surface under the hand. */
 export interface Ground {
@@ -59,7 +59,7 @@ function along(
   const [dx, dy] = [goalX - x, goalY - y];
   const far = Math.hypot(dx, dy);
   const reach = Math.min(far, (SPEED.moveOverSurface * seconds) / slower);
-  const steps = clamp(Math.ceil(reach / (pitch(ground) / 2)), 1, MOST_STEPS);
+  const steps = clamp(Math.ceil(reach / (pitch(ground) / 2)), 1, MAX_STEPS);
   const [up, down] = [(SPEED.climb * seconds) / slower / steps, (SPEED.sink * seconds) / slower / steps];
   const [stepX, stepY] = far > 0 ? [(dx / far) * (reach / steps), (dy / far) * (reach / steps)] : [0, 0];
   for (let i = 0; i < steps; i++) {

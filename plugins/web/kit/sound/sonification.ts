@@ -17,7 +17,7 @@ export interface Stroke {
 }
 
 /** Greatest level before the volume. */
-export const MOST_LEVEL = 0.25;
+export const MAX_LEVEL = 0.25;
 const BAND_HZ = { least: 50, most: 6000 };
 /** A stroke at full level: 0.1 mm, 2 N, 0.1 m/s, 1 N of drag. */
 const FULL = { roughness_m: 1e-4, force_n: 2, speed_m_per_s: 0.1, drag_n: 1 };
@@ -26,7 +26,7 @@ const EXPONENT = 0.6;
 const SILENT: Voice = { hz: BAND_HZ.least, level: 0, q: 1 };
 
 const clamp = (value: number, least: number, most: number): number => Math.min(most, Math.max(least, value));
-const loudness = (share: number): number => MOST_LEVEL * clamp(share, 0, 1) ** EXPONENT;
+const loudness = (share: number): number => MAX_LEVEL * clamp(share, 0, 1) ** EXPONENT;
 
 /** Return grains met per second: none along the lines of a material, speed over grain across them. */
 export function grains_hz(material: Material, velocity: Vec): number {
@@ -66,7 +66,7 @@ export function tap(material: Material | null, velocity: Vec): { hz: number; lev
   const hardness = Math.sqrt((material?.stiffness_n_per_m ?? 300) / 300);
   return {
     hz: clamp(140 * hardness, 60, 900),
-    level: clamp(0.06 + 2 * Math.abs(velocity[2]), 0.06, MOST_LEVEL),
+    level: clamp(0.06 + 2 * Math.abs(velocity[2]), 0.06, MAX_LEVEL),
     seconds: clamp(0.09 / hardness, 0.03, 0.15),
   };
 }

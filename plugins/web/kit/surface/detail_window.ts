@@ -3,8 +3,8 @@ import type { Meta } from "../server/messages";
 import type { Window } from "./loading";
 
 /** Greatest number of cells, drawn in a fraction of a second; 300 000 cells are 600 000 triangles. */
-export const MOST_CELLS = 300_000;
-const MOST_SIDE = 4000;
+export const MAX_CELLS = 300_000;
+const MAX_SIDE = 4000;
 const MARGIN = 0.08;
 /** Least width of a cell in pixels. */
 const FINEST_PIXEL = 0.5;
@@ -29,7 +29,7 @@ export function windowOf(meta: Meta, seen: Box, pixel_m: number): Window | null 
     const [row, near] = span((l / 2 - seen.far - my) / dy, (l / 2 - seen.near + my) / dy, rows);
     const found = { level, row, rows: near - row, column, columns: right - column };
     if (found.rows < 1 || found.columns < 1) return null;
-    if (found.rows * found.columns <= MOST_CELLS && Math.max(found.rows, found.columns) <= MOST_SIDE) return found;
+    if (found.rows * found.columns <= MAX_CELLS && Math.max(found.rows, found.columns) <= MAX_SIDE) return found;
   }
   return null;
 }

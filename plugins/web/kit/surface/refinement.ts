@@ -8,7 +8,7 @@ import { includes, windowOf, type Box } from "./detail_window";
 
 const LARGEST_TEXTURE_M = 0.03;
 const TEXTURE_PIXELS = 512;
-const MOST_PICTURE = 1_500_000;
+const MAX_PICTURE = 1_500_000;
 const SAMPLES = [0, 0.5, 1];
 
 export class Refiner {
@@ -77,7 +77,7 @@ export class Refiner {
     const right = Math.min(fine_photo[0], Math.ceil((window.column + window.columns) * across));
     const near = Math.min(fine_photo[1], Math.ceil((window.row + window.rows) * along));
     const [wide, long] = [Math.max(1, right - x), Math.max(1, near - y)];
-    const share = Math.min(1, Math.sqrt(MOST_PICTURE / (wide * long)));
+    const share = Math.min(1, Math.sqrt(MAX_PICTURE / (wide * long)));
     const bitmap = await createImageBitmap(blob, x, y, wide, long, {
       resizeWidth: Math.max(1, Math.round(share * wide)),
       resizeHeight: Math.max(1, Math.round(share * long)),

@@ -9,7 +9,7 @@ import { Sheet, type Uniforms } from "./sheet";
 import { LOOKS, STEEPS } from "./shader";
 import { heatTexture, kindsTexture, numbers } from "./textures";
 
-const MOST_MOVING_NEEDLES = 4;
+const MAX_MOVING_NEEDLES = 4;
 const NOTHING = new Float32Array(1);
 
 /** Options of drawing a surface. */
@@ -125,7 +125,7 @@ export class Terrain {
   set moving(moving: boolean) {
     this.coarse = moving;
     for (const sheet of [this.whole, this.detail]) if (sheet) sheet.moving = moving;
-    this.needles.density = moving ? Math.min(this.looks.normals, MOST_MOVING_NEEDLES) : this.looks.normals;
+    this.needles.density = moving ? Math.min(this.looks.normals, MAX_MOVING_NEEDLES) : this.looks.normals;
   }
 
   get moving(): boolean {

@@ -22,7 +22,7 @@ import type { Labels } from "../surface/scene";
 import { heatTexels } from "./colours";
 
 const KINDS_WIDE = 1024;
-const MOST_HALF = 65000;
+const MAX_HALF = 65000;
 
 export function numbers(values: Float32Array, columns: number, rows: number): DataTexture {
   return ready(new DataTexture(values as Float32Array<ArrayBuffer>, columns, rows, RedFormat, FloatType));
@@ -76,7 +76,7 @@ export function gradientTexture({ heights, rows, columns, place }: Grid): DataTe
 }
 
 function half(value: number): number {
-  return DataUtils.toHalfFloat(Math.min(Math.max(value, -MOST_HALF), MOST_HALF));
+  return DataUtils.toHalfFloat(Math.min(Math.max(value, -MAX_HALF), MAX_HALF));
 }
 
 export function pictureTexture(picture: ImageBitmap | null): Texture {

@@ -1,7 +1,7 @@
 /** Triangles of a grid with a ring around it: (rows + 2) x (columns + 2) vertices, every stride-th of them. */
 
 /** Greatest number of triangles per frame while the camera moves, on slow graphics. */
-export const MOST_MOVING = 60_000;
+export const MAX_MOVING = 60_000;
 
 export function triangles(rows: number, columns: number, stride: number): Uint32Array {
   const across = pickIndices(columns, stride);
@@ -31,7 +31,7 @@ export function pickIndices(count: number, stride: number): number[] {
   return [...indices, count, count + 1];
 }
 
-/** Return the stride for at most MOST_MOVING triangles. */
+/** Return the stride for at most MAX_MOVING triangles. */
 export function strideOf(rows: number, columns: number): number {
-  return Math.max(1, Math.ceil(Math.sqrt((2 * rows * columns) / MOST_MOVING)));
+  return Math.max(1, Math.ceil(Math.sqrt((2 * rows * columns) / MAX_MOVING)));
 }

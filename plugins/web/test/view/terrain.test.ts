@@ -3,8 +3,8 @@ import { test } from "node:test";
 import type { Meta } from "kit/server/messages";
 import { heat, heatTexels, isMarked, PALETTE, PATTERNS, styleOf } from "kit/terrain/colours";
 import { checkSettings, DEFAULTS } from "kit/view/settings";
-import { pickIndices, strideOf, triangles, MOST_MOVING } from "kit/terrain/triangles";
-import { includes, MOST_CELLS, windowOf } from "kit/surface/detail_window";
+import { pickIndices, strideOf, triangles, MAX_MOVING } from "kit/terrain/triangles";
+import { includes, MAX_CELLS, windowOf } from "kit/surface/detail_window";
 
 function large(columns = 4300, rows = 4200): Meta {
   const levels = [1, 2, 4, 8].map((step) => ({ step, rows: Math.ceil(rows / step), columns: Math.ceil(columns / step) }));
@@ -20,7 +20,7 @@ test("what is looked at is fetched as finely as can be drawn, and no finer than 
   assert.equal(half.level, 2);
   const near = windowOf(meta, around(0.01, -0.02, 0.006), 1e-5)!;
   assert.equal(near.level, 0);
-  assert.ok(near.rows * near.columns <= MOST_CELLS);
+  assert.ok(near.rows * near.columns <= MAX_CELLS);
   const pitch = 0.08 / 4300;
   assert.ok(near.column * pitch - 0.04 <= 0.007 && (near.column + near.columns) * pitch - 0.04 >= 0.013);
   assert.ok(0.08 * (4200 / 4300) / 2 - near.row * pitch >= -0.017);
@@ -46,7 +46,7 @@ test("triangles cover the grid and its ring, whatever the stride", () => {
       assert.ok(index.every((each) => each < (rows + 2) * (columns + 2)));
     }
   const stride = strideOf(480, 640);
-  assert.ok(triangles(480, 640, stride).length / 3 < 1.2 * MOST_MOVING);
+  assert.ok(triangles(480, 640, stride).length / 3 < 1.2 * MAX_MOVING);
 });
 
 test("a greater value is lighter, and the ends are the ends", () => {

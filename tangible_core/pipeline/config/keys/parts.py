@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, cast
 
 from ....data.part_words import FROM_ONE
-from ....errors import MOST_QUOTED, quoted
+from ....errors import MAX_QUOTED, quoted
 from ....parts import PartChoice
 from .block import by_number
 from .key import Forms, Key, Reading, Unchecked
@@ -76,6 +76,6 @@ def _no_number(key: Any) -> str:
 
 def _number(key: Any) -> int | None:
     """Return the number of a part, which JSON has as a word; None for any other key."""
-    if isinstance(key, str) and key.isdecimal() and len(key) < MOST_QUOTED:
+    if isinstance(key, str) and key.isdecimal() and len(key) < MAX_QUOTED:
         key = int(key)
     return int(key) if isinstance(key, int) and not isinstance(key, bool) and key > 0 else None

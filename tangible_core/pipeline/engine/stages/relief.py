@@ -35,7 +35,7 @@ from ..working_grid import flatten_transparent, relief_of_layers
 log: logging.Logger = logging.getLogger(__name__)
 SPREAD = "heights are spread so that borders can be felt; `relief: depth` keeps true proportions"
 """The note on a relief whose heights are not proportional to depth."""
-LEVEL, MOST_REGIONS = 0.6, 64
+LEVEL, MAX_REGIONS = 0.6, 64
 """The least share of people who would draw a border that is a raised line, and the most regions between such lines. On
 20 photographs, lines at this level are at drawn borders as often as lines at edges, and find more of these."""
 SEEN_LEVEL = 0.4
@@ -178,8 +178,8 @@ class ReliefStage(Stage):
         cells = edges.reduce_to_cells(self.views, self.size.width_m)
         assert self.config.texture is not None
         if not self.config.texture.method.reads():
-            return self._divider.tree(cells).cut(MOST_REGIONS, LEVEL).labels
-        labels = self._divider.tree(self.views.left).cut(MOST_REGIONS, SEEN_LEVEL).labels  # a network needs all pixels
+            return self._divider.tree(cells).cut(MAX_REGIONS, LEVEL).labels
+        labels = self._divider.tree(self.views.left).cut(MAX_REGIONS, SEEN_LEVEL).labels  # a network needs all pixels
         return scaling.middle_pixels(labels, cells.shape[:2])
 
     @property

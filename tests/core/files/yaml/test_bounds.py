@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 from hostile import YAML_BOMBS
-from tangible_core.errors import MOST_IN_LINE, MOST_LINES, ConfigError
-from tangible_core.files.reading import MOST_TEXT_BYTES
+from tangible_core.errors import MAX_IN_LINE, MAX_LINES, ConfigError
+from tangible_core.files.reading import MAX_TEXT_BYTES
 from tangible_core.files.yaml import bounds
-from tangible_core.files.yaml.bounds import MOST_DEPTH, MOST_DIGITS
+from tangible_core.files.yaml.bounds import MAX_DEPTH, MAX_DIGITS
 from tangible_core.files.yaml.source import Source, parse_source, plain, read_text
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
@@ -36,8 +36,8 @@ def test_yaml_bomb_as_a_pipeline_gives_few_short_complaints(name: str):
     with pytest.raises(ConfigError) as error:
         parse_config(YAML_BOMBS[name], PATH, default_registry())
     lines = str(error.value).splitlines()
-    assert len(lines) <= MOST_LINES + 1
-    assert all(line.isprintable() and len(line) <= MOST_IN_LINE for line in lines)
+    assert len(lines) <= MAX_LINES + 1
+    assert all(line.isprintable() and len(line) <= MAX_IN_LINE for line in lines)
     assert lines[0].startswith("here/p.yaml:")
 
 
@@ -47,19 +47,17 @@ def deep(levels: int) -> str:
 
 def test_brackets_beyond_the_depth_limit_are_refused_where_they_are_read():
     """The parser's events would be a thousand brackets late."""
-    assert (
-        complaint("scene: " + "[" * 500) == f"here/p.yaml:1:{8 + MOST_DEPTH}: more than {MOST_DEPTH} blocks are nested"
-    )
+    assert complaint("scene: " + "[" * 500) == f"here/p.yaml:1:{8 + MAX_DEPTH}: more than {MAX_DEPTH} blocks are nested"
 
 
 def test_nested_blocks_beyond_the_depth_limit_are_refused():
-    assert parse(deep(MOST_DEPTH)).tree
-    assert complaint(deep(MOST_DEPTH + 1)) == f"here/p.yaml:1:23: more than {MOST_DEPTH} blocks are nested"
+    assert parse(deep(MAX_DEPTH)).tree
+    assert complaint(deep(MAX_DEPTH + 1)) == f"here/p.yaml:1:23: more than {MAX_DEPTH} blocks are nested"
 
 
 def test_values_beyond_the_count_limit_are_refused(monkeypatch: pytest.MonkeyPatch):
     """The mapping, a key, the list, and its items."""
-    monkeypatch.setattr(bounds, "MOST_NODES", 100)
+    monkeypatch.setattr(bounds, "MAX_NODES", 100)
     assert parse(f"x: [{'1,' * 97}]").tree
     assert "more than 100 values" in complaint(f"x: [{'1,' * 98}]")
     assert "more than 100 values" in complaint("\n".join(f"x{number}: 1" for number in range(50)))
@@ -67,7 +65,7 @@ def test_values_beyond_the_count_limit_are_refused(monkeypatch: pytest.MonkeyPat
 
 def test_alias_counts_as_all_nodes_that_it_stands_for(monkeypatch: pytest.MonkeyPatch):
     """The mapping, two keys, a list of 9 in it, and another list of what is left."""
-    monkeypatch.setattr(bounds, "MOST_NODES", 100)
+    monkeypatch.setattr(bounds, "MAX_NODES", 100)
     text = f"a: &a [{'1,' * 9}]\nb: [{{}}]"
     assert len(parse(text.format("*a," * 8 + "1," * 6)).tree["b"]) == 14
     assert "values, aliases expanded" in complaint(text.format("*a," * 8 + "1," * 7))
@@ -88,9 +86,9 @@ def test_key_that_is_a_block_is_refused(text: str):
 
 
 def test_number_with_too_many_digits_is_refused():
-    assert parse("x: " + "9" * MOST_DIGITS).tree["x"] == int("9" * MOST_DIGITS)
-    assert complaint("x: " + "9" * (MOST_DIGITS + 1)) == f"here/p.yaml:1:4: a number of more than {MOST_DIGITS} digits"
-    assert "digits" in complaint("x: 0." + "9" * MOST_DIGITS)
+    assert parse("x: " + "9" * MAX_DIGITS).tree["x"] == int("9" * MAX_DIGITS)
+    assert complaint("x: " + "9" * (MAX_DIGITS + 1)) == f"here/p.yaml:1:4: a number of more than {MAX_DIGITS} digits"
+    assert "digits" in complaint("x: 0." + "9" * MAX_DIGITS)
     assert parse("x: '" + "9" * 5000 + "'").tree["x"] == "9" * 5000
 
 
@@ -100,12 +98,12 @@ def test_date_is_read_as_text(text: str):
 
 
 def test_text_with_too_many_bytes_is_refused(tmp_path: Path):
-    (tmp_path / "a.yaml").write_text("x: 1\n" + "#" * (MOST_TEXT_BYTES - 5))
+    (tmp_path / "a.yaml").write_text("x: 1\n" + "#" * (MAX_TEXT_BYTES - 5))
     assert parse(read_text(tmp_path / "a.yaml")).tree == {"x": 1}
-    (tmp_path / "a.yaml").write_text("x: 1\n" + "#" * (MOST_TEXT_BYTES - 4))
+    (tmp_path / "a.yaml").write_text("x: 1\n" + "#" * (MAX_TEXT_BYTES - 4))
     with pytest.raises(ConfigError, match=r"a\.yaml: cannot be read as text: it holds more than 0\.25 MB"):
         read_text(tmp_path / "a.yaml")
-    assert complaint("#" * (MOST_TEXT_BYTES + 1)) == "here/p.yaml: it holds more than 0.25 MB"
+    assert complaint("#" * (MAX_TEXT_BYTES + 1)) == "here/p.yaml: it holds more than 0.25 MB"
 
 
 @pytest.mark.parametrize(
@@ -115,7 +113,7 @@ def test_text_with_too_many_bytes_is_refused(tmp_path: Path):
         ("scene=*a", "undefined alias"),
         ("scene=" + "9" * 5000, "digits"),
         ("x" * 5000, "write key.key=value"),
-        (".".join("a" * (MOST_DEPTH + 1)) + "=1", "write key.key=value"),
+        (".".join("a" * (MAX_DEPTH + 1)) + "=1", "write key.key=value"),
         ("9" * 5000 + "=1", ""),
         ("²=1", ""),
     ],

@@ -142,7 +142,7 @@ class TestWork:
         assert rehearsed == [SemiGlobal()]
 
     def test_work_crops_the_middle_of_a_large_picture(self, monkeypatch: pytest.MonkeyPatch):
-        monkeypatch.setattr(module, "MOST_PX", 20)
+        monkeypatch.setattr(module, "MAX_PX", 20)
         work = _work(pipeline().engine, "touch")
         assert work is not None
         assert np.array_equal(work.arguments[1].left, PICTURE[14:34, 14:34])

@@ -22,7 +22,7 @@ from tangible_core.pipeline.engine.working_grid import parts_on_grid
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.pipeline.output import export_folder
 from tangible_core.pipeline.output.export_folder import move, read_list
-from tangible_core.pipeline.output.exporting import MOST_STEM_BYTES, stem_of
+from tangible_core.pipeline.output.exporting import MAX_STEM_BYTES, stem_of
 from tangible_core.pipeline.output.parts_text import part_heights
 from tangible_core.plugins import DepthEstimator, Exporter, Segmenter, Work
 from tangible_core.plugins.registry import default_registry
@@ -304,8 +304,8 @@ class TestFiles:
             ("a/b\\c:d.e", "a-b-c-d-e"),
             ("東京 ♞", "東京"),
             ("...", "export"),
-            ("x" * 300, "x" * MOST_STEM_BYTES),
-            ("ß" * 200, "ß" * (MOST_STEM_BYTES // 2)),
+            ("x" * 300, "x" * MAX_STEM_BYTES),
+            ("ß" * 200, "ß" * (MAX_STEM_BYTES // 2)),
         ],
     )
     def test_stem_of_any_title_is_a_file_name(self, title: str, stem: str):

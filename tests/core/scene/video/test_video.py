@@ -245,7 +245,7 @@ def test_unplayable_file_raises_one_line(tmp_path: Path, capfd: pytest.CaptureFi
 
 
 def test_huge_frame_is_refused_before_it_is_decoded(film: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(reading, "MOST_PIXELS", 24 * 32 - 1)
+    monkeypatch.setattr(reading, "MAX_PIXELS", 24 * 32 - 1)
     monkeypatch.setattr(video_readers, "grab", None)
     with pytest.raises(PictureError, match=r"film.avi: a frame is larger than .*; make the video smaller first"):
         Scene.video(film)

@@ -7,7 +7,7 @@ import pytest
 
 from tangible_core.data import DeviceSpec, TickFlag
 from tangible_core.servo.guard.guard import couple, guard, restart, wait
-from tangible_core.servo.guard.layout import ENERGY_J, MOST_DELAY
+from tangible_core.servo.guard.layout import ENERGY_J, MAX_DELAY
 from tangible_core.servo.guard.safety import Coupling, Safety, counts
 
 SPEC = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)
@@ -131,14 +131,14 @@ def stopped(memory: np.ndarray, settings: np.ndarray) -> None:
 
 
 class TestMemoryAfterStop:
-    @pytest.mark.parametrize("delay", [0, 1, 3, MOST_DELAY])
+    @pytest.mark.parametrize("delay", [0, 1, 3, MAX_DELAY])
     def test_delayed_forces_are_cleared_by_stop(self, delay: int):
         """A force that would have arrived after the stop does no work."""
         settings, memory = Safety(passivity="strict", delay_ticks=delay, **AT_ONCE).arrays(SPEC, 0.0)
-        for _ in range(2 * MOST_DELAY + 2):
+        for _ in range(2 * MAX_DELAY + 2):
             guard(settings, memory, 0.001, *[0.0] * 6, 1.0, 1.0, 1.0)
         stopped(memory, settings)
-        for i in range(MOST_DELAY + 1):
+        for i in range(MAX_DELAY + 1):
             guard(settings, memory, 0.001, 0.001 * i, 0.001 * i, 0.001 * i, *[0.0] * 6)
             assert memory[ENERGY_J] == 0.0
 

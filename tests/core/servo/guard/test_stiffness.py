@@ -213,7 +213,7 @@ class TestFaultyLaw:
         assert "then it raised TypeError" in found.how
 
     def test_law_that_blocks_is_abandoned_in_time(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr(stiffness, "MOST_S", 0.3)
+        monkeypatch.setattr(stiffness, "MAX_S", 0.3)
         ended = threading.Event()
         touch = law_at_fault(lambda: ended.wait(60))
         begun_s = time.monotonic()

@@ -90,7 +90,7 @@ class TestSurfaceWork:
     def test_ratchet_is_damped_once_the_surface_work_is_used_up(self):
         """A hand that is lifted with force and comes down without gains 6 mJ a round, until it is damped."""
         felt, hand_m, way_m, most_j = Felt(), 0.0101, 5e-5, 0.02
-        felt.settings[at.SURFACE_W], felt.settings[at.MOST_SURFACE_J], felt.memory[at.MAY_GIVE_J] = 0.0, most_j, most_j
+        felt.settings[at.SURFACE_W], felt.settings[at.MAX_SURFACE_J], felt.memory[at.MAY_GIVE_J] = 0.0, most_j, most_j
         ways = [(-1, 0)] * 42 + ([(1, 1)] * 100 + [(0, -1)] * 38 + [(-1, -1)] * 62 + [(-1, 0)] * 38) * 10
         for hand, plane in ways:
             hand_m, before = hand_m + hand * way_m, felt.damped
@@ -140,7 +140,7 @@ class TestSurfaceWork:
         given: list[list[tuple[float, ...]]] = []
         for may_j in (0.0, 1e9):
             settings, memory = Safety(ramp_s=0.1).arrays(SPEC, STIFF)
-            memory[at.MAY_GIVE_J] = settings[at.SURFACE_W] = settings[at.MOST_SURFACE_J] = may_j
+            memory[at.MAY_GIVE_J] = settings[at.SURFACE_W] = settings[at.MAX_SURFACE_J] = may_j
             speeds = np.diff(steps, axis=0, prepend=steps[:1]) / 0.001
             pushed = [(-v[0], 0.0, max(0.0, -STIFF * x[2])) for x, v in zip(steps, speeds, strict=True)]
             given.append(

@@ -5,7 +5,7 @@ import pytest
 
 from tangible_core.data import DisparityMap
 from tangible_core.session.film import Steady
-from tangible_core.session.film.steady import GATE_PX, MOST_DOUBTS, MOST_MISSING
+from tangible_core.session.film.steady import GATE_PX, MAX_DOUBTS, MAX_MISSING
 
 FLAT = np.full((6, 8), 10, np.float32)
 
@@ -37,7 +37,7 @@ def test_change_is_adopted_at_the_second_frame_without_a_trail():
 
 def test_value_that_changes_in_each_frame_is_adopted_after_a_few():
     felt = [each[2, 3] for each in filter_maps(*(at(10 + 5 * number) for number in range(9)))]
-    assert all(abs(value - (10 + 5 * number)) <= 5 * MOST_DOUBTS for number, value in enumerate(felt))
+    assert all(abs(value - (10 + 5 * number)) <= 5 * MAX_DOUBTS for number, value in enumerate(felt))
     assert felt[-1] >= 40
 
 
@@ -51,9 +51,9 @@ def test_noise_is_averaged():
 def test_flickering_hole_is_filled_and_lasting_hole_stays():
     flickers = filter_maps(FLAT, at(np.nan), FLAT, at(np.nan), at(np.nan), FLAT)
     assert all(np.array_equal(each, FLAT) for each in flickers)
-    stays = [each[2, 3] for each in filter_maps(FLAT, *[at(np.nan)] * (MOST_MISSING + 2))]
-    assert np.isfinite(stays[: MOST_MISSING + 1]).all()
-    assert np.isnan(stays[MOST_MISSING + 1 :]).all()
+    stays = [each[2, 3] for each in filter_maps(FLAT, *[at(np.nan)] * (MAX_MISSING + 2))]
+    assert np.isfinite(stays[: MAX_MISSING + 1]).all()
+    assert np.isnan(stays[MAX_MISSING + 1 :]).all()
 
 
 def test_unknown_value_must_be_seen_twice():

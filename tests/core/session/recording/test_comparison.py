@@ -7,7 +7,7 @@ import pytest
 
 from tangible_core.errors import ConfigError
 from tangible_core.session import Recording, compare_recordings
-from tangible_core.session.recording.replay import MOST_COMPARED
+from tangible_core.session.recording.replay import MAX_COMPARED
 
 DEEP_M, WIDE_M = 1e-3, 0.1
 
@@ -56,6 +56,6 @@ def test_comparison_of_empty_unknown_and_long_recordings_works():
     lost[:1000, 2] = np.nan
     assert compare_recordings(Recording(lost), one)["compared"] == 1001
     assert compare_recordings(one, Recording(lost))["compared"] > 1000
-    assert compare_recordings(press(1000, ticks=2 * MOST_COMPARED), one)["compared"] == MOST_COMPARED
+    assert compare_recordings(press(1000, ticks=2 * MAX_COMPARED), one)["compared"] == MAX_COMPARED
     with pytest.raises(ConfigError, match="near_m: is 0; it must be positive"):
         compare_recordings(one, one, 0)

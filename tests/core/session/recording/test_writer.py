@@ -156,7 +156,7 @@ def test_writer_on_full_disk_keeps_written_ticks(tmp_path: Path):
 
 @pytest.mark.parametrize("most", [100, 120])
 def test_writer_of_full_file_is_closed(tmp_path: Path, most: int, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(netcdf, "MOST_RECORDS", most)
+    monkeypatch.setattr(netcdf, "MAX_RECORDS", most)
     path = tmp_path / "stroke.nc"
     with Writer(path) as writer:
         writer.append(ROWS)

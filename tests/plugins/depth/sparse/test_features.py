@@ -38,7 +38,7 @@ class TestMatchers:
 
 
 def test_large_pictures_are_matched_reduced_and_refined_in_full(monkeypatch):
-    monkeypatch.setattr("tangible_depth.sparse.matches.MOST_PIXELS", 20_000)
+    monkeypatch.setattr("tangible_depth.sparse.matches.MAX_PIXELS", 20_000)
     scene = Scene((240, 320), 6.4, 13.7)
     matches = sift_matches(scene.left(), scene.right())
     column, row = np.rint(matches.left_px).astype(int).T

@@ -8,7 +8,7 @@ import pytest
 from stereo_scenes import slanted, step
 from tangible_core import load_method
 from tangible_depth.dense.span import UNKNOWN, Span
-from tangible_depth.matching.window_matching import LEAST_VARIANCE
+from tangible_depth.matching.window_matching import MIN_VARIANCE
 from tangible_depth.search.pairs import Pair
 from tangible_depth.sgm.strips import unknown_matches
 from tangible_depth.simd.lanes import Lanes
@@ -47,7 +47,7 @@ def test_scores_are_exact_and_mutual_best_are_accepted(squared, span, side):
     pair = small_pair()
     disparity, _ = unknown_matches(pair.left.shape)
     tops = np.full(pair.left.shape, -1e30, np.float32)
-    how = (side // 2, span, np.float32(-1e29 if squared else 0.0), LEAST_VARIANCE)
+    how = (side // 2, span, np.float32(-1e29 if squared else 0.0), MIN_VARIANCE)
     correlate_strip(Lanes(span.lanes), squared, *pair, (0, 12), *how, disparity, tops)
     scores = plain_scores(side, squared)[..., span.low - WIDEST.low : span.high - WIDEST.low + 1]
     best = scores.max(axis=-1)

@@ -7,9 +7,9 @@ from scipy.spatial import Delaunay
 
 from tangible_export.paper.colouring import choose_fills
 from tangible_export.paper.fills import KINDS
-from tangible_export.paper.named_parts import LETTERS, MOST_NAMES, key_letters
+from tangible_export.paper.named_parts import LETTERS, MAX_NAMES, key_letters
 
-NAMES = st.lists(st.text("abcxyz éü7Ж", max_size=6), max_size=MOST_NAMES)
+NAMES = st.lists(st.text("abcxyz éü7Ж", max_size=6), max_size=MAX_NAMES)
 
 
 @given(NAMES)

@@ -114,7 +114,7 @@ def test_textures_that_add_least_to_the_spread_become_one():
 
 
 def test_of_very_many_textures_the_smallest_go_to_the_most_alike(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(merging, "MOST_COMPARED", 3)
+    monkeypatch.setattr(merging, "MAX_COMPARED", 3)
     labels = np.repeat(np.arange(5), [40, 3, 30, 2, 20])[None].repeat(20, 0).astype(np.int32)
     found = texture_kinds(part_map(labels), (), 4, greys(labels, 10, 240, 100, 20, 250))
     assert found.tolist() == [0, 2, 1, 0, 2]

@@ -9,7 +9,7 @@ import pytest
 from tangible_core.data import HapticSurface, MaterialMap, PartMap
 from tangible_core.materials.assignment import library
 from tangible_report.description import PartFacts, describe_at_length, facts, page_of
-from tangible_report.description.at_length import MOST_PARTS
+from tangible_report.description.at_length import MAX_PARTS
 
 Y, X = np.mgrid[0:60, 0:80] / np.array([60, 80]).reshape(2, 1, 1)
 LABELS = np.where(Y >= 0.6, 1, 0).astype(np.int32)
@@ -136,13 +136,13 @@ def test_description_without_a_title_has_a_heading():
     (20, "20 smaller parts, 25 % of the picture together, are left out."),
 ])  # fmt: skip
 def test_description_of_many_parts_has_the_named_and_largest(extra: int, says: str | None):
-    count = MOST_PARTS + extra
+    count = MAX_PARTS + extra
     labels = np.repeat(np.arange(count, dtype=np.int32), 160).reshape(-1, 80)
     surface = replace(
         HapticSurface.from_heights(labels * 1e-4, 0.08, labels), names=("the lowest", *[""] * (count - 1))
     )
     lines = describe_at_length(surface, "x", "en", facts(surface))
-    assert sum("- part " in line or "the lowest" in line for line in lines if line.startswith("- ")) == MOST_PARTS
+    assert sum("- part " in line or "the lowest" in line for line in lines if line.startswith("- ")) == MAX_PARTS
     assert [line for line in lines if line.startswith("- ")][-1].startswith("- the lowest. ")
     assert (lines[-1] if says else None) == says
 

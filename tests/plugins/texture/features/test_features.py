@@ -12,7 +12,7 @@ from tangible_texture.features.cells import cap_rare_values, standardise_roots, 
 from tangible_texture.features.channels import channels
 from tangible_texture.features.features import Features, features
 from tangible_texture.features.patterns import PATTERNS
-from tangible_texture.learned.network import LEAST_CELLS, learned_values
+from tangible_texture.learned.network import MIN_CELLS, learned_values
 
 
 @pytest.mark.parametrize(
@@ -177,6 +177,6 @@ def _share_in_order(planes: np.ndarray, labels: np.ndarray, seed: int) -> float:
 
 
 def test_pictures_smaller_than_those_fitted_to_have_none(scene: KnownSegments):
-    side = 4 * LEAST_CELLS
+    side = 4 * MIN_CELLS
     assert learned_values(found(scene.picture[: side - 4, :side])) is None
     assert learned_values(found(scene.picture[:side, :side])) is not None

@@ -18,7 +18,7 @@ HOMING, GREEN, BLUE, RED = 0x01, 0x02, 0x04, 0x08
 """Bits of that byte, outwards."""
 BUTTONS, HOMED = 0x0F, 0x70
 """Bits of that byte, inwards: four buttons; the arms that found their zero: top, right, left."""
-MOST_COUNTS = 4095
+MAX_COUNTS = 4095
 """Greatest torque that the original driver sends; beyond 32767 the sign would wrap."""
 
 BYTES, FEW = uint8[::1], types.UniTuple(int64, 3)
@@ -63,12 +63,12 @@ def encode(first, second, third, info, packet):
 
 @njit(types.Tuple((int64, int64, int64, float64))(float64, float64, float64), **KERNEL)
 def saturate(first, second, third):
-    """Return torques in whole counts, and the factor that scaled all three so that none exceeds MOST_COUNTS.
+    """Return torques in whole counts, and the factor that scaled all three so that none exceeds MAX_COUNTS.
 
     One factor for all keeps the direction of the force. Torques that are not finite become 0.
     """
     largest = max(abs(first), abs(second), abs(third))
     if not abs(first) + abs(second) + abs(third) < float("inf"):
         return 0, 0, 0, 0.0
-    factor = MOST_COUNTS / largest if largest > MOST_COUNTS else 1.0
+    factor = MAX_COUNTS / largest if largest > MAX_COUNTS else 1.0
     return int64(round(first * factor)), int64(round(second * factor)), int64(round(third * factor)), factor

@@ -13,7 +13,7 @@ from tangible_core.files import check_file
 
 KEY = 0x08AA
 RESERVED_WORDS = 8
-MOST_BYTES = 1 << 18
+MAX_BYTES = 1 << 18
 """Largest file that is read: more than the processor's memory."""
 WHENCE = (
     "it comes with Novint's driver and in the folder `firmware` of libnifalcon (nvent_firmware.bin), "
@@ -26,7 +26,7 @@ def read_image(path: Path) -> bytes:
     try:
         check_file(path.expanduser())
         with path.expanduser().open("rb") as file:
-            image = file.read(MOST_BYTES + 1)
+            image = file.read(MAX_BYTES + 1)
     except OSError as error:
         raise DeviceError(f"{path}: cannot be read: {error.strerror}; give the option firmware; {WHENCE}") from error
     if fault := fault_of(image):
@@ -36,8 +36,8 @@ def read_image(path: Path) -> bytes:
 
 def fault_of(image: bytes) -> str:
     """Return the fault of an image; empty if it has none."""
-    if not image or len(image) % 2 or len(image) > MOST_BYTES:
-        return f"it has {len(image)} bytes; an even number up to {MOST_BYTES} is needed"
+    if not image or len(image) % 2 or len(image) > MAX_BYTES:
+        return f"it has {len(image)} bytes; an even number up to {MAX_BYTES} is needed"
     words = struct.unpack(f"<{len(image) // 2}H", image)
     if words[0] != KEY:
         return f"it begins with 0x{words[0]:04X} and not with 0x{KEY:04X}"

@@ -16,9 +16,9 @@ from ...user_data import RECORDINGS, user_folder
 from ..state import WorkerState
 from .table import job
 
-MOST_ROWS = 120_000
+MAX_ROWS = 120_000
 """Maximum number of rows of a recording for pages, 8 MB; of a longer one every second tick, or third, is shown."""
-MOST_LISTED = 500
+MAX_LISTED = 500
 AT_FLAGS = TICK_COLUMNS.index("flags")
 
 
@@ -33,7 +33,7 @@ def records(state: WorkerState) -> list[dict[str, Any]]:
         )
     except OSError:
         return []
-    return [_entry(path) for path in found[:MOST_LISTED]]
+    return [_entry(path) for path in found[:MAX_LISTED]]
 
 
 def _modification_time(path: Path) -> float:
@@ -68,7 +68,7 @@ def show_record(state: WorkerState, path: str) -> dict[str, Any]:
 
 
 def _lay_out(state: WorkerState, found: Recording, path: str) -> dict[str, Any]:
-    every = -(-len(found.rows) // MOST_ROWS) or 1
+    every = -(-len(found.rows) // MAX_ROWS) or 1
     rows = found.rows[::every].copy()
     start_s = float(found.time_s[0]) if len(rows) else 0.0
     rows[:, AT_FLAGS] = found.flags[::every] & FLAG_BITS

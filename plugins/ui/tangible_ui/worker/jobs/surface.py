@@ -25,7 +25,7 @@ from ..view.surface_view import SurfaceView
 from .table import job
 
 KEPT = 8
-MOST_PIXELS = 512
+MAX_PIXELS = 512
 LARGEST_M = 0.1
 
 
@@ -40,10 +40,10 @@ def texture_patch(
     at = state.folder / digest
     if not re.fullmatch("[0-9a-f]{32}", digest) or not (at / ABOUT).is_file():
         raise GeometryError("this surface is not kept any more; make it again")
-    square = 0 < side_m <= LARGEST_M and 1 <= pixels <= MOST_PIXELS and np.isfinite(x_m + y_m)
+    square = 0 < side_m <= LARGEST_M and 1 <= pixels <= MAX_PIXELS and np.isfinite(x_m + y_m)
     if not square:
         raise GeometryError(
-            f"a texture is shown on up to {LARGEST_M} m and {MOST_PIXELS} pixels, not {side_m} m, {pixels}"
+            f"a texture is shown on up to {LARGEST_M} m and {MAX_PIXELS} pixels, not {side_m} m, {pixels}"
         )
     heights = patch(at, (x_m, y_m), side_m, pixels)
     name = f"texture-{digest_of((x_m, y_m, side_m, pixels))}.f32"

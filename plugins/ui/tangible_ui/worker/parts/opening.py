@@ -23,7 +23,7 @@ TREES = "hierarchy"
 """The texture method whose regions are proposed, where the document's own makes no tree."""
 KEPT = 3
 """Folders of the editor that are kept: tabs may still fetch from the one before."""
-MOST_LOOKED_AT = 400_000
+MAX_LOOKED_AT = 400_000
 """Maximum number of pixels among which a place well inside a part is searched."""
 
 
@@ -110,7 +110,7 @@ def _places(parts: PartMap) -> list[tuple[int, int]]:
     """Return column and row of a pixel well inside each part: of a sample, the farthest from all borders."""
     import cv2
 
-    step = max(1, round((parts.labels.size / MOST_LOOKED_AT) ** 0.5))
+    step = max(1, round((parts.labels.size / MAX_LOOKED_AT) ** 0.5))
     labels = np.pad(parts.labels[::step, ::step], 1, constant_values=-1)
     inside = (~border_pixels(labels)).view(np.uint8)
     far = np.asarray(cv2.distanceTransform(inside, cv2.DIST_L2, 3)) + inside

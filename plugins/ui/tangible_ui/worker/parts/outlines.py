@@ -3,11 +3,11 @@
 import numpy as np
 from jaxtyping import Float32, Float64, Int, UInt8
 
-MOST_PLACES = 1500
+MAX_PLACES = 1500
 """Maximum number of places along an outline."""
-MOST_STEPS = 24
+MAX_STEPS = 24
 """Maximum number of steps to either side of it."""
-MOST_REACH_PX = 400.0
+MAX_REACH_PX = 400.0
 FAR = 0.15
 """Cost of a shift by the whole reach; a place without any edge costs 1."""
 BEND = 0.12
@@ -27,8 +27,8 @@ def snap(
     places = _resample(outline)
     if len(places) < 4 or not 0 < reach_px < np.inf:
         return outline
-    steps = int(np.clip(round(reach_px), 1, MOST_STEPS))
-    away = np.linspace(-1, 1, 2 * steps + 1) * min(reach_px, MOST_REACH_PX)
+    steps = int(np.clip(round(reach_px), 1, MAX_STEPS))
+    away = np.linspace(-1, 1, 2 * steps + 1) * min(reach_px, MAX_REACH_PX)
     normals = _normals(places)
     cost = 1 - _edges(picture, places, normals, away) + FAR * np.abs(np.linspace(-1, 1, away.size, dtype=np.float32))
     moved = places + normals * away[_cheapest(cost)][:, None]
@@ -40,7 +40,7 @@ def _resample(outline: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, "m 2"]
     closed = np.concatenate([outline, outline[:1]])
     lengths = np.hypot(*np.diff(closed, axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(lengths)])
-    count = int(min(MOST_PLACES, along[-1]))
+    count = int(min(MAX_PLACES, along[-1]))
     wanted = np.arange(count) * (along[-1] / max(1, count))
     return np.stack([np.interp(wanted, along, closed[:, axis]) for axis in (0, 1)], axis=1)
 

@@ -10,8 +10,8 @@ from tangible_core.data import SegmentTree
 from tangible_core.errors import ConfigError
 
 Kind = Literal["regions", "grabcut", "watershed"]
-MOST_POINTS = 2000
-MOST_CELLS = 16_000
+MAX_POINTS = 2000
+MAX_CELLS = 16_000
 """Maximum number of cells of the reduced window: GrabCut takes a tenth of a second for these."""
 AROUND = 0.4
 """Reach of the window beyond the stroke, as a share of the stroke's length."""
@@ -22,7 +22,7 @@ BLOCK = 12
 """Side of the blocks that are refined at the picture's own size, in cells; only those that the border crosses."""
 SMALL_HOLE = 0.01
 """Greatest hole that is filled, as a share of the part's area."""
-LEAST_UNDER = 0.3
+MIN_UNDER = 0.3
 """Least pixels of a stroke in a region that counts, as a share of those in the region that holds the most."""
 RIM = 2
 OUTSIDE, PART = 2, 1
@@ -58,7 +58,7 @@ def propose(
     width_px = float(np.clip(width_px, 1, max(picture.shape)))
     window = _window(picture.shape, points, width_px, within)
     whole = window.of(picture)
-    factor = min(1.0, (MOST_CELLS / (window.rows * window.columns)) ** 0.5)
+    factor = min(1.0, (MAX_CELLS / (window.rows * window.columns)) ** 0.5)
     size = max(1, round(window.columns * factor)), max(1, round(window.rows * factor))
     small = np.ascontiguousarray(cv2.resize(whole, size, interpolation=cv2.INTER_AREA) if factor < 1 else whole)
     stroke = _draw_stroke(points, width_px, window, size)
@@ -80,13 +80,13 @@ def propose_region(
 ) -> tuple[Window, Bool[np.ndarray, "r c"]]:
     """Return the regions under the stroke, between borders of at least a level, as `propose`: a lower level gives less.
 
-    A region counts if it holds at least LEAST_UNDER as many pixels of the stroke as the one that holds the most.
+    A region counts if it holds at least MIN_UNDER as many pixels of the stroke as the one that holds the most.
     """
     labels = tree.cut(len(tree.joins) + 1, level).labels
     whole = Window(0, 0, labels.shape[1], labels.shape[0])
     stroke = _draw_stroke(points, float(np.clip(width_px, 1, max(labels.shape))), whole, labels.shape[::-1])
     under = np.bincount(labels[stroke], minlength=int(labels.max()) + 1)
-    mask = (under >= max(1.0, LEAST_UNDER * under.max()))[labels]
+    mask = (under >= max(1.0, MIN_UNDER * under.max()))[labels]
     if within is not None:
         x0, y0, x1, y1 = np.clip(within, 0, [*labels.shape[::-1], *labels.shape[::-1]]).astype(int).tolist()
         inside = np.zeros(labels.shape, np.bool_)
@@ -96,12 +96,12 @@ def propose_region(
 
 
 def as_points(points: Sequence[Sequence[float]], shape: tuple[int, ...]) -> Float64[np.ndarray, "n 2"]:
-    """Return points in the picture, columns and rows, at most MOST_POINTS. Raises: ConfigError for anything else."""
+    """Return points in the picture, columns and rows, at most MAX_POINTS. Raises: ConfigError for anything else."""
     found = np.array([list(point) for point in points if len(point) == 2], np.float64).reshape(-1, 2)
     if not 0 < len(found) == len(points) or not np.isfinite(found).all():
         raise ConfigError("points: are [[column, row], ...] in pixels of the picture, at least one")
-    if len(found) > MOST_POINTS:
-        found = found[np.linspace(0, len(found) - 1, MOST_POINTS).round().astype(int)]
+    if len(found) > MAX_POINTS:
+        found = found[np.linspace(0, len(found) - 1, MAX_POINTS).round().astype(int)]
     return np.clip(found, 0, [shape[1] - 1, shape[0] - 1])
 
 

@@ -16,7 +16,7 @@ from jaxtyping import Int32, Shaped, UInt16
 from tangible_authoring.label_picture import label_picture
 from tangible_core.data import PartMap, label_of_number, shown_number
 from tangible_core.errors import ConfigError, quoted
-from tangible_core.files import MOST_PIXELS, atomic_write, sole_writer, write_text
+from tangible_core.files import MAX_PIXELS, atomic_write, sole_writer, write_text
 from tangible_core.files.yaml import read_text, with_parts
 from tangible_core.pipeline.config import REMOVE, PipelineConfig, edit_text, read_values
 from tangible_core.scene import BUILTINS, Scene, SceneFiles, builtin_files
@@ -40,7 +40,7 @@ def unpack(path: Path, shape: tuple[int, int]) -> UInt16[np.ndarray, "h w"]:
     """
     size = 2 * shape[0] * shape[1]
     wrong = f"the labels that were sent are not a gzip of {shape[1]} x {shape[0]} numbers of two bytes; send them again"
-    if not 0 < size <= 2 * MOST_PIXELS:
+    if not 0 < size <= 2 * MAX_PIXELS:
         raise ConfigError(wrong)
     try:
         unpacking = zlib.decompressobj(GZIP)
@@ -97,7 +97,7 @@ def _chunk(kind: bytes, data: bytes) -> bytes:
 
 
 log: logging.Logger = logging.getLogger(__name__)
-MOST_EDITED = 200
+MAX_EDITED = 200
 """Maximum number of keys that are changed one by one, each in its place; beyond it the whole block is rewritten."""
 SAID = ("name", "height_m", "material")
 
@@ -171,7 +171,7 @@ def document_with_parts(
     short = {shown_number(number): each["name"] if set(each) == {"name"} else dict(each) for number, each in entries}
     before = now.get("parts")
     before = before if isinstance(before, dict) else {}
-    if not before or len(short.keys() | before.keys()) > MOST_EDITED:
+    if not before or len(short.keys() | before.keys()) > MAX_EDITED:
         return _with_block(edit_text(text, path, changes), path, short)
     changes |= {("parts", key): REMOVE for key in before if key not in map(str, short)}
     changes |= {("parts", str(key)): value for key, value in short.items() if before.get(str(key)) != value}

@@ -23,14 +23,14 @@ from .surface_view import SurfaceView
 KEPT = 3
 """Folders that are kept: tabs may still fetch from the one before."""
 ABOUT = "about.json"
-MOST_PREVIEW = 1_000_000
+MAX_PREVIEW = 1_000_000
 """Maximum number of pixels of the picture that is drawn first."""
-MOST_FINE_SIDE = 16_384
+MAX_FINE_SIDE = 16_384
 """Greatest side of a picture that browsers decode, pixels."""
 
-MOST_CELLS = 350_000
+MAX_CELLS = 350_000
 """Size limit of the coarsest level, cells: software draws it in a fraction of a second; 640 x 480 is drawn as it is."""
-MOST_SIDE = 4096
+MAX_SIDE = 4096
 """Greatest side of a level: every WebGL 2 has textures of this size."""
 
 
@@ -149,9 +149,9 @@ def _raw(path: Path, values: np.ndarray, kind: str) -> None:
 def _fine_size(picture: np.ndarray) -> tuple[int, int] | None:
     """Return width and height of the fine picture; None if the preview is as large."""
     rows, columns = picture.shape[:2]
-    if rows * columns <= MOST_PREVIEW and max(rows, columns) <= MOST_SIDE:
+    if rows * columns <= MAX_PREVIEW and max(rows, columns) <= MAX_SIDE:
         return None
-    return _size((columns, rows), rows * columns, MOST_FINE_SIDE)
+    return _size((columns, rows), rows * columns, MAX_FINE_SIDE)
 
 
 def _size(size: tuple[int, int], most_pixels: int, most_side: int) -> tuple[int, int]:
@@ -165,7 +165,7 @@ def _write_picture(picture: np.ndarray, part: Path) -> None:
     whole = image_of(picture)
     if (fine := _fine_size(picture)) is not None:
         _save(whole, fine, part / "photo-fine.jpg")
-    _save(whole, _size(whole.size, MOST_PREVIEW, MOST_SIDE), part / "photo.jpg")
+    _save(whole, _size(whole.size, MAX_PREVIEW, MAX_SIDE), part / "photo.jpg")
 
 
 def image_of(picture: np.ndarray) -> Image.Image:
@@ -176,7 +176,7 @@ def image_of(picture: np.ndarray) -> Image.Image:
 def write_whole(picture: np.ndarray, path: Path) -> None:
     """Write a picture at full size, up to what browsers decode."""
     whole = image_of(picture)
-    _save(whole, _size(whole.size, whole.width * whole.height, MOST_FINE_SIDE), path)
+    _save(whole, _size(whole.size, whole.width * whole.height, MAX_FINE_SIDE), path)
 
 
 def _save(whole: Image.Image, size: tuple[int, int], path: Path) -> None:
@@ -187,7 +187,7 @@ def _save(whole: Image.Image, size: tuple[int, int], path: Path) -> None:
 def count_levels(shape: tuple[int, int]) -> int:
     """Return the number of levels of a grid of (rows, columns)."""
     levels = 1
-    while shape[0] * shape[1] > MOST_CELLS or max(shape) > MOST_SIDE:
+    while shape[0] * shape[1] > MAX_CELLS or max(shape) > MAX_SIDE:
         shape, levels = (-(-shape[0] // 2), -(-shape[1] // 2)), levels + 1
     return levels
 

@@ -26,7 +26,7 @@ from tangible_core.pipeline.engine import fit_to_device, is_at_hand, parts_on_gr
 from tangible_core.scene import RANGE_PERCENT, flat_relief, reduced_map, reduced_segments, reduced_shape
 
 Shows = Literal["surface", "relief", "segments"]
-MOST_LAYER_CELLS = 1_000_000
+MAX_LAYER_CELLS = 1_000_000
 """Maximum number of cells of layers, which are only looked at."""
 
 
@@ -41,7 +41,7 @@ class Layer(NamedTuple):
     @classmethod
     def of(cls, values: np.ndarray, unit: str, span: tuple[float, float] | None = None) -> "Layer":
         """Build a layer, reduced if it is large. span: low and high; by default percentiles of the values."""
-        factor = max(1.0, (values.size / MOST_LAYER_CELLS) ** 0.5)
+        factor = max(1.0, (values.size / MAX_LAYER_CELLS) ** 0.5)
         seen = reduced_map(np.ascontiguousarray(values, np.float32), reduced_shape(values.shape, factor))
         known = seen[np.isfinite(seen)]
         if span is None:

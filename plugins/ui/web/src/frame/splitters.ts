@@ -16,7 +16,7 @@ const SPLITS: Split[] = [
   { region: "bottom", upright: false, way: -1 },
 ];
 const STEP_PX = 16;
-const LEAST_PX = 80;
+const MIN_PX = 80;
 const KEYS: Record<string, number> = { ArrowLeft: -1, ArrowUp: -1, ArrowRight: 1, ArrowDown: 1 };
 
 export function buildSplitters(): void {
@@ -92,7 +92,7 @@ class Splitter {
 
   private setSize(px: number): void {
     const whole = this.split.upright ? innerWidth : innerHeight;
-    const kept = Math.round(Math.min(Math.max(px, LEAST_PX), 0.6 * whole));
+    const kept = Math.round(Math.min(Math.max(px, MIN_PX), 0.6 * whole));
     document.documentElement.style.setProperty(`--${this.split.region}`, `${kept}px`);
   }
 

@@ -1,15 +1,15 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { asText, Lines, MOST_LINES, isShown, type Level } from "../../src/panels/log/lines";
+import { asText, Lines, MAX_LINES, isShown, type Level } from "../../src/panels/log/lines";
 
 const all = new Set<Level>(["event", "detail", "warning", "error"]);
 
 test("at most so many are kept, the newest", () => {
   const lines = new Lines();
-  const dropped = Array.from({ length: MOST_LINES + 3 }, (_, i) => lines.add("event", `line ${i}`, i).dropped?.text);
-  assert.equal(lines.all.length, MOST_LINES);
+  const dropped = Array.from({ length: MAX_LINES + 3 }, (_, i) => lines.add("event", `line ${i}`, i).dropped?.text);
+  assert.equal(lines.all.length, MAX_LINES);
   assert.deepEqual(dropped.slice(-4), [undefined, "line 0", "line 1", "line 2"]);
-  assert.equal(lines.all.at(-1)!.text, `line ${MOST_LINES + 2}`);
+  assert.equal(lines.all.at(-1)!.text, `line ${MAX_LINES + 2}`);
 });
 
 test("the same line again counts up and has the newest time", () => {

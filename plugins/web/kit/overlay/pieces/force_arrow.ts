@@ -21,11 +21,11 @@ import { length } from "../../contact/vectors";
 import type { Settings } from "../settings";
 
 const UP = new Vector3(0, 1, 0);
-const LEAST_N = 1e-3;
+const MIN_N = 1e-3;
 const SHAFT_PX = 2.6;
 const HEAD_PX = { radius: 7.5, length: 19 };
 /** Greatest share of the head in a short arrow. */
-const MOST_HEAD = 0.6;
+const MAX_HEAD = 0.6;
 const DASHES = 5;
 /** Width of the dark hull, whose back faces make the arrow visible on any ground. */
 const RIM_PX = 1.3;
@@ -60,11 +60,11 @@ export class ForceArrow implements Piece {
   put(live: Reading | null, { show, metresPerNewton }: Settings, sight: Sight): void {
     const force: Vec = live?.state[this.which] ?? [0, 0, 0];
     const newtons = length(force);
-    this.group.visible = live !== null && show.arrow && newtons > LEAST_N;
+    this.group.visible = live !== null && show.arrow && newtons > MIN_N;
     if (!live || !this.group.visible) return;
     const metres = newtons * metresPerNewton;
     const pixel = metresPerPixel(sight, live.contact);
-    const head = Math.min(HEAD_PX.length * pixel, MOST_HEAD * metres);
+    const head = Math.min(HEAD_PX.length * pixel, MAX_HEAD * metres);
     const thin = head / (HEAD_PX.length * pixel);
     this.group.position.set(...live.contact);
     this.group.quaternion.setFromUnitVectors(UP, this.way.set(...force).divideScalar(newtons));

@@ -5,7 +5,7 @@ import { metresPerPixel, type Piece, type Sight } from "../piece";
 import type { Reading } from "../../contact/reading";
 import { roundDown125, type Settings } from "../settings";
 
-const MOST_PX = 130;
+const MAX_PX = 130;
 const EVERY_MS = 100;
 
 export class ScaleBar implements Piece {
@@ -32,7 +32,7 @@ export class ScaleBar implements Piece {
     if (!show.arrow || this.late) return;
     this.readMs = now;
     const pixel = metresPerPixel(sight, live?.contact ?? this.view.eye.pose.target);
-    const newtons = roundDown125((MOST_PX * pixel) / metresPerNewton);
+    const newtons = roundDown125((MAX_PX * pixel) / metresPerNewton);
     const metres = newtons * metresPerNewton;
     this.bar.style.width = `${(metres / pixel).toFixed(1)}px`;
     const text = t("scale", { newtons, mm: Number((1000 * metres).toPrecision(3)) });

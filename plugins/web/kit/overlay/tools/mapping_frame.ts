@@ -10,12 +10,12 @@ import { COARSE, Handle, STEP_M } from "./handle";
 import { IDENTITY, corners, type Mapping, movePlacement, type Reach, reachOf, wholePicture, zoomTo } from "./placement";
 
 /** Width in pictures from which a device's frame is not shown, as for the mouse. */
-const MOST_PICTURES = 4;
+const MAX_PICTURES = 4;
 const TURN_DEG = 1;
 const LARGER = 1.02;
 /** Distance of the turning handle from the frame, as a share of its length. */
 const TURN_OFF = 0.12;
-const LEAST_REGION_M = 0.0005;
+const MIN_REGION_M = 0.0005;
 const HALF = 0.5;
 
 interface Reached {
@@ -71,7 +71,7 @@ export class MappingFrame implements PointerTool {
   get isBounded(): boolean {
     const { scene } = this.page;
     const area = this.workspace && reachOf(this.mapping, this.workspace);
-    return scene !== null && area !== null && area.size[0] < MOST_PICTURES * scene.meta.extent_m[0];
+    return scene !== null && area !== null && area.size[0] < MAX_PICTURES * scene.meta.extent_m[0];
   }
 
   /** The device's reach, or the enlarged region if the device reaches everything. */
@@ -116,7 +116,7 @@ export class MappingFrame implements PointerTool {
     this.page.overlay.picking.take(null);
     if (!from) return;
     const [width, length] = [Math.abs(at[0] - from[0]), Math.abs(at[1] - from[1])];
-    if (Math.min(width, length) >= LEAST_REGION_M) this.zoom((from[0] + at[0]) / 2, (from[1] + at[1]) / 2, width, length);
+    if (Math.min(width, length) >= MIN_REGION_M) this.zoom((from[0] + at[0]) / 2, (from[1] + at[1]) / 2, width, length);
   }
 
   left(): void {
@@ -133,7 +133,7 @@ export class MappingFrame implements PointerTool {
     if (!scene || !now) return;
     const live = overlay.live?.seen ? overlay.live : null;
     const [x, y] = live ? live.hand : view.eye.pose.target;
-    const size = now.size.map((side, axis) => Math.max(LEAST_REGION_M, HALF * Math.min(side, scene.meta.extent_m[axis])));
+    const size = now.size.map((side, axis) => Math.max(MIN_REGION_M, HALF * Math.min(side, scene.meta.extent_m[axis])));
     this.zoom(x, y, size[0], size[1]);
   }
 

@@ -20,14 +20,14 @@ export interface Measurement {
   heightsM: Float64Array;
 }
 
-const MOST_STEPS = 8192;
+const MAX_STEPS = 8192;
 /** Steps per cell, so that corners between cells are not missed. */
 const A_CELL = 8;
 
 /** Measure between two places. cellM: size of the surface's cells. */
 export function measure(surface: Surface, from: Vec, to: Vec, cellM: number): Measurement {
   const horizontalM = Math.hypot(to[0] - from[0], to[1] - from[1]);
-  const steps = Math.min(MOST_STEPS, Math.max(2, Math.ceil((A_CELL * horizontalM) / cellM)));
+  const steps = Math.min(MAX_STEPS, Math.max(2, Math.ceil((A_CELL * horizontalM) / cellM)));
   const heightsM = new Float64Array(steps + 1);
   let surfaceM = 0;
   for (let i = 0; i <= steps; i++) {

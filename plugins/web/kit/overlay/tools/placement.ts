@@ -19,8 +19,8 @@ export interface Placement {
   offset: Vec;
 }
 
-const LEAST_SCALE = 1e-3;
-const MOST_SCALE = 1e3;
+const MIN_SCALE = 1e-3;
+const MAX_SCALE = 1e3;
 const FARTHEST_M = 10;
 export const IDENTITY: Mapping = { scale: null, region_m: null, rotation_deg: 0, offset_m: [0, 0, 0] };
 
@@ -117,7 +117,7 @@ export function wholePicture(mapping: Mapping): Mapping {
   return { ...mapping, scale: null, region_m: null, offset_m: [0, 0, mapping.offset_m[2]] };
 }
 
-const within = (scale: number): number => Math.min(MOST_SCALE, Math.max(LEAST_SCALE, scale));
+const within = (scale: number): number => Math.min(MAX_SCALE, Math.max(MIN_SCALE, scale));
 const clampOffset = (part: number): number => roundTo(Math.min(FARTHEST_M, Math.max(-FARTHEST_M, part)), 5);
 const wrapDegrees = (degrees: number): number => degrees - 360 * Math.round(degrees / 360);
 

@@ -6,7 +6,7 @@ import { roundDown125 } from "../settings";
 const NS = "http://www.w3.org/2000/svg";
 const SIZE = { width: 230, height: 118, left: 34, right: 8, top: 8, bottom: 32 };
 const MARKS = 4;
-const MOST_POINTS = 500;
+const MAX_POINTS = 500;
 
 /** Return round numbers within a span, in millimetres. */
 export function marks(lowMm: number, highMm: number): number[] {
@@ -28,7 +28,7 @@ export function profile(measured: Measurement): SVGSVGElement {
   for (const mm of marks(low, high)) svg.append(grid(SIZE.left, y(mm), SIZE.width - SIZE.right, y(mm)), words(SIZE.left - 4, y(mm) + 3, "end", mm));
   const last = measured.heightsM.length - 1;
   const points: string[] = [];
-  for (let i = 0, step = Math.max(1, Math.floor(last / MOST_POINTS)); i <= last; i += step)
+  for (let i = 0, step = Math.max(1, Math.floor(last / MAX_POINTS)); i <= last; i += step)
     points.push(`${x((far * i) / last).toFixed(1)},${y(1000 * measured.heightsM[i]).toFixed(1)}`);
   svg.append(make("polyline", { points: points.join(" "), class: "heights" }));
   const unit = make("text", { x: `${SIZE.width - SIZE.right}`, y: `${SIZE.height - 5}`, "text-anchor": "end" });

@@ -87,7 +87,7 @@ def test_saturate_keeps_torques_within_limits(most: float):
 def test_saturate_keeps_direction(first: float, second: float, third: float):
     *counts, factor = packet.saturate(first, second, third)
     assert np.allclose(counts, np.multiply((first, second, third), factor), atol=0.5)
-    assert factor == 1 or max(map(abs, counts)) == packet.MOST_COUNTS
+    assert factor == 1 or max(map(abs, counts)) == packet.MAX_COUNTS
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])

@@ -227,7 +227,7 @@ def test_force_never_reverses(place: tuple[float, float, float], force: tuple[fl
     size = np.dot(counts, torques) / np.dot(torques, torques) if ideal.any() else 0.0
     assert size >= 0
     assert np.abs(np.array(counts) - size * torques).max() <= 1.0
-    assert max(map(abs, counts)) <= packet.MOST_COUNTS
+    assert max(map(abs, counts)) <= packet.MAX_COUNTS
 
 
 def test_spec_force_is_possible_in_every_direction():

@@ -13,12 +13,12 @@ export interface Line {
   times: number;
 }
 
-export const MOST_LINES = 2000;
+export const MAX_LINES = 2000;
 
 export class Lines {
   readonly all: Line[] = [];
 
-  constructor(private most = MOST_LINES) {}
+  constructor(private most = MAX_LINES) {}
 
   /** Add a line; return it, whether it repeats the last one, and the line dropped for it. */
   add(level: Level, text: string, at_s: number, foreign = ""): { line: Line; again: boolean; dropped: Line | undefined } {

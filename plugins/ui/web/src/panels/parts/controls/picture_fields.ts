@@ -6,7 +6,7 @@ import { t } from "../editor/words";
 import { input } from "./part_list";
 
 const MM = 1000;
-const MOST_MM = { round_m: 100, bulge_m: 10, detail_m: 10 };
+const MAX_MM = { round_m: 100, bulge_m: 10, detail_m: 10 };
 
 export class PictureFields {
   readonly elements: HTMLElement[];
@@ -40,7 +40,7 @@ export class PictureFields {
   private shape(name: (typeof SHAPES)[number]): HTMLInputElement {
     const { details } = this.state;
     const box = input(`parts-${name}`, "number");
-    Object.assign(box, { min: "0", max: String(MOST_MM[name]), step: "any", value: String(Math.round(1e5 * details.heights[name]) / 100) });
+    Object.assign(box, { min: "0", max: String(MAX_MM[name]), step: "any", value: String(Math.round(1e5 * details.heights[name]) / 100) });
     box.addEventListener("input", () => {
       if (!box.checkValidity()) return this.state.setDetails({});
       const metres = Math.round((1e5 * (box.valueAsNumber || 0)) / MM) / 1e5;

@@ -8,7 +8,7 @@ import type { EditorState, Update } from "./state";
 import { t } from "./words";
 
 /** Parts in pieces, and sizes of each, that a question lists. */
-const MOST_LISTED = 6;
+const MAX_LISTED = 6;
 
 export class Saving {
   private running: Promise<boolean> | null = null;
@@ -98,11 +98,11 @@ export class Saving {
     const scattered = [...drawing.scattered()];
     if (!scattered.length) return true;
     const pixels = drawing.labels.data.length;
-    const texts = scattered.slice(0, MOST_LISTED).map(([label, sizes]) => {
-      const listed = sizes.slice(0, MOST_LISTED).map((each) => shareOf(each / pixels)).join(", ");
-      return t("inPieces", { name: nameIn(this.state, label), count: sizes.length, sizes: listed + (sizes.length > MOST_LISTED ? " …" : "") });
+    const texts = scattered.slice(0, MAX_LISTED).map(([label, sizes]) => {
+      const listed = sizes.slice(0, MAX_LISTED).map((each) => shareOf(each / pixels)).join(", ");
+      return t("inPieces", { name: nameIn(this.state, label), count: sizes.length, sizes: listed + (sizes.length > MAX_LISTED ? " …" : "") });
     });
-    if (scattered.length > MOST_LISTED) texts.push(t("morePieces", { count: scattered.length - MOST_LISTED }));
+    if (scattered.length > MAX_LISTED) texts.push(t("morePieces", { count: scattered.length - MAX_LISTED }));
     texts.push(t("eachBecomes"));
     const answer = await question(t("scattered"), texts, [["", t("goOn")], ["pieces", t("savePieces")]]);
     if (answer) drawing.settle();

@@ -2,13 +2,13 @@
 import type { Point, Span } from "./labels";
 
 /** Least radius that leaves no hole between pixels. */
-const LEAST_RADIUS = 0.75;
+const MIN_RADIUS = 0.75;
 
 /** Return the pixels whose centres are under it, within the picture. */
 export function stroke(a: Point, b: Point, width: number, columns: number, rows: number): Span[] {
   const thin = width < 3;
   const [from, to] = thin ? [centre(a), centre(b)] : [a, b];
-  const radius = Math.max(width / 2, LEAST_RADIUS);
+  const radius = Math.max(width / 2, MIN_RADIUS);
   const top = Math.max(0, Math.ceil(Math.min(from[1], to[1]) - radius - 0.5));
   const bottom = Math.min(rows, Math.floor(Math.max(from[1], to[1]) + radius - 0.5) + 1);
   const sides = edges(from, to, radius);

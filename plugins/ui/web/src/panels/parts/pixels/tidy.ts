@@ -6,9 +6,9 @@ import { findPieces, type Pieces } from "./pieces";
 /** Passes, because a sliver may go to a piece that is a sliver itself. */
 const PASSES = 16;
 /** A sliver's pixels, as a share of the picture's. */
-const LEAST_SHARE = 0.0005;
+const MIN_SHARE = 0.0005;
 /** A sliver's width, as a share of the picture's longer side: half a millimetre of 80. */
-const LEAST_WIDTH = 0.006;
+const MIN_WIDTH = 0.006;
 
 /** Pieces below either of these are slivers; in pixels. */
 export interface Limits {
@@ -26,7 +26,7 @@ interface Measured {
 }
 
 export function sliversOf({ columns, rows }: Labels): Limits {
-  return { pixels: LEAST_SHARE * columns * rows, width: LEAST_WIDTH * Math.max(columns, rows) };
+  return { pixels: MIN_SHARE * columns * rows, width: MIN_WIDTH * Math.max(columns, rows) };
 }
 
 /** Give slivers to the part with which they share most of their border; return how many went.

@@ -18,6 +18,9 @@ from numba.extending import overload, register_jitable
 from .background import start_waiting
 
 log: logging.Logger = logging.getLogger(__name__)
+progress_log: logging.Logger = log.getChild("progress")
+"""The time that is left, once a second, for those who show it: a terminal's line, a page. Nobody else hears of it."""
+progress_log.propagate = False
 BYTECODE = {"depth": 28_500, "texture": 3_700, "render": 10_600, "core": 14_000}
 """The bytes of bytecode that a process of a first `tangible demo` compiles, by family: time is proportional to them."""
 
@@ -51,31 +54,48 @@ def inner_by_type(choose: Callable[..., Callable[..., Any]]) -> Any:
 class _CompileNotice(event.Listener):
     """A listener that logs once for each family of plugins that kernels are compiled, and the time this takes here.
 
-    The time follows from the first compiled function: a family's default methods need the same time for each byte of
-    bytecode, within a fifth.
+    A family's default methods need the same time for each byte of bytecode, within a fifth: the time follows from the
+    first compiled function, and what is left from all that are compiled.
     """
 
     def __init__(self) -> None:
-        self.reported: set[str] = set()
+        self.compiled: dict[str, int] = {}
+        """The bytes of bytecode that are compiled of each package."""
         self._starts_s: list[float] = []
+        self._began_s: dict[str, float] = {}
+        self._reported_s = 0.0
 
     def on_start(self, event: Any) -> None:
-        if _function(event).__module__.startswith("tangible_"):
+        package = _package(_function(event))
+        if package.startswith("tangible_"):
             start_waiting()
-        if not self.reported:
+        if not self.compiled:
             event.data["dispatcher"].targetctx.refresh()  # numba prepares itself once; do not measure it
         self._starts_s.append(perf_counter())
+        self._began_s.setdefault(package, self._starts_s[-1])
 
     def on_end(self, event: Any) -> None:
-        function, took_s = _function(event), perf_counter() - self._starts_s.pop()
-        package = function.__module__.partition(".")[0]
-        if not package.startswith("tangible_") or package in self.reported:
+        function, now_s = _function(event), perf_counter()
+        size, took_s = len(function.__code__.co_code), now_s - self._starts_s.pop()
+        package = _package(function)
+        if not package.startswith("tangible_"):
             return
-        self.reported.add(package)
+        is_first = package not in self.compiled
+        self.compiled[package] = self.compiled.get(package, 0) + size
         kind = package.removeprefix("tangible_")
-        all_s = took_s / len(function.__code__.co_code) * BYTECODE.get(kind, 0)
-        takes = f"about {max(1, round(all_s))} s" if kind in BYTECODE else "seconds"
-        log.info("compiling the %s kernels for this processor, %s; later runs find them on disk", kind, takes)
+        all_bytes = BYTECODE.get(kind, 0)
+        if is_first:
+            takes = f"about {max(1, round(took_s / size * all_bytes))} s" if all_bytes else "seconds"
+            log.info("compiling the %s kernels for this processor, %s; later runs find them on disk", kind, takes)
+        elif now_s - self._reported_s >= 1 and (left := all_bytes - self.compiled[package]) > 0:
+            self._reported_s = now_s
+            left_s = (now_s - self._began_s[package]) / self.compiled[package] * left
+            share = self.compiled[package] / all_bytes
+            progress_log.info("about %d s left", max(1, round(left_s)), extra={"share": share})
+
+
+def _package(function: Any) -> str:
+    return function.__module__.partition(".")[0]
 
 
 def _function(event: Any) -> Any:

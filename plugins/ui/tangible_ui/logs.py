@@ -17,6 +17,8 @@ OWN = (
 """Packages whose information pages get too; from others, warnings and errors."""
 KNOWN = "tangible_core.plugins.observers.log"
 """The logger of stages, left out because pages get events of stages."""
+COMPILING = "tangible_core.compiled.compiling.progress"
+"""The logger of the time that compiling still takes, which passes nothing to its parents."""
 MAX_A_SECOND = 50
 
 
@@ -64,14 +66,16 @@ def tell_pages(tell: Tell, *, information: bool = False) -> PageHandler:
             logging.getLogger(name).setLevel(logging.INFO)
     if not root.handlers and logging.lastResort is not None:
         root.addHandler(logging.lastResort)
-    root.addHandler(handler)
+    for logger in (root, logging.getLogger(COMPILING)):
+        logger.addHandler(handler)
     logging.captureWarnings(True)
     return handler
 
 
 def silence(handler: PageHandler) -> None:
     """Stop forwarding to pages."""
-    logging.getLogger().removeHandler(handler)
+    for logger in (logging.getLogger(), logging.getLogger(COMPILING)):
+        logger.removeHandler(handler)
     logging.captureWarnings(False)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +14,25 @@ if TYPE_CHECKING:
 
 EXPORT = "export: "
 """The product in the outcome of an exporter, before the exporter's name."""
+COMPILING = "tangible_core.compiled.compiling.progress"
+"""The logger of the time that compiling still takes; its own module would import numba."""
+BAR_CELLS = 20
 _shown: list[Any] = []
 """The one spinner on the screen, if any."""
+
+
+class _CompilingBar(logging.Handler):
+    """A bar in place of the spinner's text while kernels are compiled."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Draw the share of the work that is done, and the time that is left."""
+        if _shown:
+            done = round(BAR_CELLS * getattr(record, "share", 0.0))
+            bar = "#" * done + "." * (BAR_CELLS - done)
+            _show(f"preparing for this computer, once: {bar} {record.getMessage()}")
+
+
+logging.getLogger(COMPILING).addHandler(_CompilingBar())
 
 
 @hookimpl

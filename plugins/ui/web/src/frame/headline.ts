@@ -6,7 +6,7 @@ import { t } from "./status_words";
 /** Time without an answer after which the head says what to do, ms. */
 const LONG_MS = 10_000;
 
-/** The logger that tells, in seconds, how long kernels are compiled. */
+/** The logger that tells, in seconds, how long kernels are compiled; a child of it, how long still. */
 const COMPILES = "tangible_core.compiled.compiling";
 
 export type What = "idle" | "busy" | "felt" | "stopped" | "error";
@@ -87,7 +87,8 @@ export function follow(hub: Hub, changed: (facts: Facts) => void): Facts {
     if (!done.outcome) set({ making: t(isNews ? "making" : "makingPlain", { product: productName(product), method }) });
   });
   hub.on("log", ({ logger, text }) => {
-    if (logger === COMPILES) set({ making: t("preparing", { seconds: /\d+/.exec(text)?.[0] ?? "30" }) });
+    const seconds = logger.startsWith(COMPILES) ? /\d+/.exec(text)?.[0] : undefined;
+    if (seconds) set({ making: t("preparing", { seconds }) });
   });
   hub.on("made", ({ outcome, why }) => set({ making: "", trouble: outcome === "failed" ? why : "" }));
   hub.on("error", ({ text }) => set({ trouble: text }));

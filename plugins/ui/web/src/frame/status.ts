@@ -83,8 +83,9 @@ export class Status {
     line.textContent = shown;
     const asked = what === "stopped" && this.stopping;
     const news = { topic: "status", asked, urgent: what === "error" || (what === "stopped" && !asked) };
-    if (shown !== text || line.dataset.said !== text) page.say(shown, news);
-    line.dataset.said = text;
+    const words = text.replace(/\d+/g, "#"); // seconds that run down are not spoken one by one
+    if (shown !== text || line.dataset.said !== words) page.say(shown, news);
+    line.dataset.said = words;
     this.reach();
   }
 

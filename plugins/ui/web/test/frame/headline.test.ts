@@ -30,6 +30,14 @@ describe("head of the page", () => {
     assert.equal(after(["touch", { law: "proxy" }], ["loop", { running: true, why: "" }]), "felt: Feeling: proxy");
   });
 
+  test("a first run counts down what is left, and a notice without a time changes nothing", () => {
+    const { after } = head();
+    const log = (child: string, text: string): [string, object] => ["log", { logger: `tangible_core.compiled.compiling${child}`, text }];
+    assert.equal(after(...OPEN, log("", "compiling the depth kernels, about 40 s; later")), "busy: Preparing for this computer, once: about 40 s");
+    assert.equal(after(log(".progress", "about 12 s left")), "busy: Preparing for this computer, once: about 12 s");
+    assert.equal(after(log("", "compiling the devices kernels, seconds; later")), "busy: Preparing for this computer, once: about 12 s");
+  });
+
   test("a lost connection is said until it is back, and then what is felt, though the server repeats nothing", () => {
     const { after } = head();
     after(...FELT);

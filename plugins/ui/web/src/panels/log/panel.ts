@@ -79,7 +79,9 @@ class Log {
     hub.on("touch", ({ at_s, law, how }) => this.add("event", `${t("felt", { law })}: `, at_s, how));
     hub.on("loop", ({ at_s, running, why }) => this.add("event", `${t(running ? "running" : "stopped")} `, at_s, why));
     hub.on("scene", ({ at_s, name }) => this.add("event", t("shown", { name }), at_s));
-    hub.on("log", ({ at_s, level, logger, text }) => this.add(level, `${logger}: `, at_s, text));
+    hub.on("log", ({ at_s, level, logger, text }) => {
+      if (!logger.endsWith(".progress")) this.add(level, `${logger}: `, at_s, text); // the head of the page has it
+    });
     hub.on("error", ({ at_s, text }) => this.add("error", "", at_s, text));
     hub.on("gone", ({ at_s }) => this.add("error", t("gone"), at_s));
   }

@@ -11,12 +11,14 @@ import grimp
 from tangible_core import Pipeline
 
 from .house_things import THINGS
-from .house_words import ROOT, count_words, share, shipped
+from .house_words import ROOT, count_words, shipped
 
 CORE = "tangible_core"
 IMPORT_OF_CORE = re.compile(rf"^\s*(?:from|import) ({CORE}[\w.]*)", re.MULTILINE)
 PLUGINS_IMPORT = 40
 """Modules of the core that plugins import from, at most: its rooms, whose stubs list the names."""
+NAMES = {"functions": 1, "locals": 1.5, "parameters": 1.5, "attributes": 3}
+"""The kinds of names, and the share of each that may be a bare participle, in per cent."""
 LARGEST_FOLDER = 10
 """Files next to `__init__.py` that a folder holds at most, as a stranger looks through them at a glance."""
 
@@ -36,7 +38,7 @@ def structure_rows() -> list[str]:
         *(
             f"| {what} | {figure} | <= {bound} | {'met' if figure <= bound else 'missed'} |"
             for what, figure, bound in (
-                ("all Python that is shipped: lines", sum(lines.values()), 78_000),
+                ("all Python that is shipped: lines", sum(lines.values()), 80_000),
                 ("tests: lines", tracked_lines("tests/*.py"), 62_000),
                 ("lists of faults: lines", tracked_lines("benchmarks/mutations/*.yaml"), 3_500),
                 ("benchmarks: lines", tracked_lines("benchmarks/*.py"), 9_800),
@@ -52,8 +54,14 @@ def structure_rows() -> list[str]:
                 (f"folders with more than {LARGEST_FOLDER} files", full, 10),
                 ("longest file: lines", longest, 300),
                 ("public members of Pipeline", len(members), 20),
-                ("bare participles, % of functions", round(share(words.participles, words.functions), 1), 1),
-                ("docstrings that open with a function word, %", round(share(words.openers, words.docstrings), 1), 5),
+                *(
+                    (f"bare participles, % of {kind}", round(words.share(kind), 1), bound)
+                    for kind, bound in NAMES.items()
+                ),
+                ("`each`, % of loop variables", round(words.share("loop variables"), 1), 2),
+                ("functions `..._of`", len(words.places["functions x_of"]), 10),
+                ("constants `MOST_`, `LEAST_`", len(words.places["constants"]), 0),
+                ("docstrings that open with a function word, %", round(words.share("docstrings"), 1), 5),
             )
         ),
     ]

@@ -1,16 +1,16 @@
-"""The words of the source: bare participles as names of functions, docstrings that open with a function word, and
-turns of phrase that have a plainer form.
+"""The words of the source: names that are bare participles, `each`, `..._of`, `MOST_` and `LEAST_`, docstrings that
+open with a function word, and comments.
 
 `python -m benchmarks.house_words [--list] [PATH ...]` counts them below these paths, by default in all Python that is
 shipped; `--list` names each place.
 """
 
 import ast
-import re
 import sys
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 ROOT = Path(__file__).parents[1]
 SHIPPED = ("tangible_core", "plugins")
@@ -39,22 +39,6 @@ _VERBS = "cut feed fit heed hit let need put read run seed set shed shut speed s
 VERBS = frozenset(_VERBS.split())
 """Participles that are imperatives as well, and words on -ed that are not participles."""
 
-PLAINER = {
-    r"(is|are|was|were|be|been) told(?! apart| from)": "log, report, print, show",
-    r"(is|are|was|were|be|been) said(?! to)": "log, report, print, show",
-    r"puts? right": "correct",
-    r"(?<!there )(?<!here )(is|are|was|were) no(?= \w)(?! \w+er\b| more\b| less\b| worse\b)": "is not a",
-    r"(?<!there )(?<!here )(is|are|was|were) none of (its|his|theirs|ours)": "is not one of",
-    r"of one's own": "custom",
-    r"so many(?! that)": "n",
-    r"what is felt": "the surface, the touch",
-    r"(handed|handing) on": "pass, export",
-    r"asked for": "requested",
-    r"whoever": "people who, a program that",
-}
-"""Turns of phrase of which a reader has to think twice, as regular expressions, and the plainer words for each."""
-_PLAINER = re.compile("|".join(rf"\b(?:{each})\b" for each in PLAINER), re.IGNORECASE)
-
 
 class Place(NamedTuple):
     """A name or a docstring that breaks a rule."""
@@ -64,48 +48,85 @@ class Place(NamedTuple):
     text: str
 
 
-class Words(NamedTuple):
-    """The counts of some files, and the places that break a rule."""
+class Words:
+    """The counts of names, docstrings and lines of some files, and the places that break a rule, by kind."""
 
-    functions: int
-    participles: list[Place]
-    docstrings: int
-    openers: list[Place]
+    def __init__(self) -> None:
+        self.counts: Counter[str] = Counter()
+        self.places: defaultdict[str, list[Place]] = defaultdict(list)
+
+    def add(self, kind: str, place: Place, breaks: bool) -> None:
+        """Count a name or a docstring."""
+        self.counts[kind] += 1
+        if breaks:
+            self.places[kind].append(place)
+
+    def share(self, kind: str) -> float:
+        """Return the share of a kind that breaks its rule, in per cent."""
+        return 100 * len(self.places[kind]) / max(self.counts[kind], 1)
 
     def __str__(self) -> str:
-        names, texts = share(self.participles, self.functions), share(self.openers, self.docstrings)
-        return (
-            f"bare participles {len(self.participles)} of {self.functions} functions ({names:.1f} %); "
-            f"docstrings that open with a function word {len(self.openers)} of {self.docstrings} ({texts:.1f} %)"
-        )
-
-
-def share(places: list[Place], count: int) -> float:
-    """Return the share of places, in per cent."""
-    return 100 * len(places) / max(count, 1)
+        return "; ".join(f"{kind}: {len(self.places[kind])} of {self.counts[kind]}" for kind in sorted(self.counts))
 
 
 def count_words(paths: Iterable[Path]) -> Words:
     """Count the words of the Python files below these paths."""
-    words = Words(0, [], 0, [])
-    for path in (file for each in paths for file in ([each] if each.is_file() else sorted(each.rglob("*.py")))):
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)]
-        docstrings = list(docstrings_of(tree))
-        words.participles.extend(
-            Place(path, node.lineno, node.name) for node in functions if is_bare_participle(node.name)
-        )
-        words.openers.extend(
-            Place(path, line, text.partition("\n")[0]) for line, text in docstrings if opens_badly(text)
-        )
-        words = words._replace(
-            functions=words.functions + len(functions), docstrings=words.docstrings + len(docstrings)
-        )
+    words = Words()
+    for path in (file for root in paths for file in ([root] if root.is_file() else sorted(root.rglob("*.py")))):
+        text = path.read_text(encoding="utf-8")
+        lines, tree = text.splitlines(), ast.parse(text)
+        words.counts["lines"] += len(lines)
+        words.counts["comments"] += sum(line.lstrip().startswith("#") for line in lines)
+        sides = " right" in text  # beside it, `left` is a side
+        for kind, line, name in names_in(tree):
+            place = Place(path, line, name)
+            if kind == "loop variables":
+                words.add(kind, place, name == "each")
+            elif kind == "constants":
+                words.add(kind, place, name.strip("_").startswith(("MOST_", "LEAST_")))
+            else:
+                words.add(kind, place, is_bare_participle(name) and not (sides and name.strip("_") == "left"))
+            if kind == "functions":
+                words.add("functions x_of", place, name.endswith("_of"))
+        for line, docstring in docstrings_of(tree):
+            words.add("docstrings", Place(path, line, docstring.partition("\n")[0]), opens_badly(docstring))
     return words
 
 
+def names_in(tree: ast.Module) -> Iterator[tuple[str, int, str]]:
+    """Yield the kind, the line and the name of all that a module names: each local once in its function."""
+    for statement in tree.body:
+        targets = getattr(statement, "targets", [getattr(statement, "target", None)])
+        yield from (("constants", name.lineno, name.id) for name in targets if isinstance(name, ast.Name))
+    for node in ast.walk(tree):
+        match node:
+            case ast.FunctionDef() | ast.AsyncFunctionDef():
+                yield "functions", node.lineno, node.name
+                args = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+                yield from (("parameters", arg.lineno, arg.arg) for arg in args if arg.arg not in ("self", "cls"))
+                stored = {name.id: name.lineno for name in ast.walk(node) if is_stored(name)}
+                yield from (
+                    ("locals", line, name) for name, line in stored.items() if name not in {a.arg for a in args}
+                )
+            case ast.ClassDef():
+                fields = [item.target for item in node.body if isinstance(item, ast.AnnAssign)]
+                yield from (("attributes", name.lineno, name.id) for name in fields if isinstance(name, ast.Name))
+            case ast.Attribute(value=ast.Name(id="self"), ctx=ast.Store()):
+                yield "attributes", node.lineno, node.attr
+            case ast.For() | ast.AsyncFor() | ast.comprehension():
+                names = (name for name in ast.walk(node.target) if isinstance(name, ast.Name))
+                yield from (("loop variables", name.lineno, name.id) for name in names)
+            case _:
+                pass
+
+
+def is_stored(node: ast.AST) -> TypeGuard[ast.Name]:
+    """Return True for a name to which something is assigned."""
+    return isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+
+
 def is_bare_participle(name: str) -> bool:
-    """Tell whether a function's name is one participle, alone.
+    """Return True for a name that is one participle, alone.
 
     >>> [is_bare_participle(name) for name in ("told", "_filtered", "read", "notify")]
     [True, True, False, False]
@@ -117,30 +138,13 @@ def is_bare_participle(name: str) -> bool:
 
 
 def opens_badly(text: str) -> bool:
-    """Tell whether a docstring opens with a function word.
+    """Return True for a docstring that opens with a function word.
 
     >>> opens_badly("Of a part."), opens_badly("The width of a part."), opens_badly("Return the width.")
     (True, False, False)
     """
     first = text.split(maxsplit=1)[0] if text.strip() else ""
     return first.strip("\"'`(),.:;").lower() in FUNCTION_WORDS
-
-
-def turns_of_phrase(path: Path) -> Iterator[Place]:
-    """Yield the turns of phrase in a file that have a plainer form: in the texts of Python, or in every line."""
-    text = path.read_text(encoding="utf-8")
-    texts = strings_of(ast.parse(text)) if path.suffix == ".py" else enumerate(text.splitlines(), 1)
-    for line, each in texts:
-        words = " ".join(each.split())
-        for match in _PLAINER.finditer(words):
-            yield Place(path, line, words[max(0, match.start() - 40) : match.end() + 40])
-
-
-def strings_of(tree: ast.Module) -> Iterator[tuple[int, str]]:
-    """Yield the line and the text of every string, docstrings and messages included."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str):
-            yield node.lineno, node.value
 
 
 def docstrings_of(tree: ast.Module) -> Iterator[tuple[int, str]]:
@@ -166,11 +170,10 @@ def shipped() -> list[Path]:
 
 
 if __name__ == "__main__":
-    wanted = [Path(each) for each in sys.argv[1:] if each != "--list"] or shipped()
+    wanted = [Path(word) for word in sys.argv[1:] if word != "--list"] or shipped()
     counted = count_words(wanted)
     if "--list" in sys.argv:
-        files = [file for each in wanted for file in ([each] if each.is_file() else sorted(each.rglob("*.py")))]
-        turns = [place for file in files for place in turns_of_phrase(file)]
-        for place in (*counted.participles, *counted.openers, *turns):
-            print(f"{place.path}:{place.line}: {place.text}")
+        for kind, places in counted.places.items():
+            for place in places:
+                print(f"{place.path}:{place.line}: {kind}: {place.text}")
     print(counted)

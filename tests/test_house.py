@@ -16,7 +16,7 @@ import pytest
 import tangible_core
 from benchmarks.house_structure import PLUGINS_IMPORT, modules_for_plugins
 from benchmarks.house_things import THINGS, fault
-from benchmarks.house_words import count_words, share, shipped, turns_of_phrase
+from benchmarks.house_words import count_words, shipped
 from tangible_core.plugins import hooks
 from tangible_core.plugins.interfaces import (
     KINDS,
@@ -293,26 +293,12 @@ def test_dependencies_have_their_reasons():
         assert name in reasons, f"{name} is not explained"
 
 
-def test_docstrings_open_with_a_verb_or_a_noun():
+def test_names_are_nouns_and_docstrings_open_with_a_verb_or_a_noun():
     """`python -m benchmarks.house_words --list` names the places."""
     words = count_words(shipped())
-    assert words.docstrings > 5000
-    assert share(words.openers, words.docstrings) < 1, words.openers
-
-
-def test_functions_are_not_named_by_a_bare_participle():
-    words = count_words(shipped())
-    assert words.functions > 4000
-    assert share(words.participles, words.functions) < 1, words.participles
-
-
-def test_texts_use_the_plainer_words():
-    """Texts of the program, of its page and of the documentation; the table of words is `house_words.PLAINER`."""
-    files = [path for folder in shipped() for path in folder.rglob("*") if "node_modules" not in path.parts]
-    texts = [path for path in files if path.suffix == ".py" or (path.suffix == ".ts" and "test" not in path.parts)]
-    pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *DOCS.glob("*.md"), *DOCS.glob("reference/*.md")]
-    assert len(texts) > 700
-    assert not [place for path in (*texts, *pages) if path != DOCS / "results.md" for place in turns_of_phrase(path)]
+    bounds = {"docstrings": 1, "functions": 1, "functions x_of": 0.2, "constants": 0, "loop variables": 2}
+    assert all(words.counts[kind] > 1000 for kind in bounds)
+    assert {kind: words.places[kind] for kind, bound in bounds.items() if words.share(kind) > bound} == {}
 
 
 def test_no_text_names_a_part_by_its_label():

@@ -155,7 +155,7 @@ def _inputs(model: Path, changed_ns: int, size: int) -> Mapping[str, Shape]:
     return read_inputs(model)
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=1)  # frames of a film use one network; those of a photograph run in turn, and HED holds 300 MiB
 def _load(model: Path, changed_ns: int, size: int, runtime: Runtime) -> Network:
     kinds: dict[Runtime, Callable[[Path], Network]] = {
         "opencv": _OpenCV, "onnxruntime": _OnnxRuntime, "kornia": _Kornia,

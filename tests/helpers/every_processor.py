@@ -155,10 +155,10 @@ def depth() -> Found:
 
 def texture() -> Found:
     for name, cls, options in ours("texture"):
-        for of, picture, segments in (("mosaic", mosaic(), 4), ("colour picture", pair().left, "auto")):
-            found = cls(segments=segments, **options).segment(picture)
-            yield f"{name}: labels of the {of}, {segments}", found.labels
-            yield f"{name}: confidence of the {of}, {segments}", found.confidence
+        for of, picture, number in (("mosaic", mosaic(), {"segments": 4}), ("colour picture", pair().left, {})):
+            segments = cls(**number, **options).segment(picture)
+            yield f"{name}: labels of the {of}", segments.labels
+            yield f"{name}: confidence of the {of}", segments.confidence
 
 
 def reliefs() -> Found:

@@ -19,14 +19,11 @@ def gradient(
 
 
 def integrate(x_slope: Float[np.ndarray, "h w"], y_slope: Float[np.ndarray, "h w"]) -> Float[np.ndarray, "h w"]:
-    """Return the surface (h, w) of mean zero whose `gradient` is nearest to these slopes by least squares.
-
-    The last column of x_slope and the last row of y_slope are not read. The gradient of a surface gives that surface.
-    Source: the Poisson equation with free borders by the cosine transform: Frankot & Chellappa, PAMI 1988, on the
-    basis of Simchony, Chellappa & Shao, PAMI 1990.
-    """
+    """Return the surface (h, w) of mean zero whose `gradient` is nearest to these slopes by least squares."""
     from scipy.fft import dctn, idctn
 
+    # The Poisson equation with free borders by the cosine transform: Frankot & Chellappa, PAMI 1988, on the basis of
+    # Simchony, Chellappa & Shao, PAMI 1990. The last column of x_slope and the last row of y_slope are not read.
     rows, columns = x_slope.shape
     x = np.concatenate(
         [np.zeros((rows, 1), x_slope.dtype), x_slope[:, :-1], np.zeros((rows, 1), x_slope.dtype)], axis=1

@@ -78,10 +78,7 @@ def kornia_response(grey: "Grey", torch_device: TorchDevice = "auto") -> "Grey":
 
 
 def kornia_eight_point(matches: "Matches", weights: np.ndarray | None = None) -> Float64[np.ndarray, "3 3"]:
-    """Compute `fundamental.eight_point` by kornia, which also weights its normalisation.
-
-    Raises: DegenerateMatches as `check_matches`.
-    """
+    """Compute `fundamental.eight_point` by kornia, which also weights its normalisation. Raises: as `check_matches`."""
     import torch
     from kornia.geometry.epipolar import find_fundamental
 

@@ -16,13 +16,7 @@ from tangible_core.scene import fill_rows
 def left_right_confidence(
     left_px: Float32[np.ndarray, "h w"], right_px: Float32[np.ndarray, "h w"]
 ) -> Float32[np.ndarray, "h w"]:
-    """Measure how far both views agree: c = max(0, 1 - |d_L(x) - d_R(x - d_L(x))| / 1 px).
-
-    Parameters: disparities of the left and of the right view, (h, w), NaN where unknown; both count a left pixel x as
-    the match of the right pixel x - d.
-    Returns: (h, w) in 0..1; 0 where either is unknown, or the match lies outside the right view.
-    Source: Fua, Machine Vision and Applications 6 (1993), the validity test; here graded.
-    """
+    """Measure how far both views agree, max(0, 1 - |d_L(x) - d_R(x - d_L(x))| / 1 px), 0 if unknown (Fua 1993)."""
     columns = left_px.shape[1]
     target = np.arange(columns) - left_px
     seen = (target > -0.5) & (target < columns - 0.5)
@@ -153,12 +147,10 @@ class OpenCVSGBM(DepthEstimator, Skippable):
 
 
 def _eight_bits(left: np.ndarray, right: np.ndarray) -> list[UInt8[np.ndarray, "h w"]]:
-    """Convert both views to grey, multiplied by a power of two if they leave the upper half of the range unused.
-
-    So a 12-bit pair in 16-bit files keeps its detail, and a picture gives the same result in any type.
-    """
+    """Convert both views to grey, multiplied by a power of two if they leave the upper half of the range unused."""
     greys = [np.clip(to_grey(view), 0, 1) for view in (left, right)]
     peak = max(float(grey.max()) for grey in greys)
+    # So a 12-bit pair in 16-bit files keeps its detail, and a picture gives the same result in any type.
     gain = 255 * 2.0 ** floor(-log2(peak)) if peak > 0 else 0.0
     return [np.rint(grey * np.float32(gain)).astype(np.uint8) for grey in greys]
 

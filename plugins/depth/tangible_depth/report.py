@@ -37,10 +37,7 @@ class Report(DepthEstimator):
     """Largest disparity searched, from 0; `auto` takes the range, of either sign, from matched corners."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Estimate dense disparity of the left view.
-
-        Raises: PictureError without a right view, RectificationError as `rectify`.
-        """
+        """Estimate dense disparity of the left view. Raises: PictureError without a right view, RectificationError."""
         from .matching.feature_chain import Parts, disparity_by_features
         from .rectify.fundamental import eight_point
         from .sparse.harris import gaussian_window, harris_response

@@ -30,10 +30,7 @@ OF_FILLED: Table = (
     (0.01, 0.018, 0.033, 0.042, 0.056, 0.07, 0.079, 0.092),
     (0.563, 0.681, 0.823, 0.901, 0.944, 0.952, 0.952, 0.971),
 )
-"""Confidences of `semi-global` in the range of filled values, and the probability of being within 2 px at each.
-
-Made by `python -m benchmarks.depth_probability` from synthetic scenes of odd seeds.
-"""
+"""Confidences of filled values, and the probability at each of being within 2 px (`benchmarks.depth_probability`)."""
 OF_MATCHED: Table = (
     (0.203, 0.244, 0.281, 0.319, 0.359, 0.401, 0.441, 0.481, 0.526, 0.577, 0.655, 0.75, 0.887),
     (0.754, 0.834, 0.938, 0.968, 0.968, 0.97, 0.98, 0.986, 0.991, 0.995, 0.998, 0.999, 0.999),
@@ -42,12 +39,7 @@ OF_MATCHED: Table = (
 
 
 def probability(sure: Float32[np.ndarray, "*shape"]) -> Float32[np.ndarray, "*shape"]:
-    """Return how likely a value of `semi-global` is within 2 px of the truth, 0..1, by its confidence.
-
-    A confidence orders the values and tells what was matched (above FILLED) from what was filled in; most filled values
-    are right. On four photographs and twelve scenes to which nothing was fitted, the mean is within 0.03 of the share
-    of right values (0.05 with `resolution: half`); with noise of 15 grey levels it is up to 0.13 too high.
-    """
+    """Return how likely a value of `semi-global` is within 2 px of the truth, 0..1, by its confidence."""
     filled, matched = (np.interp(sure, *table).astype(np.float32) for table in (OF_FILLED, OF_MATCHED))
     return np.where(sure > np.float32(FILLED), matched, filled)
 
@@ -58,15 +50,7 @@ def confidence(
     quality: UInt8[np.ndarray, "h w"],
     by_quality: Float[np.ndarray, "256"],
 ) -> Float32[np.ndarray, "h w"]:
-    """Rate each pixel: MIN_MATCHED to by_quality[quality] where it agrees with its match, 0 to FILLED elsewhere.
-
-    Either range is scaled by (1 - SHARE_LOST m) / sqrt(1 + s), where s is the depth step in pixels between the nearest
-    and the farthest value near the pixel, and m the share of pixels near it without a match. The form comes from a
-    logistic regression (which pixels are over 2 px off) over four photographs and four scenes.
-
-    matched: disparity in sixteenths of a pixel, UNKNOWN without a match; final: the same after filling and sharpening.
-    quality: cost or score of each match, the index into by_quality. Returns: float32 (h, w).
-    """
+    """Rate each pixel: MIN_MATCHED to by_quality[quality] where it agrees with its match, 0 to FILLED elsewhere."""
     window = np.ones((2 * STEP_REACH + 1, 2 * STEP_REACH + 1), np.uint8)
     missing = np.uint8(255) * (matched == UNKNOWN)
     gaps = cv2.blur(missing, (2 * GAP_REACH + 1, 2 * GAP_REACH + 1))
@@ -93,6 +77,9 @@ def zero_disparity(grey: UInt8[np.ndarray, "h w"], fill: bool) -> DisparityMap:
 @njit(**KERNEL)
 def _judge(matched, final, quality, table, near, far, gaps, out):
     least, filled = np.float32(MIN_MATCHED), np.float32(FILLED)
+    # Either range is scaled by (1 - SHARE_LOST m) / sqrt(1 + s), where s is the depth step in pixels near the pixel and
+    # m the share of pixels near it without a match. The form comes from a logistic regression (which pixels are over 2
+    # px off) over four photographs and four scenes.
     for y in range(final.shape[0]):
         for x in range(final.shape[1]):  # without the table, so that the loop vectorises
             step = np.float32(int32(near[y, x]) - int32(far[y, x])) * np.float32(1 / 16)

@@ -1,10 +1,4 @@
-"""Depth edges aligned with the edges of the picture.
-
-Windows and paths let a near surface grow over its neighbour by a pixel or two. Near every depth edge, the pixels of a
-small window vote for one of the two surfaces; a vote weighs more the more alike its grey value is to the pixel's own.
-This is the weighted median of Ma et al., Constant time weighted median filtering for stereo matching and beyond,
-ICCV 2013, reduced to two candidates and to the pixels that have a choice.
-"""
+"""Depth edges aligned with the edges of the picture, by a weighted median of two candidates (Ma et al., ICCV 2013)."""
 
 import cv2
 import numpy as np
@@ -17,7 +11,6 @@ from ..simd.lane_reductions import total
 from ..simd.lanes import Lanes, add, load, maximum, minimum, multiply, splat, subtract
 
 MEDIAN_REACH = 2
-"""Radius of the median window, in pixels."""
 NEARBY = 1
 """Radius, in pixels, of the window in which a depth edge is detected."""
 VOTERS = 4
@@ -44,11 +37,7 @@ def median(disparity: Int16[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
 
 
 def sharpen_edges(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
-    """Move each pixel near a depth edge to the surface that its grey value votes for.
-
-    disparity: a dense map in sixteenths of a pixel; grey: the left view. A pixel that changes sides takes the weighted
-    mean of its new side. Returns: a new map (h, w).
-    """
+    """Move each pixel near a depth edge to the surface that its grey value votes for."""
     window = np.ones((2 * NEARBY + 1, 2 * NEARBY + 1), np.uint8)
     out = disparity.copy()
     around = VOTERS, VOTERS, VOTERS, LANES
@@ -62,6 +51,9 @@ def sharpen_edges(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "
 @njit(**KERNEL)
 def _vote(lanes, voting, ranks, greys, disparity, grey, far, near, out):
     h, w = disparity.shape
+    # Windows and paths let a near surface grow over its neighbour by a pixel or two. Near a depth edge, the pixels of a
+    # small window vote for one of the two surfaces, the more alike their grey value is, the more; the rest has no
+    # choice.
     for y in range(h):
         for x in range(w):
             lowest, highest = int32(far[y, x]), int32(near[y, x])

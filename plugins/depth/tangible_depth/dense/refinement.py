@@ -1,8 +1,4 @@
-"""Completion of raw matches into a dense map: speckle removal, filling, sharpening, enlargement.
-
-Filters with a reach of a few rows run block by block, all filters of a block on one thread: the block is cut out with
-a margin, filtered like a separate picture, and its own rows are kept.
-"""
+"""Completion of raw matches into a dense map: speckle removal, filling, sharpening, enlargement."""
 
 from typing import NamedTuple
 
@@ -24,12 +20,7 @@ APART = 16
 
 
 def reconcile(matched: Int16[np.ndarray, "h w"], from_right: Int16[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
-    """Make UNKNOWN, in `matched` itself, what the right view contradicts; return it with gaps closed from there.
-
-    matched: disparity of the left view, in sixteenths of a pixel. from_right: of the right view, at its own pixels.
-    A pixel of the left view without a match takes the nearest surface that the right view has there.
-    Source: Hirschmueller, IEEE PAMI 30(2), 2008, section 2.4.
-    """
+    """Make UNKNOWN, in `matched` itself, what the right view contradicts, and return it with gaps closed from there."""
     out = np.empty_like(matched)
     in_blocks(matched.shape[0], lambda y0, y1: _reconcile(matched[y0:y1], from_right[y0:y1], out[y0:y1]))
     return out
@@ -38,6 +29,8 @@ def reconcile(matched: Int16[np.ndarray, "h w"], from_right: Int16[np.ndarray, "
 @njit(**KERNEL)
 def _reconcile(matched, from_right, out):
     h, w = matched.shape
+    # Source: Hirschmueller, IEEE PAMI 30(2), 2008, section 2.4. A pixel of the left view without a match takes the
+    # nearest surface that the right view has there.
     for y in range(h):
         for x in range(w):
             out[y, x] = matched[y, x]
@@ -91,12 +84,7 @@ def complete(
     cleaning: Cleaning | None = None,
     from_right: Int16[np.ndarray, "h w"] | None = None,
 ) -> DenseMatches:
-    """Remove speckles (in `matched` itself), fill gaps, sharpen edges, and rate the result (see `confidence`).
-
-    from_right: matches of the right view at its own pixels, if it was matched too (see `reconcile`).
-    matched: disparity in sixteenths of a pixel, UNKNOWN without a match; a map without any match stays UNKNOWN.
-    quality, by_quality: see `confidence`. grey: the left view.
-    """
+    """Remove speckles (in `matched` itself), fill gaps, sharpen edges, and rate the result (see `confidence`)."""
     cleaning = cleaning or Cleaning()
     remove_specks(matched, cleaning.specks, cleaning.factor)
     known = matched if from_right is None else reconcile(matched, from_right)
@@ -111,6 +99,7 @@ def complete(
         out.disparity[y0:y1] = final[own]
         out.confidence[y0:y1] = confidence(matched[cut], final, quality[cut], by_quality)[own]
 
+    # A block is cut out with a margin, filtered like a separate picture on one thread, and its own rows are kept.
     in_blocks(grey.shape[0], block)
     return out
 
@@ -156,10 +145,8 @@ def _to_pixels(flat, fill, disparity, confidence, disparity_px, trust):
 
 @njit(**KERNEL)
 def _enlarge(padded, trust, y0, out, out_trust):
-    """Enlarge the rows from y0 on; `padded` is the small map with its edge repeated once.
-
-    A pixel lies a quarter of a small pixel off the centre of that one: 3/4 of its value, 1/4 of the neighbour's.
-    """
+    """Enlarge the rows from y0 on; `padded` is the small map with its edge repeated once."""
+    # A pixel lies a quarter of a small pixel off the centre of that one: 3/4 of its value, 1/4 of the neighbour's.
     for i in range(out.shape[0]):
         y = y0 + i
         near, other = padded[(y >> 1) + 1], padded[(y >> 1) + 2 * (y & 1)]

@@ -1,7 +1,4 @@
-"""Removal of speckles: small islands of disparity, mostly wrong matches that no neighbour confirms.
-
-Like OpenCV's `filterSpeckles`, but over runs of a row instead of pixels, and on all processors.
-"""
+"""Removal of speckles: small islands of disparity, mostly wrong matches that no neighbour confirms."""
 
 from typing import NamedTuple
 
@@ -30,11 +27,7 @@ FEW, HARDLY_ANY = 0.5, 0.2
 
 
 class Specks(NamedTuple):
-    """Largest islands, in pixels, that are removed: the fewer matches are near an island, the larger.
-
-    Matches among many others were confirmed by them while costs were aggregated; a lone one was found by chance, and
-    every gap filled from it would be wrong too.
-    """
+    """Largest islands, in pixels, that are removed: a lone match was found by chance, and would fill its gap."""
 
     among_many_px: int = 20
     among_few_px: int = ISLAND_PX
@@ -51,27 +44,19 @@ class Specks(NamedTuple):
 
 
 def remove_specks(disparity: Int16[np.ndarray, "h w"], specks: Specks, factor: int = 1) -> None:
-    """Make islands UNKNOWN, in place, by the share of matched pixels near each of their pixels; see `remove_speckles`.
-
-    factor: the one by which the picture was downsampled.
-    """
+    """Make islands UNKNOWN, in place, by the share of matched pixels near them; factor: that of the downsampling."""
     _remove(disparity, specks.downsample(factor).by_share(), 16, REACH // factor)
 
 
 def remove_speckles(disparity: Int16[np.ndarray, "h w"], largest_px: int, step: int = 16) -> int:
-    """Make islands UNKNOWN, in place, and return their number of pixels.
-
-    An island is a region of at most `largest_px` pixels in which 4-neighbours differ by at most `step` sixteenths of a
-    pixel, and which no such step joins to another region.
-    """
+    """Make islands UNKNOWN, in place, and return their number of pixels."""
+    # An island is a region in which 4-neighbours differ by at most `step`, and which no such step joins to another
+    # region.
     return _remove(disparity, np.full(1, largest_px, np.int32), step)
 
 
 def _remove(disparity: np.ndarray, largest_px: np.ndarray, step: int, reach: int | None = None) -> int:
-    """Make islands UNKNOWN; largest_px[share] is the largest that is removed at a pixel.
-
-    reach: radius of the window in which the share of matched pixels is counted, in 255ths; None: the share is 0.
-    """
+    """Make islands UNKNOWN, up to largest_px[share of matched pixels within `reach`, in 255ths]; None: share 0."""
     h, w = disparity.shape
     share = np.zeros(disparity.shape, np.uint8)
     start, stop, parent, size = (np.empty(h * w, np.int32) for _ in range(4))
@@ -106,11 +91,9 @@ def _matched_share(disparity: np.ndarray, y0: int, y1: int, reach: int) -> UInt8
 
 @njit(**KERNEL)
 def _label(disparity, step, y0, y1, start, stop, parent, size, begin, end):
-    """Find the runs of rows y0..y1-1 and join them within these rows.
-
-    Runs are numbered from y0 w on; row y has begin[y]..end[y]-1.
-    """
+    """Find the runs of rows y0..y1-1 and join them within these rows."""
     w = disparity.shape[1]
+    # Runs are numbered from y0 w on, so that blocks do not share numbers; row y has begin[y]..end[y]-1.
     run = y0 * w
     for y in range(y0, y1):
         row = disparity[y]

@@ -1,11 +1,4 @@
-"""Choice of the matching cost by a trial on a part of the picture.
-
-No noise model is needed. A wrong match that passes the left-right check is seldom confirmed by its neighbours, so the
-share of checked pixels that the speckle filter removes (the loss) measures how far a cost can be trusted, whatever the
-cause: noise, compression, or rows that do not correspond. The cost of the matches shows whether the grey levels of both
-views may be compared, besides their order. The strips of the trial are kept if the cost stays, so that a clean pair
-pays next to nothing.
-"""
+"""Choice of the matching cost by a trial on a part of the picture."""
 
 import logging
 from collections.abc import Sequence
@@ -30,8 +23,7 @@ log: logging.Logger = logging.getLogger(__name__)
 NOISE = 0.20
 """Loss from which the heavy cost is used."""
 FAR_TOO_NOISY = 0.40
-"""Loss of matches by order and levels from which the order alone loses more than NOISE too, so that its trial is left
-out: with less noise, either loses a few per cent more or less than the other."""
+"""Loss of matches by order and levels from which the order alone loses more than NOISE too: it is not tried."""
 LEVELS_LOSS, LEVELS_DIFFERING = 0.06, 0.265
 """Loss, and share of differing bits and levels, from which levels mislead: other exposure, or noise."""
 LEVELS_APART = 0.6
@@ -85,8 +77,7 @@ class Matched(NamedTuple):
 
     left: MatchedView
     mirrored_right: MatchedView | None
-    """With `effort: best`, the right view, mirrored, its rows realigned where they were: the left one of the exchanged
-    pair."""
+    """With `effort: best`, the right view, mirrored, its rows where they were: the left one of the exchanged pair."""
     cost: Cost
 
 
@@ -187,6 +178,9 @@ class _Trial:
 
     def health(self, rows: Rows) -> _Health:
         """Match these rows and count the speckles; none is removed, as it may extend beyond the rows."""
+        # No noise model is needed: a wrong match that passes the left-right check is seldom confirmed by its
+        # neighbours, so the share of speckles measures how far a cost can be trusted, be it for noise, compression or
+        # rows that differ.
         self.sweep(rows)
         parts = [StripMatches(self.out.disparity[a:b].copy(), self.out.sums[a:b]) for a, b in rows]
         matches = max(1, sum(np.count_nonzero(part.disparity != UNKNOWN) for part in parts))

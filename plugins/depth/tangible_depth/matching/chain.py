@@ -45,12 +45,7 @@ class Search(NamedTuple):
 
 
 def disparity_map(views: Views, name: str, search: Search, match: Matcher) -> DisparityMap:
-    """Compute the disparity of the left view by the method `name`, which matches along rows.
-
-    A pair whose rows do not correspond is rectified first, unless it has the calibration of a rectified pair or
-    `rectify` is `never`.
-    Raises: PictureError without a right view or for an empty range; RectificationError as `rectify`.
-    """
+    """Compute the left view's disparity by a method that matches along rows. Raises: PictureError; as `rectify`."""
     pair = grey_pair(views, name)
     if search.skip_identical and np.array_equal(*pair):
         note(log, "skipped: matching, as both views are identical")
@@ -107,11 +102,8 @@ def low_confidence_share(disparity: DisparityMap) -> float:
 
 
 def match_in_order(pair: Pair, span: Span, fill: bool, match: Matcher) -> DisparityMap:
-    """Match the pair within `span`, in the right order of its views.
-
-    If the span has no positive disparity, the views are exchanged: mirrored, they are a pair in the right order, whose
-    occlusions lie on the side where the matchers expect them.
-    """
+    """Match the pair within `span`, in the right order of its views."""
+    # Mirrored, exchanged views are a pair in the right order, with occlusions on the side where matchers expect them.
     exchanged = span.high <= 0 and pair.width > 1
     if exchanged:
         pair, span = pair.mirror(), Span(-span.high, -span.low)

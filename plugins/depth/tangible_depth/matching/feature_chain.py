@@ -1,7 +1,4 @@
-"""The chain of the report, feature by feature, with exchangeable parts.
-
-features -> matches -> fundamental matrix -> rectification -> matches along rows -> sub-pixel -> check -> filling.
-"""
+"""The chain of the report, feature by feature, with exchangeable parts."""
 
 import logging
 from collections.abc import Callable
@@ -41,10 +38,7 @@ class Parts(NamedTuple):
 def disparity_by_features(
     views: Views, parts: Parts, least_contrast: float, least_score: float, max_disparity_px: MaxDisparity
 ) -> DisparityMap:
-    """Compute dense disparity from scattered matches of corners and edges, for cameras of any orientation.
-
-    Raises: PictureError if there is only one view; RectificationError as `rectify`.
-    """
+    """Compute dense disparity from matched corners and edges. Raises: PictureError for one view; as `rectify`."""
     if views.right is None:
         raise PictureError("matching features needs two views; give a right one")
     left, right = to_grey(views.left), to_grey(views.right)

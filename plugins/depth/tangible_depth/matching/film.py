@@ -26,10 +26,7 @@ SEARCHES = 8
 
 @final
 class FilmMatcher:
-    """A `disparity_map` for the frames of a film: it rectifies by the first frame and updates the range at times.
-
-    The range covers the last SEARCHES estimates of it.
-    """
+    """A `disparity_map` for the frames of a film: rectified by the first frame, with the range of recent frames."""
 
     def __init__(self, views: Views, name: str, search: Search, match: Matcher) -> None:
         """Prepare for frames like `views`. Raises: as `disparity_map`."""

@@ -1,7 +1,4 @@
-"""The fundamental matrix from matches: normalised eight-point, robust estimation, and degenerate cases.
-
-Convention: left^T F right = 0 (see `projective`).
-"""
+"""The fundamental matrix from matches, left^T F right = 0: normalised eight-point, robust estimation, degeneracy."""
 
 from collections.abc import Callable
 from math import lgamma, log
@@ -70,10 +67,7 @@ def check_matches(matches: Matches) -> None:
 
 
 def normalise(points_px: np.ndarray) -> tuple[Float64[np.ndarray, "n 3"], Float64[np.ndarray, "3 3"]]:
-    """Move points to their centroid and scale them to a mean distance of sqrt(2); return the transform T too.
-
-    Source: Hartley, In Defense of the Eight-Point Algorithm, PAMI 1997.
-    """
+    """Move points to their centroid and scale them to a mean distance of sqrt(2) (Hartley 1997); return T too."""
     centre = points_px.mean(axis=0)
     spread = np.linalg.norm(points_px - centre, axis=1).mean()
     scale = np.sqrt(2) / spread
@@ -82,18 +76,13 @@ def normalise(points_px: np.ndarray) -> tuple[Float64[np.ndarray, "n 3"], Float6
 
 
 def eight_point(matches: Matches, weights: np.ndarray | None = None) -> Float64[np.ndarray, "3 3"]:
-    """Estimate F, of unit norm and rank 2, from at least eight trusted matches.
-
-    weights (n,) multiply each match's equation; 1 when left out.
-    Raises: DegenerateMatches as `check_matches`, or "homography" if the equations leave more than one F: the points
-    are on a plane, or the camera only rotated.
-    Source: Hartley & Zisserman, 2nd ed., alg. 11.1.
-    """
+    """Estimate F, of unit norm and rank 2, from eight or more trusted matches. Raises: DegenerateMatches."""
     check_matches(matches)
     (left, to_left), (right, to_right) = map(normalise, matches)
     rows = np.einsum("ni,nj->nij", left, right).reshape(-1, 9)
     if weights is not None:
         rows = rows * (weights / weights.max())[:, None]
+    # Hartley & Zisserman, 2nd ed., alg. 11.1. A second solution: the points are on a plane, or the camera only rotated.
     _, singular, basis = np.linalg.svd(np.vstack([rows, np.zeros((1, 9))]), full_matrices=False)
     if singular[7] < 1e-9 * singular[0]:
         raise DegenerateMatches("homography", _NO_PARALLAX)
@@ -106,13 +95,9 @@ _NO_PARALLAX = "one homography explains the matches (a flat scene, or a camera t
 
 
 def robust_fundamental(matches: Matches, threshold_px: float = 1.0, fit: Fit = eight_point) -> Fundamental:
-    """Estimate F from matches of which some are wrong: MAGSAC (OpenCV), then reweighted eight-point on its inliers.
-
-    threshold_px: largest Sampson distance of an inlier; fit: estimates F from inliers. Deterministic.
-    Raises: DegenerateMatches as `check_matches`; "homography" if hardly any match lies off the best homography;
-    "outliers" if no F explains more matches than chance would. An object before a flat scene is enough.
-    Source: Barath et al., MAGSAC++, CVPR 2020; Moisan & Stival, IJCV 2004, for the share that chance explains.
-    """
+    """Estimate F from matches of which some are wrong: MAGSAC (OpenCV), then reweighted eight-point on its inliers."""
+    # Deterministic. An object before a flat scene is enough to determine F. Sources: Barath et al., MAGSAC++, CVPR
+    # 2020; Moisan & Stival, IJCV 2004, for the share that chance explains.
     check_matches(matches)
     first = _magsac(matches, threshold_px)
     plane = best_plane(matches, threshold_px)
@@ -145,11 +130,8 @@ def _magsac(matches: Matches, threshold_px: float) -> Fundamental | None:
 
 
 def sampson_distance(fundamental: np.ndarray, matches: Matches) -> Float64[np.ndarray, "n"]:
-    """Return the first-order distance in pixels of each match from the nearest pair that obeys F.
-
-    |l^T F r| / sqrt((F r)_1^2 + (F r)_2^2 + (F^T l)_1^2 + (F^T l)_2^2).
-    Source: the root of Hartley & Zisserman, 2nd ed., eq. 11.9.
-    """
+    """Return the first-order distance in pixels of each match from the nearest pair that obeys F."""
+    # The root of Hartley & Zisserman, 2nd ed., eq. 11.9.
     left, right = map(homogeneous, matches)
     in_left, in_right = product(right, fundamental.T), product(left, fundamental)
     value = np.einsum("ni,ni->n", left, in_left)
@@ -175,12 +157,10 @@ def best_plane(matches: Matches, threshold_px: float) -> Plane | None:
 def _better_off_plane(
     plane: Plane, first: Fundamental | None, matches: Matches, threshold_px: float
 ) -> Fundamental | None:
-    """Return the estimate that explains more matches off the dominant plane.
-
-    The second estimate is made only if the first leaves most of these unexplained.
-    """
+    """Return the estimate that explains more matches off the dominant plane."""
     if first is not None and 2 * np.count_nonzero(first.inliers & ~plane.near) > np.count_nonzero(~plane.near):
         return first
+    # A second estimate is made only if the first leaves most of these unexplained.
     matrix = fundamental_from_plane(plane, matches, threshold_px)
     other = None if matrix is None else _with_inliers(matrix, matches, threshold_px)
     estimates = [each for each in (first, other) if each is not None]
@@ -188,11 +168,9 @@ def _better_off_plane(
 
 
 def fundamental_from_plane(plane: Plane, matches: Matches, threshold_px: float) -> Float64[np.ndarray, "3 3"] | None:
-    """Return F = [e]x H with the epipole e of most matches off the plane; None with fewer than two of them.
-
-    Two matches off the plane determine an epipole; a sample of seven would seldom contain two of a small object.
-    Source: Chum, Werner & Matas, Two-View Geometry Estimation Unaffected by a Dominant Plane, CVPR 2005.
-    """
+    """Return F = [e]x H with the epipole e of most matches off the plane; None with fewer than two of them."""
+    # Two matches off the plane determine an epipole; a sample of seven would seldom contain two of a small object.
+    # Source: Chum, Werner & Matas, Two-View Geometry Estimation Unaffected by a Dominant Plane, CVPR 2005.
     off = matches.select(~plane.near)
     left, moved = homogeneous(off.left_px), homogeneous(transform(plane.matrix, off.right_px))
     lines = np.cross(moved, left)
@@ -219,10 +197,8 @@ def _false_alarms(matches: Matches, inliers: np.ndarray, threshold_px: float) ->
 
 
 def _parallax_false_alarms(matches: Matches, inliers: np.ndarray, flat: np.ndarray, threshold_px: float) -> float:
-    """Return the same for inliers of F off the homography: given a homography, two matches determine F.
-
-    Matches of one cell count once, as neighbouring matches are wrong together.
-    """
+    """Return the same for inliers of F off the homography: given a homography, two matches determine F."""
+    # Neighbouring matches are wrong together, so those of one cell count once.
     count, kept = (len(np.unique(matches.left_px[each] // CELL_PX, axis=0)) for each in (~flat, inliers & ~flat))
     if kept < 3:
         return np.inf

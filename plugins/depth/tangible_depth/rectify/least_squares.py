@@ -19,23 +19,17 @@ _MIN_GAIN = 0.05
 
 
 def robust_pull(offset_px: Float64[np.ndarray, "n"]) -> Float64[np.ndarray, "n"]:
-    """Return the root of log(1 + (offset / NOISE_PX)^2), with the offset's sign.
-
-    A Cauchy-like loss, so that outliers among the inliers hardly affect the fit.
-    """
+    """Return the root of log(1 + (offset / NOISE_PX)^2), with the offset's sign: outliers hardly affect the fit."""
     offset = offset_px / NOISE_PX
     return np.sign(offset) * np.sqrt(_log1p(offset * offset))
 
 
 def least_squares(cost: Callable[[np.ndarray], np.ndarray], start: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """Minimise the sum of the squares of `cost` near `start`, after Levenberg and Marquardt.
-
-    scale: typical size of each parameter. Sums run in a fixed order: LAPACK, which SciPy uses, differs in its last bits
-    by processor and from run to run, and these bits decide when this fit stops.
-    Source: Nocedal & Wright, Numerical Optimization, 2nd ed., sec. 10.3.
-    """
+    """Minimise the sum of the squares of `cost` near `start` (Levenberg, Marquardt); scale: size of each parameter."""
     from tangible_core.compiled import solve
 
+    # Nocedal & Wright, Numerical Optimization, 2nd ed., sec. 10.3. Sums run in a fixed order: LAPACK, which SciPy uses,
+    # differs in its last bits by processor and from run to run, and these bits decide when this fit stops.
     values, found, damping = start, cost(start), 1e-2
     for _ in range(_ROUNDS):
         both = [cost(values + step) - cost(values - step) for step in np.diag(_STEP * scale)]
@@ -58,10 +52,8 @@ def least_squares(cost: Callable[[np.ndarray], np.ndarray], start: np.ndarray, s
 
 
 def _log1p(values: np.ndarray) -> np.ndarray:
-    """Compute log(1 + x) for x >= 0 by multiplications and additions alone: the C library's differs by processor.
-
-    2 atanh(x / (2 + x)), for large x of the fraction of 1 + x and with log 2 for each power of two.
-    """
+    """Compute log(1 + x) for x >= 0 by multiplications and additions alone: the C library's differs by processor."""
+    # 2 atanh(x / (2 + x)), for large x of the fraction of 1 + x and with log 2 for each power of two.
     fraction, power = np.frexp(1 + values)
     small = values < 1
     share = np.where(small, values / (2 + values), (fraction - 1) / (fraction + 1))

@@ -1,15 +1,4 @@
-"""Projective geometry of two pictures: homographies of planes and of rotating cameras, and lens distortion.
-
-Convention: left^T F right = 0, points homogeneous (column, row, 1) in pixels. A right point's line in the left
-picture is F right, a left point's line in the right picture is F^T left. A camera that rotates about its centre moves
-points by H = K R K^-1. The homography of a plane leads from the right picture to the left one.
-
-A point at radius r from the picture's middle, in half its longer side, is at r (1 + k / 2) / (1 + k r^2) in the picture
-of a lens without distortion: k < 0 where straight lines bulge outwards. The factor keeps the size of the picture as a
-whole; without it a fit would shrink the picture.
-Sources: Hartley & Zisserman, Multiple View Geometry, 2nd ed., sec. 8.4.2 and ch. 9; Fitzgibbon, Simultaneous linear
-estimation of multiple view geometry and lens distortion, CVPR 2001.
-"""
+"""Projective geometry of two pictures, left^T F right = 0: homographies, rotating cameras, lens distortion."""
 
 from math import exp, log
 from typing import NamedTuple
@@ -21,8 +10,7 @@ from ..sparse.matches import Matches
 from .least_squares import least_squares, robust_pull
 
 FOCAL_SPREAD, ZOOM_SPREAD, TURN_SPREAD = 0.35, 0.2, 0.5
-"""Standard deviations of the parameters of an unknown camera: logarithm of its focal length in longer sides of the
-picture, logarithm of the zoom between the pictures, and each angle in radians."""
+"""Standard deviations of the log focal length in longer sides, of the log zoom, and of each angle in radians."""
 FREE_NUMBERS = 3
 """Degrees of freedom of a homography beyond those of a rotating, zooming camera of unknown focal length: 8 - 5."""
 
@@ -68,6 +56,8 @@ def undistort(points_px: np.ndarray, radial: float, shape: tuple[int, int]) -> F
     """Map points (n, 2) of a picture (h, w) to the picture of a lens without distortion."""
     if radial == 0:
         return np.asarray(points_px, np.float64)
+    # Radius r, in half longer sides, becomes r (1 + k / 2) / (1 + k r^2), k < 0 where lines bulge outwards (Fitzgibbon,
+    # CVPR 2001). The factor keeps the size of the picture as a whole; without it a fit would shrink the picture.
     middle, half = _frame(shape)
     away = (points_px - middle) / half
     return middle + half * away * (1 + radial / 2) / (1 + radial * _square(away))
@@ -99,13 +89,10 @@ class Plane(NamedTuple):
 
 
 def is_pure_rotation(plane: Plane, matches: Matches, shape: tuple[int, int]) -> bool:
-    """Test whether a camera that rotated about its centre, and perhaps zoomed, explains the matches as well as a plane.
-
-    H = K R K'^-1 with a plausible focal length. A wall seen from two places does not fit: it is shifted, stretched
-    along the baseline or sheared, which no rotation does.
-    Source: Hartley & Zisserman, Multiple View Geometry, 2nd ed., sec. 8.4.2; Schwarz, Estimating the Dimension of a
-    Model, Annals of Statistics 1978, for how much three more parameters must explain.
-    """
+    """Test whether a camera that rotated and perhaps zoomed explains the matches as well as a plane."""
+    # H = K R K'^-1 with a plausible focal length (Hartley & Zisserman, 2nd ed., sec. 8.4.2). A wall seen from two
+    # places is shifted, stretched along the baseline or sheared, which no rotation does. How much three more parameters
+    # must explain: Schwarz, Estimating the Dimension of a Model, Annals of Statistics 1978.
     left, right = matches.select(plane.near)
     spread = np.array([FOCAL_SPREAD, ZOOM_SPREAD, TURN_SPREAD, TURN_SPREAD, TURN_SPREAD])
 

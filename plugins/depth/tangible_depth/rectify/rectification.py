@@ -1,7 +1,4 @@
-"""Rectification of a pair: warping two pictures so that every match lies on its own row: the entry to this room.
-
-A method that searches along rows works on any pair through `estimate_rectified`.
-"""
+"""Rectification: warping two pictures so that every match lies on its own row: the entry to this room."""
 
 import logging
 from collections.abc import Callable
@@ -47,10 +44,7 @@ _FLAT_SCENE = (
 
 
 def estimate_rectified(views: Views, estimate: Callable[[Views], DisparityMap]) -> DisparityMap:
-    """Estimate the left view's disparity by a method that searches along rows, for cameras of any orientation.
-
-    Raises: RectificationError if the rows do not correspond and cannot be aligned; and as `estimate`.
-    """
+    """Estimate the left view's disparity by a method that searches along rows. Raises: as `rectify` and `estimate`."""
     rectified = rectify(views)
     return rectified.to_original(estimate(rectified.views))
 
@@ -147,21 +141,17 @@ def _rotate(
 
 
 def _search_start(disparity_px: Float64[np.ndarray, "n"]) -> int:
-    """Return zero, or a disparity below all but stray matches if the cameras diverge and some are negative.
-
-    Never above zero, as a far wall without detail has no matches.
-    """
+    """Return zero, or a disparity below all but stray matches if the cameras diverge and some are negative."""
     low, high = np.percentile(disparity_px, [1, 99])
+    # Never above zero, as a far wall without detail has no matches.
     return min(0, int(np.floor(low - max(4.0, 0.1 * (high - low)))))
 
 
 def verified_range(points_px: np.ndarray, disparity_px: np.ndarray) -> tuple[int, int]:
-    """Return the lowest and highest disparity, except STRAY, of matches with similar neighbours; of all without any.
-
-    points_px: (n, 2); disparity_px: (n,). A match on its row may still have a wrong column.
-    """
+    """Return the lowest and highest disparity, except STRAY, of matches with similar neighbours; of all without any."""
     from scipy.spatial import KDTree
 
+    # A match on its row may still have a wrong column.
     away, nearest = KDTree(points_px).query(points_px, min(NEIGHBOURS + 1, len(points_px)))
     differing = np.abs(disparity_px[nearest] - disparity_px[:, None])
     like = np.count_nonzero(differing <= LIKE_PX + LIKE_SLOPE * away, axis=1) > MIN_LIKE
@@ -173,10 +163,7 @@ def verified_range(points_px: np.ndarray, disparity_px: np.ndarray) -> tuple[int
 def check_homographies(
     pair: tuple[np.ndarray, np.ndarray], shape: tuple[int, int], offsets_px: np.ndarray, most_offset_px: float = 3.0
 ) -> None:
-    """Check homographies. Raises: RectificationError if one tears, mirrors or resizes a picture, or rows differ.
-
-    The area may change by a factor of three; the 95th percentile of the vertical offsets is most_offset_px at most.
-    """
+    """Check homographies. Raises: RectificationError if one tears, mirrors or resizes a picture, or rows differ."""
     for side, homography in zip(("left", "right"), pair, strict=True):
         rows, columns = shape
         corners = np.array([[0, 0], [columns, 0], [columns, rows], [0, rows]], np.float64)

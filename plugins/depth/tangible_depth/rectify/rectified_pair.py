@@ -45,10 +45,7 @@ class RectifiedPair(Record):
         return replace(self, views=Views(left, right))
 
     def to_original(self, disparity: DisparityMap) -> DisparityMap:
-        """Map a disparity map of `views` to the original left picture: the same values plus offset_px.
-
-        Pixels of the original outside of the rectified view are unknown.
-        """
+        """Map a disparity map of `views` to the original left picture, plus offset_px; unknown outside of the view."""
         if self.skipped:
             return disparity
         return DisparityMap(
@@ -103,11 +100,7 @@ def warp_pair(
     radials: tuple[float, float] = (0.0, 0.0),
     verified_px: tuple[int, int] | None = None,
 ) -> RectifiedPair:
-    """Warp both pictures onto a canvas of the whole left one, the right one moved so that start_px becomes zero.
-
-    pair: homographies (left, right), each (3, 3), that bring matches onto common rows once the distortion `radials`
-    of their lenses is removed. verified_px: lowest and highest disparity of these matches, before the move.
-    """
+    """Warp both pictures onto a canvas of the whole left one, the right one moved so that start_px becomes zero."""
     if views.right is None:
         raise PictureError("rectification needs two views; give a right one")
     border = _border(views.shape, radials[0] != 0)

@@ -1,13 +1,4 @@
-"""The rectifying rotation of two pictures, which brings their matches onto common rows, and its evidence.
-
-Each picture is rotated in its plane and tilted; the right one is also scaled and moved along its columns. About the
-pictures' middles these are seven parameters, as many as a fundamental matrix has. Parameters that the matches hardly
-determine stay near zero; shift and stretch along the rows, which the matches do not determine, are left out. If the
-lenses distort, one coefficient for each is estimated along with the seven. The picture is distorted as little as
-possible.
-Source: the split into similarity and perspective is that of Loop & Zhang, Computing Rectifying Homographies for
-Stereo Vision, CVPR 1999; fitting to the matches that of Hartley, Theory and Practice of Projective Rectification, 1999.
-"""
+"""The rectifying rotation of two pictures, which brings their matches onto common rows, and its evidence."""
 
 from math import cos, exp, log, sin
 from typing import NamedTuple
@@ -41,9 +32,7 @@ MAX_RADIAL = 0.3
 MAX_FITTED = 800
 """Largest number of matches that lenses are fitted to; more do not improve the fit."""
 _PRIOR = np.array([0.5, 0.2, 0.5, 0.2, 0.2, 0.5, 0.5])
-"""Standard deviations of the parameters about the start: left roll and tilt along x; right roll, tilts along x and y,
-logarithm of scale, shift along y. Rolls in radians, lengths in half the longer side of the picture, tilts in its
-inverse."""
+"""Standard deviations of left roll and tilt; right roll, tilts along x and y, log scale and shift, about the start."""
 _RADIAL_PRIOR = np.array([0.1, 0.1])
 """Standard deviations of the distortion coefficients of both lenses."""
 _START = 2.0**-10
@@ -64,10 +53,7 @@ class RectificationError(GeometryError):
 
 
 class Rotation(NamedTuple):
-    """Homographies of undistorted pictures, the distortion coefficients of their lenses, and the mask of inliers.
-
-    Homographies and coefficients as (left, right).
-    """
+    """Homographies of undistorted pictures, their lenses' distortion (both left, right), and the mask of inliers."""
 
     homographies: tuple[np.ndarray, np.ndarray]
     radials: tuple[float, float]
@@ -94,18 +80,14 @@ def threshold_px(shape: tuple[int, int]) -> float:
 
 
 def find_rotation(matches: Matches, shape: tuple[int, int], fit: Fit) -> tuple[Rotation, str | None]:
-    """Find the rectifying rotation of matches, and the reason not to trust it; None if it can be trusted.
-
-    matches: without duplicates (`unique_matches`). Half of them determine a rotation that the other half validates,
-    with and without lens distortion.
-    Raises: RectificationError if no geometry explains the matches.
-    """
+    """Find the rectifying rotation of unique matches, and the reason not to trust it. Raises: RectificationError."""
     plain = _fit_rotation(matches, shape, fit)
     if (count := np.count_nonzero(plain.trusted)) < MIN_TRUSTED:
         return plain, f"only {count} of {len(plain.trusted)} matches agree, {MIN_TRUSTED} are needed"
     if (parts := _count_parts(matches.left_px[plain.trusted], shape)) < MIN_PARTS:
         doubt = f"the matches that agree lie in {parts} of {PARTS**2} parts of the picture, {MIN_PARTS} are needed"
         return plain, doubt
+    # Half of the matches determine a rotation that the other half validates, with and without lens distortion.
     learnt, judges = (matches.select(slice(first, None, 2)) for first in (0, 1))
     try:
         half = _fit_rotation(learnt, shape, fit)
@@ -138,10 +120,8 @@ def _fit_rotation(matches: Matches, shape: tuple[int, int], fit: Fit) -> Rotatio
 
 
 def _fit_lenses(rotation: Rotation, matches: Matches, shape: tuple[int, int], fit: Fit) -> Rotation:
-    """Return the rotation with lens distortion; unchanged if no distortion explains more of the matches.
-
-    Tries the coefficient of RADIALS that explains most matches; none if weak ones explain hardly more than 0.
-    """
+    """Return the rotation with lens distortion; unchanged if no distortion explains more of the matches."""
+    # Weak coefficients must explain clearly more than 0; then the one of RADIALS that explains most matches is fitted.
     few = matches.select(slice(None, None, 1 + len(matches.left_px) // MAX_FITTED))
     none, *weak = (_count_explained(few, each, shape, fit) for each in RADIALS[:3])
     if max(weak) <= (1 + MIN_MORE) * none:
@@ -189,13 +169,9 @@ def _count_parts(points_px: np.ndarray, shape: tuple[int, int]) -> int:
 def aligning_homographies(
     matches: Matches, shape: tuple[int, int], roll: float | None = 0.0
 ) -> tuple[Float64[np.ndarray, "3 3"], Float64[np.ndarray, "3 3"]]:
-    """Return homographies (left, right), each (3, 3), that bring trusted matches of pictures (h, w) onto common rows.
-
-    The middle of each picture keeps its column: a disparity is the shift against the right picture rotated about its
-    middle. roll: start value in radians, see `epipole_roll`; None for a plane, which does not determine it. The left
-    picture then stays unchanged, as it does if its two parameters explain too little: resampling would only blur it.
-    Source of how much is too little: Schwarz, Estimating the Dimension of a Model, Annals of Statistics 1978.
-    """
+    """Return homographies (left, right) that bring trusted matches of pictures (h, w) onto common rows."""
+    # The middle of each picture keeps its column. The left picture stays unchanged for a plane, which does not
+    # determine its roll, and if its two parameters explain too little (Schwarz 1978): resampling would only blur it.
     still = _fit(matches, shape, 0.0, _STILL_PRIOR)
     if roll is None:
         return _homographies(still, matches, shape)
@@ -208,10 +184,7 @@ def aligning_homographies(
 def aligning_lenses(
     matches: Matches, shape: tuple[int, int], roll: float, radials: tuple[float, float]
 ) -> tuple[tuple[Float64[np.ndarray, "3 3"], Float64[np.ndarray, "3 3"]], tuple[float, float]]:
-    """Return homographies of undistorted points, and the distortion coefficients, each as (left, right).
-
-    As `aligning_homographies`, for pictures with lens distortion. roll, radials: start values.
-    """
+    """Return homographies of undistorted points, and distortion coefficients, as (left, right); roll is a start."""
     found = _fit(matches, shape, roll, np.concatenate([_PRIOR, _RADIAL_PRIOR]), radials)
     left, right = float(found[7]), float(found[8])
     straight = Matches(undistort(matches.left_px, left, shape), undistort(matches.right_px, right, shape))
@@ -261,11 +234,7 @@ def epipole_roll(fundamental: np.ndarray, shape: tuple[int, int]) -> float:
 
 
 def epipoles(fundamental: np.ndarray) -> tuple[Float64[np.ndarray, "3"], Float64[np.ndarray, "3"]]:
-    """Return the epipoles (left, right), each camera's centre in the other view: homogeneous, of unit length.
-
-    F^T left_epipole = 0 and F right_epipole = 0. A third coordinate of zero means infinitely far, as in a rectified
-    pair, where both are (1, 0, 0).
-    """
+    """Return the epipoles (left, right), homogeneous, of unit length: F^T left = 0 and F right = 0."""
     left, _, right = np.linalg.svd(fundamental)
     return left[:, 2], right[2]
 

@@ -1,9 +1,4 @@
-"""The decision whether the rows of a pair correspond: the entry to this room.
-
-`align_rows` takes three tests, in this order: row profiles (`rows_match_elsewhere`), edges of the bands that were
-matched for the search range anyway (`row_offset`), and tracked corners (`corners_correspond`). A pair that fails is
-rectified (`rectify.rectification`). A rectified pair pays next to nothing.
-"""
+"""The decision whether the rows of a pair correspond: the entry to this room."""
 
 import logging
 
@@ -39,17 +34,14 @@ TOLERANCE_PX = 0.5
 
 
 def corners_correspond(pair: Pair, most_row_offset_px: float = 0.0) -> bool:
-    """Test whether half of the corners, tracked into the right view, stay within TOLERANCE_PX of their rows.
-
-    most_row_offset_px: largest common offset, up or down, that is accepted.
-    Returns: True with too few corners to decide; False if over half of them get lost, as when a camera was rotated far:
-    the whole picture must decide then.
-    """
+    """Test whether half of the corners, tracked into the right view, stay within TOLERANCE_PX of their rows."""
     longer = max(pair.left.shape)
     scale = min(1.0, LOOK_PX / longer)
     if min(pair.left.shape) * scale < PATCH_PX / 2:
         return True
     row_offsets_px = _row_offsets(pair, scale)
+    # Too few corners decide nothing; if over half get lost, as when a camera was rotated far, the whole picture
+    # decides.
     if row_offsets_px is None:
         return True
     if len(row_offsets_px) < FEWEST:
@@ -109,10 +101,8 @@ SLOW = 1 / 8
 
 
 def rows_match_elsewhere(pair: Pair) -> bool:
-    """Test whether the rows as a whole correlate better with rows at another height of the right view.
-
-    Matching along rows may take one course of bricks for the next; their profiles lie at different heights.
-    """
+    """Test whether the rows as a whole correlate better with rows at another height of the right view."""
+    # Matching along rows may take one course of bricks for the next; their profiles lie at different heights.
     height = pair.left.shape[0]
     reach, near = int(REACH * height), max(2, round(NEAR * height))
     if reach <= near:
@@ -156,24 +146,20 @@ MAX_SPREAD_PX = 0.3
 SMOOTHING_PX = 1.2
 """Sigma of the Gaussian that averages noise away before a whole map is tested; bands are averages already."""
 MIN_AGREED_OF_MAP, MAX_SPREAD_OF_MAP_PX = 0.5, 0.4
-"""MIN_AGREED and MAX_SPREAD_PX for a whole map. With noise of sd 5 to 15 two thirds agree, with a deviation of 0.18
-to 0.43 px; of rows that lie two lower, which bands take for common, a quarter agree."""
+"""The same for a whole map: with noise of sd 5 to 15 two thirds agree, of rows that lie two lower a quarter."""
 MAX_OFF_PX = 0.5
 """Largest row offset of a whole map whose rows correspond, in pixels."""
 
 
 def align_rows(pair: Pair, bands: Bands, most_row_offset_px: float) -> Pair | None:
-    """Return the pair, its right view shifted by a constant row offset; None if its rows do not correspond.
-
-    bands: the matches in bands of the pair. most_row_offset_px: largest offset that the method corrects itself; if 0,
-    it is corrected here. Bands compare along the rows only and are not trusted alone: repetitive rows match at a wrong
-    height too.
-    """
+    """Return the pair, its right view shifted by a constant row offset; None if its rows do not correspond."""
+    # Bands compare along the rows only and are not trusted alone: repetitive rows match at a wrong height too.
     if rows_match_elsewhere(pair):
         return None
     row_offset_px = common_row_offset(pair, bands)
     if row_offset_px is None:
         return pair if corners_correspond(pair, most_row_offset_px) else None
+    # A method that corrects an offset itself gets the pair as it is.
     if most_row_offset_px > 0 or abs(row_offset_px) <= MIN_ROW_OFFSET_PX:
         return pair
     note(log, f"rows realigned by {row_offset_px:.2f} px")
@@ -193,10 +179,7 @@ def shift_rows(pair: Pair, row_offset_px: float) -> Pair:
 
 
 def common_row_offset(pair: Pair, bands: Bands) -> float | None:
-    """Measure by how many pixels the right rows lie below the left ones, 1.5 at most; None if it varies.
-
-    MIN_AGREED of the matched horizontal edges must have an offset, half of these within MAX_SPREAD_PX.
-    """
+    """Measure by how many pixels the right rows lie below the left ones, 1.5 at most; None if it varies."""
     return _agreed_offset_px(row_votes(pair, bands.rows, bands.disparity, bands.factor), MIN_AGREED, MAX_SPREAD_PX)
 
 

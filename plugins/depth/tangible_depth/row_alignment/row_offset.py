@@ -1,7 +1,4 @@
-"""The vertical offset between the rows of a pair, and its correction.
-
-Half a pixel of vertical offset already costs a matcher along rows a good part of its matches.
-"""
+"""The vertical offset between the rows of a pair: half a pixel already costs a matcher a good part of its matches."""
 
 import numpy as np
 from jaxtyping import Float32, Int16, Int64
@@ -33,10 +30,7 @@ MIN_CORRELATION, MIN_BEND = 0.7, 0.02
 def row_votes(
     pair: Pair, rows: Int64[np.ndarray, "n"], disparity: Int16[np.ndarray, "n columns"], factor: int = 1
 ) -> Float32[np.ndarray, "votes"]:
-    """Return right row - left row, in pixels, of up to MAX_POINTS horizontal edges on or near `rows`; NaN: no match.
-
-    disparity: those of these rows, in sixteenths of `factor` pixels, UNKNOWN without one.
-    """
+    """Return right row - left row, in pixels, of up to MAX_POINTS horizontal edges on or near `rows`; NaN: no match."""
     points = np.empty((len(rows) * (pair.width // CELL_PX), 3), np.int64)
     points = points[: _edge_points(pair.left, rows, disparity, factor, points)]
     points = np.ascontiguousarray(points[:: 1 + len(points) // MAX_POINTS])

@@ -1,7 +1,4 @@
-"""Matches in a few bands of rows at full width: enough for the search range, and to check that rows correspond.
-
-Thin near objects keep their width along a row, and a band of rows averages noise and small row offsets away.
-"""
+"""Matches in a few bands of rows at full width: enough for the search range, and to check that rows correspond."""
 
 from typing import NamedTuple
 
@@ -19,7 +16,6 @@ from .pairs import Pair
 from .sparse_sweep import sweep_columns
 
 COUNT = 16
-"""Bands of a picture."""
 FINE_WIDTH = 1280
 """Largest number of columns of a band by default."""
 MAX_DISPARITIES = 256
@@ -37,11 +33,7 @@ LARGEST_SPECK = 8
 
 
 class Bands(NamedTuple):
-    """The matches in a few bands; `rows` are their middle rows in the picture, `disparity` is that of the left view.
-
-    disparity is in sixteenths of a pixel of the picture downsampled by `factor` along its rows; known is the number of
-    pixels with a disparity; loss is the share of matches removed as speckles.
-    """
+    """The matches in a few bands, in sixteenths of a pixel of the picture downsampled by `factor` along its rows."""
 
     rows: Int64[np.ndarray, "bands"]
     disparity: Int16[np.ndarray, "bands columns"]
@@ -51,13 +43,11 @@ class Bands(NamedTuple):
 
 
 def match_bands(pair: Pair, span: Span, width: int = FINE_WIDTH) -> Bands:
-    """Match COUNT bands of a pair; columns are averaged until a band is at most `width` wide.
-
-    Of a wide band every STRIDE-th column is matched, for the columns next to it too.
-    span: in pixels of the picture. If it has more than MAX_DISPARITIES, more columns are averaged.
-    """
+    """Match COUNT bands of a pair; columns are averaged until a band is at most `width` wide."""
+    # Thin near objects keep their width along a row, and a band of rows averages noise and small row offsets away.
     factor = max(-(-pair.width // width), -(-span.size // MAX_DISPARITIES))
     columns = -(-pair.width // factor)
+    # The columns next to a matched one take its disparity.
     stride = STRIDE if columns >= MIN_STRIDDEN else 1
     rows = np.empty(COUNT, np.int64)
     codes = np.empty((2, COUNT, PLANES, columns + -columns % BLOCK), np.uint8)

@@ -18,11 +18,9 @@ FIRST_WIDTH = 80
 REACH = 0.36
 """Largest disparity of either sign, as a share of the picture's width, unless something stands still nearer."""
 FAR_REACH, MIN_REVEALED = 0.8, 0.015
-"""Largest disparity that is tried for things still nearer, as a share of the width, and the smallest share of the
-matches that must lie beyond REACH, at places without a match within it, for such a thing to be there."""
+"""The same for still nearer things, and the smallest share of matches beyond REACH that shows such a thing."""
 THIN_REACH = 1 / 8
-"""Smallest range of the second copy, as a share of the picture's width: objects too thin for the first copy stand out
-from their background by less than this."""
+"""Smallest range of the second copy, as a share of the width: it shows objects too thin for the first one."""
 FRINGE = 0.0005
 """Share of the matches dropped at either end as errors."""
 NOISY = 0.6
@@ -119,12 +117,7 @@ class SearchRange(NamedTuple):
 def find_disparity_range(
     pair: Pair, least: int | Auto, most: int | Auto, verified_px: tuple[int, int] | None = None
 ) -> SearchRange:
-    """Return the range least..most - 1 px; auto: estimated in bands of the pair, or a least of 0 if most is given.
-
-    verified_px: lowest and highest disparity of verified matches. Bands then widen the range only as far as their
-    matches continue from there without a gap: some match by chance where a rectified picture is empty.
-    Raises: PictureError if the range is empty.
-    """
+    """Return the range least..most - 1 px; auto: estimated in bands of the pair, or a least of 0 if most is given."""
     if most == "auto":
         return _estimate_range(pair, least, verified_px)
     low = 0 if least == "auto" else least
@@ -143,6 +136,7 @@ def _estimate_range(pair: Pair, least: int | Auto, verified_px: tuple[int, int] 
         notes.append((ALL_NEGATIVE, logging.WARNING))
         high = min(high, 0)
     if verified_px is not None:
+        # Some bands match by chance where a rectified picture is empty, so they widen the range only without a gap.
         low, high = _range_around_matches(Span(*verified_px), estimate and estimate.bands)
     if least != "auto":
         low, high = least, max(high, least)

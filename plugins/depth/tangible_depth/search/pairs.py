@@ -44,13 +44,7 @@ class Pair(NamedTuple):
 
 
 def grey_pair(views: Views, method: str) -> Pair:
-    """Convert both views to 8 bits of grey.
-
-    The same picture gives the same values in any data type (colour by ITU-R BT.601). If the views leave the upper half
-    of the range unused, as 12 bits in a 16-bit file do, both are multiplied by a power of two; views of different data
-    types each by their own.
-    Raises: PictureError if there is no right view.
-    """
+    """Convert both views to 8 bits of grey, alike for all data types. Raises: PictureError without a right view."""
     if views.right is None:
         raise PictureError(f"{method} needs two views, but the right one is missing; give both, or use luminance")
     pictures = (views.left, views.right)
@@ -58,6 +52,8 @@ def grey_pair(views: Views, method: str) -> Pair:
         return Pair.of(*(_grey8(picture) for picture in pictures))
     greys = [to_grey(picture) for picture in pictures]
     low = min(0.0, *(float(each.min()) for each in greys))
+    # Views that leave the upper half of the range unused, as 12 bits in a 16-bit file do, are multiplied by a power of
+    # two.
     peaks = [float(grey.max()) - low for grey in greys]
     if views.left.dtype == views.right.dtype:
         peaks = [max(peaks)] * 2

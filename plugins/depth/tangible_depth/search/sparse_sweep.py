@@ -1,7 +1,4 @@
-"""Semi-global matching of a subset of columns and rows: enough to estimate a range.
-
-As `sgm.aggregation`, but all rows fit into memory, so that costs are computed once.
-"""
+"""Semi-global matching of a subset of columns and rows, all in memory: enough to estimate a range."""
 
 import numpy as np
 from jaxtyping import Int16, UInt8
@@ -30,11 +27,7 @@ def sweep_columns(
     stride: int,
     out: Int16[np.ndarray, "rows w"],
 ) -> None:
-    """Write disparities in sixteenths of a pixel into `out`, UNKNOWN where the strict left-right check fails.
-
-    left, right: census codes. grey: grey values of the matched columns, every `stride`-th; each stands for the columns
-    up to the next.
-    """
+    """Match every `stride`-th column into `out`, in sixteenths of a pixel, UNKNOWN where the strict check fails."""
     rows, m = grey.shape
     w = out.shape[1]
     n = max(FEWEST_LANES, 1 << (span.size - 1).bit_length())
@@ -104,10 +97,7 @@ def _best_right_sums(lanes, total, stride, right_sums):
 
 @inner()
 def _accept(lanes, sums, span, stride, most, right_sums, disparity):
-    """Accept mutual best matches that fit better than both neighbouring disparities.
-
-    Written without branches, as acceptance is unpredictable.
-    """
+    """Accept mutual best matches that fit better than both neighbouring disparities, without unpredictable branches."""
     n = width(lanes)
     for i in range(sums.size // n):
         x = i * stride

@@ -1,15 +1,4 @@
-"""Semi-global matching along four paths, one byte a pixel and disparity.
-
-Source: Hirschmueller, Stereo processing by semiglobal matching and mutual information, IEEE PAMI 30(2), 2008, eq. 13.
-Each path is relative to its own minimum, so that the winner's sum of four paths is small and saturating bytes are
-enough: only losers reach 255.
-
-Rows are processed in strips. A strip starts its downward (and upward) path some rows early, which makes strips
-independent of each other: any number of threads, bounded memory, and a volume that fits the caches.
-
-Lane k stands for the disparity top - k, so that the right view's codes are contiguous: for pixel x they begin at
-codes[x], a row of w + n - 1 codes of which codes[i] is the right view's column i - top.
-"""
+"""Semi-global matching along four paths, one byte a pixel and disparity."""
 
 import numpy as np
 from numba import uint8, uint64
@@ -53,15 +42,13 @@ def begin_path(paths, path_lowest):
 
 @inner()
 def _decide(lanes, total, path, finals, best, beside, sums, right_sums):
-    """Add the last path; find the best lane, its sum and the two next to it per left pixel, the best sum per right one.
-
-    finals: scratch, of n at least; neighbouring sums are read at once, while they are in the cache.
-    """
+    """Add the last path; find the best lane, its sum and the two next to it per left pixel, the best sum per right."""
     n = width(lanes)
     w = best.size
     wall = splat(lanes, uint8(255))
     seen = wall  # lowest sums so far of the n right pixels that later left pixels can match
     for x in range(w):
+        # Neighbouring sums are read from `finals` at once, while they are in the cache.
         sum_here = saturating_add(load(lanes, total, x * n), load(lanes, path, x * n))
         store(finals, 0, sum_here)
         seen = minimum(seen, sum_here)
@@ -77,24 +64,18 @@ def _decide(lanes, total, path, finals, best, beside, sums, right_sums):
 
 @inner()
 def equiangular(before, at, after):
-    """Return the tip of the symmetric V through three equally spaced costs; 0 if they are equal.
-
-    Costs that count differing bits grow linearly round their minimum: the parabola would pull towards whole numbers.
-    Within +-0.5 if `at` is the smallest.
-    Source: Shimizu & Okutomi, Precise sub-pixel estimation on area-based matching, ICCV 2001.
-    """
+    """Return the tip of the symmetric V through three equally spaced costs, within +-0.5; 0 if they are equal."""
+    # Costs that count differing bits grow linearly round their minimum: the parabola would pull towards whole numbers.
+    # Source: Shimizu & Okutomi, Precise sub-pixel estimation on area-based matching, ICCV 2001.
     rise = max(before, after) - at
     return (before - after) / (rise + rise) if rise != 0 else rise
 
 
 @inner()
 def _accept(span, best, beside, sums, right_sums, confirmed, most, check_tolerance, disparity):
-    """Accept disparities that pass the left-right check: no left pixel fits the right one better by more than a factor.
-
-    A pixel whose neighbouring disparities fit as well as the best one is ambiguous and not accepted. Written without
-    branches, as acceptance is unpredictable; scattered values are gathered first, so that the rest is vector code.
-    confirmed: scratch.
-    """
+    """Accept disparities whose right pixel no left pixel fits better by more than a factor; confirmed: scratch."""
+    # Without branches, as acceptance is unpredictable; scattered values are gathered first, so that the rest is vector
+    # code.
     for i in range(most.size):
         right_sums[i] &= most[i]  # columns beyond the picture confirm nothing
     for x in range(best.size):
@@ -106,6 +87,7 @@ def _accept(span, best, beside, sums, right_sums, confirmed, most, check_toleran
         k = np.int32(best[x])
         at, before, after = np.float32(sums[x]), np.float32(befores[x]), np.float32(afters[x])
         inner = (k > 0) & (k < last)
+        # Neighbouring disparities that fit as well make a pixel ambiguous.
         flat = inner & (befores[x] == sums[x]) & (afters[x] == sums[x])
         fits = (sums[x] < WORST) & (at <= check_tolerance * np.float32(confirmed[x]))
         offset = equiangular(before, at, after) if inner else np.float32(0)
@@ -134,17 +116,15 @@ def shift_codes(row, w, top, codes):
 def sweep_strip(
     lanes, left, right, grey, rows, warm, span, limits, penalties, check_tolerance, scratch, disparity, sums
 ):
-    """Compute disparities in sixteenths of a pixel (UNKNOWN if rejected) and sums of rows[0]..rows[1]-1.
-
-    Parameters: lanes, Lanes(n, planes); left, right uint8 (h, planes, >= w), codes of the two views; grey uint8 (h, w),
-    the left view; warm, rows that a path begins early; span, the disparities to try, at most n; limits, those of rows
-    of w columns; penalties, a `Penalties`; check_tolerance of the left-right check, 1 being strict; scratch, for at
-    least as many rows. Results: disparity int16 (h, w), sums uint8 (h, w), the winner's cost over the four paths.
-    """
+    """Write disparities in sixteenths of a pixel (UNKNOWN if rejected) and winners' costs of rows[0]..rows[1]-1."""
     h, w = grey.shape
     y0, y1 = rows
     total, paths, path_lowest, costs, p2, codes, best, right_sums, beside, confirmed = scratch
     p1, p2_across = penalties.p1, p2[2]
+    # Each path is relative to its own minimum (Hirschmueller, IEEE PAMI 30(2), 2008, eq. 13), so that the winner's sum
+    # of four paths is small and saturating bytes are enough: only losers reach 255. Paths start `warm` rows early,
+    # which makes strips independent: any number of threads, bounded memory, and a volume that fits the caches. Lane k
+    # stands for the disparity top - k, so that the right view's codes are contiguous: codes[i] is its column i - top.
     begin_path(paths, path_lowest)
     for y in range(max(0, y0 - warm), y1):
         row = (y - y0) & 1

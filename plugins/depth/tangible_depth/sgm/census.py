@@ -1,8 +1,4 @@
-"""Census codes: one bit a neighbour, "is it darker than the centre?". Codes are compared by their Hamming distance.
-
-Source: Zabih & Woodfill, Non-parametric local transforms for computing visual correspondence, ECCV 1994. A code keeps
-the order of grey values only, so that exposure, gain and gamma of the two pictures may differ.
-"""
+"""Census codes: one bit a neighbour, "is it darker than the centre?", compared by their Hamming distance."""
 
 from collections.abc import Sequence
 
@@ -17,17 +13,14 @@ RADIUS = 2
 PLANES = 3
 """Bytes of a code, one plane each."""
 BITS = 8 * PLANES
-"""Bits of a code, one for each neighbour."""
 BLOCK = 64
 """Columns of a block: rows are padded to whole blocks, so that vector code needs no remainder loop."""
 OFFSETS = np.array([(dy, dx) for dy in range(5) for dx in range(5) if (dy, dx) != (RADIUS, RADIUS)])
 
 
 def census(grey: UInt8[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h 3 whole"]:
-    """Compute codes of 24 bits from the 5 x 5 window, one plane per byte; the picture's edge is repeated outwards.
-
-    Rows are padded to whole blocks of BLOCK columns; the padding is undefined.
-    """
+    """Compute codes of the 5 x 5 window, one plane per byte, in whole blocks; exposure, gain and gamma may differ."""
+    # Source: Zabih & Woodfill, Non-parametric local transforms, ECCV 1994. The picture's edge is repeated outwards.
     return _encode([grey])
 
 

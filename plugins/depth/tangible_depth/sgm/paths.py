@@ -1,7 +1,4 @@
-"""The paths of semi-global matching: steps from row to row, and along a row.
-
-Every cost, path and sum is a byte a lane; lane k stands for the disparity top - k.
-"""
+"""The paths of semi-global matching; a cost is a byte a lane, and lane k stands for the disparity top - k."""
 
 from typing import NamedTuple
 
@@ -112,13 +109,11 @@ def step_vertical_path(lanes, left, codes, limits, p1, p2, before, path, path_lo
 
 @inner()
 def add_horizontal_paths(lanes, p1, upper, lower):
-    """Add the paths from both ends of two rows to those from above. Interleaving all four hides their latency.
-
-    upper, lower: costs, `jump_penalties_along`, path and total of a row.
-    """
+    """Add the paths from both ends of two rows (costs, `jump_penalties_along`, path, total) to those from above."""
     n = width(lanes)
     w = upper[1].size - 1
     nothing = splat(lanes, uint8(0)), uint8(0), splat(lanes, uint8(0)), uint8(0)
+    # Interleaving all four paths hides their latency.
     ends = _walk_half(lanes, p1, upper, lower, (0, w // 2), nothing, nothing)
     if w % 2:
         middle = (w // 2) * n

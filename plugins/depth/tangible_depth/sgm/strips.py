@@ -39,11 +39,9 @@ def unknown_matches(shape: tuple[int, int]) -> StripMatches:
 
 
 def strips(shape: tuple[int, int], span: Span) -> list[tuple[int, int]]:
-    """Return first and last + 1 row of each strip: ROWS high, or lower if AT_ONCE volumes would exceed VOLUME_BYTES.
-
-    Independent of the number of threads, as seams are visible in a map.
-    """
+    """Return first and last + 1 row of each strip: ROWS high, or lower if AT_ONCE volumes would exceed VOLUME_BYTES."""
     h, w = shape
+    # Independent of the number of threads, as seams are visible in a map.
     rows = max(8, min(ROWS, VOLUME_BYTES // (AT_ONCE * w * span.lanes)))
     return [(y, min(y + rows, h)) for y in range(0, h, rows)]
 
@@ -59,12 +57,7 @@ def sweep(
     warm: int = WARM_ROWS,
     most_level: int = 0,
 ) -> None:
-    """Match the strips `only` and write them into `out`; their paths begin `warm` rows early.
-
-    most_level: most that the difference of two levels counts; if not 0, the last plane of the codes holds levels.
-
-    Every strip is independent of the others, so the result does not depend on how many threads there are.
-    """
+    """Match the strips `only` into `out`, their paths begun `warm` rows early; independent of the number of threads."""
     w, n = grey.shape[1], span.lanes
     planes = codes[0].shape[1]
     lanes = Lanes(n, planes - (most_level > 0), most_level)

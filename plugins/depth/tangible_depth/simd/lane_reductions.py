@@ -114,10 +114,7 @@ def first_equal(typing: Any, vec: Vec, scalar: Any) -> Any:
 
 @operation
 def differences(typing: Any, lanes: LanesType, left: Any, right: Any, x: Any) -> Any:
-    """Count the differing bits of left[:, x] and right[:, x + k] in lane k, as uint8. Both are (planes, columns) bytes.
-
-    If the lanes have a `most_level`, the plane after the code holds levels, whose difference is added, at most that.
-    """
+    """Count the differing bits of left[:, x] and right[:, x + k] in lane k, and their level's difference, as uint8."""
     whole = Vec(types.uint8, lanes.count)
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:

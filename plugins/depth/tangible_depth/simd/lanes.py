@@ -1,12 +1,4 @@
-"""SIMD lanes inside numba: one LLVM vector holds the same quantity of many disparities.
-
-`Vec(element, n)` is a numba type whose machine form is the LLVM vector `<n x element>`. The lane count travels as a
-type: Python passes `Lanes(64)`, numba sees `LanesType(64)`, so that one module-level kernel is compiled per lane count
-and found again in numba's disk cache by the next process (intrinsics of a closure would not be).
-
-A count that is not a power of two is held as several vectors that are: LLVM would process one vector of 80 lanes lane
-by lane, which takes four times as long as 128.
-"""
+"""SIMD lanes inside numba: one LLVM vector holds the same quantity of many disparities."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -36,6 +28,7 @@ class LanesType(types.Type):
     """The numba type of `Lanes`: the numbers are part of the type, the value is empty."""
 
     def __init__(self, count: int, planes: int, most_level: int) -> None:
+        # A kernel is compiled per lane count and found again in the disk cache; intrinsics of a closure would not be.
         self.count = count
         self.planes = planes
         self.most_level = most_level
@@ -54,6 +47,7 @@ class Vec(types.Type):
     @property
     def parts(self) -> "list[tuple[int, Vec]]":
         """The first lane and the vector of each part, a power of two lanes each, the widest first."""
+        # LLVM would process one vector of 80 lanes lane by lane, which takes four times as long as 128.
         widths = [1 << i for i in reversed(range(self.count.bit_length())) if self.count >> i & 1]
         return [(sum(widths[:i]), Vec(self.element, each)) for i, each in enumerate(widths)]
 

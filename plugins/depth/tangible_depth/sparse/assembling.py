@@ -18,15 +18,9 @@ def assemble(
     reach_px: float = 20.0,
     colour_step: float = 0.08,
 ) -> DisparityMap:
-    """Fill and smooth scattered matches; each pixel takes the mean of those near it, by score, distance and colour.
-
-    disparity_px: NaN where there is no match; score: 0..1, read where there is one; picture: (h, w[, 3|4]).
-    reach_px: distance over which a match counts; colour_step: change of colour, as a share of white, that counts as
-    that distance.
-    Confidence is the score at a match and falls off, within colour edges, with the distance from the matches. Without
-    any match, everything is unknown.
-    Source: normalised convolution by the domain transform of Gastal & Oliveira, SIGGRAPH 2011.
-    """
+    """Fill and smooth scattered matches (NaN without): a mean by score, distance and colour, within colour edges."""
+    # Normalised convolution by the domain transform of Gastal & Oliveira, SIGGRAPH 2011: a change of `colour_step`
+    # counts as the distance `reach_px`.
     guide = to_rgb8(picture)
     mean, _ = _weighted_mean(disparity_px, score, guide, reach_px, colour_step)
     with np.errstate(invalid="ignore"):

@@ -19,14 +19,11 @@ MaxDisparity = int | Literal["auto"]
 
 
 def range_of_shifts(shift_px: Float64[np.ndarray, "n 2"], width: int) -> Span:
-    """Return the lowest and highest disparity, both included, from shifts (x, y), left - right, of rectified matches.
-
-    Matches off their rows are dropped; the range of the others is widened by a tenth. Zero is always included, as a far
-    wall without detail has no corners. With fewer than FEWEST matches on their rows: 0 to a quarter of the width.
-    """
+    """Return the lowest and highest disparity of shifts (x, y), left - right, of rectified matches."""
     on_row = np.abs(shift_px[:, 1]) <= 2
     if np.count_nonzero(on_row) < FEWEST:
         return Span(0, ceil(width / 4)).within(width)
+    # Zero is always included, as a far wall without detail has no corners.
     low, high = np.percentile(shift_px[on_row, 0], [1, 99])
     margin = max(4.0, 0.1 * (high - low))
     return Span(floor(min(0.0, low - margin)), ceil(high + margin)).within(width)

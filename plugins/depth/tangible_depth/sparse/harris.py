@@ -1,9 +1,4 @@
-"""Harris corners and edges, the features that are matched.
-
-X = I * (-1, 0, 1), Y = I * (-1, 0, 1)^T; A = X^2 * w, B = Y^2 * w, C = XY * w; M = [[A, C], [C, B]];
-R = det M - k (tr M)^2: above zero at a corner, below zero along an edge, near zero where the picture is flat.
-Source: Harris & Stephens, A Combined Corner and Edge Detector, 1988.
-"""
+"""Harris corners and edges, the features that are matched (Harris & Stephens 1988)."""
 
 from math import exp
 
@@ -24,11 +19,8 @@ def gaussian_window(sigma_px: float) -> Float64[np.ndarray, "n"]:
 def harris_response(
     grey: Float[np.ndarray, "h w"], window: np.ndarray | None = None, k: float = 0.04
 ) -> Float[np.ndarray, "h w"]:
-    """Compute R of every pixel, in the picture's own float type; borders are mirrored.
-
-    window: the weights w along one axis, an odd number of them; a Gaussian of sigma 1 px when left out. A picture
-    multiplied by c has its response multiplied by c^4.
-    """
+    """Compute R = det M - k (tr M)^2 of every pixel in the picture's float type; window: weights along one axis."""
+    # R > 0 at a corner, < 0 along an edge, near 0 where flat; a picture multiplied by c has R multiplied by c^4.
     weights = gaussian_window(1.0) if window is None else window
     slope, one = np.array([-1.0, 0.0, 1.0]), np.ones(1)
     with plain_opencv():
@@ -43,10 +35,7 @@ def harris_response(
 
 
 def corners(response: Float[np.ndarray, "h w"], least: float, most: int) -> Int64[np.ndarray, "n 2"]:
-    """Find corners as (column, row), strongest first: R is over `least` and the largest of its 3 x 3 neighbourhood.
-
-    least: >= 0; most: largest number of corners, so that a busy picture costs no more than a plain one.
-    """
+    """Find at most `most` corners as (column, row), strongest first: R over `least` and largest of its 3 x 3 pixels."""
     peak = (response > least) & (response >= cv2.dilate(response, np.ones((3, 3), np.uint8)))
     rows, columns = np.nonzero(peak)
     order = np.argsort(-response[rows, columns], kind="stable")[:most]
@@ -54,10 +43,8 @@ def corners(response: Float[np.ndarray, "h w"], least: float, most: int) -> Int6
 
 
 def row_edges(response: Float[np.ndarray, "h w"], least: float) -> Int64[np.ndarray, "n 2"]:
-    """Find edges across rows, as (column, row) in reading order: R is under -least and lowest among its neighbours.
-
-    An edge along a row cannot be located by a search along rows.
-    """
+    """Find edges across rows, as (column, row) in reading order: R is under -least and lowest among its neighbours."""
+    # An edge along a row cannot be located by a search along rows.
     beside = np.pad(response, ((0, 0), (1, 1)), constant_values=np.inf)
     valley = (response < -least) & (response <= beside[:, :-2]) & (response < beside[:, 2:])
     rows, columns = np.nonzero(valley)
@@ -65,8 +52,6 @@ def row_edges(response: Float[np.ndarray, "h w"], least: float) -> Int64[np.ndar
 
 
 def least_response(contrast: float, k: float = 0.04) -> float:
-    """Return the |R| of an edge whose slope is `contrast` grey levels a pixel, to tell features from noise.
-
-    A ramp of slope g has X = 2 g, hence R = -k (2 g)^4.
-    """
+    """Return the |R| of an edge whose slope is `contrast` grey levels a pixel, to tell features from noise."""
+    # A ramp of slope g has X = 2 g.
     return k * (2 * contrast) ** 4

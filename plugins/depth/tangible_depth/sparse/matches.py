@@ -1,7 +1,4 @@
-"""Matches between two raw pictures: by SIFT, by Harris corners and correlation, by optical flow.
-
-Points are (column, row) in pixels, centres at whole numbers.
-"""
+"""Matches between two raw pictures: by SIFT, by Harris corners and correlation, by optical flow."""
 
 from typing import NamedTuple
 
@@ -102,10 +99,7 @@ def corner_matches(
     window_px: int = 11,
     least_score: float = 0.8,
 ) -> Matches:
-    """Match mutual best corners by normalised cross-correlation of their windows, the right ones to sub-pixel.
-
-    least_score: least correlation of a match; a flat window correlates with nothing. Memory: n x m scores.
-    """
+    """Match mutual best corners by the correlation of their windows, the right ones to sub-pixel; n x m scores."""
     if not len(left_corners) or not len(right_corners):
         return NO_MATCHES
     half = window_px // 2
@@ -120,10 +114,8 @@ def corner_matches(
 
 
 def correlations(left: Float32[np.ndarray, "n k"], right: Float32[np.ndarray, "m k"]) -> Float64[np.ndarray, "n m"]:
-    """Return the correlations of normalised windows, each left one with each right one.
-
-    The windows are rounded to whole numbers of 1 / STEPS, whose sums stay under 2^53: exact in any order.
-    """
+    """Return the correlations of normalised windows, each left one with each right one."""
+    # Whole numbers of 1 / STEPS, whose sums stay under 2^53: exact in any order.
     whole, others = (np.rint(STEPS * each.astype(np.float64)) for each in (left, right))
     return whole @ others.T * STEPS**-2
 
@@ -182,11 +174,7 @@ def parabola(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> Float64[n
 
 @plain_opencv()
 def flow_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h w"], most: int = 150) -> Matches:
-    """Match strong corners by tracking into the right picture and back (pyramidal Lucas-Kanade), to a tenth of a pixel.
-
-    Cheap, as they are detected and tracked in small pictures and only refined in the full ones. A corner that does not
-    come back to within half a small pixel is dropped, which removes most wrong matches.
-    """
+    """Match strong corners by tracking them into the right picture and back (Lucas-Kanade), to a tenth of a pixel."""
     if min(left.shape) < SMALLEST_SIDE:
         return NO_MATCHES
     # Optical flow assumes constant brightness; equal histograms allow another exposure or gamma.
@@ -196,6 +184,8 @@ def flow_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h
     start = cv2.goodFeaturesToTrack(small[0], most, 0.01, 8)
     if start is None:
         return NO_MATCHES
+    # Cheap, as corners are tracked in small pictures and only refined in the full ones; one that does not come back to
+    # within half a small pixel is most likely a wrong match.
     there = track(small[0], small[1], start, start, levels=5)
     kept = np.linalg.norm(track(small[1], small[0], there, there, levels=5) - start, axis=2).ravel() < 0.5
     found = Matches(*(_to_full_size(points[kept].reshape(-1, 2), scale) for points in (start, there)))
@@ -231,10 +221,7 @@ def _to_full_size(points_px: np.ndarray, scale: float) -> Float64[np.ndarray, "n
 def match_off_plane(
     left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h w"], homography: np.ndarray
 ) -> Matches:
-    """Match corners that a homography (3, 3), from right to left, does not explain, as `corner_matches` does.
-
-    Right points are returned in the left picture's frame, mapped by the homography.
-    """
+    """Match corners that a homography, right to left, does not explain; right points are mapped by it."""
     size = left.shape[::-1]
     with plain_opencv():
         moved = cv2.warpPerspective(right, homography, size)

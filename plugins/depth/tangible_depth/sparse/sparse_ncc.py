@@ -1,8 +1,4 @@
-"""Compiled search for each feature of the left picture along its row of the right one.
-
-The score is the zero-mean normalised cross-correlation of two windows,
-sum (I_p - mean)(I_q - mean) / sqrt(sum (I_p - mean)^2 sum (I_q - mean)^2), in -1..1; a flat window has none.
-"""
+"""Compiled search for each feature of the left picture along its row of the right one, by correlation."""
 
 import numpy as np
 
@@ -11,12 +7,9 @@ from tangible_core.compiled import njit
 
 @njit(cache=True, nogil=True)
 def match_rows(left, right, left_inverse, right_inverse, points, low, high, half, disparity, score):
-    """Fill disparity[i] and score[i] for each point (column, row) of the left picture.
-
-    left, right: float32 (h + 2 half, w + 2 half), padded by half a window; *_inverse: float32 (h, w), one over the
-    norm of each pixel's window minus its mean, 0 for a flat one; low..high: disparities tried, both included.
-    disparity: NaN where a window is flat, or the best right window's own best left window is over a pixel away.
-    """
+    """Fill disparity[i], NaN without a match, and score[i] for each point (column, row) of the left picture."""
+    # The views are padded by half a window; the inverses are one over the norm of each window minus its mean, 0 for a
+    # flat one. A match is dropped if the best right window's own best left window is over a pixel away.
     scores = np.empty(high - low + 1, np.float32)
     window = np.empty((2 * half + 1, 2 * half + 1), np.float32)
     width = left_inverse.shape[1]

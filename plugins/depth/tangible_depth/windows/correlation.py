@@ -1,11 +1,4 @@
-"""Comparison of windows at every disparity: zero-mean normalised cross-correlation and squared differences.
-
-Window sums are exact 32-bit integers that slide: down by adding the products of the entering row and subtracting those
-of the leaving one, sideways by one column in and one out, for all disparities at once. No step depends on the window's
-size. Sums of products may wrap; the covariance, their difference, fits 32 bits for windows up to 19 x 19.
-
-Lane k stands for the disparity top - k, as in `sweep`: for pixel x the right view's column is x + k - top.
-"""
+"""Comparison of windows at every disparity: zero-mean normalised cross-correlation and squared differences."""
 
 from typing import NamedTuple
 
@@ -41,10 +34,7 @@ class Windows(NamedTuple):
 
 @inner()
 def parabola(before, at, after):
-    """Return the vertex of the parabola through three equally spaced samples, (a - c) / (2 (a - 2 b + c)).
-
-    Within +-0.5 if `at` is the best of the three, whether best means smallest or largest; 0 if they lie on a line.
-    """
+    """Return the vertex of the parabola through three samples, within +-0.5 of the best; 0 if they lie on a line."""
     bend = (before - at) + (after - at)
     return (before - after) / (bend + bend) if bend != 0 else bend
 
@@ -57,10 +47,8 @@ def _products(lanes, left, right, x):
 
 @inner()
 def _slide(lanes, rows, x, column):
-    """Update column[x]: add the products of the entering row, subtract those of the leaving one.
-
-    Done when the column is needed next, so that it is read and written once per row of windows.
-    """
+    """Update column[x]: add the products of the entering row, subtract those of the leaving one."""
+    # Done when the column is needed next, so that it is read and written once per row of windows.
     n = width(lanes)
     here = add(load(lanes, column, x * n), _products(lanes, rows.left, rows.right, x))
     here = subtract(here, _products(lanes, rows.gone_left, rows.gone_right, x))
@@ -108,10 +96,9 @@ def _describe(squared, sums, squares, radius, least_variance, first, windows):
 
 @njit(nogil=True, boundscheck=False)
 def _decide(lanes, squared, rows, column, left, right, radius, barred, scores, best, tops, right_tops):
-    """Compute the scores of one row; the best lane and score for each left pixel, the best score for each right pixel.
-
-    The score is the covariance over both deviations, -1..1, or if `squared` minus the sum of squared differences.
-    """
+    """Compute the scores of a row; the best lane and score of each left pixel, the best score of each right pixel."""
+    # The score is the covariance over both deviations, -1..1, or if `squared` minus the sum of squared differences.
+    # Sums of products may wrap; the covariance, their difference, fits 32 bits for windows up to 19 x 19.
     n = width(lanes)
     w = best.size
     area = splat(lanes, int32((2 * radius + 1) ** 2))
@@ -162,15 +149,12 @@ def _accept(n, span, least, left, scores, best, tops, right_tops, radius, dispar
 
 @njit(nogil=True, boundscheck=False, cache=True)
 def correlate_strip(lanes, squared, left, right, rows, radius, span, least, least_variance, disparity, tops):
-    """Compute disparities in sixteenths of a pixel (UNKNOWN if rejected) and scores of rows[0]..rows[1]-1.
-
-    Parameters: lanes, Lanes(n); squared, None for correlation, True for squared differences (None is known to the
-    compiler); left, right uint8 (h, w); radius of the window; span, the disparities to try, at most n; least, the score
-    that must be passed; least_variance, grey levels squared below which a window counts as flat.
-    Results: disparity int16 (h, w), tops float32 (h, w), the winner's score.
-    """
+    """Write disparities in sixteenths of a pixel (UNKNOWN if rejected) and winners' scores of rows[0]..rows[1]-1."""
     n = width(lanes)
     h, w = left.shape
+    # Window sums are exact integers that slide: down by adding the products of the entering row and subtracting those
+    # of the leaving one, sideways by one column in and one out, for all disparities at once; no step depends on the
+    # window's size. Lane k stands for the disparity top - k, so that the right view's column is x + k - top.
     column = np.zeros(w * n, np.int32)
     moments = np.zeros((4, w), np.int32)
     sliding = Sliding(

@@ -1,7 +1,4 @@
-"""Dense zero-mean normalised cross-correlation in torch: batched, differentiable, on a GPU when there is one.
-
-Pictures are tensors (b, 1, h, w), floating point with white at 1. This module imports torch; import it inside a verb.
-"""
+"""Dense zero-mean normalised cross-correlation in torch of tensors (b, 1, h, w), white at 1; import it in a verb."""
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -32,11 +29,7 @@ class BestMatches(NamedTuple):
 
 
 def scores(left: Tensor, right: Tensor, low: int, high: int, window_px: int) -> Tensor:
-    """Compute ZNCC of each left pixel with the right one d to its left, d = low..high: (b, high - low + 1, h, w).
-
-    In -1..1, OUTSIDE if undefined. Differentiable with respect to both pictures. Edges are repeated
-    outwards.
-    """
+    """Compute ZNCC of left pixels with right ones d = low..high to their left: (b, high - low + 1, h, w), in -1..1."""
     half = window_px // 2
     middle = (left.mean(dim=(-2, -1), keepdim=True) + right.mean(dim=(-2, -1), keepdim=True)) / 2
     edges = (half, half, half, half)
@@ -55,11 +48,9 @@ def _statistics(padded: Tensor, window_px: int) -> tuple[Tensor, Tensor]:
 
 
 def _mean(padded: Tensor, window_px: int) -> Tensor:
-    """Average over each whole window, along the rows and then along the columns.
-
-    By sums of slices: ten times as fast as torch's pooling, and a GPU's convolution would round to 10 bits.
-    """
+    """Average over each whole window, along the rows and then along the columns."""
     columns, rows = padded.shape[-1] - window_px + 1, padded.shape[-2] - window_px + 1
+    # Sums of slices are ten times as fast as torch's pooling, and a GPU's convolution would round to 10 bits.
     along = reduce(torch.add, (padded[..., i : i + columns] for i in range(window_px)))
     return reduce(torch.add, (along[..., i : i + rows, :] for i in range(window_px))) / window_px**2
 
@@ -73,11 +64,7 @@ def _shift(values: Tensor, low: int, high: int, outside: float) -> Tensor:
 
 
 def best_shifts(volume: Tensor, low: int) -> BestMatches:
-    """Find the best of scores (b, n, h, w) of the disparities low, low + 1, ..., refined by a parabola.
-
-    Unknown if the matched right pixel has a better left one (left-right check), if the score is not above 0, or if both
-    neighbours have the same score, as in a picture that is constant along its rows.
-    """
+    """Find the best of scores (b, n, h, w) of disparities low, low + 1, ..., with a left-right check and a parabola."""
     count, width = volume.shape[1], volume.shape[-1]
     value, at = volume.max(dim=1)
     columns = torch.arange(width, device=volume.device)
@@ -85,6 +72,7 @@ def best_shifts(volume: Tensor, low: int) -> BestMatches:
     mutual = value >= _right_best(volume, low).gather(-1, seen_at)
     before = volume.gather(1, (at - 1).clamp(0)[:, None])[:, 0]
     after = volume.gather(1, (at + 1).clamp(max=count - 1)[:, None])[:, 0]
+    # As in a picture that is constant along its rows.
     level = torch.minimum(before, after) >= value - SAME_SCORE if count > 1 else torch.zeros_like(mutual)
     bend = 2 * value - before - after
     bent = (at > 0) & (at < count - 1) & (before > OUTSIDE) & (after > OUTSIDE) & (bend > 0)
@@ -107,16 +95,14 @@ def _right_best(volume: Tensor, low: int) -> Tensor:
 
 
 def match(left: Tensor, right: Tensor, low: int, high: int, window_px: int, memory_mb: int = 64) -> BestMatches:
-    """Find the best shift of every pixel in low..high, in strips of rows whose scores take about memory_mb.
-
-    A strip is at least a window high, even if it takes more. On a CPU small strips are fastest: they fit its caches.
-    """
+    """Find the best shift of every pixel in low..high, in strips of rows whose scores take about memory_mb."""
 
     def one_strip(first: int, last: int, skip: int, rows: int) -> BestMatches:
         with torch.no_grad():
             volume = scores(left[..., first:last, :], right[..., first:last, :], low, high, window_px)
             return BestMatches(*(part[..., skip : skip + rows, :] for part in best_shifts(volume, low)))
 
+    # On a CPU small strips are fastest: they fit its caches.
     strips = list(_strips(left, high - low + 1, window_px // 2, memory_mb))
     results = [one_strip(*strip) for strip in strips] if left.is_cuda else _on_all_cores(one_strip, strips)
     return BestMatches(*(torch.cat(parts, dim=-2) for parts in zip(*results, strict=True)))

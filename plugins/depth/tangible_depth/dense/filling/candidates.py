@@ -1,23 +1,4 @@
-"""Scores of the candidates for an unknown disparity, by both views and by the edges of the picture.
-
-The candidates of a pixel are the nearest known values to the left, right, above and below it (with `effort: best`, on
-the diagonals too) and, at the left border, the one at the end of a geodesic path. A score is a sum of three terms:
-
-- both views (binocular): a pixel of disparity d is seen at column x - d of the right view. If a nearer surface is seen
-  there, the pixel is occluded, which explains the missing match, as a column beyond the picture does; if a farther
-  surface is seen there, the candidate is contradicted; if no pixel was matched with that column, it is less likely;
-- the picture (monocular): the grey steps crossed on the path from the neighbour, as few surfaces continue across edges;
-- the order in depth: occluded pixels lie behind, so farther candidates score higher, and so does the farther of a row.
-
-The right view does not show the left border, so a wide strip there has no matches, and no known pixel of its surface
-may lie straight ahead. The geodesic path, of the least grey change, may turn; two sweeps, forth and back, find it.
-Source of the sweeps: Toivanen, New geodesic distance transforms for gray-scale images, Pattern Recognition Letters 17,
-1996.
-
-The weights come from a logistic regression (which candidate of a pixel is within 2 px of the truth) over four
-Middlebury pairs and twelve scenes, rounded; the error hardly depends on them near these values.
-Source of filling from the farther side: Hirschmueller 2008, sec. 2.7.2.
-"""
+"""Scores of the candidates for an unknown disparity, by both views and by the edges of the picture."""
 
 from typing import NamedTuple
 
@@ -38,14 +19,12 @@ NO_WAY = np.int32(1 << 28)
 
 
 class GeodesicCandidates(NamedTuple):
-    """Disparity at the end of the shortest path of each pixel before the first known one of its row."""
+    """Disparity at the end of the shortest path before the first known pixel of a row, and the path's grey levels."""
 
     first: Int64[np.ndarray, " h"]
     """The first known column of each row; 0 without one, as the width of the border is unknown there."""
     values: Int16[np.ndarray, "h columns"]
-    """The disparities, in sixteenths of a pixel, UNKNOWN without a path."""
     lengths: Int32[np.ndarray, "h columns"]
-    """The lengths of the paths, in grey levels."""
 
 
 def geodesic_candidates(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> GeodesicCandidates:
@@ -63,7 +42,10 @@ def geodesic_candidates(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndar
 
 @njit(**KERNEL)
 def _sweep(grey, first, step, values, lengths):
-    """Shorten the paths in one sweep; arrays have a margin of one pixel. No path crosses the margin or a later gap."""
+    """Shorten the paths in one sweep; arrays have a margin of one pixel."""
+    # The right view does not show the left border, so that a wide strip there has no matches, and no known pixel of its
+    # surface may lie straight ahead: the path of least grey change may turn. Two sweeps, forth and back, find it
+    # (Toivanen, Pattern Recognition Letters 17, 1996); no path crosses the margin or a later gap.
     h = first.size
     for i in range(h):
         y = i + 1 if step > 0 else h - i
@@ -96,12 +78,10 @@ NEAREST = np.int32(32767)
 
 @inner()
 def project_to_right(row, columns, seen):
-    """Find the nearest known disparity seen at each column x of the right view, UNKNOWN without one: seen[x + 1].
-
-    Both ends of `seen` stand for all columns beyond the picture; they hold NEAREST. columns: scratch.
-    """
+    """Write the nearest disparity at each right column x to seen[x + 1], UNKNOWN without one; columns: scratch."""
     for x in range(seen.size):
         seen[x] = UNKNOWN
+    # Both ends stand for all columns beyond the picture.
     seen[0] = seen[-1] = NEAREST
     for x in range(row.size):
         columns[x] = right_column(int32(x), int32(row[x]), int32(seen.size - 1))
@@ -125,6 +105,12 @@ def known_or_nearest(value):
 @inner()
 def score_candidate(value, path, farthest, row_farthest, x, seen):
     """Score a candidate, the higher the better; UNKNOWN scores lowest. Without branches: they are unpredictable."""
+    # Seen at column x - d of the right view, a nearer surface means that the pixel is occluded, which explains the
+    # missing match, as a column beyond the picture does; a farther surface contradicts the candidate; an unmatched
+    # column makes it less likely. Few surfaces continue across edges, so grey steps count against it, and occluded
+    # pixels lie behind, so farther candidates score higher (Hirschmueller 2008, sec. 2.7.2). The weights come from a
+    # logistic regression (which candidate is within 2 px) over four pairs and twelve scenes; near these values the
+    # error hardly depends on them.
     there = int32(seen[right_column(x, value, seen.size - 1)])
     rated = np.float32(PER_10_PX_NEARER / 160) * np.float32(value - farthest)
     rated += np.float32(PER_ROOT_OF_GREY) * np.sqrt(np.float32(path))

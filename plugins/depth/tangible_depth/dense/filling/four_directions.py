@@ -1,8 +1,4 @@
-"""Filling from four directions, for `effort: balanced` and for all methods other than `semi-global`.
-
-The candidates of a pixel are its nearest known neighbours to the left, right, above and below, each with the grey steps
-crossed on the path from it, and at the left border the geodesic candidate; `candidates` scores them.
-"""
+"""Filling from four directions, for `effort: balanced` and for all methods other than `semi-global`."""
 
 import numpy as np
 from jaxtyping import Int16, UInt8
@@ -71,6 +67,8 @@ def _fill_rows(disparity, grey, y0, y1, found, scratch, out):
     w = disparity.shape[1]
     left_over = 0
     sides, paths, below, below_path, seen, columns, edges, missing = scratch
+    # ABOVE runs downwards with y: its path starts where each column last had a known value, even above this block, so
+    # that blocks are independent. BELOW is found for all rows at once by one scan upwards.
     _scan_up(disparity, grey, y0, y1, below, below_path, sides[ABOVE], paths[ABOVE], missing)
     _start(sides[ABOVE], paths[ABOVE])
     for y in range(max(_reach(disparity, y0 - 1, -1, missing), 0), y0 - 1):

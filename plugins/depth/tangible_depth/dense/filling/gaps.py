@@ -1,13 +1,4 @@
-"""Gaps of a disparity map, pixels without a match, filled from the surfaces next to them: the entry to this room.
-
-`dense.refinement` calls `fill_gaps` after the speckle filter and before the median; with `effort: best`, gaps that the
-matches of the right view close were closed before, by its `reconcile`. To change the filling, read
-
-1. this module: which filling an effort takes;
-2. `candidates`: how a neighbour's disparity is scored, by both views and by the picture;
-3. `geodesic_candidates`: the candidate at the left border, where no known pixel may lie straight ahead;
-4. `four_directions` for `effort: balanced`, or `eight_directions` and `planes` for `effort: best`.
-"""
+"""Gaps of a disparity map, filled from the surfaces next to them: the entry to this room."""
 
 from typing import Literal
 
@@ -28,13 +19,7 @@ Effort = Literal["balanced", "best"]
 def fill_gaps(
     matched: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"], effort: Effort = "balanced"
 ) -> Int16[np.ndarray, "h w"]:
-    """Fill every UNKNOWN pixel of a map in sixteenths of a pixel; known pixels keep their value.
-
-    balanced: the best of the nearest known values in four directions. best: of those in eight directions, put onto the
-    plane of its surface, so that a slope goes on through a gap.
-    matched: the map (h, w); it is not changed, and a map without any known pixel is returned as it is.
-    grey: the left view. Returns: a new map (h, w).
-    """
+    """Fill every UNKNOWN pixel of a map in sixteenths of a pixel; best: from eight directions, on planes."""
     wait_for(LATE_STEPS)
     if effort == "best":
         return fit_planes(matched, fill_from_eight_directions(matched, grey), grey)

@@ -1,9 +1,4 @@
-"""Plane fitting for `effort: best`: a slanted surface goes on through a gap with its slope.
-
-A gap that is filled with a neighbour's value is flat, whatever the slope of the surface. Here each filled pixel is put
-onto the least-squares plane through the known pixels near it that are of its surface, by disparity and by grey. A ridge
-keeps the slopes near 0 where these pixels lie too close together to determine them.
-"""
+"""Plane fitting for `effort: best`: a slanted surface goes on through a gap with its slope."""
 
 import numpy as np
 from jaxtyping import Int16, UInt8
@@ -57,11 +52,10 @@ def _fit_rows(disparity, filled, grey, known, levels, columns, lanes, y0, y1, ou
 
 @inner()
 def _fit_pixel(known, levels, columns, lanes, y, x, value, level):
-    """Return the value at (y, x) of the plane through the samples near it of similar value and grey level.
-
-    Positions i (columns, one a lane) and j (rows) are in half samples, odd numbers from the middle; v is the difference
-    of a sample to the value. Every sum fits into 16 bits.
-    """
+    """Return the value at (y, x) of the plane through the samples near it of similar value and grey level."""
+    # Positions i (columns, one a lane) and j (rows) are in half samples, odd numbers from the middle; v is the
+    # difference of a sample to the value. Every sum fits into 16 bits. A ridge keeps the slopes near 0 where the
+    # samples lie too close together to determine them.
     top, left = y // EVERY, x // EVERY
     least, darkest = splat(lanes, uint16(OF_SURFACE - value)), splat(lanes, uint16(OF_GREY - level))
     middle = splat(lanes, uint16(OF_SURFACE))

@@ -87,6 +87,6 @@ def kornia_eight_point(matches: "Matches", weights: np.ndarray | None = None) ->
     check_matches(matches)
     left, right = (torch.from_numpy(np.asarray(points, np.float64))[None] for points in matches)
     # kornia weights squares, and its points2^T F points1 = 0 has the left picture second.
-    squared = None if weights is None else torch.from_numpy(np.asarray(weights, np.float64) ** 2)[None]
-    matrix = find_fundamental(right, left, squared)[0].numpy()
+    squared_weights = None if weights is None else torch.from_numpy(np.asarray(weights, np.float64) ** 2)[None]
+    matrix = find_fundamental(right, left, squared_weights)[0].numpy()
     return matrix / np.linalg.norm(matrix)

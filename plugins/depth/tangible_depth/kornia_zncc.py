@@ -55,6 +55,8 @@ class KorniaZNCC(DepthEstimator):
         low, high = range_of_pair(left, right, self.max_disparity_px)
         disparity, score = match_pair(left, right, low, high, self.window_px, self.torch_device, self.memory_mb)
         disparity = erase_speckles(disparity)
-        filled = assemble(disparity, score, views.left)
-        known = np.isfinite(disparity)
-        return DisparityMap(np.where(known, disparity, filled.disparity_px), np.where(known, score, filled.confidence))
+        dense = assemble(disparity, score, views.left)
+        valid_mask = np.isfinite(disparity)
+        return DisparityMap(
+            np.where(valid_mask, disparity, dense.disparity_px), np.where(valid_mask, score, dense.confidence)
+        )

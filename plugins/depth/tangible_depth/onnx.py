@@ -87,7 +87,7 @@ class Onnx(DepthEstimator, Skippable):
         limit = height * width if in_pixels else most_px
 
         def work(rows: slice) -> list[Map]:
-            views = [each[rows] for each in (left, right) if each is not None]
+            views = [view[rows] for view in (left, right) if view is not None]
             if rows.start == 0:  # once: strips are alike
                 _note_size(fit_size(views[0].shape[:2], card.input, limit).resized, card.input.trained_px)
             return self._run(model, card, views, limit)
@@ -102,10 +102,10 @@ class Onnx(DepthEstimator, Skippable):
         names = (takes.left, takes.right) if len(views) == 2 else (takes.left,)
         inputs = {name: tensor(view, takes, fit) for name, view in zip(names, views, strict=True)}
         inputs |= {name: np.array(number, np.int64) for name, number in takes.constants.items()}
-        wanted = [gives.name, gives.confidence] if gives.confidence else [gives.name]
-        outputs = run(model, card.runtime or self.runtime, inputs, wanted)
+        output_names = [gives.name, gives.confidence] if gives.confidence else [gives.name]
+        outputs = run(model, card.runtime or self.runtime, inputs, output_names)
         maps: list[Map] = []
-        for name, output in zip(wanted, outputs, strict=True):
+        for name, output in zip(output_names, outputs, strict=True):
             values = restore_size(output, fit, shape, gives.channel if name == gives.name else None)
             if values is None:
                 raise ConfigError(

@@ -19,9 +19,9 @@ def left_right_confidence(
     """Measure how far both views agree, max(0, 1 - |d_L(x) - d_R(x - d_L(x))| / 1 px), 0 if unknown (Fua 1993)."""
     columns = left_px.shape[1]
     target = np.arange(columns) - left_px
-    seen = (target > -0.5) & (target < columns - 0.5)
-    nearest = np.rint(np.where(seen, target, 0)).astype(np.int32)
-    gap = np.abs(np.where(seen, left_px, np.nan) - np.take_along_axis(right_px, nearest, axis=1))
+    inside = (target > -0.5) & (target < columns - 0.5)
+    nearest = np.rint(np.where(inside, target, 0)).astype(np.int32)
+    gap = np.abs(np.where(inside, left_px, np.nan) - np.take_along_axis(right_px, nearest, axis=1))
     return np.nan_to_num(np.clip(1 - gap, 0, 1), nan=0).astype(np.float32)
 
 
@@ -108,8 +108,8 @@ class OpenCVSGBM(DepthEstimator, Skippable):
         if low >= high:
             return np.full(left.shape, np.nan, np.float32)
         disparity = self._compute(left, right, low, -(-(high - low) // STEP) * STEP)
-        tried = (disparity > low - 0.5) & (disparity < high - 0.5)
-        return np.where(tried, disparity, np.float32(np.nan))
+        in_range = (disparity > low - 0.5) & (disparity < high - 0.5)
+        return np.where(in_range, disparity, np.float32(np.nan))
 
     def _compute(
         self, left: UInt8[np.ndarray, "h w"], right: UInt8[np.ndarray, "h w"], low: int, count: int
@@ -136,14 +136,14 @@ class OpenCVSGBM(DepthEstimator, Skippable):
             mode=MODES[self.mode],
         )
         try:
-            padded = (np.pad(view, ((0, 0), (before, after)), mode="edge") for view in (left, right))
-            found = matcher.compute(*padded)[:, before : before + left.shape[1]]
+            frames = (np.pad(view, ((0, 0), (before, after)), mode="edge") for view in (left, right))
+            sixteenths = matcher.compute(*frames)[:, before : before + left.shape[1]]
         except (cv2.error, MemoryError) as error:
             raise PictureError(
                 f"OpenCV cannot match a pair of {left.shape[1]} x {left.shape[0]} over {count} disparities in mode "
                 f"{self.mode!r}: {error}; try mode '3way', a smaller range or smaller pictures"
             ) from error
-        return found.astype(np.float32) / STEP
+        return sixteenths.astype(np.float32) / STEP
 
 
 def _eight_bits(left: np.ndarray, right: np.ndarray) -> list[UInt8[np.ndarray, "h w"]]:

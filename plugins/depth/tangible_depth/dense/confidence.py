@@ -40,23 +40,25 @@ OF_MATCHED: Table = (
 
 def probability(sure: Float32[np.ndarray, "*shape"]) -> Float32[np.ndarray, "*shape"]:
     """Return how likely a value of `semi-global` is within 2 px of the truth, 0..1, by its confidence."""
-    filled, matched = (np.interp(sure, *table).astype(np.float32) for table in (OF_FILLED, OF_MATCHED))
-    return np.where(sure > np.float32(FILLED), matched, filled)
+    filled_probability, matched_probability = (
+        np.interp(sure, *table).astype(np.float32) for table in (OF_FILLED, OF_MATCHED)
+    )
+    return np.where(sure > np.float32(FILLED), matched_probability, filled_probability)
 
 
 def confidence(
-    matched: Int16[np.ndarray, "h w"],
+    matches: Int16[np.ndarray, "h w"],
     final: Int16[np.ndarray, "h w"],
     quality: UInt8[np.ndarray, "h w"],
     by_quality: Float[np.ndarray, "256"],
 ) -> Float32[np.ndarray, "h w"]:
     """Rate each pixel: MIN_MATCHED to by_quality[quality] where it agrees with its match, 0 to FILLED elsewhere."""
     window = np.ones((2 * STEP_REACH + 1, 2 * STEP_REACH + 1), np.uint8)
-    missing = np.uint8(255) * (matched == UNKNOWN)
+    missing = np.uint8(255) * (matches == UNKNOWN)
     gaps = cv2.blur(missing, (2 * GAP_REACH + 1, 2 * GAP_REACH + 1))
     out = np.empty(final.shape, np.float32)
     near, far = cv2.dilate(final, window), cv2.erode(final, window)
-    _judge(matched, final, quality, by_quality.astype(np.float32), near, far, gaps, out)
+    _judge(matches, final, quality, by_quality.astype(np.float32), near, far, gaps, out)
     return out
 
 
@@ -75,8 +77,8 @@ def zero_disparity(grey: UInt8[np.ndarray, "h w"], fill: bool) -> DisparityMap:
 
 
 @njit(**KERNEL)
-def _judge(matched, final, quality, table, near, far, gaps, out):
-    least, filled = np.float32(MIN_MATCHED), np.float32(FILLED)
+def _judge(matches, final, quality, table, near, far, gaps, out):
+    least, highest_filled = np.float32(MIN_MATCHED), np.float32(FILLED)
     # Either range is scaled by (1 - SHARE_LOST m) / sqrt(1 + s), where s is the depth step in pixels near the pixel and
     # m the share of pixels near it without a match. The form comes from a logistic regression (which pixels are over 2
     # px off) over four photographs and four scenes.
@@ -86,8 +88,8 @@ def _judge(matched, final, quality, table, near, far, gaps, out):
             share = np.float32(1) - np.float32(SHARE_LOST / 255) * np.float32(gaps[y, x])
             out[y, x] = share / np.sqrt(np.float32(1) + step)
         for x in range(final.shape[1]):
-            agrees = abs(int32(matched[y, x]) - int32(final[y, x])) <= AGREEMENT
+            agrees = abs(int32(matches[y, x]) - int32(final[y, x])) <= AGREEMENT
             value = (
                 least + (table[quality[y, x]] - least) * out[y, x]
             )  # read unconditionally: a branch here is unpredictable
-            out[y, x] = value if agrees & (matched[y, x] != UNKNOWN) else filled * out[y, x]
+            out[y, x] = value if agrees & (matches[y, x] != UNKNOWN) else highest_filled * out[y, x]

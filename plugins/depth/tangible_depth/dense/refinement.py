@@ -19,33 +19,33 @@ APART = 16
 """Largest difference, in sixteenths of a pixel, of disparities that agree."""
 
 
-def reconcile(matched: Int16[np.ndarray, "h w"], from_right: Int16[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
+def reconcile(matches: Int16[np.ndarray, "h w"], from_right: Int16[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:
     """Make UNKNOWN, in `matched` itself, what the right view contradicts, and return it with gaps closed from there."""
-    out = np.empty_like(matched)
-    in_blocks(matched.shape[0], lambda y0, y1: _reconcile(matched[y0:y1], from_right[y0:y1], out[y0:y1]))
+    out = np.empty_like(matches)
+    in_blocks(matches.shape[0], lambda y0, y1: _reconcile(matches[y0:y1], from_right[y0:y1], out[y0:y1]))
     return out
 
 
 @njit(**KERNEL)
-def _reconcile(matched, from_right, out):
-    h, w = matched.shape
+def _reconcile(matches, from_right, out):
+    h, w = matches.shape
     # Source: Hirschmueller, IEEE PAMI 30(2), 2008, section 2.4. A pixel of the left view without a match takes the
     # nearest surface that the right view has there.
     for y in range(h):
         for x in range(w):
-            out[y, x] = matched[y, x]
+            out[y, x] = matches[y, x]
         for x in range(w):
             value = from_right[y, x]
             there = x + ((value + 8) >> 4)
-            if value != UNKNOWN and 0 <= there < w and matched[y, there] == UNKNOWN:
+            if value != UNKNOWN and 0 <= there < w and matches[y, there] == UNKNOWN:
                 out[y, there] = max(out[y, there], value)
         for x in range(w):
-            value = matched[y, x]
+            value = matches[y, x]
             there = x - ((value + 8) >> 4)
             if value != UNKNOWN and 0 <= there < w:
                 other = from_right[y, there]
                 if other != UNKNOWN and abs(other - value) > APART:
-                    matched[y, x] = out[y, x] = UNKNOWN
+                    matches[y, x] = out[y, x] = UNKNOWN
 
 
 SAME_SURFACE = 16
@@ -77,7 +77,7 @@ def _empty(shape: tuple[int, int]) -> DenseMatches:
 
 
 def complete(
-    matched: Int16[np.ndarray, "h w"],
+    matches: Int16[np.ndarray, "h w"],
     quality: UInt8[np.ndarray, "h w"],
     by_quality: Float[np.ndarray, "256"],
     grey: UInt8[np.ndarray, "h w"],
@@ -86,18 +86,18 @@ def complete(
 ) -> DenseMatches:
     """Remove speckles (in `matched` itself), fill gaps, sharpen edges, and rate the result (see `confidence`)."""
     cleaning = cleaning or Cleaning()
-    remove_specks(matched, cleaning.specks, cleaning.factor)
-    known = matched if from_right is None else reconcile(matched, from_right)
-    filled = fill_gaps(known, grey, cleaning.effort)
+    remove_specks(matches, cleaning.specks, cleaning.factor)
+    reconciled_matches = matches if from_right is None else reconcile(matches, from_right)
+    dense = fill_gaps(reconciled_matches, grey, cleaning.effort)
     out = _empty(grey.shape)
 
     def block(y0: int, y1: int) -> None:
         cut, own = slices_with_margin(y0, y1, 2 * MEDIAN_REACH + VOTERS + max(STEP_REACH, GAP_REACH))
-        final = median(filled[cut])
+        final = median(dense[cut])
         if cleaning.sharpen:
             final = median(sharpen_edges(final, grey[cut]))
         out.disparity[y0:y1] = final[own]
-        out.confidence[y0:y1] = confidence(matched[cut], final, quality[cut], by_quality)[own]
+        out.confidence[y0:y1] = confidence(matches[cut], final, quality[cut], by_quality)[own]
 
     # A block is cut out with a margin, filtered like a separate picture on one thread, and its own rows are kept.
     in_blocks(grey.shape[0], block)
@@ -107,12 +107,12 @@ def complete(
 def enlarge(small: DenseMatches, grey: UInt8[np.ndarray, "h w"]) -> DenseMatches:
     """Enlarge a map to twice its size: linear within a surface, edges decided by `grey`, the larger left view."""
     out = _empty(grey.shape)
-    padded = np.pad(small.disparity, 1, mode="edge")
+    frame = np.pad(small.disparity, 1, mode="edge")
 
     def block(y0: int, y1: int) -> None:
         cut, own = slices_with_margin(y0, y1, VOTERS)
         part = _empty(grey[cut].shape)
-        _enlarge(padded, small.confidence, cut.start, *part)
+        _enlarge(frame, small.confidence, cut.start, *part)
         out.disparity[y0:y1] = sharpen_edges(part.disparity, grey[cut])[own]
         out.confidence[y0:y1] = part.confidence[own]
 
@@ -126,7 +126,7 @@ def to_disparity_map(dense: DenseMatches, grey: UInt8[np.ndarray, "h w"], fill: 
 
     def block(y0: int, y1: int) -> None:
         cut, own = slices_with_margin(y0, y1, FLAT_REACH)
-        rows = (each[y0:y1] for each in (*dense, disparity_px, trust))
+        rows = (values[y0:y1] for values in (*dense, disparity_px, trust))
         _to_pixels(flat_pixels(grey[cut])[own], fill, *rows)
 
     in_blocks(grey.shape[0], block)
@@ -138,18 +138,18 @@ def _to_pixels(flat, fill, disparity, confidence, disparity_px, trust):
     for y in range(disparity.shape[0]):
         for x in range(disparity.shape[1]):
             value = np.float32(0) if flat[y, x] else confidence[y, x]
-            known = disparity[y, x] != UNKNOWN and (fill or value > np.float32(FILLED))
-            trust[y, x] = value if known else np.float32(0)
-            disparity_px[y, x] = np.float32(disparity[y, x]) * np.float32(1 / 16) if known else np.float32(np.nan)
+            is_valid = disparity[y, x] != UNKNOWN and (fill or value > np.float32(FILLED))
+            trust[y, x] = value if is_valid else np.float32(0)
+            disparity_px[y, x] = np.float32(disparity[y, x]) * np.float32(1 / 16) if is_valid else np.float32(np.nan)
 
 
 @njit(**KERNEL)
-def _enlarge(padded, trust, y0, out, out_trust):
+def _enlarge(frame, trust, y0, out, out_trust):
     """Enlarge the rows from y0 on; `padded` is the small map with its edge repeated once."""
     # A pixel lies a quarter of a small pixel off the centre of that one: 3/4 of its value, 1/4 of the neighbour's.
     for i in range(out.shape[0]):
         y = y0 + i
-        near, other = padded[(y >> 1) + 1], padded[(y >> 1) + 2 * (y & 1)]
+        near, other = frame[(y >> 1) + 1], frame[(y >> 1) + 2 * (y & 1)]
         for odd in range(2):  # every other column, so that neither loop has a branch
             for x in range((out.shape[1] + 1 - odd) >> 1):
                 own = int32(near[x + 1])

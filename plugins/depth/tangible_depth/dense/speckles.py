@@ -35,7 +35,7 @@ class Specks(NamedTuple):
 
     def downsample(self, factor: int) -> "Specks":
         """Return the same sizes for a picture that is smaller by `factor`."""
-        return Specks(*(each // factor**2 for each in self))
+        return Specks(*(size_px // factor**2 for size_px in self))
 
     def by_share(self) -> Int32[np.ndarray, "256"]:
         """Return the largest removed island, in pixels, for 0 to 255 of 255 matched pixels near it."""
@@ -62,7 +62,7 @@ def _remove(disparity: np.ndarray, largest_px: np.ndarray, step: int, reach: int
     start, stop, parent, size = (np.empty(h * w, np.int32) for _ in range(4))
     begin, end = np.empty(h, np.int64), np.empty(h, np.int64)
     first_rows: list[int] = []
-    erased: list[int] = []
+    erased_counts: list[int] = []
     most = int(largest_px.max())
 
     def label(y0: int, y1: int) -> None:
@@ -76,10 +76,10 @@ def _remove(disparity: np.ndarray, largest_px: np.ndarray, step: int, reach: int
         _join_rows(disparity, step, y, start, stop, parent, size, begin, end)
 
     def erase(y0: int, y1: int) -> None:
-        erased.append(_erase(disparity, most, largest_px, share, y0, y1, start, stop, parent, size, begin, end))
+        erased_counts.append(_erase(disparity, most, largest_px, share, y0, y1, start, stop, parent, size, begin, end))
 
     in_blocks(h, erase)
-    return sum(erased)
+    return sum(erased_counts)
 
 
 def _matched_share(disparity: np.ndarray, y0: int, y1: int, reach: int) -> UInt8[np.ndarray, "rows w"]:
@@ -144,13 +144,13 @@ def _unite(parent, size, i, j):
     """Join two regions, without a branch: whether they are joined already is unpredictable."""
     i, j = _root(parent, i), _root(parent, j)
     low, high = min(i, j), max(i, j)
-    united = size[low] + (size[high] if i != j else 0)
-    parent[high], size[low] = low, united
+    total = size[low] + (size[high] if i != j else 0)
+    parent[high], size[low] = low, total
 
 
 @njit(**KERNEL)
 def _erase(disparity, most, largest_px, share, y0, y1, start, stop, parent, size, begin, end):
-    erased = 0
+    erased_count = 0
     for y in range(y0, y1):
         for run in range(begin[y], end[y]):
             root = run
@@ -160,5 +160,5 @@ def _erase(disparity, most, largest_px, share, y0, y1, start, stop, parent, size
                 for x in range(start[run], stop[run]):
                     if size[root] <= largest_px[share[y, x]]:
                         disparity[y, x] = UNKNOWN
-                        erased += 1
-    return erased
+                        erased_count += 1
+    return erased_count

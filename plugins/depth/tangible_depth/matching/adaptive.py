@@ -81,18 +81,18 @@ class Matched(NamedTuple):
     cost: Cost
 
 
-def match(pair: Pair, span: Span, rows: Rows, fixed: Fixed) -> Matched:
+def match(pair: Pair, span: Span, rows: Rows, options: Fixed) -> Matched:
     """Match the strips `rows`, and with `effort: best` those of the exchanged pair too."""
-    trial = _match(pair, span, rows, fixed)
-    if fixed.effort != "best":
+    trial = _match(pair, span, rows, options)
+    if options.effort != "best":
         return Matched(trial.left, None, trial.cost)
-    exchanged = trial.with_pair(trial.pair.exchange())
-    exchanged.sweep(rows)
-    return Matched(trial.left, exchanged.left, trial.cost)
+    right_trial = trial.with_pair(trial.pair.exchange())
+    right_trial.sweep(rows)
+    return Matched(trial.left, right_trial.left, trial.cost)
 
 
-def _match(pair: Pair, span: Span, rows: Rows, fixed: Fixed) -> "_Trial":
-    cost, check_tolerance, realign_rows, effort = fixed
+def _match(pair: Pair, span: Span, rows: Rows, options: Fixed) -> "_Trial":
+    cost, check_tolerance, realign_rows, effort = options
     trial = _Trial(pair, span, cost or LEVELS, check_tolerance, effort)
     if cost and not realign_rows:
         trial.sweep(rows)
@@ -107,18 +107,18 @@ def _match(pair: Pair, span: Span, rows: Rows, fixed: Fixed) -> "_Trial":
     if cost:
         trial.sweep(rest)
         return trial
-    chosen = trial.cost
-    if chosen.most_level and (why := _why_levels_mislead(health, trial.levels_apart(probes))):
+    choice = trial.cost
+    if choice.most_level and (why := _why_levels_mislead(health, trial.levels_apart(probes))):
         note(log, f"skipped: comparing grey levels, as {why}")
-        chosen = SHARP
+        choice = SHARP
         if health.loss < FAR_TOO_NOISY:
             trial = trial.with_cost(SHARP)
             health = trial.health(probes)
-    if chosen is SHARP and (chosen := _cost_for_noise(health, effort)) is not SHARP:
+    if choice is SHARP and (choice := _cost_for_noise(health, effort)) is not SHARP:
         bits = f", {health.differing:.0%} of census bits differ" if trial.cost is SHARP else ""
-        note(log, f"cost {chosen.name}: {health.loss:.0%} of the matches are speckles{bits}")
-    if chosen is not trial.cost:
-        trial, rest = trial.with_cost(chosen), rows
+        note(log, f"cost {choice.name}: {health.loss:.0%} of the matches are speckles{bits}")
+    if choice is not trial.cost:
+        trial, rest = trial.with_cost(choice), rows
     trial.sweep(rest)
     return trial
 
@@ -202,9 +202,9 @@ class _Trial:
 def _probes(rows: Rows) -> tuple[Rows, Rows]:
     """Return the first PROBE_ROWS of a quarter of the strips, at least two, evenly spread; and all other rows."""
     count = min(len(rows), max(2, len(rows) // 4))
-    chosen = {rows[(2 * i + 1) * len(rows) // (2 * count)] for i in range(count)}
-    probes = [(a, min(a + PROBE_ROWS, b)) for a, b in rows if (a, b) in chosen]
-    rest = [(min(a + PROBE_ROWS, b) if (a, b) in chosen else a, b) for a, b in rows]
+    probe_strips = {rows[(2 * i + 1) * len(rows) // (2 * count)] for i in range(count)}
+    probes = [(a, min(a + PROBE_ROWS, b)) for a, b in rows if (a, b) in probe_strips]
+    rest = [(min(a + PROBE_ROWS, b) if (a, b) in probe_strips else a, b) for a, b in rows]
     return probes, [(a, b) for a, b in rest if a < b]
 
 

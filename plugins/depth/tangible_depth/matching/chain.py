@@ -54,25 +54,25 @@ def disparity_map(views: Views, name: str, search: Search, match: Matcher) -> Di
     if search.rectify == "never" or views.calibration is not None:
         estimate.log_notes()
         return match_in_order(pair, estimate.span, search.fill, match)
-    aligned = align_rows(pair, estimate.bands or match_bands(pair, estimate.span), search.most_row_offset_px)
-    if aligned is None:
+    aligned_pair = align_rows(pair, estimate.bands or match_bands(pair, estimate.span), search.most_row_offset_px)
+    if aligned_pair is None:
         return _match_rectified(views, name, search, match, None)
     estimate.log_notes()
-    first = match_in_order(aligned, estimate.span, search.fill, match)
-    return first if _is_reliable(aligned, first) else _retry_rectified(views, name, search, match, first)
+    first = match_in_order(aligned_pair, estimate.span, search.fill, match)
+    return first if _is_reliable(aligned_pair, first) else _retry_rectified(views, name, search, match, first)
 
 
 def _match_rectified(
     views: Views, name: str, search: Search, match: Matcher, instead: DisparityMap | None
 ) -> DisparityMap:
     """Rectify a pair by features of the whole picture and match it; return `instead` if it needs no rectification."""
-    rectified = rectify(views, quick=False)
-    if rectified.skipped and instead is not None:
+    rectified_pair = rectify(views, quick=False)
+    if rectified_pair.skipped and instead is not None:
         return instead
-    pair = grey_pair(rectified.views, name)
-    estimate = find_disparity_range(pair, search.least, search.most, rectified.verified_px)
+    pair = grey_pair(rectified_pair.views, name)
+    estimate = find_disparity_range(pair, search.least, search.most, rectified_pair.verified_px)
     estimate.log_notes()
-    return rectified.to_original(match_in_order(pair, estimate.span, search.fill, match))
+    return rectified_pair.to_original(match_in_order(pair, estimate.span, search.fill, match))
 
 
 def _is_reliable(pair: Pair, disparity: DisparityMap) -> bool:
@@ -104,10 +104,10 @@ def low_confidence_share(disparity: DisparityMap) -> float:
 def match_in_order(pair: Pair, span: Span, fill: bool, match: Matcher) -> DisparityMap:
     """Match the pair within `span`, in the right order of its views."""
     # Mirrored, exchanged views are a pair in the right order, with occlusions on the side where matchers expect them.
-    exchanged = span.high <= 0 and pair.width > 1
-    if exchanged:
+    is_exchanged = span.high <= 0 and pair.width > 1
+    if is_exchanged:
         pair, span = pair.mirror(), Span(-span.high, -span.low)
     disparity = to_disparity_map(match(pair, span), pair.left, fill)
-    if not exchanged:
+    if not is_exchanged:
         return disparity
     return DisparityMap(-disparity.disparity_px[:, ::-1], disparity.confidence[:, ::-1])

@@ -43,11 +43,11 @@ def disparity_by_features(
         raise PictureError("matching features needs two views; give a right one")
     left, right = to_grey(views.left), to_grey(views.right)
     least = least_response(least_contrast)
-    seen = [corners(parts.response(grey), least, MAX_CORNERS) for grey in (left, right)]
-    matches = corner_matches(left, right, seen[0], seen[1])
-    rectified = rectify(views, matches=matches, fit=parts.fit)
-    span = _range(matches, rectified, max_disparity_px)
-    return rectified.to_original(_match_features(rectified.views, parts, least, least_score, *span))
+    corner_points = [corners(parts.response(grey), least, MAX_CORNERS) for grey in (left, right)]
+    matches = corner_matches(left, right, corner_points[0], corner_points[1])
+    rectified_pair = rectify(views, matches=matches, fit=parts.fit)
+    span = _range(matches, rectified_pair, max_disparity_px)
+    return rectified_pair.to_original(_match_features(rectified_pair.views, parts, least, least_score, *span))
 
 
 def _match_features(views: Views, parts: Parts, least: float, least_score: float, low: int, high: int) -> DisparityMap:
@@ -55,18 +55,20 @@ def _match_features(views: Views, parts: Parts, least: float, least_score: float
     left, right = to_grey(views.left), to_grey(views.right)
     response = parts.response(left)
     points = np.unique(np.vstack([corners(response, least, left.size), row_edges(response, least)]), axis=0)
-    found_px, value = parts.match_rows(left, right, points, low, high)
-    accepted = np.isfinite(found_px) & (value >= least_score)
-    logger.info("%d features, %d matched along rows over %d..%d px", len(points), np.count_nonzero(accepted), low, high)
+    shifts_px, value = parts.match_rows(left, right, points, low, high)
+    is_match = np.isfinite(shifts_px) & (value >= least_score)
+    logger.info("%d features, %d matched along rows over %d..%d px", len(points), np.count_nonzero(is_match), low, high)
     disparity, score = np.full(left.shape, np.nan, np.float32), np.zeros(left.shape, np.float32)
-    columns, rows = points[accepted].T
-    disparity[rows, columns], score[rows, columns] = found_px[accepted], value[accepted]
+    columns, rows = points[is_match].T
+    disparity[rows, columns], score[rows, columns] = shifts_px[is_match], value[is_match]
     return assemble(disparity, score, views.left)
 
 
-def _range(matches: Matches, rectified: RectifiedPair, most: MaxDisparity) -> Span:
+def _range(matches: Matches, rectified_pair: RectifiedPair, most: MaxDisparity) -> Span:
     """Return the lowest and highest disparity to try in the rectified views."""
-    width = rectified.views.shape[1]
+    width = rectified_pair.views.shape[1]
     if most != "auto":
-        return Span(floor(-rectified.offset_px), ceil(most - rectified.offset_px)).within(width)
-    return range_of_shifts(rectified.left_place_px(matches.left_px) - rectified.right_place_px(matches.right_px), width)
+        return Span(floor(-rectified_pair.offset_px), ceil(most - rectified_pair.offset_px)).within(width)
+    return range_of_shifts(
+        rectified_pair.left_place_px(matches.left_px) - rectified_pair.right_place_px(matches.right_px), width
+    )

@@ -31,7 +31,7 @@ class FilmMatcher:
     def __init__(self, views: Views, name: str, search: Search, match: Matcher) -> None:
         """Prepare for frames like `views`. Raises: as `disparity_map`."""
         self._name, self._search, self._match = name, search, match
-        self._rectified: RectifiedPair | None = None
+        self._rectified_pair: RectifiedPair | None = None
         self._row_offset_px = 0.0
         pair = grey_pair(views, name)
         estimate = find_disparity_range(pair, search.least, search.most)
@@ -40,12 +40,12 @@ class FilmMatcher:
         if search.rectify == "never" or views.calibration is not None or np.array_equal(*pair):
             return
         bands = estimate.bands or match_bands(pair, estimate.span)
-        aligned = align_rows(pair, bands, search.most_row_offset_px)
-        if aligned is None:
+        aligned_pair = align_rows(pair, bands, search.most_row_offset_px)
+        if aligned_pair is None:
             self._rectify(views)
-        elif aligned is not pair:
+        elif aligned_pair is not pair:
             self._row_offset_px = common_row_offset(pair, bands) or 0.0
-        if aligned is not None and low_confidence_share(first := self._match_frame(views)) > MAX_LOW_CONFIDENCE:
+        if aligned_pair is not None and low_confidence_share(first := self._match_frame(views)) > MAX_LOW_CONFIDENCE:
             self._rectify_if_better(views, low_confidence_share(first))
 
     def __call__(self, views: Views) -> DisparityMap:
@@ -55,8 +55,8 @@ class FilmMatcher:
         return disparity
 
     def _match_frame(self, views: Views) -> DisparityMap:
-        rectified = None if self._rectified is None else self._rectified.warp(views)
-        pair = grey_pair(views if rectified is None else rectified.views, self._name)
+        rectified_pair = None if self._rectified_pair is None else self._rectified_pair.warp(views)
+        pair = grey_pair(views if rectified_pair is None else rectified_pair.views, self._name)
         if self._search.skip_identical and np.array_equal(*pair):
             return zero_disparity(pair.left, self._search.fill)
         if self._row_offset_px:
@@ -66,7 +66,7 @@ class FilmMatcher:
             if estimate.bands is not None:  # a frame without matches is ignored
                 self._spans.append(estimate.span)
         disparity = match_in_order(pair, self._span.within(pair.width), self._search.fill, self._match)
-        return disparity if rectified is None else rectified.to_original(disparity)
+        return disparity if rectified_pair is None else rectified_pair.to_original(disparity)
 
     @property
     def _span(self) -> Span:
@@ -75,21 +75,21 @@ class FilmMatcher:
         return whole.widen() if self._search.most == "auto" and whole.high > 0 else whole
 
     def _rectify(self, views: Views) -> None:
-        rectified = rectify(views, quick=False)
-        if not rectified.skipped:
-            self._rectified, self._row_offset_px = rectified, 0.0
-            pair = grey_pair(rectified.views, self._name)
+        rectified_pair = rectify(views, quick=False)
+        if not rectified_pair.skipped:
+            self._rectified_pair, self._row_offset_px = rectified_pair, 0.0
+            pair = grey_pair(rectified_pair.views, self._name)
             self._spans = deque(
-                [find_disparity_range(pair, self._search.least, self._search.most, rectified.verified_px).span],
+                [find_disparity_range(pair, self._search.least, self._search.most, rectified_pair.verified_px).span],
                 maxlen=SEARCHES,
             )
 
     def _rectify_if_better(self, views: Views, before: float) -> None:
         """Rectify by the whole picture, and keep it if the map gets more confident, as `disparity_map` does."""
-        kept = self._spans, self._row_offset_px
+        range_before = self._spans, self._row_offset_px
         try:
             self._rectify(views)
         except RectificationError:
             return
-        if self._rectified is not None and low_confidence_share(self._match_frame(views)) >= before:
-            self._rectified, (self._spans, self._row_offset_px) = None, kept
+        if self._rectified_pair is not None and low_confidence_share(self._match_frame(views)) >= before:
+            self._rectified_pair, (self._spans, self._row_offset_px) = None, range_before

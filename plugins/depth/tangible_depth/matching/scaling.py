@@ -62,24 +62,26 @@ def _factor(span: Span, options: Scaling) -> int:
 def _has_texture(grey: UInt8[np.ndarray, "h w"], y0: int, y1: int) -> bool:
     """Test whether any pixel of rows y0..y1-1 is not flat (`flat_pixels`); one row tells it of nearly every strip."""
     rows = grey[max(0, y0 - FLAT_REACH) : y1 + FLAT_REACH]
-    return any(not np.array_equal(each[:, 1:], each[:, :-1]) for each in (rows[:1], rows))
+    return any(not np.array_equal(part[:, 1:], part[:, :-1]) for part in (rows[:1], rows))
 
 
 def _match(pair: Pair, span: Span, options: Scaling, factor: int) -> DenseMatches:
     rows = strips(pair.left.shape, span)
     if options.skip_flat:
-        textured = [row for row in rows if _has_texture(pair.left, *row)]
-        if len(textured) < len(rows):
-            note(log, f"skipped: {len(rows) - len(textured)} of {len(rows)} strips, which have no texture")
-        rows = textured
+        textured_strips = [row for row in rows if _has_texture(pair.left, *row)]
+        if len(textured_strips) < len(rows):
+            note(log, f"skipped: {len(rows) - len(textured_strips)} of {len(rows)} strips, which have no texture")
+        rows = textured_strips
     preview = options.resolution == "half"
     cost = HALVED if preview and options.cost == "auto" else COSTS.get(options.cost)
     realign_rows = options.realign_rows and not preview
-    found = match(pair, span, rows, Fixed(cost, CHECK_TOLERANCE[options.check], realign_rows, options.effort))
-    by_sum = np.maximum(1 - np.arange(256) / (4 * found.cost.bits), MIN_MATCHED)
-    cleaning = Cleaning(not preview, found.cost.specks, factor, options.effort)
+    matches = match(pair, span, rows, Fixed(cost, CHECK_TOLERANCE[options.check], realign_rows, options.effort))
+    by_sum = np.maximum(1 - np.arange(256) / (4 * matches.cost.bits), MIN_MATCHED)
+    cleaning = Cleaning(not preview, matches.cost.specks, factor, options.effort)
     from_right = None
-    if (mirrored := found.mirrored_right) is not None:  # its matches at its own pixels, cleaned as the default does it
-        dense = complete(*mirrored.matches, by_sum, mirrored.grey, cleaning._replace(effort="balanced"))
+    if (
+        right_view := matches.mirrored_right
+    ) is not None:  # its matches at its own pixels, cleaned as the default does it
+        dense = complete(*right_view.matches, by_sum, right_view.grey, cleaning._replace(effort="balanced"))
         from_right = np.where(dense.confidence > FILLED, dense.disparity, UNKNOWN)[:, ::-1].copy()
-    return complete(*found.left.matches, by_sum, found.left.grey, cleaning, from_right)
+    return complete(*matches.left.matches, by_sum, matches.left.grey, cleaning, from_right)

@@ -35,13 +35,13 @@ def match_by_difference(pair: Pair, span: Span, window_px: int) -> DenseMatches:
     return _match(pair, span, window_px, True, -1e29, lambda scores: exponentials(np.minimum(scores, 0) / scale))
 
 
-def _match(pair: Pair, span: Span, window_px: int, squared: bool | None, least: float, trust: Trust) -> DenseMatches:
+def _match(pair: Pair, span: Span, window_px: int, is_squared: bool | None, least: float, trust: Trust) -> DenseMatches:
     disparity, quality = unknown_matches(pair.left.shape)
     scores = np.full(pair.left.shape, -1e30, np.float32)
 
     def block(y0: int, y1: int) -> None:
         how = (window_px // 2, span, np.float32(least), MIN_VARIANCE)
-        correlate_strip(Lanes(span.lanes), squared, *pair, (y0, y1), *how, disparity, scores)
+        correlate_strip(Lanes(span.lanes), is_squared, *pair, (y0, y1), *how, disparity, scores)
         quality[y0:y1] = np.rint(255 * trust(scores[y0:y1]))
 
     if min(pair.left.shape) >= window_px:

@@ -135,7 +135,7 @@ def sampson_distance(fundamental: np.ndarray, matches: Matches) -> Float64[np.nd
     left, right = map(homogeneous, matches)
     in_left, in_right = product(right, fundamental.T), product(left, fundamental)
     value = np.einsum("ni,ni->n", left, in_left)
-    normals = [np.einsum("ni,ni->n", each[:, :2], each[:, :2]) for each in (in_left, in_right)]
+    normals = [np.einsum("ni,ni->n", line[:, :2], line[:, :2]) for line in (in_left, in_right)]
     return np.abs(value) / np.sqrt(np.maximum(normals[0] + normals[1], np.finfo(np.float64).tiny))
 
 
@@ -163,8 +163,8 @@ def _better_off_plane(
     # A second estimate is made only if the first leaves most of these unexplained.
     matrix = fundamental_from_plane(plane, matches, threshold_px)
     other = None if matrix is None else _with_inliers(matrix, matches, threshold_px)
-    estimates = [each for each in (first, other) if each is not None]
-    return max(estimates, key=lambda each: np.count_nonzero(each.inliers & ~plane.near), default=None)
+    estimates = [estimate for estimate in (first, other) if estimate is not None]
+    return max(estimates, key=lambda estimate: np.count_nonzero(estimate.inliers & ~plane.near), default=None)
 
 
 def fundamental_from_plane(plane: Plane, matches: Matches, threshold_px: float) -> Float64[np.ndarray, "3 3"] | None:
@@ -172,8 +172,8 @@ def fundamental_from_plane(plane: Plane, matches: Matches, threshold_px: float) 
     # Two matches off the plane determine an epipole; a sample of seven would seldom contain two of a small object.
     # Source: Chum, Werner & Matas, Two-View Geometry Estimation Unaffected by a Dominant Plane, CVPR 2005.
     off = matches.select(~plane.near)
-    left, moved = homogeneous(off.left_px), homogeneous(transform(plane.matrix, off.right_px))
-    lines = np.cross(moved, left)
+    left, right = homogeneous(off.left_px), homogeneous(transform(plane.matrix, off.right_px))
+    lines = np.cross(right, left)
     some = np.arange(len(left))[:: 1 + len(left) // MAX_SAMPLED]
     one, other = (some[indices] for indices in np.triu_indices(len(some), 1))
     epipoles = np.cross(lines[one], lines[other])
@@ -181,7 +181,7 @@ def fundamental_from_plane(plane: Plane, matches: Matches, threshold_px: float) 
     epipoles = epipoles[length > 0] / length[length > 0, None]
     if not len(epipoles):
         return None
-    across = [epipoles[:, i, None] * moved[:, 2] - epipoles[:, 2, None] * moved[:, i] for i in (0, 1)]
+    across = [epipoles[:, i, None] * right[:, 2] - epipoles[:, 2, None] * right[:, i] for i in (0, 1)]
     agreeing = np.abs(product(epipoles, lines.T)) <= threshold_px * np.hypot(*across)
     x, y, w = epipoles[np.count_nonzero(agreeing, axis=1).argmax()]
     return product(np.array([[0, -w, y], [w, 0, -x], [-y, x, 0]]), plane.matrix)
@@ -189,21 +189,23 @@ def fundamental_from_plane(plane: Plane, matches: Matches, threshold_px: float) 
 
 def _false_alarms(matches: Matches, inliers: np.ndarray, threshold_px: float) -> float:
     """Return the log number of geometries with as many inliers expected by chance (Moisan & Stival 2004, eq. 8)."""
-    count, kept = len(inliers), int(np.count_nonzero(inliers))
-    if kept < FEWEST:
+    count, inlier_count = len(inliers), int(np.count_nonzero(inliers))
+    if inlier_count < FEWEST:
         return np.inf
-    tries = log(3 * (count - 7)) + _log_choose(count, kept) + _log_choose(kept, 7)
-    return tries + (kept - 7) * _log_chance(matches, threshold_px)
+    tries = log(3 * (count - 7)) + _log_choose(count, inlier_count) + _log_choose(inlier_count, 7)
+    return tries + (inlier_count - 7) * _log_chance(matches, threshold_px)
 
 
 def _parallax_false_alarms(matches: Matches, inliers: np.ndarray, flat: np.ndarray, threshold_px: float) -> float:
     """Return the same for inliers of F off the homography: given a homography, two matches determine F."""
     # Neighbouring matches are wrong together, so those of one cell count once.
-    count, kept = (len(np.unique(matches.left_px[each] // CELL_PX, axis=0)) for each in (~flat, inliers & ~flat))
-    if kept < 3:
+    count, inlier_count = (
+        len(np.unique(matches.left_px[mask] // CELL_PX, axis=0)) for mask in (~flat, inliers & ~flat)
+    )
+    if inlier_count < 3:
         return np.inf
-    tries = log(count) + _log_choose(count, kept) + _log_choose(kept, 2)
-    return tries + (kept - 2) * _log_chance(matches, threshold_px)
+    tries = log(count) + _log_choose(count, inlier_count) + _log_choose(inlier_count, 2)
+    return tries + (inlier_count - 2) * _log_chance(matches, threshold_px)
 
 
 def _log_chance(matches: Matches, threshold_px: float) -> float:
@@ -221,9 +223,9 @@ def _refine(first: Fundamental, matches: Matches, threshold_px: float, fit: Fit)
     """Repeat eight-point on the inliers, weighting each equation by certainty and to a residual in pixels."""
     best = first
     for _ in range(5):
-        trusted = matches.select(best.inliers)
-        doubt = 1 / np.hypot(1, sampson_distance(best.matrix, trusted) / threshold_px)
-        matrix = fit(trusted, doubt * pixel_weights(best.matrix, trusted))
+        inlier_matches = matches.select(best.inliers)
+        doubt = 1 / np.hypot(1, sampson_distance(best.matrix, inlier_matches) / threshold_px)
+        matrix = fit(inlier_matches, doubt * pixel_weights(best.matrix, inlier_matches))
         inliers = sampson_distance(matrix, matches) <= threshold_px
         if np.count_nonzero(inliers) < np.count_nonzero(best.inliers):
             break

@@ -30,22 +30,22 @@ def least_squares(cost: Callable[[np.ndarray], np.ndarray], start: np.ndarray, s
 
     # Nocedal & Wright, Numerical Optimization, 2nd ed., sec. 10.3. Sums run in a fixed order: LAPACK, which SciPy uses,
     # differs in its last bits by processor and from run to run, and these bits decide when this fit stops.
-    values, found, damping = start, cost(start), 1e-2
+    values, residuals, damping = start, cost(start), 1e-2
     for _ in range(_ROUNDS):
         both = [cost(values + step) - cost(values - step) for step in np.diag(_STEP * scale)]
         slopes = np.stack(both, axis=1) / (2 * _STEP)
-        normal, down = np.einsum("ni,nj->ij", slopes, slopes), np.einsum("ni,n->i", slopes, found)
+        normal, down = np.einsum("ni,nj->ij", slopes, slopes), np.einsum("ni,n->i", slopes, residuals)
         for _ in range(_TRIES):
             move = -solve(normal + damping * np.trace(normal) / len(start) * np.eye(len(start)), down[None])[0]
             then = cost(values + scale * move)
-            gain, expected = np.square(found).sum() - np.square(then).sum(), -(down * move).sum()
-            if gain > 0 and gain >= _MIN_GAIN * expected:
+            gain, expected_gain = np.square(residuals).sum() - np.square(then).sum(), -(down * move).sum()
+            if gain > 0 and gain >= _MIN_GAIN * expected_gain:
                 break
             damping *= 4
         else:
             break
-        values, found = values + scale * move, then
-        damping = damping / 4 if gain > expected else damping if 2 * gain > expected else 2 * damping
+        values, residuals = values + scale * move, then
+        damping = damping / 4 if gain > expected_gain else damping if 2 * gain > expected_gain else 2 * damping
         if np.abs(move).max() < _STILL:
             break
     return values

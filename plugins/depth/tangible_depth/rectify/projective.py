@@ -27,8 +27,8 @@ def product(one: np.ndarray, other: np.ndarray) -> Float64[np.ndarray, "n m"]:
 
 def transform(homography: np.ndarray, points_px: np.ndarray) -> Float64[np.ndarray, "n 2"]:
     """Map points (n, 2) by a homography (3, 3)."""
-    moved = product(homogeneous(points_px), homography.T)
-    return moved[:, :2] / moved[:, 2:]
+    points = product(homogeneous(points_px), homography.T)
+    return points[:, :2] / points[:, 2:]
 
 
 def inverse(matrix: np.ndarray) -> Float64[np.ndarray, "3 3"]:
@@ -103,6 +103,6 @@ def is_pure_rotation(plane: Plane, matches: Matches, shape: tuple[int, int]) -> 
         away = transform(product(product(of_left, rotation(*values[2:])), inverse(of_right)), right) - left
         return np.concatenate([robust_pull(away.ravel()), values / spread])
 
-    turned = np.square(cost(least_squares(cost, np.zeros(5), spread))).sum()
-    flat = np.square(robust_pull((transform(plane.matrix, right) - left).ravel())).sum()
-    return bool(turned <= flat + FREE_NUMBERS * log(len(left)))
+    rotation_cost = np.square(cost(least_squares(cost, np.zeros(5), spread))).sum()
+    plane_cost = np.square(robust_pull((transform(plane.matrix, right) - left).ravel())).sum()
+    return bool(rotation_cost <= plane_cost + FREE_NUMBERS * log(len(left)))

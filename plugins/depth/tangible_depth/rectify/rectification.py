@@ -45,8 +45,8 @@ _FLAT_SCENE = (
 
 def estimate_rectified(views: Views, estimate: Callable[[Views], DisparityMap]) -> DisparityMap:
     """Estimate the left view's disparity by a method that searches along rows. Raises: as `rectify` and `estimate`."""
-    rectified = rectify(views)
-    return rectified.to_original(estimate(rectified.views))
+    pair = rectify(views)
+    return pair.to_original(estimate(pair.views))
 
 
 def rectify(
@@ -114,7 +114,7 @@ def _rotate(
         both = np.vstack([matches.left_px, off.left_px]), np.vstack([matches.right_px, right_px])
         matches = unique_matches(Matches(*both))
     rotation, doubt = find_rotation(matches, views.shape, fit)
-    disparity, offsets = rotation.shifts(matches, views.shape)[rotation.trusted].T
+    disparity, offsets = rotation.shifts(matches, views.shape)[rotation.inliers].T
     offsets = np.abs(offsets)
     if (after := float(np.median(offsets))) > before - MIN_GAIN_PX:
         return _keep_pair(views, f"rectifying would not help: median vertical offset {before:.2f} px, then {after:.2f}")
@@ -136,8 +136,10 @@ def _rotate(
         else ""
     )
     note(logger, f"rectified: {why}{lenses}")
-    seen = verified_range(matches.left_px[rotation.trusted], disparity)
-    return warp_pair(views, rotation.homographies, why + lenses, _search_start(disparity), rotation.radials, seen)
+    verified_px = verified_range(matches.left_px[rotation.inliers], disparity)
+    return warp_pair(
+        views, rotation.homographies, why + lenses, _search_start(disparity), rotation.radials, verified_px
+    )
 
 
 def _search_start(disparity_px: Float64[np.ndarray, "n"]) -> int:
@@ -155,8 +157,8 @@ def verified_range(points_px: np.ndarray, disparity_px: np.ndarray) -> tuple[int
     away, nearest = KDTree(points_px).query(points_px, min(NEIGHBOURS + 1, len(points_px)))
     differing = np.abs(disparity_px[nearest] - disparity_px[:, None])
     like = np.count_nonzero(differing <= LIKE_PX + LIKE_SLOPE * away, axis=1) > MIN_LIKE
-    kept = disparity_px[like] if like.any() else disparity_px
-    low, high = np.percentile(kept, [STRAY, 100 - STRAY])
+    disparities_px = disparity_px[like] if like.any() else disparity_px
+    low, high = np.percentile(disparities_px, [STRAY, 100 - STRAY])
     return int(np.floor(low)), int(np.ceil(high))
 
 

@@ -108,17 +108,19 @@ def warp_pair(
     origin, end = np.floor(quad.min(axis=0)), np.ceil(quad.max(axis=0))
     width, height = (int(size) + 1 for size in end - origin)
     left, right = _translate(pair[0], origin), _translate(pair[1], origin - [start_px, 0])
-    rectified = Views(
+    warped_views = Views(
         _warp(views.left, left, radials[0], width, height), _warp(views.right, right, radials[1], width, height)
     )
-    seen = None if verified_px is None else (verified_px[0] - start_px, verified_px[1] - start_px)
-    return RectifiedPair(rectified, left, right, views.shape, float(start_px), False, why, *radials, seen)
+    verified_range_px = None if verified_px is None else (verified_px[0] - start_px, verified_px[1] - start_px)
+    return RectifiedPair(
+        warped_views, left, right, views.shape, float(start_px), False, why, *radials, verified_range_px
+    )
 
 
-def _border(shape: tuple[int, int], curved: bool) -> Float64[np.ndarray, "n 2"]:
+def _border(shape: tuple[int, int], is_curved: bool) -> Float64[np.ndarray, "n 2"]:
     """Return the corners of a picture and, if its sides become curves, points along them."""
     rows, columns = shape
-    steps = np.linspace(0, 1, 33 if curved else 2)
+    steps = np.linspace(0, 1, 33 if is_curved else 2)
     sides = [np.column_stack([steps, np.full(len(steps), end)]) for end in (0, 1)]
     return np.vstack([*sides, *(side[:, ::-1] for side in sides)]) * [columns - 1, rows - 1]
 
@@ -136,10 +138,10 @@ def _warp(picture: np.ndarray, homography: np.ndarray, radial: float, width: int
         if radial:
             straight = transform(inverse(homography), _pixels((height, width)))
             columns, rows = distort(straight, radial, picture.shape[:2]).astype(np.float32).T.reshape(2, height, -1)
-            warped = cv2.remap(raw, columns, rows, cubic, borderMode=edge)
+            result = cv2.remap(raw, columns, rows, cubic, borderMode=edge)
         else:
-            warped = cv2.warpPerspective(raw, homography, (width, height), flags=cubic, borderMode=edge)
-    return np.clip(warped, picture.min(), picture.max(), out=warped)
+            result = cv2.warpPerspective(raw, homography, (width, height), flags=cubic, borderMode=edge)
+    return np.clip(result, picture.min(), picture.max(), out=result)
 
 
 def _sample_nearest(
@@ -147,9 +149,9 @@ def _sample_nearest(
 ) -> Float32[np.ndarray, "n"]:
     columns, rows = np.rint(places_px).astype(np.int64).T
     inside = (columns >= 0) & (columns < values.shape[1]) & (rows >= 0) & (rows < values.shape[0])
-    sampled = np.full(len(places_px), outside, np.float32)
-    sampled[inside] = values[rows[inside], columns[inside]]
-    return sampled
+    samples = np.full(len(places_px), outside, np.float32)
+    samples[inside] = values[rows[inside], columns[inside]]
+    return samples
 
 
 def _pixels(shape: tuple[int, int]) -> Float64[np.ndarray, "n 2"]:

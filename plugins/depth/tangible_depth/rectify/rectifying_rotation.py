@@ -57,7 +57,7 @@ class Rotation(NamedTuple):
 
     homographies: tuple[np.ndarray, np.ndarray]
     radials: tuple[float, float]
-    trusted: Bool[np.ndarray, "n"]
+    inliers: Bool[np.ndarray, "n"]
     plane: Plane | None = None
     """The dominant plane that explains the matches without parallax, so that the cameras' poses stay ambiguous."""
 
@@ -82,21 +82,21 @@ def threshold_px(shape: tuple[int, int]) -> float:
 def find_rotation(matches: Matches, shape: tuple[int, int], fit: Fit) -> tuple[Rotation, str | None]:
     """Find the rectifying rotation of unique matches, and the reason not to trust it. Raises: RectificationError."""
     plain = _fit_rotation(matches, shape, fit)
-    if (count := np.count_nonzero(plain.trusted)) < MIN_TRUSTED:
-        return plain, f"only {count} of {len(plain.trusted)} matches agree, {MIN_TRUSTED} are needed"
-    if (parts := _count_parts(matches.left_px[plain.trusted], shape)) < MIN_PARTS:
+    if (count := np.count_nonzero(plain.inliers)) < MIN_TRUSTED:
+        return plain, f"only {count} of {len(plain.inliers)} matches agree, {MIN_TRUSTED} are needed"
+    if (parts := _count_parts(matches.left_px[plain.inliers], shape)) < MIN_PARTS:
         doubt = f"the matches that agree lie in {parts} of {PARTS**2} parts of the picture, {MIN_PARTS} are needed"
         return plain, doubt
     # Half of the matches determine a rotation that the other half validates, with and without lens distortion.
-    learnt, judges = (matches.select(slice(first, None, 2)) for first in (0, 1))
+    learning, judges = (matches.select(slice(first, None, 2)) for first in (0, 1))
     try:
-        half = _fit_rotation(learnt, shape, fit)
+        half = _fit_rotation(learning, shape, fit)
     except RectificationError:
         return plain, "half of the matches contradict the rest"
-    lenses = _fit_lenses(half, learnt, shape, fit)
-    kept = max(np.mean(rotation.on_rows(judges, shape)) for rotation in (half, lenses))
-    if kept < MIN_KEPT * np.mean(half.trusted):
-        return plain, f"it explains {kept:.0%} of the held-out matches"
+    lenses = _fit_lenses(half, learning, shape, fit)
+    explained = max(np.mean(rotation.on_rows(judges, shape)) for rotation in (half, lenses))
+    if explained < MIN_KEPT * np.mean(half.inliers):
+        return plain, f"it explains {explained:.0%} of the held-out matches"
     near, better = (np.mean(rotation.on_rows(judges, shape, FINE)) for rotation in (half, lenses))
     if better > (1 + MIN_MORE) * near:
         return _fit_lenses(plain, matches, shape, fit), None
@@ -107,7 +107,7 @@ def _fit_rotation(matches: Matches, shape: tuple[int, int], fit: Fit) -> Rotatio
     """Fit a rotation without lens distortion."""
     threshold = threshold_px(shape)
     try:
-        found = robust_fundamental(matches, threshold, fit)
+        fundamental = robust_fundamental(matches, threshold, fit)
     except DegenerateMatches as error:
         plane = best_plane(matches, threshold) if error.reason == "homography" else None
         if plane is None:
@@ -115,38 +115,40 @@ def _fit_rotation(matches: Matches, shape: tuple[int, int], fit: Fit) -> Rotatio
         # The epipole is ambiguous: any that aligns the matches will do, and the nearest distorts least.
         homographies = aligning_homographies(matches.select(plane.near), shape, None)
         return Rotation(homographies, (0.0, 0.0), plane.near, plane)
-    roll = epipole_roll(found.matrix, shape)
-    return Rotation(aligning_homographies(matches.select(found.inliers), shape, roll), (0.0, 0.0), found.inliers)
+    roll = epipole_roll(fundamental.matrix, shape)
+    return Rotation(
+        aligning_homographies(matches.select(fundamental.inliers), shape, roll), (0.0, 0.0), fundamental.inliers
+    )
 
 
 def _fit_lenses(rotation: Rotation, matches: Matches, shape: tuple[int, int], fit: Fit) -> Rotation:
     """Return the rotation with lens distortion; unchanged if no distortion explains more of the matches."""
     # Weak coefficients must explain clearly more than 0; then the one of RADIALS that explains most matches is fitted.
     few = matches.select(slice(None, None, 1 + len(matches.left_px) // MAX_FITTED))
-    none, *weak = (_count_explained(few, each, shape, fit) for each in RADIALS[:3])
+    none, *weak = (_count_explained(few, radial, shape, fit) for radial in RADIALS[:3])
     if max(weak) <= (1 + MIN_MORE) * none:
         return rotation
-    radial = max(RADIALS, key=lambda each: _count_explained(few, each, shape, fit))
-    found = _fit_straight(matches, radial, shape, threshold_px(shape), fit) if radial else None
-    if found is None:
+    radial = max(RADIALS, key=lambda candidate: _count_explained(few, candidate, shape, fit))
+    fundamental = _fit_straight(matches, radial, shape, threshold_px(shape), fit) if radial else None
+    if fundamental is None:
         return rotation
-    roll, trusted = epipole_roll(found.matrix, shape), found.inliers
-    lenses = Rotation(rotation.homographies, (radial, radial), trusted)
+    roll, inliers = epipole_roll(fundamental.matrix, shape), fundamental.inliers
+    lenses = Rotation(rotation.homographies, (radial, radial), inliers)
     for _ in range(3):
-        some = np.flatnonzero(trusted)[:: 1 + np.count_nonzero(trusted) // MAX_FITTED]
-        lenses = Rotation(*aligning_lenses(matches.select(some), shape, roll, lenses.radials), trusted)
+        some = np.flatnonzero(inliers)[:: 1 + np.count_nonzero(inliers) // MAX_FITTED]
+        lenses = Rotation(*aligning_lenses(matches.select(some), shape, roll, lenses.radials), inliers)
         if max(map(abs, lenses.radials)) > MAX_RADIAL:
             return rotation
-        trusted = lenses.on_rows(matches, shape)
-        if np.count_nonzero(trusted) < np.count_nonzero(rotation.trusted) / 2:
+        inliers = lenses.on_rows(matches, shape)
+        if np.count_nonzero(inliers) < np.count_nonzero(rotation.inliers) / 2:
             return rotation
-    return lenses._replace(trusted=trusted)
+    return lenses._replace(inliers=inliers)
 
 
 def _count_explained(matches: Matches, radial: float, shape: tuple[int, int], fit: Fit) -> int:
     """Count the inliers within FINE of the threshold if both lenses distort by `radial`."""
-    found = _fit_straight(matches, radial, shape, FINE * threshold_px(shape), fit)
-    return 0 if found is None else int(np.count_nonzero(found.inliers))
+    fundamental = _fit_straight(matches, radial, shape, FINE * threshold_px(shape), fit)
+    return 0 if fundamental is None else int(np.count_nonzero(fundamental.inliers))
 
 
 def _fit_straight(
@@ -176,7 +178,7 @@ def aligning_homographies(
     if roll is None:
         return _homographies(still, matches, shape)
     free = _fit(matches, shape, roll, _PRIOR)
-    costs = [_disagreement(_pair(found, shape), matches) for found in (free, still)]
+    costs = [_disagreement(_pair(parameters, shape), matches) for parameters in (free, still)]
     enough = costs[1] <= costs[0] + 2 * log(len(matches.left_px))
     return _homographies(still if enough else free, matches, shape)
 
@@ -185,10 +187,10 @@ def aligning_lenses(
     matches: Matches, shape: tuple[int, int], roll: float, radials: tuple[float, float]
 ) -> tuple[tuple[Float64[np.ndarray, "3 3"], Float64[np.ndarray, "3 3"]], tuple[float, float]]:
     """Return homographies of undistorted points, and distortion coefficients, as (left, right); roll is a start."""
-    found = _fit(matches, shape, roll, np.concatenate([_PRIOR, _RADIAL_PRIOR]), radials)
-    left, right = float(found[7]), float(found[8])
+    parameters = _fit(matches, shape, roll, np.concatenate([_PRIOR, _RADIAL_PRIOR]), radials)
+    left, right = float(parameters[7]), float(parameters[8])
     straight = Matches(undistort(matches.left_px, left, shape), undistort(matches.right_px, right, shape))
-    return _homographies(found[:7], straight, shape), (left, right)
+    return _homographies(parameters[:7], straight, shape), (left, right)
 
 
 def _fit(
@@ -214,14 +216,14 @@ def _disagreement(pair: tuple[np.ndarray, np.ndarray], matches: Matches) -> floa
 
 
 def _homographies(
-    found: np.ndarray, matches: Matches, shape: tuple[int, int]
+    parameters: np.ndarray, matches: Matches, shape: tuple[int, int]
 ) -> tuple[Float64[np.ndarray, "3 3"], Float64[np.ndarray, "3 3"]]:
-    left, right = _pair(found, shape)
-    if abs(found[0]) > np.pi / 4:
+    left, right = _pair(parameters, shape)
+    if abs(parameters[0]) > np.pi / 4:
         shift = transform(left, matches.left_px)[:, 0] - transform(right, matches.right_px)[:, 0]
         if np.median(shift) < 0:  # near points shift to the wrong side, as when one camera stood above the other
             # Both rotated by 180 degrees: parameters along the axes change their sign.
-            left, right = _pair(found * [1, -1, 1, -1, -1, 1, -1] + np.pi * np.array([1, 0, 1, 0, 0, 0, 0]), shape)
+            left, right = _pair(parameters * [1, -1, 1, -1, -1, 1, -1] + np.pi * np.array([1, 0, 1, 0, 0, 0, 0]), shape)
     return left, right
 
 

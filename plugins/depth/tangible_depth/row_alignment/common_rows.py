@@ -53,30 +53,30 @@ def corners_correspond(pair: Pair, most_row_offset_px: float = 0.0) -> bool:
 @plain_opencv()
 def _row_offsets(pair: Pair, scale: float) -> Float64[np.ndarray, "n"] | None:
     """Return the row offsets of tracked corners, in pixels; empty if over half got lost; None with too few corners."""
-    small = [cv2.resize(each, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA) for each in pair]
+    small = [cv2.resize(view, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA) for view in pair]
     # Optical flow assumes constant brightness; equal histograms allow another exposure or gamma.
-    small = [cv2.equalizeHist(each) for each in small]
+    small = [cv2.equalizeHist(view) for view in small]
     start = cv2.goodFeaturesToTrack(small[0], POINTS, 0.02, APART_PX)
     if start is None or len(start) < FEWEST:
         return None
     there = track(small[0], small[1], start, start, 3, WINDOW_PX)
     # A corner that is not tracked back to its start was lost or occluded.
-    kept = np.linalg.norm(track(small[1], small[0], there, start, 3, WINDOW_PX) - start, axis=2)[:, 0] < 0.5
-    if np.count_nonzero(kept) < len(start) / 2:
+    returns = np.linalg.norm(track(small[1], small[0], there, start, 3, WINDOW_PX) - start, axis=2)[:, 0] < 0.5
+    if np.count_nonzero(returns) < len(start) / 2:
         return np.empty(0)
-    start, there = ((each[kept] + 0.5) / scale - 0.5 for each in (start, there))
+    start, there = ((points[returns] + 0.5) / scale - 0.5 for points in (start, there))
     row_offsets_px = (there - start if scale >= FINE_ENOUGH else _track_at_full_size(pair, start, there))[:, 0, 1]
     return row_offsets_px[np.isfinite(row_offsets_px)].astype(np.float64)
 
 
 def _track_at_full_size(pair: Pair, start: Points, guess: Points) -> Float[np.ndarray, "inside 1 2"]:
     """Return shifts (x, y) of points tracked again at full size, in a column of patches instead of large pyramids."""
-    at = [np.rint(each[:, 0]).astype(int) - PATCH_PX // 2 for each in (start, guess)]
+    at = [np.rint(points[:, 0]).astype(int) - PATCH_PX // 2 for points in (start, guess)]
     most = np.array(pair.left.shape[::-1]) - PATCH_PX
-    inside = np.all([((each >= 0) & (each <= most)).all(axis=1) for each in at], axis=0)
+    inside = np.all([((corner >= 0) & (corner <= most)).all(axis=1) for corner in at], axis=0)
     if not inside.any():
         return start[:0]
-    at = [each[inside] for each in at]
+    at = [corner[inside] for corner in at]
     patches = [
         cv2.equalizeHist(np.vstack([view[y : y + PATCH_PX, x : x + PATCH_PX] for x, y in corners]))
         for view, corners in zip(pair, at, strict=True)
@@ -129,7 +129,7 @@ def _correlations(
     windows = np.lib.stride_tricks.sliding_window_view(np.concatenate([nothing, right, nothing]), len(left))
     both = np.einsum("sh,h->s", windows, left)
     # Downwards the lowest left rows and the uppermost right rows have no partner; upwards it is the other way round.
-    ours, theirs = (np.cumsum(each**2) for each in (left, right))
+    ours, theirs = (np.cumsum(profile**2) for profile in (left, right))
     steps = np.arange(1, reach + 1)
     down = ours[-1 - steps] * (theirs[-1] - theirs[steps - 1])
     up = theirs[-1 - steps] * (ours[-1] - ours[steps - 1])
@@ -172,10 +172,10 @@ def shift_rows(pair: Pair, row_offset_px: float) -> Pair:
     moved_px = nearest if abs(row_offset_px - nearest) < 0.15 else row_offset_px
     move = np.array([[1, 0, 0], [0, 1, -moved_px]], np.float32)
     with plain_opencv():
-        moved = cv2.warpAffine(
+        right = cv2.warpAffine(
             pair.right, move, pair.right.shape[::-1], flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE
         )
-    return Pair.of(pair.left, moved)
+    return Pair.of(pair.left, right)
 
 
 def common_row_offset(pair: Pair, bands: Bands) -> float | None:
@@ -183,12 +183,12 @@ def common_row_offset(pair: Pair, bands: Bands) -> float | None:
     return _agreed_offset_px(row_votes(pair, bands.rows, bands.disparity, bands.factor), MIN_AGREED, MAX_SPREAD_PX)
 
 
-def rows_correspond(pair: Pair, disparity_px: Float32[np.ndarray, "h w"], matched: Bool[np.ndarray, "h w"]) -> bool:
+def rows_correspond(pair: Pair, disparity_px: Float32[np.ndarray, "h w"], valid_mask: Bool[np.ndarray, "h w"]) -> bool:
     """Test whether `matched` pixels of a map correlate best in their own row: then noise prevented other matches."""
-    rows = np.arange(CELL_PX // 2, len(matched), CELL_PX)
-    sixteenths = np.where(matched[rows], np.rint(16 * disparity_px[rows]), UNKNOWN).astype(np.int16)
+    rows = np.arange(CELL_PX // 2, len(valid_mask), CELL_PX)
+    sixteenths = np.where(valid_mask[rows], np.rint(16 * disparity_px[rows]), UNKNOWN).astype(np.int16)
     with plain_opencv():
-        left, right = (cv2.GaussianBlur(each, (0, 0), SMOOTHING_PX) for each in pair)
+        left, right = (cv2.GaussianBlur(view, (0, 0), SMOOTHING_PX) for view in pair)
     votes = row_votes(Pair.of(left, right), rows, sixteenths)
     row_offset_px = _agreed_offset_px(votes, MIN_AGREED_OF_MAP, MAX_SPREAD_OF_MAP_PX)
     return row_offset_px is not None and abs(row_offset_px) <= MAX_OFF_PX
@@ -196,8 +196,8 @@ def rows_correspond(pair: Pair, disparity_px: Float32[np.ndarray, "h w"], matche
 
 def _agreed_offset_px(votes: Float32[np.ndarray, "votes"], least_agreed: float, most_spread_px: float) -> float | None:
     """Return the median of `row_votes`; None if there are too few, or their deviation is too large."""
-    agreed = votes[np.isfinite(votes)]
-    if agreed.size < max(MIN_VOTES, least_agreed * votes.size):
+    offsets_px = votes[np.isfinite(votes)]
+    if offsets_px.size < max(MIN_VOTES, least_agreed * votes.size):
         return None
-    row_offset_px = float(np.median(agreed))
-    return row_offset_px if np.median(np.abs(agreed - row_offset_px)) <= most_spread_px else None
+    row_offset_px = float(np.median(offsets_px))
+    return row_offset_px if np.median(np.abs(offsets_px - row_offset_px)) <= most_spread_px else None

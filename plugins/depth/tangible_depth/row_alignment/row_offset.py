@@ -46,8 +46,8 @@ def row_votes(
 def row_offset(pair: Pair, rows: Int64[np.ndarray, "n"], disparity: Int16[np.ndarray, "n w"], factor: int = 1) -> float:
     """Return the median of the `row_votes`, in pixels; 0 if there are too few."""
     votes = row_votes(pair, rows, disparity, factor)
-    agreed = votes[np.isfinite(votes)]
-    return float(np.median(agreed)) if agreed.size >= MIN_VOTES else 0.0
+    offsets_px = votes[np.isfinite(votes)]
+    return float(np.median(offsets_px)) if offsets_px.size >= MIN_VOTES else 0.0
 
 
 @njit(**KERNEL)

@@ -38,7 +38,7 @@ class Bands(NamedTuple):
     rows: Int64[np.ndarray, "bands"]
     disparity: Int16[np.ndarray, "bands columns"]
     factor: int
-    known: int
+    match_count: int
     loss: float
 
 
@@ -59,9 +59,9 @@ def match_bands(pair: Pair, span: Span, width: int = FINE_WIDTH) -> Bands:
     disparity = np.empty((COUNT, columns), np.int16)
     sweep_columns(codes[0], codes[1], grey, span.downsample(factor).within(columns), SHARP.penalties, stride, disparity)
     disparity[flat] = UNKNOWN
-    found = int(np.count_nonzero(disparity != UNKNOWN))
-    lost = remove_speckles(disparity, LARGEST_SPECK)
-    return Bands(rows, disparity, factor, found - lost, lost / max(1, found))
+    match_count = int(np.count_nonzero(disparity != UNKNOWN))
+    speckle_count = remove_speckles(disparity, LARGEST_SPECK)
+    return Bands(rows, disparity, factor, match_count - speckle_count, speckle_count / max(1, match_count))
 
 
 @njit(**KERNEL)

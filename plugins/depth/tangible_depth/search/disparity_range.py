@@ -34,7 +34,7 @@ class RangeEstimate(NamedTuple):
 
     span: Span
     bands: Bands
-    swapped: bool
+    is_swapped: bool
     """True if every disparity is negative, which parallel cameras in the right order cannot produce."""
 
 
@@ -64,26 +64,26 @@ def find_range(pair: Pair) -> RangeEstimate | None:
     if fine is None or fine.bands.loss < NOISY:
         return fine or first
     wider = Span(min(first.span.low, fine.span.low), max(first.span.high, fine.span.high))
-    return RangeEstimate(wider, fine.bands, first.swapped and fine.swapped)
+    return RangeEstimate(wider, fine.bands, first.is_swapped and fine.is_swapped)
 
 
 def _revealed_share(wide: Bands, near: Bands | None, reach: int) -> float:
     """Return the share of the matches that lie beyond `reach`, where the bands of a search within it have no match."""
-    revealed = (wide.disparity != UNKNOWN) & (np.abs(wide.disparity * (wide.factor / 16)) > reach)
+    far_matches = (wide.disparity != UNKNOWN) & (np.abs(wide.disparity * (wide.factor / 16)) > reach)
     if near is not None:
-        revealed &= near.disparity == UNKNOWN
-    return float(np.count_nonzero(revealed) / max(1, wide.known))
+        far_matches &= near.disparity == UNKNOWN
+    return float(np.count_nonzero(far_matches) / max(1, wide.match_count))
 
 
 def _range_of_bands(pair: Pair, span: Span, width: int, margin: int) -> RangeEstimate | None:
     bands = match_bands(pair, span.within(pair.width), width)
     factor = bands.factor
-    if bands.known == 0:
+    if bands.match_count == 0:
         return None
-    dropped = int(FRINGE * bands.known)
-    ends = dropped, bands.known - 1 - dropped
-    known = np.partition(bands.disparity[bands.disparity != UNKNOWN], ends)
-    low, high = (known[[*ends]] * (factor / 16)).tolist()
+    fringe = int(FRINGE * bands.match_count)
+    ends = fringe, bands.match_count - 1 - fringe
+    disparities = np.partition(bands.disparity[bands.disparity != UNKNOWN], ends)
+    low, high = (disparities[[*ends]] * (factor / 16)).tolist()
     span = Span(floor(low) - margin * factor, ceil(high) + margin * factor)
     return RangeEstimate(span, bands, low < -2 and high <= 1)
 
@@ -132,7 +132,7 @@ def _estimate_range(pair: Pair, least: int | Auto, verified_px: tuple[int, int] 
     estimate = find_range(pair)
     notes: list[tuple[str, int]] = []
     low, high = (0, reach_px(pair.width)) if estimate is None else estimate.span
-    if estimate is not None and estimate.swapped:
+    if estimate is not None and estimate.is_swapped:
         notes.append((ALL_NEGATIVE, logging.WARNING))
         high = min(high, 0)
     if verified_px is not None:
@@ -152,19 +152,19 @@ def _estimate_range(pair: Pair, least: int | Auto, verified_px: tuple[int, int] 
     return SearchRange(span.within(pair.width), estimate and estimate.bands, tuple(notes))
 
 
-def _range_around_matches(seen: Span, bands: Bands | None) -> Span:
+def _range_around_matches(span: Span, bands: Bands | None) -> Span:
     """Widen the range of verified matches at either end as far as the matches of the bands continue."""
-    step = max(MIN_STEP_PX, seen.size // 8)
-    known = np.empty(0)
+    step = max(MIN_STEP_PX, span.size // 8)
+    disparities = np.empty(0)
     if bands is not None:
-        known = np.sort(bands.disparity[bands.disparity != UNKNOWN]) * (bands.factor / 16)
-    return Span(-_extend_end(-seen.low, -known[::-1], step), _extend_end(seen.high, known, step))
+        disparities = np.sort(bands.disparity[bands.disparity != UNKNOWN]) * (bands.factor / 16)
+    return Span(-_extend_end(-span.low, -disparities[::-1], step), _extend_end(span.high, disparities, step))
 
 
-def _extend_end(last: int, known: np.ndarray, step: int) -> int:
-    """Extend `last` upwards while each step holds MIN_BEYOND of the sorted `known` disparities; then add a step."""
-    least = max(1, int(MIN_BEYOND * known.size))
+def _extend_end(last: int, disparities: np.ndarray, step: int) -> int:
+    """Extend `last` upwards while each step holds MIN_BEYOND of the sorted disparities; then add a step."""
+    least = max(1, int(MIN_BEYOND * disparities.size))
     end = last
-    while np.searchsorted(known, end + step) - np.searchsorted(known, end) >= least:
+    while np.searchsorted(disparities, end + step) - np.searchsorted(disparities, end) >= least:
         end += step
     return end + max(step, MARGIN)

@@ -32,11 +32,11 @@ class Pair(NamedTuple):
 
     def downsample(self, factor: int) -> "Pair":
         """Average factor x factor pixels into one; the edge is repeated to complete the last ones."""
-        return self if factor == 1 else Pair.of(*(_downsample(each, factor) for each in self))
+        return self if factor == 1 else Pair.of(*(_downsample(view, factor) for view in self))
 
     def mirror(self) -> "Pair":
         """Mirror each picture sideways; a disparity d becomes -d."""
-        return Pair.of(*(np.ascontiguousarray(each[:, ::-1]) for each in self))
+        return Pair.of(*(np.ascontiguousarray(view[:, ::-1]) for view in self))
 
     def exchange(self) -> "Pair":
         """Exchange the views and mirror both; a disparity d stays d."""
@@ -51,7 +51,7 @@ def grey_pair(views: Views, method: str) -> Pair:
     if all(picture.dtype == np.uint8 and (picture.ndim == 2 or picture.shape[2] == 3) for picture in pictures):
         return Pair.of(*(_grey8(picture) for picture in pictures))
     greys = [to_grey(picture) for picture in pictures]
-    low = min(0.0, *(float(each.min()) for each in greys))
+    low = min(0.0, *(float(grey.min()) for grey in greys))
     # Views that leave the upper half of the range unused, as 12 bits in a 16-bit file do, are multiplied by a power of
     # two.
     peaks = [float(grey.max()) - low for grey in greys]

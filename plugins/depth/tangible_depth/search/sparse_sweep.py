@@ -83,16 +83,16 @@ def _best_right_sums(lanes, total, stride, right_sums):
     """Find the lowest sum of all matched left pixels for each right pixel."""
     n = width(lanes)
     wall = splat(lanes, uint8(255))
-    seen = wall  # lowest sums so far of the n right pixels that later left pixels can match
+    running_lowest = wall  # lowest sums so far of the n right pixels that later left pixels can match
     m = total.size // n
     for i in range(m):
-        seen = minimum(seen, load(lanes, total, i * n))
+        running_lowest = minimum(running_lowest, load(lanes, total, i * n))
         for j in range(stride):
-            right_sums[i * stride + j] = first_lane(seen)
-            seen = shift_down(seen, wall)
+            right_sums[i * stride + j] = first_lane(running_lowest)
+            running_lowest = shift_down(running_lowest, wall)
     for i in range(m * stride, right_sums.size):
-        right_sums[i] = first_lane(seen)
-        seen = shift_down(seen, wall)
+        right_sums[i] = first_lane(running_lowest)
+        running_lowest = shift_down(running_lowest, wall)
 
 
 @inner()

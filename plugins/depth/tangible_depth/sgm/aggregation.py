@@ -46,20 +46,20 @@ def _decide(lanes, total, path, finals, best, beside, sums, right_sums):
     n = width(lanes)
     w = best.size
     wall = splat(lanes, uint8(255))
-    seen = wall  # lowest sums so far of the n right pixels that later left pixels can match
+    running_lowest = wall  # lowest sums so far of the n right pixels that later left pixels can match
     for x in range(w):
         # Neighbouring sums are read from `finals` at once, while they are in the cache.
         sum_here = saturating_add(load(lanes, total, x * n), load(lanes, path, x * n))
         store(finals, 0, sum_here)
-        seen = minimum(seen, sum_here)
-        right_sums[x] = first_lane(seen)
-        seen = shift_down(seen, wall)
+        running_lowest = minimum(running_lowest, sum_here)
+        right_sums[x] = first_lane(running_lowest)
+        running_lowest = shift_down(running_lowest, wall)
         sums[x] = lowest(sum_here)
         k = best[x] = first_equal(sum_here, sums[x])  # never negative: uint64 spares numba a test
         beside[0, x], beside[1, x] = finals[uint64(max(k - 1, 0))], finals[uint64(min(k + 1, n - 1))]
     for i in range(n - 1):
-        right_sums[w + i] = first_lane(seen)
-        seen = shift_down(seen, wall)
+        right_sums[w + i] = first_lane(running_lowest)
+        running_lowest = shift_down(running_lowest, wall)
 
 
 @inner()
@@ -72,14 +72,14 @@ def equiangular(before, at, after):
 
 
 @inner()
-def _accept(span, best, beside, sums, right_sums, confirmed, most, check_tolerance, disparity):
-    """Accept disparities whose right pixel no left pixel fits better by more than a factor; confirmed: scratch."""
+def _accept(span, best, beside, sums, right_sums, right_best, most, check_tolerance, disparity):
+    """Accept disparities whose right pixel no left pixel fits better by more than a factor; right_best: scratch."""
     # Without branches, as acceptance is unpredictable; scattered values are gathered first, so that the rest is vector
     # code.
     for i in range(most.size):
         right_sums[i] &= most[i]  # columns beyond the picture confirm nothing
     for x in range(best.size):
-        confirmed[x] = right_sums[uint64(x + best[x])]
+        right_best[x] = right_sums[uint64(x + best[x])]
     befores, afters = beside
     last = np.int32(span.high - span.low)
     high = np.int32(span.high)
@@ -89,7 +89,7 @@ def _accept(span, best, beside, sums, right_sums, confirmed, most, check_toleran
         inner = (k > 0) & (k < last)
         # Neighbouring disparities that fit as well make a pixel ambiguous.
         flat = inner & (befores[x] == sums[x]) & (afters[x] == sums[x])
-        fits = (sums[x] < WORST) & (at <= check_tolerance * np.float32(confirmed[x]))
+        fits = (sums[x] < WORST) & (at <= check_tolerance * np.float32(right_best[x]))
         offset = equiangular(before, at, after) if inner else np.float32(0)
         sixteenths = np.int16(np.floor(np.float32(16) * (np.float32(high - k) - offset) + np.float32(0.5)))
         disparity[x] = sixteenths if fits & (not flat) else UNKNOWN
@@ -102,12 +102,12 @@ def shift_codes(row, w, top, codes):
     first = min(max(top, 0), end)
     last = min(max(w + top, first), end)
     for plane in range(row.shape[0]):
-        seen = row[plane, first - top : last - top]
+        visible_codes = row[plane, first - top : last - top]
         for i in range(first):
             codes[plane, i] = row[plane, 0]
         inside = codes[plane, first:last]
         for i in range(inside.size):
-            inside[i] = seen[i]
+            inside[i] = visible_codes[i]
         for i in range(last, end):
             codes[plane, i] = row[plane, w - 1]
 
@@ -119,7 +119,7 @@ def sweep_strip(
     """Write disparities in sixteenths of a pixel (UNKNOWN if rejected) and winners' costs of rows[0]..rows[1]-1."""
     h, w = grey.shape
     y0, y1 = rows
-    total, paths, path_lowest, costs, p2, codes, best, right_sums, beside, confirmed = scratch
+    total, paths, path_lowest, costs, p2, codes, best, right_sums, beside, right_best = scratch
     p1, p2_across = penalties.p1, p2[2]
     # Each path is relative to its own minimum (Hirschmueller, IEEE PAMI 30(2), 2008, eq. 13), so that the winner's sum
     # of four paths is small and saturating bytes are enough: only losers reach 255. Paths start `warm` rows early,
@@ -150,4 +150,4 @@ def sweep_strip(
         step_vertical_path(lanes, left[y], codes, limits, p1, p2_across, path, path, path_lowest, costs[0])
         if y < y1:
             _decide(lanes, total[y - y0], path, finals, best, beside, sums[y], right_sums)
-            _accept(span, best, beside, sums[y], right_sums, confirmed, limits.most, check_tolerance, disparity[y])
+            _accept(span, best, beside, sums[y], right_sums, right_best, limits.most, check_tolerance, disparity[y])

@@ -41,11 +41,11 @@ def _encode(greys: Sequence[np.ndarray], levels: bool = False) -> UInt8[np.ndarr
     h, w = greys[0].shape
     codes = np.empty((h, PLANES * len(greys) + levels, w + -w % BLOCK), np.uint8)
     around = RADIUS, RADIUS, RADIUS, RADIUS + -w % BLOCK
-    padded = [cv2.copyMakeBorder(grey, *around, cv2.BORDER_REPLICATE) for grey in greys]
+    frames = [cv2.copyMakeBorder(grey, *around, cv2.BORDER_REPLICATE) for grey in greys]
 
     def block(y0: int, y1: int) -> None:
-        for i, each in enumerate(padded):
-            code_rows(each, OFFSETS, PLANES * i, y0, y1, codes)
+        for i, frame in enumerate(frames):
+            code_rows(frame, OFFSETS, PLANES * i, y0, y1, codes)
         if levels:
             np.right_shift(greys[0][y0:y1], 1, out=codes[y0:y1, -1, :w])
 
@@ -54,15 +54,15 @@ def _encode(greys: Sequence[np.ndarray], levels: bool = False) -> UInt8[np.ndarr
 
 
 @njit(**KERNEL)
-def code_rows(padded, offsets, first_plane, y0, y1, codes):
+def code_rows(frame, offsets, first_plane, y0, y1, codes):
     """Encode rows y0..y1-1, one neighbour after the other along a whole row, so that each inner loop vectorises."""
     w = codes.shape[2]
     for y in range(y0, y1):
-        centre = padded[y + RADIUS, RADIUS : RADIUS + w]
+        centre = frame[y + RADIUS, RADIUS : RADIUS + w]
         for i in range(BITS):
             plane = codes[y, first_plane + (i >> 3)]
             dy, dx = offsets[i]
-            neighbour = padded[y + dy, dx : dx + w]
+            neighbour = frame[y + dy, dx : dx + w]
             bit = np.uint8(1 << (i & 7))
             if bit == 1:
                 for x in range(w):

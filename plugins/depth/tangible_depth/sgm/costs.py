@@ -75,5 +75,5 @@ HEAVY = Cost(
     specks=NOISY,
 )
 """Two-scale census for heavy noise."""
-COSTS = {each.name: each for each in (SHARP, LEVELS, LIGHT, HEAVY)}
+COSTS = {cost.name: cost for cost in (SHARP, LEVELS, LIGHT, HEAVY)}
 """All costs by name, the option `cost`."""

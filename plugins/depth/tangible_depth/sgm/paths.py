@@ -25,11 +25,11 @@ from ..simd.lanes import (
 
 
 class Limits(NamedTuple):
-    """Bounds on a row's costs: most and least by index of the shifted right row; `barred` is 255 for unused lanes."""
+    """Bounds on a row's costs: most and least by index of the shifted right row; `unused` is 255 for unused lanes."""
 
     most: np.ndarray
     least: np.ndarray
-    barred: np.ndarray
+    unused: np.ndarray
     free: tuple[int, int]
     """Columns first..last - 1, at which only unused lanes have a limit."""
 
@@ -52,10 +52,10 @@ def row_limits(n: int, w: int, span: Span, neutral: np.uint8) -> Limits:
 def step(lanes, before, before_lowest, cost, p1, p2):
     """Step a path by one pixel: stay, move by one disparity or jump to any, then add the pixel's own cost."""
     wall = splat(lanes, uint8(255))
-    moved = saturating_add(minimum(shift_up(before, wall), shift_down(before, wall)), p1)
+    neighbour = saturating_add(minimum(shift_up(before, wall), shift_down(before, wall)), p1)
     least = splat(lanes, before_lowest)
-    jumped = add(least, splat(lanes, p2))
-    best = minimum(minimum(before, moved), jumped)
+    jump = add(least, splat(lanes, p2))
+    best = minimum(minimum(before, neighbour), jump)
     return saturating_add(cost, subtract(best, least))
 
 
@@ -63,7 +63,7 @@ def step(lanes, before, before_lowest, cost, p1, p2):
 def limited_cost(lanes, left, codes, x, limits):
     """Count the differing bits of codes; neutral if a disparity leads out of the right view, 255 for unused lanes."""
     cost = minimum(differences(lanes, left, codes, x), load(lanes, limits.most, x))
-    return maximum(maximum(cost, load(lanes, limits.least, x)), load(lanes, limits.barred, 0))
+    return maximum(maximum(cost, load(lanes, limits.least, x)), load(lanes, limits.unused, 0))
 
 
 @inner()
@@ -81,10 +81,10 @@ def jump_penalties_along(penalties, row, p2):
 
 
 @inner()
-def _step_columns(lanes, left, codes, limits, barred, columns, p1, p2, before, path, path_lowest, costs):
-    """Step the path from the previous row; `costs` keeps this row's costs. limits: None for `barred` alone."""
+def _step_columns(lanes, left, codes, limits, unused, columns, p1, p2, before, path, path_lowest, costs):
+    """Step the path from the previous row; `costs` keeps this row's costs. limits: None for `unused` alone."""
     n = width(lanes)
-    p1, never = splat(lanes, p1), load(lanes, barred, 0)
+    p1, never = splat(lanes, p1), load(lanes, unused, 0)
     for x in range(columns[0], columns[1]):
         if limits is None:  # a compile-time constant: the other branch is removed
             cost = maximum(differences(lanes, left, codes, x), never)
@@ -102,9 +102,9 @@ def step_vertical_path(lanes, left, codes, limits, p1, p2, before, path, path_lo
     """Run `_step_columns` for all columns, with limits only for the columns that have some."""
     first, last = limits.free
     rest = (p1, p2, before, path, path_lowest, costs)
-    _step_columns(lanes, left, codes, limits, limits.barred, (0, first), *rest)
-    _step_columns(lanes, left, codes, None, limits.barred, (first, last), *rest)
-    _step_columns(lanes, left, codes, limits, limits.barred, (last, path_lowest.size), *rest)
+    _step_columns(lanes, left, codes, limits, limits.unused, (0, first), *rest)
+    _step_columns(lanes, left, codes, None, limits.unused, (first, last), *rest)
+    _step_columns(lanes, left, codes, limits, limits.unused, (last, path_lowest.size), *rest)
 
 
 @inner()

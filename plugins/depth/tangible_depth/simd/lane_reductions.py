@@ -105,8 +105,8 @@ def first_equal(typing: Any, vec: Vec, scalar: Any) -> Any:
             hits = b.bitcast(compare("==", value, emit_splat(b, a[1], value.type.count)), mask)
             bit = emit_call(b, f"llvm.cttz.{mask}", mask, [hits, ir.Constant(ir.IntType(1), 1)])
             here = b.add(b.zext(bit, WORD) if mask.width < 64 else bit, ir.Constant(WORD, first))
-            found = b.icmp_unsigned("!=", hits, ir.Constant(mask, 0))
-            index = here if index is None else b.select(found, here, index)
+            has_hit = b.icmp_unsigned("!=", hits, ir.Constant(mask, 0))
+            index = here if index is None else b.select(has_hit, here, index)
         return index
 
     return types.int64(vec, vec.element), emit

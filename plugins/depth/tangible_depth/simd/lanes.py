@@ -49,7 +49,7 @@ class Vec(types.Type):
         """The first lane and the vector of each part, a power of two lanes each, the widest first."""
         # LLVM would process one vector of 80 lanes lane by lane, which takes four times as long as 128.
         widths = [1 << i for i in reversed(range(self.count.bit_length())) if self.count >> i & 1]
-        return [(sum(widths[:i]), Vec(self.element, each)) for i, each in enumerate(widths)]
+        return [(sum(widths[:i]), Vec(self.element, lane_count)) for i, lane_count in enumerate(widths)]
 
     @property
     def llvm(self) -> Any:
@@ -140,7 +140,7 @@ def _one_by_one(vec: Vec, result: Vec, emit: Callable[[Any, Any, Any], Any]) -> 
 
     def emit_all(c: Any, b: Any, sig: Any, a: Any) -> Any:
         parts = zip(split(b, vec, a[0]), result.parts, strict=True)
-        return join(b, result, [emit(b, each, part.llvm) for each, (_, part) in parts])
+        return join(b, result, [emit(b, vector, part.llvm) for vector, (_, part) in parts])
 
     return result(vec), emit_all
 
@@ -170,14 +170,14 @@ def shift_up(typing: Any, vec: Vec, fill: Vec) -> Any:
     """Move lane k - 1 to lane k; lane 0 comes from the second vector."""
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        vectors, moved = split(b, vec, a[0]), []
+        vectors, shifted_parts = split(b, vec, a[0]), []
         before, last = split(b, vec, a[1])[0], 0
         for (_, part), vector in zip(vec.parts, vectors, strict=True):
             n = part.count
-            carried = shuffle(b, before, before, [last] * n)
-            moved.append(shuffle(b, vector, carried, [n, *range(n - 1)]))
+            fill_lane = shuffle(b, before, before, [last] * n)
+            shifted_parts.append(shuffle(b, vector, fill_lane, [n, *range(n - 1)]))
             before, last = vector, n - 1
-        return join(b, vec, moved)
+        return join(b, vec, shifted_parts)
 
     return vec(vec, fill), emit
 
@@ -187,12 +187,12 @@ def shift_down(typing: Any, vec: Vec, fill: Vec) -> Any:
     """Move lane k + 1 to lane k; the last lane comes from the second vector."""
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
-        vectors, moved = split(b, vec, a[0]), []
+        vectors, shifted_parts = split(b, vec, a[0]), []
         after = [*vectors[1:], split(b, vec, a[1])[0]]
         for (_, part), vector, following in zip(vec.parts, vectors, after, strict=True):
             n = part.count
-            moved.append(shuffle(b, vector, shuffle(b, following, following, [0] * n), range(1, n + 1)))
-        return join(b, vec, moved)
+            shifted_parts.append(shuffle(b, vector, shuffle(b, following, following, [0] * n), range(1, n + 1)))
+        return join(b, vec, shifted_parts)
 
     return vec(vec, fill), emit
 
@@ -224,8 +224,8 @@ def store(typing: Any, array: Any, offset: Any, vec: Vec) -> Any:
 
     def emit(c: Any, b: Any, sig: Any, a: Any) -> Any:
         for (first, part), value in zip(vec.parts, split(b, vec, a[2]), strict=True):
-            stored = b.store(value, _address(c, b, sig.args[0], a[0], a[1], first, part))
-            stored.align = vec.element.bitwidth // 8
+            store_instruction = b.store(value, _address(c, b, sig.args[0], a[0], a[1], first, part))
+            store_instruction.align = vec.element.bitwidth // 8
         return c.get_dummy_value()
 
     return types.void(array, types.int64, vec), emit

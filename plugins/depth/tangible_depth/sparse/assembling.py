@@ -36,16 +36,16 @@ def _weighted_mean(
     values: Float32[np.ndarray, "h w"], score: Float32[np.ndarray, "h w"], guide: np.ndarray, reach: float, step: float
 ) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
     """Return the mean of the known values near each pixel, NaN out of their reach, and the sum of their weights."""
-    known = np.isfinite(values)
-    weight = np.where(known, score, 0).astype(np.float32)
+    valid_mask = np.isfinite(values)
+    weight = np.where(valid_mask, score, 0).astype(np.float32)
     with plain_opencv():
         total, weight = (
             cv2.ximgproc.dtFilter(guide, part, reach, 255 * step, mode=cv2.ximgproc.DTF_RF, numIters=3)
-            for part in (np.where(known, values, 0).astype(np.float32) * weight, weight)
+            for part in (np.where(valid_mask, values, 0).astype(np.float32) * weight, weight)
         )
     # A smaller float32 sum of decaying weights is rounding error.
-    reached = weight > 1e-12
-    return np.where(reached, total / np.where(reached, weight, 1), np.float32(np.nan)), weight
+    within_reach = weight > 1e-12
+    return np.where(within_reach, total / np.where(within_reach, weight, 1), np.float32(np.nan)), weight
 
 
 def erase_speckles(disparity_px: Float32[np.ndarray, "h w"], most_px: int = 60) -> Float32[np.ndarray, "h w"]:

@@ -33,6 +33,6 @@ def range_of_pair(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "
     """Return the lowest and highest disparity of a rectified pair: 0 to `most`, or auto: by its corners."""
     if most != "auto":
         return Span(0, most).within(left.shape[1])
-    seen = [corners(harris_response(grey), least_response(0.005), MAX_CORNERS) for grey in (left, right)]
-    matches = corner_matches(left, right, seen[0], seen[1])
+    corner_points = [corners(harris_response(grey), least_response(0.005), MAX_CORNERS) for grey in (left, right)]
+    matches = corner_matches(left, right, corner_points[0], corner_points[1])
     return range_of_shifts(matches.left_px - matches.right_px, left.shape[1])

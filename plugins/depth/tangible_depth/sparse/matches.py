@@ -64,12 +64,12 @@ def sift_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h
     if left_codes is None or right_codes is None or min(len(left_points), len(right_points)) < 2:
         return NO_MATCHES
     distance = _distances(left_codes, right_codes)
-    chosen = _mutual_best(-distance)
+    pairs = _mutual_best(-distance)
     nearest, second = np.partition(distance, 1, axis=1)[:, :2].T
-    chosen = chosen[nearest[chosen[:, 0]] < ratio * second[chosen[:, 0]]]
+    pairs = pairs[nearest[pairs[:, 0]] < ratio * second[pairs[:, 0]]]
     at = [_to_full_size(np.array([point.pt for point in points]), scale) for points in (left_points, right_points)]
-    found = Matches(at[0][chosen[:, 0]], at[1][chosen[:, 1]])
-    return found if scale == 1 else _track_at_full_size(found, full)
+    matches = Matches(at[0][pairs[:, 0]], at[1][pairs[:, 1]])
+    return matches if scale == 1 else _track_at_full_size(matches, full)
 
 
 def _reduce(picture: UInt8[np.ndarray, "h w"], scale: float) -> UInt8[np.ndarray, "small_h small_w"]:
@@ -87,8 +87,8 @@ def _mutual_best(score: np.ndarray) -> Int64[np.ndarray, "n 2"]:
     best = score.argmax(axis=1)
     back = score.argmax(axis=0)
     mine = np.arange(len(best))
-    kept = back[best] == mine
-    return np.column_stack([mine[kept], best[kept]])
+    is_mutual = back[best] == mine
+    return np.column_stack([mine[is_mutual], best[is_mutual]])
 
 
 def corner_matches(
@@ -105,18 +105,18 @@ def corner_matches(
     half = window_px // 2
     patches = normalised_windows(left, left_corners, half)
     score = correlations(patches, normalised_windows(right, right_corners, half))
-    chosen = _mutual_best(score)
-    chosen = chosen[score[chosen[:, 0], chosen[:, 1]] >= least_score]
-    if not len(chosen):
+    pairs = _mutual_best(score)
+    pairs = pairs[score[pairs[:, 0], pairs[:, 1]] >= least_score]
+    if not len(pairs):
         return NO_MATCHES
-    refined = _refine_peaks(patches[chosen[:, 0]], right, right_corners[chosen[:, 1]], half)
-    return Matches(left_corners[chosen[:, 0]].astype(np.float64), refined)
+    right_px = _refine_peaks(patches[pairs[:, 0]], right, right_corners[pairs[:, 1]], half)
+    return Matches(left_corners[pairs[:, 0]].astype(np.float64), right_px)
 
 
 def correlations(left: Float32[np.ndarray, "n k"], right: Float32[np.ndarray, "m k"]) -> Float64[np.ndarray, "n m"]:
     """Return the correlations of normalised windows, each left one with each right one."""
     # Whole numbers of 1 / STEPS, whose sums stay under 2^53: exact in any order.
-    whole, others = (np.rint(STEPS * each.astype(np.float64)) for each in (left, right))
+    whole, others = (np.rint(STEPS * windows.astype(np.float64)) for windows in (left, right))
     return whole @ others.T * STEPS**-2
 
 
@@ -136,13 +136,13 @@ def normalised_windows(
     grey: Float32[np.ndarray, "h w"], points: Int64[np.ndarray, "n 2"], half: int
 ) -> Float32[np.ndarray, "n k"]:
     """Return the windows round some points, minus their mean, divided by their norm; zero for a flat window."""
-    padded = np.pad(grey, half, mode="edge")
+    frame = np.pad(grey, half, mode="edge")
     side = 2 * half + 1
-    windows = np.lib.stride_tricks.sliding_window_view(padded, (side, side))
+    windows = np.lib.stride_tricks.sliding_window_view(frame, (side, side))
     flat = windows[points[:, 1], points[:, 0]].reshape(len(points), side * side)
-    centred = flat - flat.mean(axis=1, keepdims=True)
-    length = np.linalg.norm(centred, axis=1, keepdims=True)
-    return np.where(length > FLAT, centred / np.maximum(length, FLAT), 0).astype(np.float32)
+    deviations = flat - flat.mean(axis=1, keepdims=True)
+    length = np.linalg.norm(deviations, axis=1, keepdims=True)
+    return np.where(length > FLAT, deviations / np.maximum(length, FLAT), 0).astype(np.float32)
 
 
 def _refine_peaks(
@@ -187,9 +187,9 @@ def flow_matches(left: Float32[np.ndarray, "h w"], right: Float32[np.ndarray, "h
     # Cheap, as corners are tracked in small pictures and only refined in the full ones; one that does not come back to
     # within half a small pixel is most likely a wrong match.
     there = track(small[0], small[1], start, start, levels=5)
-    kept = np.linalg.norm(track(small[1], small[0], there, there, levels=5) - start, axis=2).ravel() < 0.5
-    found = Matches(*(_to_full_size(points[kept].reshape(-1, 2), scale) for points in (start, there)))
-    return found if scale == 1 else _track_at_full_size(found, full)
+    returns = np.linalg.norm(track(small[1], small[0], there, there, levels=5) - start, axis=2).ravel() < 0.5
+    matches = Matches(*(_to_full_size(points[returns].reshape(-1, 2), scale) for points in (start, there)))
+    return matches if scale == 1 else _track_at_full_size(matches, full)
 
 
 def track(
@@ -197,10 +197,10 @@ def track(
 ) -> np.ndarray:
     """Track `start` into the second picture from `guess` (pyramidal Lucas-Kanade); NaN for a lost point."""
     flags = cv2.OPTFLOW_USE_INITIAL_FLOW
-    there, seen, _ = cv2.calcOpticalFlowPyrLK(
+    there, status, _ = cv2.calcOpticalFlowPyrLK(
         first, second, start, guess.copy(), winSize=(window_px, window_px), maxLevel=levels, flags=flags
     )
-    return np.where(seen[..., None] > 0, there, np.float32(np.nan))
+    return np.where(status[..., None] > 0, there, np.float32(np.nan))
 
 
 def _track_at_full_size(matches: Matches, pictures: tuple[np.ndarray, np.ndarray]) -> Matches:
@@ -209,8 +209,8 @@ def _track_at_full_size(matches: Matches, pictures: tuple[np.ndarray, np.ndarray
         return matches
     start, guess = (points.astype(np.float32)[:, None] for points in matches)
     there = track(*pictures, start, guess, levels=2)[:, 0]
-    kept = np.isfinite(there).all(axis=1)
-    return Matches(matches.left_px[kept], there[kept].astype(np.float64))
+    finite = np.isfinite(there).all(axis=1)
+    return Matches(matches.left_px[finite], there[finite].astype(np.float64))
 
 
 def _to_full_size(points_px: np.ndarray, scale: float) -> Float64[np.ndarray, "n 2"]:
@@ -224,13 +224,14 @@ def match_off_plane(
     """Match corners that a homography, right to left, does not explain; right points are mapped by it."""
     size = left.shape[::-1]
     with plain_opencv():
-        moved = cv2.warpPerspective(right, homography, size)
-        shown = cv2.warpPerspective(np.ones_like(right), homography, size, flags=cv2.INTER_NEAREST) > 0
-    off = shown & ~_correlating(left, moved)
-    seen = [
-        corners(np.where(off, harris_response(grey), 0), least_response(0.005), MAX_CORNERS) for grey in (left, moved)
+        warped_right = cv2.warpPerspective(right, homography, size)
+        inside = cv2.warpPerspective(np.ones_like(right), homography, size, flags=cv2.INTER_NEAREST) > 0
+    off = inside & ~_correlating(left, warped_right)
+    corner_points = [
+        corners(np.where(off, harris_response(grey), 0), least_response(0.005), MAX_CORNERS)
+        for grey in (left, warped_right)
     ]
-    return corner_matches(left, moved, seen[0], seen[1], WINDOW_PX, MIN_SCORE)
+    return corner_matches(left, warped_right, corner_points[0], corner_points[1], WINDOW_PX, MIN_SCORE)
 
 
 def _correlating(one: Float32[np.ndarray, "h w"], other: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
@@ -238,7 +239,7 @@ def _correlating(one: Float32[np.ndarray, "h w"], other: Float32[np.ndarray, "h 
     side, half = (WINDOW_PX, WINDOW_PX), WINDOW_PX // 2
     with plain_opencv():
         mean, its, both = (
-            cv2.boxFilter(each, cv2.CV_64F, side, borderType=cv2.BORDER_REPLICATE) for each in (one, other, one * other)
+            cv2.boxFilter(grey, cv2.CV_64F, side, borderType=cv2.BORDER_REPLICATE) for grey in (one, other, one * other)
         )
     spread = (both - mean * its) * WINDOW_PX**2
     return spread * inverse_lengths(one, half) * inverse_lengths(other, half) >= MIN_ALIKE

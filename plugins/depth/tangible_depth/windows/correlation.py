@@ -74,7 +74,7 @@ def _add_moments(row, sign, sums, squares):
 
 
 @njit(nogil=True, boundscheck=False, error_model="numpy")
-def _describe(squared, sums, squares, radius, least_variance, first, windows):
+def _describe(is_squared, sums, squares, radius, least_variance, first, windows):
     """Write the window centred on column x, from the sums of columns, to first + x; flat ones get the offset OUT."""
     w = sums.size
     area = (2 * radius + 1) ** 2
@@ -86,16 +86,18 @@ def _describe(squared, sums, squares, radius, least_variance, first, windows):
             continue
         if 0 <= first + x < windows.total.size:
             spread = area * square - total * total
-            textured = spread > least_variance * area * area
+            is_textured = spread > least_variance * area * area
             windows.total[first + x] = total
-            windows.offset[first + x] = OUT if not textured else float32(0) if squared is None else -float32(square)
-            windows.scale[first + x] = 1 / np.sqrt(float32(spread)) if textured else 0
+            windows.offset[first + x] = (
+                OUT if not is_textured else float32(0) if is_squared is None else -float32(square)
+            )
+            windows.scale[first + x] = 1 / np.sqrt(float32(spread)) if is_textured else 0
         total -= sums[x - radius]
         square -= squares[x - radius]
 
 
 @njit(nogil=True, boundscheck=False)
-def _decide(lanes, squared, rows, column, left, right, radius, barred, scores, best, tops, right_tops):
+def _decide(lanes, is_squared, rows, column, left, right, radius, unused, scores, best, tops, right_tops):
     """Compute the scores of a row; the best lane and score of each left pixel, the best score of each right pixel."""
     # The score is the covariance over both deviations, -1..1, or if `squared` minus the sum of squared differences.
     # Sums of products may wrap; the covariance, their difference, fits 32 bits for windows up to 19 x 19.
@@ -105,12 +107,12 @@ def _decide(lanes, squared, rows, column, left, right, radius, barred, scores, b
     window = splat(lanes, int32(0))
     for x in range(min(2 * radius, w)):
         window = add(window, _slide(lanes, rows, x, column))
-    seen = splat(lanes, OUT)
+    running_best = splat(lanes, OUT)
     out = splat(lanes, OUT)
     for x in range(radius, w - radius):
         window = add(window, _slide(lanes, rows, x + radius, column))
-        offset = add(load(lanes, right.offset, x), load(lanes, barred, 0))
-        if squared is None:
+        offset = add(load(lanes, right.offset, x), load(lanes, unused, 0))
+        if is_squared is None:
             products = multiply(splat(lanes, left.total[x]), load(lanes, right.total, x))
             covariance = to_float(subtract(multiply(area, window), products))
             score = multiply(multiply(covariance, load(lanes, right.scale, x)), splat(lanes, left.scale[x]))
@@ -120,13 +122,13 @@ def _decide(lanes, squared, rows, column, left, right, radius, barred, scores, b
         store(scores, x * n, score)
         tops[x] = highest(score)
         best[x] = first_equal(score, tops[x])
-        seen = larger(seen, score)
-        right_tops[x] = first_lane(seen)
-        seen = shift_down(seen, out)
+        running_best = larger(running_best, score)
+        right_tops[x] = first_lane(running_best)
+        running_best = shift_down(running_best, out)
         window = subtract(window, load(lanes, column, (x - radius) * n))
     for i in range(n - 1):
-        right_tops[w - radius + i] = first_lane(seen)
-        seen = shift_down(seen, out)
+        right_tops[w - radius + i] = first_lane(running_best)
+        running_best = shift_down(running_best, out)
 
 
 @njit(nogil=True, boundscheck=False, error_model="numpy")
@@ -148,7 +150,7 @@ def _accept(n, span, least, left, scores, best, tops, right_tops, radius, dispar
 
 
 @njit(nogil=True, boundscheck=False, cache=True)
-def correlate_strip(lanes, squared, left, right, rows, radius, span, least, least_variance, disparity, tops):
+def correlate_strip(lanes, is_squared, left, right, rows, radius, span, least, least_variance, disparity, tops):
     """Write disparities in sixteenths of a pixel (UNKNOWN if rejected) and winners' scores of rows[0]..rows[1]-1."""
     n = width(lanes)
     h, w = left.shape
@@ -162,15 +164,15 @@ def correlate_strip(lanes, squared, left, right, rows, radius, span, least, leas
     )
     on_left = Windows(np.zeros(w, np.int32), np.zeros(w, np.float32), np.full(w, OUT))
     on_right = Windows(np.zeros(w + n - 1, np.int32), np.zeros(w + n - 1, np.float32), np.full(w + n - 1, OUT))
-    barred = np.where(np.arange(n) <= span.high - span.low, float32(0), OUT)
+    unused = np.where(np.arange(n) <= span.high - span.low, float32(0), OUT)
     scores, best, right_tops = np.zeros(w * n, np.float32), np.zeros(w, np.int64), np.full(w + n, OUT)
     for y in range(rows[0] - radius, rows[1] + radius):
-        row, gone = min(max(y, 0), h - 1), y - 2 * radius - 1
+        row, leaving = min(max(y, 0), h - 1), y - 2 * radius - 1
         _set(left[row], right[row], span.high, sliding.left, sliding.right)
         _add_moments(left[row], 1, moments[0], moments[1])
         _add_moments(right[row], 1, moments[2], moments[3])
-        if gone >= rows[0] - radius:
-            row = min(max(gone, 0), h - 1)
+        if leaving >= rows[0] - radius:
+            row = min(max(leaving, 0), h - 1)
             _set(left[row], right[row], span.high, sliding.gone_left, sliding.gone_right)
             _add_moments(left[row], -1, moments[0], moments[1])
             _add_moments(right[row], -1, moments[2], moments[3])
@@ -179,9 +181,20 @@ def correlate_strip(lanes, squared, left, right, rows, radius, span, least, leas
             for x in range(w):
                 _slide(lanes, sliding, x, column)
             continue
-        _describe(squared, moments[0], moments[1], radius, least_variance, 0, on_left)
-        _describe(squared, moments[2], moments[3], radius, least_variance, span.high, on_right)
+        _describe(is_squared, moments[0], moments[1], radius, least_variance, 0, on_left)
+        _describe(is_squared, moments[2], moments[3], radius, least_variance, span.high, on_right)
         _decide(
-            lanes, squared, sliding, column, on_left, on_right, radius, barred, scores, best, tops[centre], right_tops
+            lanes,
+            is_squared,
+            sliding,
+            column,
+            on_left,
+            on_right,
+            radius,
+            unused,
+            scores,
+            best,
+            tops[centre],
+            right_tops,
         )
         _accept(n, span, least, on_left, scores, best, tops[centre], right_tops, radius, disparity[centre])

@@ -37,9 +37,9 @@ def scores(left: Tensor, right: Tensor, low: int, high: int, window_px: int) -> 
     left_mean, left_variance = _statistics(left, window_px)
     right_mean, right_variance = (_shift(part, low, high, 0.0) for part in _statistics(right, window_px))
     products = _mean(left * _shift(right, low, high, 0.0), window_px)
-    textured = (left_variance > FLAT_VARIANCE) & (right_variance > FLAT_VARIANCE)
-    spread = torch.where(textured, left_variance * right_variance, 1.0).sqrt()
-    return torch.where(textured, (products - left_mean * right_mean) / spread, OUTSIDE)
+    is_textured = (left_variance > FLAT_VARIANCE) & (right_variance > FLAT_VARIANCE)
+    spread = torch.where(is_textured, left_variance * right_variance, 1.0).sqrt()
+    return torch.where(is_textured, (products - left_mean * right_mean) / spread, OUTSIDE)
 
 
 def _statistics(padded: Tensor, window_px: int) -> tuple[Tensor, Tensor]:
@@ -68,17 +68,19 @@ def best_shifts(volume: Tensor, low: int) -> BestMatches:
     count, width = volume.shape[1], volume.shape[-1]
     value, at = volume.max(dim=1)
     columns = torch.arange(width, device=volume.device)
-    seen_at = (columns - at - low).clamp(0, width - 1)
-    mutual = value >= _right_best(volume, low).gather(-1, seen_at)
+    right_columns = (columns - at - low).clamp(0, width - 1)
+    mutual = value >= _right_best(volume, low).gather(-1, right_columns)
     before = volume.gather(1, (at - 1).clamp(0)[:, None])[:, 0]
     after = volume.gather(1, (at + 1).clamp(max=count - 1)[:, None])[:, 0]
     # As in a picture that is constant along its rows.
     level = torch.minimum(before, after) >= value - SAME_SCORE if count > 1 else torch.zeros_like(mutual)
     bend = 2 * value - before - after
-    bent = (at > 0) & (at < count - 1) & (before > OUTSIDE) & (after > OUTSIDE) & (bend > 0)
-    move = torch.where(bent, 0.5 * (after - before) / torch.where(bent, bend, 1.0), 0.0)
-    known = mutual & (value > 0) & ~level
-    return BestMatches(torch.where(known, at + low + move, torch.nan), torch.where(known, value.clamp(0, 1), 0.0))
+    has_peak = (at > 0) & (at < count - 1) & (before > OUTSIDE) & (after > OUTSIDE) & (bend > 0)
+    move = torch.where(has_peak, 0.5 * (after - before) / torch.where(has_peak, bend, 1.0), 0.0)
+    valid_mask = mutual & (value > 0) & ~level
+    return BestMatches(
+        torch.where(valid_mask, at + low + move, torch.nan), torch.where(valid_mask, value.clamp(0, 1), 0.0)
+    )
 
 
 def _right_best(volume: Tensor, low: int) -> Tensor:
@@ -128,9 +130,9 @@ def _strips(left: Tensor, count: int, half: int, memory_mb: int) -> Iterator[Str
     row_bytes = 4 * torch.get_num_threads() * batch * width * count * left.element_size()
     rows = max(2 * half + 1, memory_mb * 2**20 // row_bytes - 2 * half)
     for first in range(0, height, rows):
-        wanted = min(rows, height - first)
+        row_count = min(rows, height - first)
         above = max(0, first - half)
-        yield above, min(height, first + wanted + half), first - above, wanted
+        yield above, min(height, first + row_count + half), first - above, row_count
 
 
 def match_pair(

@@ -119,7 +119,7 @@ def test_range_leaves_out_stray_matches_and_has_a_margin_in_pixels_of_the_copy(f
 def test_views_are_exchanged_where_no_disparity_is_above_one(low_px: float, high_px: float, swapped: bool, monkeypatch):
     values = np.rint(16 * np.array([[low_px, high_px]]))
     monkeypatch.setattr(module, "match_bands", lambda *_: bands_in_sixteenths(values))
-    assert module._range_of_bands(WIDE_PAIR, Span(-9, 9), 80, 2).swapped == swapped
+    assert module._range_of_bands(WIDE_PAIR, Span(-9, 9), 80, 2).is_swapped == swapped
 
 
 def find(first: RangeEstimate | None, fine: RangeEstimate | None, monkeypatch: pytest.MonkeyPatch):
@@ -188,7 +188,7 @@ def test_first_copy_counts_as_well_where_the_fine_one_is_noisy(loss: float, span
     fine = RangeEstimate(Span(0, 20), bands_in_sixteenths(np.zeros((1, 1)), loss=loss), True)
     first = RangeEstimate(Span(-10, 9), bands_in_sixteenths(np.zeros((1, 1))), False)
     found, _ = find(first, fine, monkeypatch)
-    assert (found.span, found.swapped, found.bands) == (span, swapped, fine.bands)
+    assert (found.span, found.is_swapped, found.bands) == (span, swapped, fine.bands)
 
 
 def noise(*shape: int) -> Pair:
@@ -233,7 +233,7 @@ def test_loss_is_the_share_of_the_matches_that_are_specks(monkeypatch: pytest.Mo
     assert whole.loss == 0
     monkeypatch.setattr(bands, "remove_speckles", lambda *_: 300)
     found = match_bands(pair, Span(0, 15))
-    assert (found.known, found.loss) == (whole.known - 300, 300 / whole.known)
+    assert (found.match_count, found.loss) == (whole.match_count - 300, 300 / whole.match_count)
 
 
 @pytest.mark.parametrize("factor", [2, 3])

@@ -29,11 +29,11 @@ class GeodesicCandidates(NamedTuple):
 
 def geodesic_candidates(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> GeodesicCandidates:
     """Find the candidates of a map in sixteenths of a pixel; UNKNOWN where no path leads to a known pixel."""
-    known = disparity != UNKNOWN
-    first = known.argmax(axis=1)
+    valid_mask = disparity != UNKNOWN
+    first = valid_mask.argmax(axis=1)
     part = slice(None), slice(int(first.max()) + 1)
     values = np.pad(disparity[part], 1, constant_values=UNKNOWN)
-    lengths = np.pad(np.where(known[part], np.int32(0), NO_WAY), 1, constant_values=NO_WAY)
+    lengths = np.pad(np.where(valid_mask[part], np.int32(0), NO_WAY), 1, constant_values=NO_WAY)
     greys = np.pad(grey[part].astype(np.int32), 1)
     for step in SWEEPS:
         _sweep(greys, first, step, values, lengths)
@@ -77,17 +77,17 @@ NEAREST = np.int32(32767)
 
 
 @inner()
-def project_to_right(row, columns, seen):
+def project_to_right(row, columns, nearest):
     """Write the nearest disparity at each right column x to seen[x + 1], UNKNOWN without one; columns: scratch."""
-    for x in range(seen.size):
-        seen[x] = UNKNOWN
+    for x in range(nearest.size):
+        nearest[x] = UNKNOWN
     # Both ends stand for all columns beyond the picture.
-    seen[0] = seen[-1] = NEAREST
+    nearest[0] = nearest[-1] = NEAREST
     for x in range(row.size):
-        columns[x] = right_column(int32(x), int32(row[x]), int32(seen.size - 1))
+        columns[x] = right_column(int32(x), int32(row[x]), int32(nearest.size - 1))
     for x in range(row.size):
         column = uint32(columns[x])  # never negative, which spares numba a test
-        seen[column] = max(seen[column], row[x])
+        nearest[column] = max(nearest[column], row[x])
 
 
 @inner()
@@ -103,7 +103,7 @@ def known_or_nearest(value):
 
 
 @inner()
-def score_candidate(value, path, farthest, row_farthest, x, seen):
+def score_candidate(value, path, farthest, row_farthest, x, nearest):
     """Score a candidate, the higher the better; UNKNOWN scores lowest. Without branches: they are unpredictable."""
     # Seen at column x - d of the right view, a nearer surface means that the pixel is occluded, which explains the
     # missing match, as a column beyond the picture does; a farther surface contradicts the candidate; an unmatched
@@ -111,11 +111,11 @@ def score_candidate(value, path, farthest, row_farthest, x, seen):
     # pixels lie behind, so farther candidates score higher (Hirschmueller 2008, sec. 2.7.2). The weights come from a
     # logistic regression (which candidate is within 2 px) over four pairs and twelve scenes; near these values the
     # error hardly depends on them.
-    there = int32(seen[right_column(x, value, seen.size - 1)])
-    rated = np.float32(PER_10_PX_NEARER / 160) * np.float32(value - farthest)
-    rated += np.float32(PER_ROOT_OF_GREY) * np.sqrt(np.float32(path))
-    rated += np.float32(FARTHER_OF_ROW) * np.float32(value <= row_farthest + 8)
+    there = int32(nearest[right_column(x, value, nearest.size - 1)])
+    score = np.float32(PER_10_PX_NEARER / 160) * np.float32(value - farthest)
+    score += np.float32(PER_ROOT_OF_GREY) * np.sqrt(np.float32(path))
+    score += np.float32(FARTHER_OF_ROW) * np.float32(value <= row_farthest + 8)
     behind = np.float32(CONTRADICTED) if there < value - SAME_SURFACE else np.float32(0)
     behind = np.float32(UNMATCHED_THERE) if there == UNKNOWN else behind
-    rated += np.float32(BEYOND_PICTURE) if there == NEAREST else behind
-    return np.float32(-1e9) if value == UNKNOWN else rated
+    score += np.float32(BEYOND_PICTURE) if there == NEAREST else behind
+    return np.float32(-1e9) if value == UNKNOWN else score

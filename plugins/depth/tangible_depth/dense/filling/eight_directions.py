@@ -31,29 +31,29 @@ def fill_from_eight_directions(disparity: Int16[np.ndarray, "h w"], grey: UInt8[
 
     def look(ends: Iterable[tuple[int, int]]) -> None:
         for end, step in ends:
-            carried, steps = np.empty((2, HALF, w), np.int16), np.empty((2, HALF, w), np.int32)
-            _scan(disparity, grey, step, carried, steps, values[end], paths[end])
+            values_above, steps = np.empty((2, HALF, w), np.int16), np.empty((2, HALF, w), np.int32)
+            _scan(disparity, grey, step, values_above, steps, values[end], paths[end])
 
     in_turns([(0, 1), (1, -1)], look)
     out = disparity.copy()
-    found = geodesic_candidates(disparity, grey)
+    geodesic = geodesic_candidates(disparity, grey)
 
     def choose(y0: int, y1: int) -> None:
-        seen, columns = np.empty(w + 2, np.int16), np.empty(w, np.int32)
-        _choose_rows(disparity, values, paths, *found, seen, columns, y0, y1, before[y0], out)
+        nearest, columns = np.empty(w + 2, np.int16), np.empty(w, np.int32)
+        _choose_rows(disparity, values, paths, *geodesic, nearest, columns, y0, y1, before[y0], out)
 
     in_blocks(h, choose)
     return fill_from_four_directions(out, grey)  # some have no known pixel in any direction
 
 
 @njit(**KERNEL)
-def _scan(disparity, grey, step, carried, steps, values, paths):
+def _scan(disparity, grey, step, values_above, steps, values, paths):
     """Find the candidates of each UNKNOWN pixel in four directions, scanning from the first (step 1) or last pixel."""
     h, w = disparity.shape
     at = 0 if step > 0 else values.shape[0] - 1
     for i in range(h):
         y = i if step > 0 else h - 1 - i
-        before, now = carried[(i + 1) & 1], carried[i & 1]
+        before, now = values_above[(i + 1) & 1], values_above[i & 1]
         steps_before, steps_now = steps[(i + 1) & 1], steps[i & 1]
         for j in range(w):
             x = j if step > 0 else w - 1 - j
@@ -76,20 +76,20 @@ def _scan(disparity, grey, step, carried, steps, values, paths):
 
 
 @njit(**KERNEL)
-def _choose_rows(disparity, values, paths, first, ends, lengths, seen, columns, y0, y1, at, out):
+def _choose_rows(disparity, values, paths, first, ends, lengths, nearest, columns, y0, y1, at, out):
     """Fill rows y0..y1-1, whose first UNKNOWN pixel is number `at`."""
     w = disparity.shape[1]
     for y in range(y0, y1):
-        project_to_right(disparity[y], columns, seen)
+        project_to_right(disparity[y], columns, nearest)
         for x in range(w):
             if disparity[y, x] == UNKNOWN:
                 geodesic, length = (ends[y, x], lengths[y, x]) if x < first[y] else (UNKNOWN, int32(0))
-                out[y, x] = _choose(values[:, at], paths[:, at], geodesic, length, x, seen)
+                out[y, x] = _choose(values[:, at], paths[:, at], geodesic, length, x, nearest)
                 at += 1
 
 
 @inner()
-def _choose(values, paths, geodesic, length, x, seen):
+def _choose(values, paths, geodesic, length, x, nearest):
     """Return the candidate of the highest score; UNKNOWN without one."""
     row_farthest = min(known_or_nearest(values[0, 0]), known_or_nearest(values[1, 0]))
     farthest = min(row_farthest, known_or_nearest(geodesic))
@@ -97,13 +97,13 @@ def _choose(values, paths, geodesic, length, x, seen):
         farthest = min(farthest, known_or_nearest(values[0, side]), known_or_nearest(values[1, side]))
     best, best_score = (
         geodesic,
-        score_candidate(int32(geodesic), length, farthest, row_farthest, x, seen) + np.float32(GEODESIC_SCORE),
+        score_candidate(int32(geodesic), length, farthest, row_farthest, x, nearest) + np.float32(GEODESIC_SCORE),
     )
     for k in range(2 * HALF):
         end, side = k & 1, k >> 1
         value = int32(values[end, side])
-        rated = score_candidate(value, paths[end, side], farthest, row_farthest, x, seen)
-        rated += np.float32(DIAGONAL_SCORE) * np.float32(side & 1)
-        if value != UNKNOWN and rated > best_score:
-            best, best_score = np.int16(value), rated
+        score = score_candidate(value, paths[end, side], farthest, row_farthest, x, nearest)
+        score += np.float32(DIAGONAL_SCORE) * np.float32(side & 1)
+        if value != UNKNOWN and score > best_score:
+            best, best_score = np.int16(value), score
     return best

@@ -27,20 +27,20 @@ def fill_from_four_directions(
     disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]
 ) -> Int16[np.ndarray, "h w"]:
     """Fill every UNKNOWN pixel of a map in sixteenths of a pixel; a map without any known pixel stays as it is."""
-    filled, left_over = _fill_once(disparity, grey)
-    if 0 < left_over < filled.size:  # some have no known pixel in their row and column
-        filled, _ = _fill_once(filled, grey)
-    return filled
+    dense, left_over = _fill_once(disparity, grey)
+    if 0 < left_over < dense.size:  # some have no known pixel in their row and column
+        dense, _ = _fill_once(dense, grey)
+    return dense
 
 
 def _fill_once(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> tuple[np.ndarray, int]:
     """Return the filled map, and the number of pixels left UNKNOWN."""
     out = np.empty_like(disparity)
-    found = geodesic_candidates(disparity, grey)
+    geodesic = geodesic_candidates(disparity, grey)
     left_over: list[int] = []
 
     def block(y0: int, y1: int) -> None:
-        left_over.append(_fill_rows(disparity, grey, y0, y1, found, _scratch(y1 - y0, disparity.shape[1]), out))
+        left_over.append(_fill_rows(disparity, grey, y0, y1, geodesic, _scratch(y1 - y0, disparity.shape[1]), out))
 
     in_blocks(disparity.shape[0], block)
     return out, sum(left_over)
@@ -62,11 +62,11 @@ def _scratch(rows: int, w: int) -> tuple[np.ndarray, ...]:
 
 
 @njit(**KERNEL)
-def _fill_rows(disparity, grey, y0, y1, found, scratch, out):
+def _fill_rows(disparity, grey, y0, y1, geodesic, scratch, out):
     """Fill rows y0..y1-1; return the number of their pixels left UNKNOWN."""
     w = disparity.shape[1]
     left_over = 0
-    sides, paths, below, below_path, seen, columns, edges, missing = scratch
+    sides, paths, below, below_path, nearest, columns, edges, missing = scratch
     # ABOVE runs downwards with y: its path starts where each column last had a known value, even above this block, so
     # that blocks are independent. BELOW is found for all rows at once by one scan upwards.
     _scan_up(disparity, grey, y0, y1, below, below_path, sides[ABOVE], paths[ABOVE], missing)
@@ -79,7 +79,7 @@ def _fill_rows(disparity, grey, y0, y1, found, scratch, out):
         _copy(below[y - y0], sides[BELOW])
         _copy(below_path[y - y0], paths[BELOW])
         _copy(disparity[y], out[y])
-        project_to_right(disparity[y], columns, seen)
+        project_to_right(disparity[y], columns, nearest)
         for gap in range(0, _edges_of_gaps(disparity[y], edges), 2):
             start, stop = edges[gap], edges[gap + 1]
             if (
@@ -92,15 +92,15 @@ def _fill_rows(disparity, grey, y0, y1, found, scratch, out):
                     out[y, x] = min(disparity[y, start - 1], disparity[y, stop])
             else:
                 _scan_gap(disparity[y], grey[y], start, stop, sides, paths)
-                _offer_geodesic(found, y, start, stop, sides, paths)
+                _offer_geodesic(geodesic, y, start, stop, sides, paths)
                 for x in range(start, stop):
-                    out[y, x] = choose_of_four(sides, paths, x, seen)
+                    out[y, x] = choose_of_four(sides, paths, x, nearest)
                     left_over += out[y, x] == UNKNOWN
     return left_over
 
 
 @inner()
-def choose_of_four(sides, paths, x, seen):
+def choose_of_four(sides, paths, x, nearest):
     """Return the candidate of the highest score; UNKNOWN without one."""
     left, right, above, below = sides[LEFT, x], sides[RIGHT, x], sides[ABOVE, x], sides[BELOW, x]
     geodesic = sides[GEODESIC, x]
@@ -113,10 +113,10 @@ def choose_of_four(sides, paths, x, seen):
     best, best_score = UNKNOWN, np.float32(-1e9)
     for side in range(GEODESIC + (geodesic != UNKNOWN)):
         value = int32(sides[side, x])
-        rated = score_candidate(value, paths[side, x], farthest, row_farthest, x, seen)
-        rated += np.float32(GEODESIC_SCORE) * np.float32(side == GEODESIC)
-        best = np.int16(value) if rated > best_score else best
-        best_score = max(rated, best_score)
+        score = score_candidate(value, paths[side, x], farthest, row_farthest, x, nearest)
+        score += np.float32(GEODESIC_SCORE) * np.float32(side == GEODESIC)
+        best = np.int16(value) if score > best_score else best
+        best_score = max(score, best_score)
     return best
 
 
@@ -141,34 +141,34 @@ def _copy(row, out):
 
 
 @inner()
-def _carry(row, grey, next_grey, carried, path):
+def _carry(row, grey, next_grey, latest, path):
     """Step from one row to the next: a known pixel starts a new path, all other paths go on."""
     for x in range(row.size):
-        known = row[x] != UNKNOWN
-        carried[x] = row[x] if known else carried[x]
-        path[x] = (int32(0) if known else path[x]) + abs(int32(grey[x]) - int32(next_grey[x]))
+        is_valid = row[x] != UNKNOWN
+        latest[x] = row[x] if is_valid else latest[x]
+        path[x] = (int32(0) if is_valid else path[x]) + abs(int32(grey[x]) - int32(next_grey[x]))
 
 
 @inner()
-def _start(carried, path):
+def _start(latest, path):
     """Start a scan with no known value."""
-    for x in range(carried.size):
-        carried[x] = UNKNOWN
+    for x in range(latest.size):
+        latest[x] = UNKNOWN
         path[x] = 0
 
 
 @inner()
-def _scan_up(disparity, grey, y0, y1, below, path, carried, steps, missing):
+def _scan_up(disparity, grey, y0, y1, below, path, latest, steps, missing):
     """Find the nearest known value below each pixel of rows y0..y1-1, and the grey steps on the path."""
     h = disparity.shape[0]
-    _start(carried, steps)
+    _start(latest, steps)
     last = min(_reach(disparity, y1, 1, missing), h - 1)
     for i in range(last - y0 + 1):
         y = last - i
         if y + 1 < h:
-            _carry(disparity[y + 1], grey[y + 1], grey[y], carried, steps)
+            _carry(disparity[y + 1], grey[y + 1], grey[y], latest, steps)
         if y < y1:
-            _copy(carried, below[y - y0])
+            _copy(latest, below[y - y0])
             _copy(steps, path[y - y0])
 
 
@@ -206,9 +206,9 @@ def _scan_gap(row, grey, start, stop, sides, paths):
 
 
 @inner()
-def _offer_geodesic(found, y, start, stop, sides, paths):
+def _offer_geodesic(geodesic, y, start, stop, sides, paths):
     """Offer the geodesic candidates to each pixel of a gap; there are some at the left border only."""
     for x in range(start, stop):
-        at_border = x < found.first[y]
-        sides[GEODESIC, x] = found.values[y, x] if at_border else UNKNOWN
-        paths[GEODESIC, x] = found.lengths[y, x] if at_border else int32(0)
+        at_border = x < geodesic.first[y]
+        sides[GEODESIC, x] = geodesic.values[y, x] if at_border else UNKNOWN
+        paths[GEODESIC, x] = geodesic.lengths[y, x] if at_border else int32(0)

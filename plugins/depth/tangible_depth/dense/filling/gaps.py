@@ -17,13 +17,13 @@ Effort = Literal["balanced", "best"]
 
 
 def fill_gaps(
-    matched: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"], effort: Effort = "balanced"
+    matches: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"], effort: Effort = "balanced"
 ) -> Int16[np.ndarray, "h w"]:
     """Fill every UNKNOWN pixel of a map in sixteenths of a pixel; best: from eight directions, on planes."""
     wait_for(LATE_STEPS)
     if effort == "best":
-        return fit_planes(matched, fill_from_eight_directions(matched, grey), grey)
-    return fill_from_four_directions(matched, grey)
+        return fit_planes(matches, fill_from_eight_directions(matches, grey), grey)
+    return fill_from_four_directions(matches, grey)
 
 
 def made_up_matches() -> tuple[Int16[np.ndarray, "h w"], UInt8[np.ndarray, "h w"]]:

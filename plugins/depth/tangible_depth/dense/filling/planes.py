@@ -27,31 +27,31 @@ FARTHEST_OFF = 32000
 
 
 def fit_planes(
-    disparity: Int16[np.ndarray, "h w"], filled: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]
+    disparity: Int16[np.ndarray, "h w"], dense: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]
 ) -> Int16[np.ndarray, "h w"]:
     """Put each pixel of `filled` that is UNKNOWN in `disparity` onto its surface's plane; sixteenths of a pixel."""
-    out = filled.copy()
+    out = dense.copy()
     samples = slice(EVERY // 2, None, EVERY), slice(EVERY // 2, None, EVERY)
-    known = np.pad(disparity[samples], COUNT // 2, constant_values=UNKNOWN).view(np.uint16)
+    samples_u16 = np.pad(disparity[samples], COUNT // 2, constant_values=UNKNOWN).view(np.uint16)
     levels = np.pad(grey[samples].astype(np.uint16), COUNT // 2)
 
     def block(y0: int, y1: int) -> None:
-        _fit_rows(disparity, filled, grey, known, levels, COLUMNS, Lanes(COUNT), y0, y1, out)
+        _fit_rows(disparity, dense, grey, samples_u16, levels, COLUMNS, Lanes(COUNT), y0, y1, out)
 
-    in_blocks(filled.shape[0], block)
+    in_blocks(dense.shape[0], block)
     return out
 
 
 @njit(**KERNEL)
-def _fit_rows(disparity, filled, grey, known, levels, columns, lanes, y0, y1, out):
+def _fit_rows(disparity, dense, grey, samples, levels, columns, lanes, y0, y1, out):
     for y in range(y0, y1):
-        for x in range(filled.shape[1]):
-            if disparity[y, x] == UNKNOWN and abs(int32(filled[y, x])) < FARTHEST_OFF:
-                out[y, x] = _fit_pixel(known, levels, columns, lanes, y, x, int32(filled[y, x]), int32(grey[y, x]))
+        for x in range(dense.shape[1]):
+            if disparity[y, x] == UNKNOWN and abs(int32(dense[y, x])) < FARTHEST_OFF:
+                out[y, x] = _fit_pixel(samples, levels, columns, lanes, y, x, int32(dense[y, x]), int32(grey[y, x]))
 
 
 @inner()
-def _fit_pixel(known, levels, columns, lanes, y, x, value, level):
+def _fit_pixel(disparities, levels, columns, lanes, y, x, value, level):
     """Return the value at (y, x) of the plane through the samples near it of similar value and grey level."""
     # Positions i (columns, one a lane) and j (rows) are in half samples, odd numbers from the middle; v is the
     # difference of a sample to the value. Every sum fits into 16 bits. A ridge keeps the slopes near 0 where the
@@ -61,8 +61,8 @@ def _fit_pixel(known, levels, columns, lanes, y, x, value, level):
     middle = splat(lanes, uint16(OF_SURFACE))
     n = nj = njj = v = vj = splat(lanes, uint16(0))
     for row in range(COUNT):
-        at = (top + row) * known.shape[1] + left
-        more = add(load(lanes, known, at), least)
+        at = (top + row) * disparities.shape[1] + left
+        more = add(load(lanes, disparities, at), least)
         like = _within(lanes, add(load(lanes, levels, at), darkest), OF_GREY)
         counts = multiply(_within(lanes, more, OF_SURFACE), like)
         more = multiply(counts, subtract(more, middle))

@@ -29,11 +29,7 @@ class Flat(Segmenter, Skippable):
         return "the picture is one flat colour" if is_one_colour(views.left) else None
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Divide the picture by its colours.
-
-        Returns: labels int32 (h, w), confidence float32 (h, w), which is 1.
-        Raises: PictureError as `check_picture`.
-        """
+        """Divide the picture by its colours, with confidence 1. Raises: PictureError as `check_picture`."""
         areas = find_areas(check_picture(picture))
         first, rest = areas.colours[: self.segments], areas.colours[self.segments :]
         nearest = np.abs(rest[:, None] - first).sum(axis=2).argmin(axis=1)

@@ -67,11 +67,7 @@ class Gradient(Dividing):
         return self
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Divide the picture at its edges; one segment if it holds nothing but noise.
-
-        Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1.
-        Raises: PictureError as `check_picture`.
-        """
+        """Divide the picture at its edges; one segment if it holds nothing but noise. Raises: PictureError."""
         from .features.channels import channels
         from .regions.borders import landscape
         from .regions.merging import number_in_reading_order

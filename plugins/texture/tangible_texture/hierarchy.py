@@ -53,11 +53,7 @@ class Hierarchy(Dividing, Hierarchical):
         return tuple(network.path for network in networks_here("borders")[:1])
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Divide the picture along the borders of highest level.
-
-        Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1.
-        Raises: PictureError as `check_picture`.
-        """
+        """Divide the picture along the borders of highest level. Raises: PictureError as `check_picture`."""
         from .regions.basins import MAX_SEGMENTS
         from .regions.merging import number_in_reading_order
 

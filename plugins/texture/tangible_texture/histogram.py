@@ -32,12 +32,7 @@ GreyLevels = Float64[np.ndarray, "n"]
 
 
 class OtsuClasses:
-    """The best divisions of sorted grey levels, `counts` pixels each, into 1..most classes.
-
-    The variance within the classes is least, so that the variance between them is greatest (Otsu, A threshold selection
-    method from gray-level histograms, 1979). It is a sum over classes, so that dynamic programming minimises it for n
-    levels in n^2 steps a class (Fisher, On grouping for maximum homogeneity, 1958).
-    """
+    """The best divisions of sorted grey levels, `counts` pixels each, into 1..most classes."""
 
     def __init__(self, levels: GreyLevels, counts: Int64[np.ndarray, "n"], most: int) -> None:
         spread = _spread_within(levels - np.average(levels, weights=counts), counts)
@@ -46,6 +41,8 @@ class OtsuClasses:
         self.spreads: list[float] = [best[-1]]
         """The sums of squares within the classes, for 1, 2, ... classes."""
         self._last_starts: list[np.ndarray] = []
+        # The variance within the classes is least (Otsu 1979). It is a sum over classes, so that dynamic programming
+        # minimises it for n levels in n^2 steps a class (Fisher, On grouping for maximum homogeneity, 1958).
         for _ in range(1, min(most, len(levels))):
             every = best[:, None] + spread
             self._last_starts.append(every.argmin(axis=0))
@@ -62,12 +59,9 @@ class OtsuClasses:
         return np.array([0, *reversed(starts)])
 
     def clearest(self) -> tuple[int, float]:
-        """Return the number of classes k with the least k^2 W(k) / W(1), or 1 if that is above CLEAR; and the ratio.
-
-        W(k) is the variance within. Evenly spread levels have the ratio 1 for every k, and those of one Gaussian have
-        more than that for every k but 1. Source: Marriott, Practical problems in a method of cluster
-        analysis, 1971.
-        """
+        """Return the number of classes k with the least k^2 W(k) / W(1), or 1 if that is above CLEAR; and the ratio."""
+        # W(k) is the variance within. Evenly spread levels have the ratio 1 for every k, one Gaussian's have more for
+        # every k but 1 (Marriott, Practical problems in a method of cluster analysis, 1971).
         ratios = [(k**2 * (spread + self._rounding) / self.spreads[0], k) for k, spread in enumerate(self.spreads, 1)]
         ratio, classes = min(ratios)
         return (classes, float(ratio)) if ratio <= CLEAR else (1, 1.0)
@@ -109,11 +103,7 @@ class Histogram(Dividing):
     area. 1 leaves every pixel in the class of its own grey level."""
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Divide the picture by grey level; one segment where all of it has the same grey.
-
-        Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1.
-        Raises: PictureError as `check_picture`.
-        """
+        """Divide the picture by grey level; one segment where all of it has the same grey. Raises: PictureError."""
         from .features.channels import channels
         from .regions.merging import number_in_reading_order
         from .regions.small_parts import remove_small_parts

@@ -1,7 +1,4 @@
-"""Local energy in a bank of Gabor filters, and k-means, in torch: on a GPU when there is one.
-
-kornia has no Gabor kernels; its `fft_conv` applies ours. This module imports torch and kornia; import it inside a verb.
-"""
+"""Local energy in a bank of Gabor filters, and k-means, in torch and kornia; import it inside a verb."""
 
 from collections.abc import Sequence
 

@@ -89,10 +89,7 @@ class KorniaGradient(Dividing):
         return torch.where(edges[inner] > 0, steep.clamp(min=self.canny_high), steep)[0, 0].cpu().numpy()
 
     def _markers(self, steep: Float32[np.ndarray, "h w"]) -> tuple[Int32[np.ndarray, "h w"], int]:
-        """Return the basins under canny_low, or under its multiples if none is so flat, and their number.
-
-        If there are too many, the largest are kept; labels are -1 elsewhere.
-        """
+        """Return the largest basins under canny_low, or its multiples if none is so flat, -1 elsewhere; count them."""
         from .regions.basins import MAX_SEGMENTS, STEEPER, basins
 
         levels = [self.canny_low * times for times in STEEPER]

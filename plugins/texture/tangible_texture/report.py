@@ -57,10 +57,7 @@ class Report(Dividing):
     """Memory for the features; where all pixels would exceed it, every second or third is used."""
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Divide the picture by texture, labels in the order of their first pixels.
-
-        Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1. Raises: PictureError as `check_picture`.
-        """
+        """Divide the picture by texture. Raises: PictureError as `check_picture`."""
         from .energies.filter_choice import is_flat, is_one_texture, needed_filters
         from .energies.gabor_bank import bank, octaves, printed_wavelengths
         from .kmeans.labelling import segment_by_kmeans

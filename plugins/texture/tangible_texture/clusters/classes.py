@@ -41,12 +41,7 @@ def classes(
     segments: int | Literal["auto"],
     effort: Literal["fast", "balanced"],
 ) -> tuple[Int32[np.ndarray, "m"], Float64[np.ndarray, "a d"]]:
-    """Classify the cells of the middle windows.
-
-    learned: the values of these cells that `learned_values` makes, which count as much as the features in joining.
-
-    Returns: the class of each cell, and the axes along which classes differ, none for a single class.
-    """
+    """Classify the cells of the middle windows; return each cell's class, and the axes along which classes differ."""
     spent, (planes, shape) = EFFORTS[effort], features.middle
     most = largest_number(planes.shape[1]) if segments == "auto" else segments
     rotated = combine_planes(principal_axes(features.wide.planes, PRINCIPAL_AXES, HALF_WHITE), features.wide.planes)
@@ -54,6 +49,7 @@ def classes(
     rows, columns = (((np.arange(n) + 0.5) * side / n).astype(int) for side, n in zip(wide.shape, shape, strict=True))
     labels = wide[np.ix_(rows, columns)].ravel()
     power = MANY_POWER if segments == "auto" or segments >= MANY else FEW_POWER
+    # What `learned_values` makes of these cells counts as much as the features in joining.
     sets = [planes] if learned is None else [planes, learned.planes]
     steps = join_clusters(sets, labels, shape, most + spent.last, power)
     labels = (

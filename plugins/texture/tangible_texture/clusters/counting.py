@@ -31,10 +31,7 @@ class Weights(NamedTuple):
 
 
 TWO_TEXTURES: Weights = Weights(-14.93, 3.33, 2.62, 1.19)
-"""Fitted to mosaics of half of the given textures and of built-in ones: `python -m benchmarks.texture_number`.
-
-They maximise the mean log-likelihood of the true numbers, less a hundredth of the sum of the weights' squares.
-"""
+"""Fitted to mosaics, half of the given and half of built-in textures: `python -m benchmarks.texture_number`."""
 
 
 def largest_number(cells: int) -> int:
@@ -43,11 +40,7 @@ def largest_number(cells: int) -> int:
 
 
 def likeliest_division(steps: Iterable[Step]) -> Int32[np.ndarray, "n"]:
-    """Return the labels of the division whose number of clusters is the likeliest.
-
-    Clusters are joined as long as the two are one texture: the number is n if every joining before was of one texture,
-    and the next is of two. Leaves a note with the number and its probability.
-    """
+    """Return the labels of the division whose number of clusters is the likeliest, and leave a note about it."""
     every = list(steps)
     likelihoods = number_likelihoods(every)
     total = sum(map(exp, likelihoods))
@@ -63,6 +56,7 @@ def likeliest_division(steps: Iterable[Step]) -> Int32[np.ndarray, "n"]:
 def number_likelihoods(steps: Iterable[Step], weights: Weights = TWO_TEXTURES) -> list[float]:
     """Return the logarithm of the probability that joining ends at each step, up to a constant."""
     joined, found = 0.0, list[float]()
+    # The number is n if every joining before was of one texture, and the next is of two.
     for step in steps:
         odds = _log_odds(step, weights)
         found.append(joined - _softplus(-odds))

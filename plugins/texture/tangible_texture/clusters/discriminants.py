@@ -1,8 +1,4 @@
-"""Linear discriminants: the features that separate classes, and the evidence of a cell for each class.
-
-Source: Fisher's discriminant for several classes (Rao, J. Royal Stat. Soc. B 10, 1948); the scatter within classes is
-shrunk towards a multiple of the identity and a share of the total scatter.
-"""
+"""Linear discriminants: the features that separate classes, and the evidence of a cell for each class."""
 
 from typing import NamedTuple
 
@@ -36,6 +32,8 @@ def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k
     total = scatter_matrix(planes, weights.sum(axis=0)) / counts.sum() - np.outer(centre, centre)
     between = np.einsum("kd,ke->de", shares[:, None] * (means - centre), means - centre)
     within = total - between
+    # Fisher's discriminant for several classes (Rao, J. Royal Stat. Soc. B 10, 1948), its scatter within classes shrunk
+    # towards a multiple of the identity and a share of the total scatter.
     shrunk = min(1.0, max(SHRUNK, CELLS / planes.shape[1]))
     ridge = shrunk * max(np.trace(within) / len(within), 1e-6)
     return Scatters(means, shares, within + shrunk * total + ridge * np.eye(len(within)))

@@ -12,12 +12,9 @@ ROUNDS = 8
 
 
 def divide(planes: Float32[np.ndarray, "d n"], most: int) -> Int32[np.ndarray, "n"]:
-    """Halve the widest cluster across its longest axis until there are `most`, then run Lloyd's rounds.
-
-    Nothing depends on the order of the cells, nor on a seed. There are fewer clusters where nothing is left to halve.
-    Returns: labels 0..k-1.
-    Source: Su & Dy, A deterministic method for initializing k-means clustering, ICTAI 2004 (PCA-Part).
-    """
+    """Halve the widest cluster across its longest axis until there are `most`, then run Lloyd's rounds."""
+    # Nothing depends on the order of the cells, nor on a seed. Source: Su & Dy, A deterministic method for initializing
+    # k-means clustering, ICTAI 2004 (PCA-Part).
     parts = [np.arange(planes.shape[1])]
     halves = [_halve_cluster(planes)]
     while len(parts) < most:

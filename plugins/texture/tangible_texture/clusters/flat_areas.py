@@ -28,10 +28,7 @@ DEVIATIONS = 6
 
 
 def flat_areas(picture: np.ndarray, colour: bool, most: int) -> Int32[np.ndarray, "h w"] | None:
-    """Return the tone of each pixel of a picture of up to `most` tones, flat but for the noise of a sensor; else None.
-
-    Raises: PictureError as `check_picture`.
-    """
+    """Return the tone of each pixel of up to `most` flat tones, but for a sensor's noise; else None."""
     paint = channels(picture, colour)
     smooth = gaussian(paint, SMOOTH_PX)
     noise = float(np.median(np.abs(paint - smooth))) / 0.6745

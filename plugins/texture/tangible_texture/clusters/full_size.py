@@ -21,10 +21,7 @@ SURE = 1e-6
 def fine_memberships(
     wide: Window, labels: Int32[np.ndarray, "m"], narrow: Window
 ) -> Float32[np.ndarray, "k rows columns"]:
-    """Compute the membership of each narrow cell in each class, from its neighbours and from windows of both widths.
-
-    Parameters: labels of the wide cells. Both windows have the same features.
-    """
+    """Compute the membership of each narrow cell in each class of wide cells, from both windows and its neighbours."""
     own = one_hot(labels, int(labels.max()) + 1)
     towards = resize_planes(evidence(wide.planes, scatters(wide.planes, own)), wide.shape, narrow.shape)
     soft = resize_planes(own, wide.shape, narrow.shape)
@@ -44,12 +41,9 @@ def resize_planes(planes: Float32[np.ndarray, "k m"], shape: tuple[int, int], to
 def pixel_labels(
     memberships: Float32[np.ndarray, "k rows columns"], cell_px: int, shape: tuple[int, int]
 ) -> tuple[Int32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
-    """Return the strongest class of each pixel, and its confidence 1 - q / p.
-
-    p and q are the memberships of that class and of the second strongest.
-    Logarithms of memberships are interpolated between the centres of cells.
-    """
+    """Return the strongest class of each pixel, and 1 - q / p of its membership p and the second strongest q."""
     labels, confidence = np.empty(shape, np.int32), np.empty(shape, np.float32)
+    # Logarithms are interpolated between the centres of cells.
     logs = logarithms(np.maximum(memberships, np.float32(SURE)))
     in_blocks(shape[0], lambda start, stop: _fill(logs, cell_px, start, stop, labels, confidence))
     return labels, confidence

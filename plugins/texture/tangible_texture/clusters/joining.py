@@ -32,13 +32,11 @@ class Pairs(NamedTuple):
     """The squared Mahalanobis distances between means, each in the mean scatter of the two clusters."""
 
     def joining_costs(self, power: float) -> Float64[np.ndarray, "k k"]:
-        """Compute D (m k / n)^power for each pair once, the higher label first; infinite elsewhere.
-
-        D is the distance; m = a b / (a + b) combines the sizes, of k clusters and n cells.
-        """
+        """Compute D (m k / n)^power of each pair of k clusters, the higher label first; infinite elsewhere; n cells."""
         count = len(self.sizes)
         higher, lower = np.tril_indices(count, -1)
         a, b = self.sizes[higher], self.sizes[lower]
+        # m = a b / (a + b) combines the sizes; D is the distance.
         shares = a * b / (a + b) * count / self.sizes.sum()
         powers = [share**power for share in shares.tolist()]  # NumPy's of an array have other last bits with AVX-512
         costs = np.full((count, count), np.inf)
@@ -53,10 +51,7 @@ class Pairs(NamedTuple):
         labels: Int32[np.ndarray, "n"],
         shape: tuple[int, int],
     ) -> "Pairs":
-        """Join two clusters; the ridge is kept, and so are distances between all others.
-
-        labels: those after the joining, where the two are called `lower`, and higher labels are one less.
-        """
+        """Join two clusters, whose `labels` are joined already; the ridge and the distances between all others stay."""
         inside = labels == lower
         shares = smooth_memberships(inside[None].astype(np.float32), shape, INSIDE_CELLS)[0, inside]
         size = np.array([shares.size])
@@ -121,10 +116,7 @@ def _fill_distances(means, scatters, ridge, one, count, distances):
 AXES = 20
 """The largest number of discriminants."""
 FEW_POWER, MANY_POWER, MANY = 0.4, 0.8, 8
-"""The exponent of the sizes of two clusters in the cost of joining them, and that for MANY segments or more.
-
-It is 1 in Ward's method. Few regions may differ in size; of many, few are much larger than the others.
-"""
+"""Exponents of two clusters' sizes in their joining's cost, 1 in Ward's method: the few may differ in size."""
 
 
 class Step(NamedTuple):
@@ -147,16 +139,13 @@ def join_clusters(
     renewed: int,
     power: float = FEW_POWER,
 ) -> Iterator[Step]:
-    """Yield divisions into ever fewer clusters, down to one: one less at least in each, one at once if none differ.
-
-    sets: sets of features of the same cells, of which each has its own discriminants; what a joining costs is the
-    geometric mean of its costs in each set. renewed: from this number of clusters down, discriminants are recomputed
-    before each joining, and cells settle with their neighbours after it. Before that, the discriminants of the first
-    division are used. power: the exponent of sizes.
-    """
+    """Yield divisions into ever fewer clusters, down to one: one less at least in each, one at once if none differ."""
     together, projected = _discriminants(sets, labels, interior_shares(labels, shape))
     labels = refit_labels(together, labels, shape, 2, 1) if projected else labels
     pairs: list[Pairs] = []
+    # From `renewed` clusters down, discriminants are computed again before each joining, and cells settle with their
+    # neighbours after it; before, those of the first division are used. Each set of features has its own discriminants;
+    # a joining costs the geometric mean of its costs in each.
     while (count := int(labels.max()) + 1) > 1:
         if not pairs or count <= renewed:
             shares = interior_shares(labels, shape)

@@ -19,8 +19,7 @@ EVIDENCE = 0.5
 BLOCK = 1024
 """The number of cells processed while they are in the cache."""
 LEAST = 1e-7
-"""The least membership besides 0, as a share of the largest one of the cell: what is made of smaller ones has
-denormal numbers, with which a processor takes many times as long."""
+"""The least membership besides 0, as a share of the cell's largest: denormal numbers are slow."""
 INSIDE_CELLS = 2.0
 """The standard deviation, in cells, of the window in which a cell's class must prevail for its full weight."""
 
@@ -49,11 +48,8 @@ def mean_field(
     sigma: float,
     rounds: int,
 ) -> Float32[np.ndarray, "k n"]:
-    """Update each cell's memberships by its evidence and PULL times the mean of those around it, in rounds.
-
-    Source: the mean-field approximation of a Potts model with Gaussian neighbourhoods (Krahenbuhl & Koltun,
-    Efficient inference in fully connected CRFs, NIPS 2011).
-    """
+    """Update each cell's memberships by its evidence and PULL times the mean of those around it, in rounds."""
+    # The mean-field approximation of a Potts model with Gaussian neighbourhoods (Krahenbuhl & Koltun, NIPS 2011).
     for _ in range(rounds):
         memberships = _softmax(evidence, smooth_memberships(memberships, shape, sigma), np.float32(PULL))
     return memberships
@@ -68,10 +64,7 @@ def interior_shares(labels: Int32[np.ndarray, "n"], shape: tuple[int, int]) -> F
 def refit_labels(
     planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int], rounds: int, votes: int
 ) -> Int32[np.ndarray, "n"]:
-    """Refine labels in rounds: fit discriminants to cells well inside their classes, then settle with neighbours.
-
-    Classes may vanish; labels stay 0..k-1.
-    """
+    """Refine labels in rounds: fit discriminants to inner cells, then settle with neighbours; classes may vanish."""
     memberships = one_hot(labels, int(labels.max()) + 1)
     for _ in range(rounds):
         inside = memberships * smooth_memberships(memberships, shape, INSIDE_CELLS) ** 2  # borders are mixtures

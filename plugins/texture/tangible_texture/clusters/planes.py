@@ -1,7 +1,4 @@
-"""Products of planes: features and memberships as (d, n), one row a plane, one column a cell. Compiled by numba.
-
-They are small and interleaved with our own threads: a BLAS that wakes threads for them costs more than it saves.
-"""
+"""Products of planes: features and memberships as (d, n), one row a plane, one column a cell. Compiled by numba."""
 
 from collections.abc import Iterable
 
@@ -30,10 +27,9 @@ def combine_planes(weights, planes):
 
 @njit(cache=True, nogil=True)
 def add_planes(weights, planes, result):
-    """Add weights (k, d) times planes (d, n) to k planes, in place: four planes to two at a time.
-
-    A value of the result is the same however many are added at a time.
-    """
+    """Add weights (k, d) times planes (d, n) to k planes, in place: four planes to two at a time."""
+    # Planes are small and interleaved with our own threads: a BLAS that wakes threads for them costs more than it
+    # saves. A value of the result is the same however many are added at a time.
     (count, size), columns = weights.shape, planes.shape[1]
     for start in range(0, columns, BLOCK):
         stop = min(start + BLOCK, columns)
@@ -139,10 +135,8 @@ def _mirror_lower_triangle(result):
 
 @njit(cache=True, nogil=True)
 def _dot(one, other, lanes):
-    """Sum the products of two rows of float32 in LANES partial sums.
-
-    The order of the sums is that of the source, however many values the processor adds at once.
-    """
+    """Sum the products of two rows of float32 in LANES partial sums."""
+    # The order of the sums is that of the source, however many values the processor adds at once.
     whole = one.size // (8 * LANES) * (8 * LANES)
     lanes[:] = 0
     for start in range(0, whole, 8 * LANES):  # eight at a time: an eighth of the writes

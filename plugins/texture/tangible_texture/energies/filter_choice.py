@@ -27,11 +27,9 @@ def is_flat(grey: Float32[np.ndarray, "h w"]) -> bool:
 def is_one_texture(
     amplitudes: Float32[np.ndarray, "d rows columns"], reach_cells: float, grey: Float32[np.ndarray, "h w"]
 ) -> bool:
-    """Return True if features spread by less than SAME, or the picture's detail is too fine for them.
-
-    Both are measured away from the frame, where mirrored waves may not continue evenly: a picture is too fine if its
-    features see hardly anything but the fold at its frame. reach_cells: standard deviation of the features' windows.
-    """
+    """Return True if features spread by less than SAME, or the picture's detail is too fine for them."""
+    # Measured away from the frame, where mirrored waves may not continue evenly: a picture is too fine if its features
+    # see hardly anything but the fold at its frame.
     frame = [min(round(4 * reach_cells), side // 4) for side in amplitudes.shape[1:]]
     inside = amplitudes[:, frame[0] : -frame[0] or None, frame[1] : -frame[1] or None]
     if inside.var(axis=(1, 2)).sum() <= SAME**2 * np.square(inside).mean(axis=(1, 2)).sum():
@@ -54,10 +52,7 @@ PAD_PX = 32
 def needed_filters(
     grey: Float32[np.ndarray, "h w"], filters: Sequence[Gabor], skip_weak: bool, skip_octaves: bool
 ) -> list[Gabor]:
-    """Drop filters of wavelengths absent from the picture, and weak filters, each if requested.
-
-    The number of dropped filters is reported. Where the picture has no energy at all, every filter stays.
-    """
+    """Drop filters of wavelengths absent from the picture, and weak filters, each if requested, with a note."""
     kept = filters_within_bandwidth(grey, filters) if skip_octaves else list(filters)
     if skip_weak:
         strong = are_strongest(mean_energies(spectrum_of(grey, PAD_PX), kept))
@@ -69,11 +64,9 @@ def needed_filters(
 
 
 def are_strongest(energies: Float64[np.ndarray, "filters"], share: float = ENOUGH) -> Bool[np.ndarray, "filters"]:
-    """Return a mask of the fewest filters that together hold this share of the energy; all, if there is none.
-
-    The energies of filters that hardly overlap add up, and their share is R^2, the share of the picture's variance that
-    the filters reproduce: Jain & Farrokhnia, Pattern Recognition 24 (1991), sec. 3.2.
-    """
+    """Return a mask of the fewest filters that together hold this share of the energy; all, if there is none."""
+    # The energies of filters that hardly overlap add up, and their share is R^2, the share of the picture's variance
+    # that the filters reproduce: Jain & Farrokhnia, Pattern Recognition 24 (1991), sec. 3.2.
     order = np.argsort(-energies, kind="stable")
     before = np.cumsum(energies[order]) - energies[order]
     kept = np.empty(energies.shape, np.bool_)
@@ -84,14 +77,12 @@ def are_strongest(energies: Float64[np.ndarray, "filters"], share: float = ENOUG
 def filters_within_bandwidth(
     grey: Float32[np.ndarray, "h w"], filters: Sequence[Gabor], least: float = NOTHING
 ) -> list[Gabor]:
-    """Drop filters whose wavelengths are too short for the picture; keep all if none would be left.
-
-    A wavelength is too short if waves of up to sqrt 2 times its length, where its octave begins, and all shorter ones
-    together hold less than the share `least` of the picture's variance. A cosine transform has no seam at the frame.
-    """
+    """Drop filters whose wavelengths are too short for the picture; keep all if none would be left."""
     down, right = (np.arange(side, dtype=np.float32) / (2 * side) for side in grey.shape)
     squared = down[:, None] ** 2 + right**2
     power = np.square(fft.dctn(standardise(grey), norm="ortho", workers=thread_count()))
+    # A wavelength is too short if waves of up to sqrt 2 times its length, where its octave begins, and all shorter ones
+    # together hold less than `least` of the variance. A cosine transform has no seam at the frame.
     shares = {
         wavelength: power[squared > 0.5 / wavelength**2].sum(dtype=np.float64) / grey.size
         for wavelength in {each.wavelength_px for each in filters}

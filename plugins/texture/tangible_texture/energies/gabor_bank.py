@@ -1,7 +1,4 @@
-"""Gabor filters: the formula, its bandwidth, and banks of wavelengths and orientations.
-
-Source: Jain & Farrokhnia, Unsupervised texture segmentation using Gabor filters, Pattern Recognition 24 (1991).
-"""
+"""Gabor filters and their banks (Jain & Farrokhnia, Pattern Recognition 24, 1991)."""
 
 from collections.abc import Sequence
 from math import ceil, cos, floor, log, log2, pi, sin, sqrt, tan
@@ -68,11 +65,8 @@ def printed_wavelengths(width_px: int) -> tuple[float, ...]:
 def bank(
     wavelengths_px: Sequence[float], orientations: int = 6, bandwidth: float = 1.0, gamma: float | None = None
 ) -> list[Gabor]:
-    """Return filters of every wavelength in every orientation 0, 180 / n, ... degrees, sorted by wavelength.
-
-    gamma: width along over width across the wave; None: the value at which neighbouring orientations meet at half
-    height, 1 at most (for 6 orientations and one octave 0.80).
-    """
+    """Return filters of every wavelength in every orientation 0, 180 / n, ... degrees, sorted by wavelength."""
+    # Neighbouring orientations meet at half height: 0.80 for 6 orientations and one octave.
     if gamma is None:
         ratio = (2**bandwidth - 1) / (2**bandwidth + 1)
         gamma = min(1.0, tan(pi / (2 * orientations)) / ratio) if orientations > 1 else 1.0
@@ -84,12 +78,10 @@ def bank(
 
 
 def kernel(gabor: Gabor, reach: float = 3.5) -> Complex128[np.ndarray, "n n"]:
-    """Sample the filter in space to `reach` sigma on each side: its real part is even, its imaginary part odd.
-
-    exp(-(x'^2 + gamma^2 y'^2) / (2 sigma^2)) exp(2 pi i x' / lambda), x' = x cos t + y sin t, y' = -x sin t + y cos t;
-    scaled so that a wave of its own frequency and amplitude a gives a response of magnitude a, minus the multiple of
-    the Gaussian that makes the response to flat grey zero.
-    """
+    """Sample the filter in space to `reach` sigma on each side: its real part is even, its imaginary part odd."""
+    # exp(-(x'^2 + gamma^2 y'^2) / (2 sigma^2)) exp(2 pi i x' / lambda), x' = x cos t + y sin t, y' = -x sin t + y cos
+    # t; scaled so that a wave of its own frequency and amplitude a gives a response of magnitude a, minus the multiple
+    # of the Gaussian that makes the response to flat grey zero.
     radius = ceil(reach * gabor.sigma_px / min(1.0, gabor.gamma))
     y, x = np.mgrid[-radius : radius + 1, -radius : radius + 1].astype(np.float64)
     along = x * cos(gabor.theta_rad) + y * sin(gabor.theta_rad)

@@ -1,8 +1,4 @@
-"""Local energy in a bank of Gabor filters: one Fourier transform of the picture, a small inverse one for each filter.
-
-A filter passes a small part of the spectrum. That part is cut out and transformed back on the coarsest grid that holds
-it; that moves it to frequency 0, which keeps the magnitude. Smoothing and sampling are one table for each axis.
-"""
+"""Local energy in a bank of Gabor filters: one Fourier transform, a small inverse one for each filter."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
@@ -22,13 +18,11 @@ from .gabor_bank import Gabor, kernel
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def filter_part(values, shape, first, frequency, along, across, part):
-    """Write gain times spectrum, row by row; the half that a real picture's spectrum leaves out is mirrored.
-
-    The gain 2 exp(-(one^2 + two^2) / 2), which keeps a wave's amplitude, has one and two grow evenly down a column:
-    each gain is the one above times a ratio, which shrinks by the same factor every time.
-    """
+    """Write gain times spectrum, row by row; the half that a real picture's spectrum leaves out is mirrored."""
     (high, wide), (top, left), (down, right) = shape, first, frequency
     rows, columns = part.shape
+    # The gain 2 exp(-(one^2 + two^2) / 2), which keeps a wave's amplitude, has one and two grow evenly down a column:
+    # each gain is the one above times a ratio, which shrinks by the same factor every time.
     one_step, two_step = along[0] / high, across[0] / high
     bend = -(one_step**2 + two_step**2)
     gain, ratio = np.empty(columns), np.empty(columns)
@@ -144,10 +138,7 @@ def smoothing_px(gabor: Gabor, sigma_px: float) -> float:
 
 
 def spectrum_of(grey: Float32[np.ndarray, "h w"], pad_px: int) -> Spectrum:
-    """Standardise, mirror and transform a picture; scaled first, so that no square overflows or vanishes.
-
-    Raises: PictureError naming the first place that is NaN or infinite, or for an empty picture.
-    """
+    """Standardise, mirror and transform a picture. Raises: PictureError if it is empty or not finite."""
     if grey.ndim != 2 or grey.size == 0:
         raise PictureError(f"grey is (h, w) with at least one pixel, not {grey.shape}")
     check_finite(grey, "grey")
@@ -161,6 +152,7 @@ def spectrum_of(grey: Float32[np.ndarray, "h w"], pad_px: int) -> Spectrum:
 
 def standardise(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
     """Return the picture with mean 0 and standard deviation 1; all 0 if its values differ by rounding only."""
+    # Scaled first, so that no square overflows or vanishes.
     top = np.float32(max(float(grey.max()), -float(grey.min())))
     scaled = grey / top if top else grey
     scaled = scaled - np.float32(scaled.mean(dtype=np.float64))
@@ -176,15 +168,11 @@ def energy_planes(
     sigma_px: float,
     out: Float32[np.ndarray, "filters rows columns"] | None = None,
 ) -> Float32[np.ndarray, "filters rows columns"]:
-    """Compute smoothed energy |z|^2 in these filters, one value every step_px pixels, rounded up; to `out` if given.
-
-    A wave of amplitude a at a filter's own frequency has the energy a^2 / v, v being the variance of the picture: gain
-    and offset have no effect. A flat picture has none. Outside of the picture is its mirror image.
-
-    spectrum: with a `padding` for these filters; shape: that of the picture. Value (i, j) is the Gaussian mean round
-    pixel ((i + 0.5) step_px - 0.5, ...), with a standard deviation of sigma_px, or RELATIVE_SIGMA wavelengths if that
-    is more. Memory: about 30 bytes a pixel, the result of 6 among them, with two threads on wavelengths of 2.8 px.
-    """
+    """Compute smoothed energy |z|^2 in these filters, one value every step_px pixels, rounded up; to `out` if given."""
+    # A wave of amplitude a at a filter's own frequency has the energy a^2 / v, v being the variance of the picture. The
+    # filter's part of the spectrum is transformed back on the coarsest grid that holds it; that moves it to frequency
+    # 0, which keeps the magnitude. Smoothing and sampling are one table for each axis. Memory: about 30 bytes a pixel,
+    # with two threads on wavelengths of 2.8 px.
     cells = tuple(-(-side // step_px) for side in shape)
     planes = np.empty((len(filters), *cells), np.float32) if out is None else out
 

@@ -42,10 +42,7 @@ def window_means(
     step: int = 1,
     out: Float32[np.ndarray, "d rows columns"] | None = None,
 ) -> Float32[np.ndarray, "d rows columns"]:
-    """Compute Gaussian means in windows of sigma_cells, then means of step x step cells; mirrored outside.
-
-    out: the array to write to; it may be `planes` where step is 1.
-    """
+    """Compute Gaussian means in windows of sigma_cells, then of step x step cells, to `out` (`planes` if step is 1)."""
     rows, columns = (-(-side // step) for side in planes.shape[1:])
     means = np.empty((len(planes), rows, columns), np.float32) if out is None else out
 
@@ -63,10 +60,8 @@ def window_means(
 
 
 def standardise_roots(planes: Float32[np.ndarray, "d n"]) -> None:
-    """Replace planes by standardised square roots, in place; a constant plane becomes 0.
-
-    Square roots have similar spreads where means differ.
-    """
+    """Replace planes by standardised square roots, in place; a constant plane becomes 0."""
+    # Square roots have similar spreads where means differ.
     in_turns(list(range(len(planes))), lambda share: [_standardise(planes[i]) for i in share])
 
 
@@ -83,10 +78,8 @@ def _standardise(plane):
 
 @njit(cache=True, nogil=True)
 def _total(values, squared):
-    """Sum the values, or their squares, in LANES partial sums.
-
-    No order of sums depends on the processor's vectors, and squares need no extra memory.
-    """
+    """Sum the values, or their squares, in LANES partial sums."""
+    # No order of sums depends on the processor's vectors, and squares need no extra memory.
     lanes, whole = np.zeros(LANES), values.size // LANES * LANES
     for i in range(0, whole, LANES):
         for j in range(LANES):

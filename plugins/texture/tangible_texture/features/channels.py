@@ -7,12 +7,7 @@ from tangible_core.data import check_picture, full_scale, luma
 
 
 def channels(picture: np.ndarray, colour: bool) -> Float32[np.ndarray, "h w c"]:
-    """Return red, green and blue; or one channel of grey, if `colour` is False or the picture has none.
-
-    Transparency lies over white. The largest magnitude is 1 for any scale of the picture, so that later squares neither
-    overflow nor vanish.
-    Raises: PictureError as `check_picture`.
-    """
+    """Return red, green and blue over white; or grey, if `colour` is False or there is none. Raises: PictureError."""
     picture = check_picture(picture)
     white = full_scale(picture)
     paint = np.atleast_3d(picture)[..., :3]
@@ -23,6 +18,7 @@ def channels(picture: np.ndarray, colour: bool) -> Float32[np.ndarray, "h w c"]:
         values = values * opaque + (1 - opaque)
     if values.shape[2] == 3 and not colour:
         values = luma(values)[..., None]
+    # The largest magnitude is 1 for any scale, so that later squares neither overflow nor vanish.
     top = max(float(values.max()), -float(values.min()))
     return np.ascontiguousarray(values / top if top else values, np.float32)
 

@@ -25,10 +25,7 @@ NARROW_PX, MIDDLE_PX, WIDE_PX = 5.0, 10.0, 18.0
 LARGE_PX = 320
 """The root of a picture's area, px, below which windows are narrower in proportion, down to half as wide."""
 COLOURFUL = 0.02
-"""The least difference of windows in colour, as a share of white, that is more than chance or light.
-
-An even change across the picture, as of light, does not count.
-"""
+"""The least difference of windows in colour, as a share of white, beyond chance and an even change of light."""
 COLOUR_WEIGHT = 3.0
 """The weight of a plane of colour against one of ninety planes of texture."""
 
@@ -53,16 +50,14 @@ class Features(NamedTuple):
 def features(
     picture: np.ndarray, lambda_max_px: float, least_energy: float, colour: bool | Literal["auto"]
 ) -> Features | None:
-    """Compute features in windows of WIDE_PX, MIDDLE_PX and NARROW_PX, or less in a small picture; None if all agree.
-
-    The narrow ones have a value every 4 pixels, the middle ones every 8 and the wide ones every 16; of small pictures
-    all of them every 4. Raises: PictureError as `check_picture`.
-    """
+    """Compute features in windows of three widths; None if all agree. Raises: PictureError as `check_picture`."""
     grey = to_grey(picture)
     if is_flat(grey):
         note(log, "one segment: the picture is flat")
         return None
     planes, filters, colour_count = _planes(picture, grey, lambda_max_px, least_energy, colour)
+    # Narrow windows have a value every 4 pixels, middle ones every 8, wide ones every 16; in small pictures all every
+    # 4.
     step = 2 if min(planes.shape[1:]) >= 32 else 1
     narrow_px, middle_px, wide_px = _widths(grey.size)
     narrow = window_means(planes, (narrow_px**2 - ENERGY_SIGMA_PX**2) ** 0.5 / CELL_PX, out=planes)
@@ -95,10 +90,7 @@ def _planes(
     least_energy: float,
     colour: bool | Literal["auto"],
 ) -> tuple[Float32[np.ndarray, "d rows columns"], tuple[int, ...], int]:
-    """Return energies, pattern frequencies and colours, cell by cell; the filters' numbers; and how many colours.
-
-    All are written to one array: for a large picture it has hundreds of megabytes, and so would each copy.
-    """
+    """Return energies, pattern frequencies and colours, cell by cell; the filters' numbers; and how many colours."""
     filters = bank(octaves(lambda_max_px))
     spectrum = spectrum_of(grey, padding(filters, ENERGY_SIGMA_PX))
     means = mean_energies(spectrum, filters)
@@ -111,6 +103,7 @@ def _planes(
         )
     colours = _colour_planes(picture, colour)
     rows, columns = (-(-side // CELL_PX) for side in grey.shape)
+    # One array: for a large picture it has hundreds of megabytes, and so would each copy.
     planes = np.empty((len(filters_used) + PATTERNS + len(colours), rows, columns), np.float32)
     energies, patterns = planes[: len(filters_used)], planes[len(filters_used) : len(filters_used) + PATTERNS]
     cap_rare_values(energy_planes(spectrum, filters_used, grey.shape, CELL_PX, ENERGY_SIGMA_PX, energies))

@@ -1,11 +1,4 @@
-"""Local binary patterns, counted directly into cells of 4 x 4 pixels. Compiled by numba.
-
-The bits of a pixel's code mark the neighbours, of eight, that are at least as bright as the pixel. The code adds one to
-one of 10 rotation-invariant classes (Ojala, Pietikainen & Maenpaa, IEEE TPAMI 24, 2002), and to some of 12 agreements
-that depend on direction: both neighbours of an axis are dark, both are bright, neighbours a quarter turn apart agree.
-The negative of a picture exchanges counters, except for neighbours of equal grey. A cell holds 16 pixels, so that a
-counter fits 5 bits (6 for quarter turns, of which each pixel has two), and two additions count a pixel.
-"""
+"""Local binary patterns, counted directly into cells of 4 x 4 pixels. Compiled by numba."""
 
 from collections.abc import Iterable, Iterator
 
@@ -35,11 +28,7 @@ ALIKE = 1e-3
 def pattern_frequencies(
     grey: Float32[np.ndarray, "h w"], out: Float32[np.ndarray, "counters rows columns"] | None = None
 ) -> Float32[np.ndarray, "counters rows columns"]:
-    """Compute the frequency, 0..1, of each class and agreement in each cell, for every radius of RADII in turn.
-
-    grey: of standard deviation 1. Cells lie as those of `energy_planes` with step_px = 4; the last may be cut. A flip
-    or a quarter turn of the picture flips or turns the planes and exchanges some of them. out: the array to write to.
-    """
+    """Compute the frequency, 0..1, of each class and agreement in each cell, for every radius of RADII in turn."""
     shape = tuple(-(-side // CELL_PX) for side in grey.shape)
     frequencies = np.empty((PATTERNS, *shape), np.float32) if out is None else out
     for planes, (radius, sigma) in zip(frequencies.reshape(len(RADII), COUNTERS, *shape), RADII, strict=True):
@@ -83,6 +72,10 @@ _SECOND: UInt64[np.ndarray, "256"] = np.array([_agreements_of(code) for code in 
 @njit(cache=True, nogil=True)
 def _count(grey, radius, start, stop, shape, first_words, second_words, planes):
     """Fill the rows of cells from start to stop; grey is framed by `radius` pixels."""
+    # The bits of a code mark the neighbours, of eight, that are at least as bright as the pixel. It adds one to one of
+    # 10 rotation-invariant classes (Ojala, Pietikainen & Maenpaa, IEEE TPAMI 24, 2002) and to some of 12 agreements by
+    # direction: both neighbours of an axis dark, both bright, a quarter turn apart alike. A cell has 16 pixels, so that
+    # a counter fits 5 bits (6 for quarter turns, two a pixel), and two additions count a pixel.
     height, width = shape
     codes, shares = np.empty(width, np.uint8), np.empty(planes.shape[2], np.float32)
     for cell_row in range(start, stop):

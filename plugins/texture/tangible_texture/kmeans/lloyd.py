@@ -33,14 +33,11 @@ def kmeans(
     start: Literal["plus-plus", "random"] = "plus-plus",
     rounds: int = 1000,
 ) -> Clusters:
-    """Return the cheapest of `restarts` runs of Lloyd's rounds, each until no label changes, or `rounds` of them.
-
-    There are never more clusters than distinct rows (see SAME). start: rows drawn with weights of their squared
-    distances from those drawn before (Arthur & Vassilvitskii, SODA 2007), or uniformly ("random").
-    """
+    """Return the cheapest of `restarts` runs of Lloyd's rounds; never more clusters than distinct rows (see SAME)."""
     rows = np.ascontiguousarray(rows, np.float32)
     random = np.random.default_rng(seed)
     least = np.float32((SAME * float(np.sqrt(np.square(rows).sum(axis=1).max(initial=0)))) ** 2)
+    # k-means++ draws with weights of squared distances from earlier rows (Arthur & Vassilvitskii, SODA 2007).
     runs = (
         _settle(rows, _start(rows, random.random(clusters), start == "plus-plus", least), rounds)
         for _ in range(restarts)

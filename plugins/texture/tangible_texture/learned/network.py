@@ -1,11 +1,4 @@
-"""Values that tell textures apart, made of the other features by a small network that was fitted to many textures.
-
-The features of narrow windows, in cells of 8 pixels, give values that are averaged in windows of three widths, as the
-features are; these give values again, and those the result. Its weights are fitted by `benchmarks.texture_fit`: cells
-of one texture shall lie near each other, those of two apart, whatever the textures. Weights are tied so that a flip or
-a quarter turn of the picture exchanges values, and no distance changes.
-Source: prototypes of classes, as in Snell, Swersky & Zemel, NIPS 2017, one class a texture.
-"""
+"""Values that tell textures apart, made of the features by a small network fitted to many textures."""
 
 from collections.abc import Iterable
 from functools import cache
@@ -58,16 +51,16 @@ def _weights() -> Weights:
 
 
 def learned_values(features: Features) -> Window | None:
-    """Compute the values of each cell of 8 pixels, centred; None for a picture smaller than MIN_CELLS.
-
-    A filter that was left out counts as one without differences; filters from FILTERS on are left out.
-    """
+    """Compute the values of each cell of 8 pixels, centred; None for a picture smaller than MIN_CELLS."""
     if min(features.narrow.shape) < MIN_CELLS:
         return None
     filters, shape = features.filters, features.middle.shape
     known = [at for at, each in enumerate(filters) if each < FILTERS]
     chosen = [*known, *range(len(filters), len(filters) + PATTERNS)]
     weights, columns = _weights(), [*(filters[at] for at in known), *range(FILTERS, FILTERS + PATTERNS)]
+    # Fitted by `benchmarks.texture_fit` to prototypes, one class a texture (Snell, Swersky & Zemel, NIPS 2017). Weights
+    # are tied so that a flip or a quarter turn exchanges values, and no distance changes. A filter that was left out
+    # counts as one without differences.
     hidden = np.zeros((len(weights.first), shape[0] * shape[1]), np.float32)
     for start in range(0, len(chosen), GROUP):
         own = columns[start : start + GROUP]

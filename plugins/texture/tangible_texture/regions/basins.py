@@ -29,6 +29,8 @@ def basins(
     """
     labels = np.full(height.shape, UNSEEN, np.int32)
     count = 0
+    # At a higher level, a part without a basin becomes a new one: a rough object between smooth ones has its own,
+    # although it is nowhere as flat. A part with one basin is all of that basin: water fills it before it flows over.
     for level in levels:
         size, parts = cv2.connectedComponents((height <= level).view(np.uint8), connectivity=4)
         owners, areas = np.full(size, UNSEEN, np.int32), np.zeros(size, np.int32)
@@ -38,10 +40,7 @@ def basins(
 
 @njit(**KERNEL)
 def _label_parts(labels, parts, names, areas, smallest_px, count):
-    """Give every part with one basin to that basin, every large part without one to a new basin, from `count` on.
-
-    names, areas: scratch, -1 and 0 for each part.
-    """
+    """Give every part with one basin to that basin, every large part without one to a new basin, from `count` on."""
     _find_owners(labels, parts, names, areas)
     names[0] = _SEVERAL  # part 0 is above the level
     for part in range(1, names.size):

@@ -24,13 +24,11 @@ class Landscape(NamedTuple):
 
 
 def landscape(smooth: Float32[np.ndarray, "h w c"], most: float, noise: Float32[np.ndarray, "r s"]) -> Landscape:
-    """Divide slopes by their noise, which is raised until no slope is above `most`.
-
-    noise: that of the same picture with less smoothing, at any size, of which twice the value bounds the noise here.
-    Where edges are many, smoothing leaves little flat area between them, and the slopes measured there are not noise.
-    """
+    """Divide slopes by their noise, raised until no slope is above `most`; noise: that with less smoothing."""
     magnitude, across, down, own = slopes(smooth)
     with plain_opencv():
+        # Where edges are many, smoothing leaves little flat area between them, and the slopes measured there are not
+        # noise: twice the noise with less smoothing bounds it.
         noise = np.minimum(own, 2 * cv2.resize(noise, own.shape[::-1], interpolation=cv2.INTER_LINEAR))
     noise = np.maximum(noise, np.float32(magnitude.max() / most))
     return Landscape(*(slope / noise for slope in (magnitude, across, down)))
@@ -72,14 +70,11 @@ class Border(NamedTuple):
 def borders(
     labels: Int32[np.ndarray, "h w"], land: Landscape, edges: UInt8[np.ndarray, "h w"], edge_slope: float
 ) -> dict[tuple[int, int], Border]:
-    """Return every border by its two regions, the lower label first.
-
-    A pair has an edge where `edges` is not 0, and where the picture is as steep as WEAK_EDGE times edge_slope and rises
-    or falls from one of its pixels to the other. The second condition detects edges without a crest: weak ones between
-    the flanks of strong ones, and edges broken by noise. Regions meet there, and noise alone has no slope that leads
-    across for long.
-    """
+    """Return every border by its two regions, the lower label first."""
     count = int(labels.max()) + 1
+    # A pair has an edge where `edges` is not 0, and where the picture is as steep as WEAK_EDGE times edge_slope and
+    # rises or falls from one pixel to the other: edges without a crest, between the flanks of strong ones or broken by
+    # noise. Noise alone has no slope that leads across for long.
     pairs = [
         _pairs(labels, land.steep, edges, slopes, edge_slope, ways, count)
         for slopes, ways in (((land.down, land.across), DOWN), ((land.across, land.down), ACROSS))
@@ -101,10 +96,7 @@ def _pairs(
     ways: Ways,
     count: int,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the key, the greater height and an edge flag of every pair of pixels with two labels in this direction.
-
-    slopes: along this direction, and along the other.
-    """
+    """Return the key, the greater height and an edge flag of every pair in this direction; slopes: along it, across."""
     first, second = ways
     at = np.flatnonzero(labels[first] != labels[second])
 

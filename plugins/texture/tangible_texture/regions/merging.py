@@ -14,12 +14,9 @@ HELD_APART = 0.6
 
 
 def merge(areas: list[int], borders: dict[tuple[int, int], Border], most: int) -> Int32[np.ndarray, "n"]:
-    """Merge neighbours until edges separate all of them and no more than `most` are left.
-
-    Pairs with the least share of edges in their border go first; after them, pairs with the lowest mean height of the
-    border times a b / (a + b), a and b being their areas: small regions give way to large ones, as in Ward's method.
-    Returns: for each region the region into which it was merged.
-    """
+    """Merge neighbours until edges separate all, `most` at most; return the region into which each was merged."""
+    # Pairs with the least share of edges in their border go first; after them, pairs with the lowest mean height of the
+    # border times a b / (a + b), a and b being areas: small regions give way to large ones, as in Ward's method.
     graph = _Graph(areas, borders)
     graph.merge(most)
     if graph.left > most:
@@ -39,10 +36,7 @@ def weakest_border(borders: dict[tuple[int, int], Border], parts: Int32[np.ndarr
 
 
 class _Graph:
-    """Regions, their neighbours, and a queue of pairs; a queued pair is void once its border is another object.
-
-    Pairs that edges separate come last, and their order changes with every merge: `weigh` queues them.
-    """
+    """Regions, their neighbours, and a queue of pairs; a queued pair is void once its border is another object."""
 
     def __init__(self, areas: list[int], borders: dict[tuple[int, int], Border]) -> None:
         self.areas = areas.copy()
@@ -63,6 +57,7 @@ class _Graph:
 
     def weigh(self) -> None:
         """Queue the pairs that edges separate, too."""
+        # Pairs that edges separate come last, and their order changes with every merge.
         self.weighing = True
         for one, others in enumerate(self.neighbours):
             for other, border in others.items():

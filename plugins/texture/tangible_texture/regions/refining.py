@@ -34,11 +34,7 @@ def refine_labels(
     columns: Int64[np.ndarray, "w"],
     height: Float32[np.ndarray, "h w"],
 ) -> Int32[np.ndarray, "h w"]:
-    """Refine labels of cells to labels of pixels: cells along borders are flooded again from within.
-
-    Parameters: the row and the column of cells that each row and column of pixels lies in; height >= 0: borders belong
-    on its crests.
-    """
+    """Refine labels of cells to labels of pixels: cells along borders are flooded again, up to the crests of height."""
     inside = inner_cells(labels)
     has_inside = np.bincount(labels[inside], minlength=int(labels.max()) + 1) > 0
     markers = np.where(inside | ~has_inside[labels], labels, np.int32(UNSEEN))

@@ -10,12 +10,7 @@ from .watershed import UNSEEN, watershed
 def remove_seams(
     labels: Int32[np.ndarray, "rows columns"], radius: int
 ) -> tuple[Int32[np.ndarray, "rows columns"], Bool[np.ndarray, "rows columns"]]:
-    """Give every part of a segment that is too narrow for a disc of this radius to the nearest wide segment.
-
-    Segments that are narrow everywhere vanish, and the others are renumbered. Outside lies the mirror image. Where no
-    segment is wide enough, all stay.
-    Returns: the labels, and a mask of the cells that kept their segment.
-    """
+    """Give parts too narrow for a disc of this radius to the nearest wide segment; return the unchanged cells too."""
     from scipy.ndimage import distance_transform_edt
 
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1))
@@ -34,11 +29,8 @@ def remove_seams(
 def remove_small_parts(
     classes: Int32[np.ndarray, "h w"], steep: Float32[np.ndarray, "h w"], flat: float, smallest_px: int
 ) -> Int32[np.ndarray, "h w"]:
-    """Give parts (4 neighbours) of fewer flat pixels to the adjacent classes, up to the steepest pixels in between.
-
-    Pixels steeper than `flat` are in no part: an edge from dark to bright is not a segment of grey.
-    Returns: classes; all are 0 where all parts are small.
-    """
+    """Give parts (4 neighbours) of fewer flat pixels to the adjacent classes, up to the steepest pixels in between."""
+    # An edge from dark to bright is not a segment of grey: pixels steeper than `flat` are in no part.
     markers = np.full(classes.shape, UNSEEN, np.int32)
     for each in range(int(classes.max()) + 1):
         _add_large_parts(markers, (classes == each) & (steep <= flat), each, smallest_px)

@@ -28,17 +28,12 @@ Labels = Int32[np.ndarray, "h w"]
 
 
 def watershed(height: Heights, markers: Labels) -> Labels:
-    """Flood a landscape from markers: each pixel gets the marker whose water reaches it first, over its 4 neighbours.
-
-    Large landscapes are flooded tile by tile, each with a margin of AROUND_PX; no water comes from further away unless
-    a tile has no marker. Parameters: height >= 0; markers, -1 where there is none.
-    Returns: the labels of the markers; no pixel is left on a shed. Without any marker, all are -1.
-    Source: Meyer, Un algorithme optimal pour la ligne de partage des eaux, 1991; the queue is an array of first-in
-    first-out lists, one for each level.
-    """
+    """Flood a landscape (>= 0) from markers, -1 elsewhere: each pixel gets the one whose water reaches it first."""
     top = float(height.max())
     scale = np.float32((LEVELS - 1) / np.sqrt(top) if top else 0)
     flooded = np.empty_like(markers)
+    # Meyer, Un algorithme optimal pour la ligne de partage des eaux, 1991, over 4 neighbours, without sheds; the queue
+    # is an array of lists, one a level. No water comes from beyond a tile's margin unless a tile has no marker.
     for row in range(0, len(height), TILE_PX):
         for column in range(0, height.shape[1], TILE_PX):
             _flood_tile(flooded, row, column, height, markers, scale)

@@ -24,17 +24,13 @@ Map = Float32[np.ndarray, "h w"]
 
 
 def slopes(smooth: Float32[np.ndarray, "h w c"]) -> tuple[Map, Map, Map, Map]:
-    """Compute slopes per pixel, by central differences, in the channel where they are steepest, and their noise.
-
-    Noise is the parameter of its Rayleigh distribution, in the noisiest channel; it is measured in tiles, from the
-    flattest quarter of their pixels, and interpolated between the tiles. A texture that fills its tile counts as noise,
-    as does a steady shading.
-    Returns: magnitude, across, down, noise: float32 (h, w) each.
-    """
+    """Return magnitude, across and down in the steepest channel, by central differences, and the noise of slopes."""
     across, down = np.empty(smooth.shape, np.float32), np.empty(smooth.shape, np.float32)
     rows, across_rows, down_rows = (each.reshape(len(smooth), -1) for each in (smooth, across, down))
     _differences(rows, across_rows, down_rows, smooth.shape[2])
     magnitude = np.sqrt(across * across + down * down)
+    # The parameter of its Rayleigh distribution, in the noisiest channel, from the flattest quarter of each tile: a
+    # texture that fills its tile counts as noise, as does a steady shading.
     noise = _noise(magnitude)
     if smooth.shape[2] == 1:
         return magnitude[..., 0], across[..., 0], down[..., 0], noise

@@ -8,21 +8,15 @@ from tangible_core.compiled import KERNEL, njit
 from tangible_core.runtime import plain_opencv
 
 WIDER = 1.75
-"""The sigma of region detection as a multiple of that of their boundaries.
-
-Slopes of noise fall with the square of sigma, those of an edge with sigma itself. A larger factor detects weaker edges
-and loses narrow regions.
-"""
+"""Ratio of the sigmas of regions and boundaries: larger, it detects weaker edges and loses narrow regions."""
 
 
 def remove_specks(values: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, "h w c"]:
-    """Set a pixel further from its 8 neighbours than they are from one another to the nearest of their values.
-
-    Noise, lines, corners and steps stay as they are. A picture of one pixel has no neighbours and stays.
-    Source: conservative smoothing (Jain, Kasturi & Schunck, Machine Vision, 1995, ch. 4), limited by the spread.
-    """
+    """Set a pixel further from its 8 neighbours than they are from one another to the nearest of their values."""
     if values.shape[0] * values.shape[1] == 1:
         return values
+    # Conservative smoothing (Jain, Kasturi & Schunck, Machine Vision, 1995, ch. 4), limited by the spread: noise,
+    # lines, corners and steps stay.
     around = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], np.uint8)
     lowest, highest = (each(values, around).reshape(values.shape) for each in (cv2.erode, cv2.dilate))
     calm = np.empty(values.size, values.dtype)
@@ -48,13 +42,10 @@ def gaussian(values: Float32[np.ndarray, "h w *c"], sigma_px: float) -> Float32[
 def smooth_at_two_scales(
     values: Float32[np.ndarray, "h w c"], sigma_px: float
 ) -> tuple[Float32[np.ndarray, "h w c"], Float32[np.ndarray, "r s c"], int]:
-    """Smooth by sigma_px, and by WIDER times as much, each at most 1/16 of the root of the picture's area.
-
-    The second has little detail finer than its sigma: it has every step-th pixel only, a mean over step x step pixels.
-    Returns: the first, the second, and the step, 1 pixel at least.
-    """
+    """Smooth by sigma_px, and by WIDER times as much on a grid of every step-th pixel; return both and the step."""
     rows, columns = values.shape[:2]
     near_px, wide_px = (min(sigma, (rows * columns) ** 0.5 / 16) for sigma in (sigma_px, WIDER * sigma_px))
+    # The second has little detail finer than its sigma.
     step = max(1, int(wide_px / 1.5))
     near = gaussian(values, near_px)
     whole = cv2.copyMakeBorder(near, 0, -rows % step, 0, -columns % step, cv2.BORDER_REPLICATE)

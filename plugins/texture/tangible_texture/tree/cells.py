@@ -16,8 +16,7 @@ CELLS = 40_000
 BINS = 12
 """The number of bins of brightness, and of each colour."""
 RANGES = {"brightness": (0.0, 1.0), "red": (-0.4, 0.4), "yellow": (-0.5, 0.5)}
-"""The lowest and the highest bin of a channel, as shares of the picture's range; symmetric, so that a negative has the
-same bins in another order."""
+"""Lowest and highest bin, as shares of the picture's range; symmetric, so that a negative has the same bins."""
 ROUGH_BINS, ROUGHEST = 8, 0.8
 """The number of bins of roughness, and the highest one."""
 RARE = 0.001
@@ -41,11 +40,7 @@ def reduce_to_cells(paint: Float32[np.ndarray, "H W c"]) -> Float32[np.ndarray, 
 
 
 def opponent_colours(cells: Float32[np.ndarray, "h w c"]) -> Planes | None:
-    """Return brightness, red against green, and both against blue, as shares of the picture's range.
-
-    Brightness is 0 to 1; the other two are 0 for a grey picture. Gain and offset of the picture change nothing.
-    Returns: None if the range is empty.
-    """
+    """Return brightness 0..1, red - green and both - blue, as shares of the picture's range; None if that is empty."""
     values = np.sort(cells, axis=None)
     rare = int(RARE * values.size)
     low, high = values[rare], values[-1 - rare]
@@ -75,14 +70,12 @@ def _bins(plane: Plane, low: float, high: float, count: int) -> Planes:
 
 
 def _directions(across: Plane, down: Plane) -> Planes:
-    """Return the shares of four directions of the slope, 45 degrees apart, and of no slope.
-
-    The squares of the positive parts of cos 2t, -cos 2t, sin 2t and -sin 2t sum to 1 for every angle t.
-    """
+    """Return the shares of four directions of the slope, 45 degrees apart, and of no slope."""
     square = across * across + down * down
     steep = np.sqrt(square)
     steep = steep / (steep + np.float32(WEAK))
     least = np.float32(1e-12)
+    # The squares of the positive parts of cos 2t, -cos 2t, sin 2t and -sin 2t sum to 1 for every angle t.
     cosine, sine = (across * across - down * down) / (square + least), 2 * across * down / (square + least)
     ways = [steep * np.square(np.maximum(each, 0)) for each in (cosine, -cosine, sine, -sine)]
     return np.stack([*ways, 1 - steep])

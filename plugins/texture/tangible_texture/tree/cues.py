@@ -1,11 +1,4 @@
-"""How strongly a picture changes at each cell, and in which direction: in brightness and in what windows hold.
-
-A change of several planes has a structure tensor, the sum of the outer products of their gradients: its largest
-eigenvalue is the square of the steepest change, and n' T n that of the change along n. Gradients of square roots of
-shares measure Hellinger's distance between the windows on both sides. Compiled by numba.
-Sources: Di Zenzo, A note on the gradient of a multi-image, CVGIP 33, 1986; Martin, Fowlkes & Malik, Learning to detect
-natural image boundaries, IEEE TPAMI 26, 2004 (differences of windows).
-"""
+"""How strongly a picture changes at each cell, and in which direction: in brightness and in what windows hold."""
 
 from collections.abc import Iterable, Mapping
 
@@ -32,6 +25,10 @@ Tensors = Float32[np.ndarray, "cues 3 h w"]
 
 def tensors(brightness: Float32[np.ndarray, "h w"], shares: Mapping[str, Float32[np.ndarray, "_ h w"]]) -> Tensors:
     """Compute the tensors of brightness, and of each kind of shares in windows of LEVELS widths."""
+    # A change of several planes has a structure tensor, the sum of the outer products of their gradients: its largest
+    # eigenvalue is the square of the steepest change, and n' T n that of the change along n (Di Zenzo, CVGIP 33, 1986).
+    # Gradients of square roots of shares measure Hellinger's distance between the windows on both sides (Martin,
+    # Fowlkes & Malik, IEEE TPAMI 26, 2004).
     result = np.zeros((1 + LEVELS * len(shares), 3, *brightness.shape), np.float32)
 
     @plain_opencv()

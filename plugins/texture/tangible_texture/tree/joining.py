@@ -15,13 +15,9 @@ _NONE = -1
 def join_regions(
     regions: Regions, weights: Float64[np.ndarray, "terms"], constant: float, seen: Float64[np.ndarray, "rows 8"]
 ) -> tuple[Int32[np.ndarray, "joins 2"], Float64[np.ndarray, "joins"], int]:
-    """Join the two neighbours whose border costs least, again and again, until one region is left.
-
-    seen: rows for the two nodes and the terms of each border whenever it is measured, for a program that fits weights;
-    none for any other.
-    Returns: the two nodes of each joining, that of joining i being node n + i, as in SciPy's linkages; the costs; and
-    the number of rows written.
-    """
+    """Join the two neighbours whose border costs least, until one is left; return joins, costs and rows written."""
+    # That of joining i is node n + i, as in SciPy's linkages. A program that fits weights passes rows for the two nodes
+    # and the terms of each border whenever it is measured.
     count, borders = len(regions.areas), len(regions.borders)
     joins, costs = np.empty((count - 1, 2), np.int32), np.empty(count - 1)
     owners = np.concatenate([regions.borders[:, 0], regions.borders[:, 1]]).astype(np.int32)
@@ -40,11 +36,9 @@ def _join(
     areas, colours, roughness, owners, links, first, marks, nodes, pairs, strengths, prices, weights, constant, terms,
     seen, joins, costs,
 ):  # fmt: skip
-    """Join regions in place; returns the number of rows seen.
-
-    The borders of a region are a linked list of half borders: those of border b are b and b + len(prices).
-    """
+    """Join regions in place; returns the number of rows seen."""
     count, borders, rows, total = areas.size, prices.size, 0, areas.sum()
+    # The borders of a region are a linked list of half borders: those of border b are b and b + len(prices).
     for half in range(2 * borders - 1, -1, -1):
         links[half], first[owners[half]] = first[owners[half]], half
     for border in range(borders):
@@ -110,11 +104,7 @@ def _join_borders(one, lost, owners, links, first, marks, pairs, strengths, pric
 
 @inner()
 def _measure(areas, colours, roughness, one, other, pairs, strength, total, terms):
-    """Write the terms of a border's cost.
-
-    They are the mean strength; Hellinger's distance of roughness; the square root of the difference in colour; and the
-    logarithms of the smaller and of the larger area, and of the length, against the whole picture.
-    """
+    """Write the terms of a border's cost: strength, roughness, colour, and logarithms of both areas and its length."""
     alike = 0.0
     for at in range(roughness.shape[1]):
         alike += np.sqrt((roughness[one, at] / areas[one]) * (roughness[other, at] / areas[other]))

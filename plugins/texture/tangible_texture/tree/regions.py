@@ -37,10 +37,7 @@ class Regions(NamedTuple):
 
 
 def small_regions(strength: Float32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
-    """Flood a map of strengths from all its minima: regions that no change runs through.
-
-    A region that is nowhere three cells wide, such as the blurred border between two things, goes to its neighbours.
-    """
+    """Flood a map of strengths from all its minima: regions that no change runs through."""
     from skimage.measure import label
     from skimage.morphology import local_minima
 
@@ -49,6 +46,7 @@ def small_regions(strength: Float32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h 
     minima = np.asarray(local_minima(calm))
     markers = np.asarray(label(minima if minima.any() else calm == 0, connectivity=2)).astype(np.int32) - 1
     labels = watershed(calm, markers)
+    # A region nowhere three cells wide, such as the blurred border between two things, goes to its neighbours.
     wide = np.unique(labels[inner_cells(labels)])
     if not 0 < wide.size <= labels.max():
         return labels

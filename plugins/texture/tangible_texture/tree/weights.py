@@ -1,10 +1,4 @@
-"""How much each cue counts: fitted to the regions that people drew, by `python -m benchmarks.regions_fit`.
-
-The photographs are of the Berkeley data set (Arbelaez, Maire, Fowlkes & Malik, IEEE TPAMI 33, 2011), each divided by
-about five people: 40 of the 200 for training; and where a network of borders is, which was trained on these, 60 of the
-200 for tests. Both fits are logistic regressions: of the share of people who drew a border at a cell, and of the share
-who keep two regions apart, over all pairs that a joining looks at.
-"""
+"""How much each cue counts: fitted to the regions that people drew, by `python -m benchmarks.regions_fit`."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -14,8 +8,7 @@ from jaxtyping import Float32, Float64
 
 
 class Cue(NamedTuple):
-    """The weights of the square root of one cue, in windows of three widths, narrow to wide; brightness has one width,
-    and the borders that a network sees have two powers, 1 and 2."""
+    """The weights of the square root of one cue, in windows narrow to wide; of a network's borders, in two powers."""
 
     in_map: tuple[float, ...]
     """In the map of strengths that is flooded."""

@@ -98,14 +98,14 @@ def draw_material(path: Path, material: Material) -> None:
 
 def spectra(material: Material) -> dict[str, Spectrum]:
     """Return the spectra of the heights, if there are any, and of the friction, if it has a wavelength."""
-    spectrum_of: dict[str, Spectrum] = {}
+    picture_spectrum: dict[str, Spectrum] = {}
     if material.roughness_m:
         width_m = GRAINS * material.grain_m
-        spectrum_of["heights"] = radial_spectrum(sample_tile(material, width_m, PIXELS), width_m)
+        picture_spectrum["heights"] = radial_spectrum(sample_tile(material, width_m, PIXELS), width_m)
     if material.texture == "stick-slip":
         way_m = max(3 * LENGTH_M, GRAINS * material.grain_m)
         step_m = max(FINE * material.grain_m, way_m / 2**16)
         slow = stroke(replace(material, roughness_m=0.0), step_m / PERIOD_S, NORMAL_N, way_m, PERIOD_S)
         sliding = slow.force_n[len(slow.force_n) // 4 :]
-        spectrum_of["friction"] = line_spectrum(sliding, len(sliding) * step_m)
-    return spectrum_of
+        picture_spectrum["friction"] = line_spectrum(sliding, len(sliding) * step_m)
+    return picture_spectrum

@@ -59,12 +59,12 @@ class Gabor(Dividing):
         windows = features(picture, self.lambda_max_px, self.least_energy, self.colour)
         if windows is None:
             return one_segment(picture.shape[:2])
-        learned = learned_values(windows) if self.effort == "balanced" else None
-        labels, axes = classes(windows, learned, self.segments, self.effort)
+        network_window = learned_values(windows) if self.effort == "balanced" else None
+        labels, axes = classes(windows, network_window, self.segments, self.effort)
         if not labels.any():
             return one_segment(picture.shape[:2])
         narrow, middle = (
-            Window(combine_planes(axes, each.planes), each.shape) for each in (windows.narrow, windows.middle)
+            Window(combine_planes(axes, window.planes), window.shape) for window in (windows.narrow, windows.middle)
         )
         memberships = fine_memberships(middle, labels, narrow)
         pixels, confidence = pixel_labels(memberships, CELL_PX, picture.shape[:2])

@@ -61,12 +61,12 @@ class Hierarchy(Dividing, Hierarchical):
             return one_segment(check_picture(picture).shape[:2])
         tree = self.tree(picture)
         most, level = (MAX_SEGMENTS, self.level) if self.segments == "auto" else (self.segments, MIN_LEVEL)
-        found = tree.cut(most, level)
-        if self.segments == "auto" and found.count > 1:
-            weakest = tree.levels[len(tree.levels) + 1 - found.count]
+        division = tree.cut(most, level)
+        if self.segments == "auto" and division.count > 1:
+            weakest = tree.levels[len(tree.levels) + 1 - division.count]
             why = "the level of the weakest border between two segments"
-            note(log, f"segments: {found.count}, estimated with confidence {weakest:.2f}: {why}")
-        return SegmentMap(number_in_reading_order(found.labels), found.confidence)
+            note(log, f"segments: {division.count}, estimated with confidence {weakest:.2f}: {why}")
+        return SegmentMap(number_in_reading_order(division.labels), division.confidence)
 
     def tree(self, picture: np.ndarray) -> SegmentTree:
         """Divide the picture into its smallest regions, and join them down to one. Raises: PictureError."""
@@ -84,12 +84,12 @@ class Hierarchy(Dividing, Hierarchical):
         colours = opponent_colours(reduce_to_cells(paint))
         if colours is None:
             return SegmentTree(np.zeros(picture.shape[:2], np.int32), np.empty((0, 2), np.int32))
-        held = shares(colours)
-        cues, weights, borders = tensors(colours[0], held), WITHOUT, self._borders(picture, colours.shape[1:])
+        kind_shares = shares(colours)
+        cues, weights, borders = tensors(colours[0], kind_shares), WITHOUT, self._borders(picture, colours.shape[1:])
         if borders is not None:
             cues, weights = np.concatenate([cues, border_tensors(borders)]), WITH_BORDERS
         cells = small_regions(weighted_strength(cues, weights.at_cells))
-        regions = measure_regions(cells, colours, held["roughness"], cues, weights.at_borders)
+        regions = measure_regions(cells, colours, kind_shares["roughness"], cues, weights.at_borders)
         unseen = np.empty((0, weights.terms.size + 2))
         joins, costs, _ = join_regions(regions, weights.terms, weights.constant, unseen)
         rising = np.maximum.accumulate(costs) if costs.size else costs

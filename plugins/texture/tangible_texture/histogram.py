@@ -129,10 +129,10 @@ class Histogram(Dividing):
         """Return each pixel's class, from dark to bright, and its confidence; `most` bounds the number of classes."""
         bins = _bins(grey)
         pixels = np.bincount(bins[flat], minlength=BINS)
-        used = np.flatnonzero(pixels)
-        levels = np.bincount(bins[flat], grey[flat])[used] / pixels[used]
+        occupied = np.flatnonzero(pixels)
+        levels = np.bincount(bins[flat], grey[flat])[occupied] / pixels[occupied]
         divisions = OtsuClasses(
-            levels, pixels[used], min(most, MAX_LEVELS if self.segments == "auto" else self.segments)
+            levels, pixels[occupied], min(most, MAX_LEVELS if self.segments == "auto" else self.segments)
         )
         starts = divisions.starts(self._number(divisions))[1:]
         thresholds = (levels[starts] + levels[starts - 1]) / 2

@@ -54,11 +54,7 @@ class KorniaGabor(Dividing):
     """Device to compute on; `auto` uses a GPU if there is one."""
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Divide the picture by texture, labels in the order of their first pixels.
-
-        Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1.
-        Raises: PictureError as `check_picture`, BrokenMethod without torch or kornia.
-        """
+        """Divide the picture by texture. Raises: PictureError as `check_picture`, BrokenMethod without torch."""
         need("torch")
         need("kornia")
         from .energies.filter_choice import is_flat, needed_filters
@@ -68,8 +64,8 @@ class KorniaGabor(Dividing):
         if is_flat(grey):
             return one_segment(grey.shape)
         most_px = max(1.0, grey.size**0.5 / 16)
-        wanted = bank(octaves(min(self.longest_px, most_px)))
-        return self._segments(grey, needed_filters(grey, wanted, self.skip_weak, self.skip_octaves), most_px)
+        filters = bank(octaves(min(self.longest_px, most_px)))
+        return self._segments(grey, needed_filters(grey, filters, self.skip_weak, self.skip_octaves), most_px)
 
     def _segments(self, grey: Float32[np.ndarray, "h w"], filters: "list[Gabor]", most_px: float) -> SegmentMap:
         from .energies.filter_choice import is_one_texture
@@ -97,9 +93,9 @@ class KorniaGabor(Dividing):
         features, clusters = rows.cpu().numpy(), count
         most = count if self.segments == "auto" else count + MORE
         while True:
-            clustered, centres, _ = kmeans(rows, clusters, self.restarts, self.seed)
-            each = clustered.cpu().numpy().astype(np.int32).reshape(shape)
-            labels, same = remove_seams(each, radius)
+            row_labels, centres, _ = kmeans(rows, clusters, self.restarts, self.seed)
+            cells = row_labels.cpu().numpy().astype(np.int32).reshape(shape)
+            labels, same = remove_seams(cells, radius)
             if labels.max() + 1 >= count or clusters == most:
                 return labels, np.where(same.ravel(), margins(features, centres.cpu().numpy()), 0)
             clusters += 1

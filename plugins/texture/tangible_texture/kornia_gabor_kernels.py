@@ -29,9 +29,9 @@ def energies(
         waves = kernel(gabor)
         around = pad_px + len(waves) // 2
         ends = [(around, fft.next_fast_len(side + 2 * around) - around - side) for side in grey.shape]
-        mirrored = torch.from_numpy(np.pad(picture, ends, mode="symmetric")).to(device)
+        mirror = torch.from_numpy(np.pad(picture, ends, mode="symmetric")).to(device)
         parts = torch.from_numpy(np.stack([np.real(waves), np.imag(waves)]).astype(np.float32)).to(device)
-        response = fft_conv(mirrored.expand(2, 1, -1, -1), parts, padding="valid")
+        response = fft_conv(mirror.expand(2, 1, -1, -1), parts, padding="valid")
         energy = response.square().sum(dim=(0, 1))
         down, along = (
             _dense_smoothing_table(count, step_px, smoothing_px(gabor, sigma_px), side, pad_px).to(device)
@@ -57,14 +57,14 @@ def standardise_roots(planes: Tensor) -> Tensor:
     return rows / torch.where(deviation > 0, deviation, 1.0)
 
 
-Clustered = tuple[Tensor, Tensor, float]
+Clustering = tuple[Tensor, Tensor, float]
 """The label of each row, int64, the centres (k, d), and the cost, as `lloyd.Clusters`."""
 
 
-def kmeans(rows: Tensor, clusters: int, restarts: int = 1, seed: int = 0, rounds: int = 1000) -> Clustered:
+def kmeans(rows: Tensor, clusters: int, restarts: int = 1, seed: int = 0, rounds: int = 1000) -> Clustering:
     """Run `lloyd.kmeans` in torch from a k-means++ start; the CPU draws, so that every device starts alike."""
     uniform = np.random.default_rng(seed).random((restarts, clusters))
-    return min((_settle(rows, _start(rows, each.tolist()), rounds) for each in uniform), key=lambda run: run[2])
+    return min((_settle(rows, _start(rows, numbers.tolist()), rounds) for numbers in uniform), key=lambda run: run[2])
 
 
 def _start(rows: Tensor, uniform: list[float]) -> Tensor:
@@ -80,7 +80,7 @@ def _start(rows: Tensor, uniform: list[float]) -> Tensor:
     return torch.stack(centres)
 
 
-def _settle(rows: Tensor, centres: Tensor, rounds: int) -> Clustered:
+def _settle(rows: Tensor, centres: Tensor, rounds: int) -> Clustering:
     labels = torch.full((len(rows),), -1, device=rows.device)
     away = torch.empty_like(rows[:, 0])
     for _ in range(rounds):
@@ -92,5 +92,5 @@ def _settle(rows: Tensor, centres: Tensor, rounds: int) -> Clustered:
         counts = members.sum(dim=0)
         means = (members.T @ rows) / counts.clamp(min=1)[:, None]
         centres = torch.where(counts[:, None] > 0, means, centres)
-    used, labels = torch.unique(labels, return_inverse=True)
-    return labels, centres[used], float(away.square().sum())
+    occupied, labels = torch.unique(labels, return_inverse=True)
+    return labels, centres[occupied], float(away.square().sum())

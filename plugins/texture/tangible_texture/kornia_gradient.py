@@ -49,11 +49,7 @@ class KorniaGradient(Dividing):
         return self
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Divide the picture at its edges, labels in the order of their first pixels.
-
-        Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1.
-        Raises: PictureError as `check_picture`, BrokenMethod without torch or kornia.
-        """
+        """Divide the picture at its edges. Raises: PictureError as `check_picture`, BrokenMethod without torch."""
         need("torch")
         need("kornia")
         from .energies.filter_choice import is_flat
@@ -79,12 +75,12 @@ class KorniaGradient(Dividing):
         reach = ceil(3 * sigma_px)
         size, sigma, frame = 2 * reach + 1, (sigma_px, sigma_px), reach + 2
         inner = (..., slice(frame, -frame), slice(frame, -frame))
-        framed = torch.from_numpy(np.pad(grey, frame, mode="symmetric")).to(pick_device(self.torch_device))[None, None]
-        slopes = spatial_gradient(gaussian_blur2d(framed, size, sigma))[inner].norm(dim=2)
+        tensor = torch.from_numpy(np.pad(grey, frame, mode="symmetric")).to(pick_device(self.torch_device))[None, None]
+        slopes = spatial_gradient(gaussian_blur2d(tensor, size, sigma))[inner].norm(dim=2)
         quiet = torch.sort(slopes.flatten()).values[int(QUIET * slopes.numel())] / (-2 * np.log(1 - QUIET)) ** 0.5
         unit = torch.maximum(quiet, self.contrast * slopes.max() / self.canny_high)
         low, high = SOBEL * self.canny_low, SOBEL * self.canny_high
-        _, edges = canny(framed / unit, low, high, size, sigma)
+        _, edges = canny(tensor / unit, low, high, size, sigma)
         steep = slopes / unit
         return torch.where(edges[inner] > 0, steep.clamp(min=self.canny_high), steep)[0, 0].cpu().numpy()
 

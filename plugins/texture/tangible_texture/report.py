@@ -65,8 +65,8 @@ class Report(Dividing):
         grey = to_grey(picture)
         if is_flat(grey):
             return one_segment(grey.shape)
-        printed = self.frequencies == "printed"
-        wavelengths = printed_wavelengths(grey.shape[1]) if printed else octaves(self.longest_px)
+        is_printed = self.frequencies == "printed"
+        wavelengths = printed_wavelengths(grey.shape[1]) if is_printed else octaves(self.longest_px)
         every = bank(wavelengths, 6, self.bandwidth, self.gamma)
         filters = needed_filters(grey, every, self.skip_weak, self.skip_octaves)
         step_px = ceil((4 * grey.size * len(filters) / (self.memory_mb << 20)) ** 0.5)
@@ -89,7 +89,7 @@ class Report(Dividing):
         rows, columns = (-(-side // step_px) for side in grey.shape)
         features = np.empty((rows, columns, len(filters)), np.float32)
         for i, (gabor, response) in enumerate(zip(filters, even_responses(grey, filters), strict=True)):
-            bounded = np.abs(hyperbolic_tangents(np.float32(255 * self.alpha) * response))
+            magnitude = np.abs(hyperbolic_tangents(np.float32(255 * self.alpha) * response))
             sigma_px = min(self.window * gabor.sigma_px, self.widest_px)
-            features[..., i] = gaussian(bounded[..., None], sigma_px)[::step_px, ::step_px, 0]
+            features[..., i] = gaussian(magnitude[..., None], sigma_px)[::step_px, ::step_px, 0]
         return features / max(float(features.max()), np.finfo(np.float32).tiny)

@@ -9,7 +9,7 @@ from tangible_core.errors import OptionError
 from tangible_core.plugins.notes import collected
 from tangible_texture import Gabor, Gradient, Hierarchy, Histogram
 from tangible_texture.energies.gabor_bank import bank, octaves
-from tangible_texture.energies.local_energy import energy_planes, even_responses, padding, spectrum_of
+from tangible_texture.energies.local_energy import energy_planes, even_responses, padding, picture_spectrum
 from tangible_texture.kmeans.lloyd import kmeans
 from tangible_texture.kornia_gabor import KorniaGabor
 from tangible_texture.kornia_gradient import KorniaGradient
@@ -65,7 +65,7 @@ class TestKorniaGabor:
         grey = np.random.default_rng(0).random((90, 77)).astype(np.float32)
         filters = bank(octaves(12))
         found = energies(grey, filters, 3, 6.0, torch.device("cpu")).numpy()
-        ours = energy_planes(spectrum_of(grey, padding(filters, 6.0)), filters, grey.shape, 3, 6.0)
+        ours = energy_planes(picture_spectrum(grey, padding(filters, 6.0)), filters, grey.shape, 3, 6.0)
         assert (np.abs(found - ours).max(axis=(1, 2)) < 0.01 * ours.mean(axis=(1, 2))).all()
 
     def test_clusters_match_our_k_means(self):

@@ -24,7 +24,7 @@ FINAL_ROUNDS = 8
 class Effort(NamedTuple):
     """The initial number of clusters, and the number of joinings with recomputed discriminants."""
 
-    each: int
+    per_segment: int
     """Initial clusters for each segment."""
     besides: int
     """Initial clusters on top of these."""
@@ -37,28 +37,30 @@ EFFORTS = {"fast": Effort(2, 2, 2), "balanced": Effort(3, 4, 8)}
 
 def classes(
     features: Features,
-    learned: Window | None,
+    network_window: Window | None,
     segments: int | Literal["auto"],
     effort: Literal["fast", "balanced"],
 ) -> tuple[Int32[np.ndarray, "m"], Float64[np.ndarray, "a d"]]:
     """Classify the cells of the middle windows; return each cell's class, and the axes along which classes differ."""
-    spent, (planes, shape) = EFFORTS[effort], features.middle
+    counts, (planes, shape) = EFFORTS[effort], features.middle
     most = largest_number(planes.shape[1]) if segments == "auto" else segments
-    rotated = combine_planes(principal_axes(features.wide.planes, PRINCIPAL_AXES, HALF_WHITE), features.wide.planes)
-    wide = divide(rotated, spent.each * most + spent.besides).reshape(features.wide.shape)
+    principal_planes = combine_planes(
+        principal_axes(features.wide.planes, PRINCIPAL_AXES, HALF_WHITE), features.wide.planes
+    )
+    wide = divide(principal_planes, counts.per_segment * most + counts.besides).reshape(features.wide.shape)
     rows, columns = (((np.arange(n) + 0.5) * side / n).astype(int) for side, n in zip(wide.shape, shape, strict=True))
     labels = wide[np.ix_(rows, columns)].ravel()
     power = MANY_POWER if segments == "auto" or segments >= MANY else FEW_POWER
     # What `learned_values` makes of these cells counts as much as the features in joining.
-    sets = [planes] if learned is None else [planes, learned.planes]
-    steps = join_clusters(sets, labels, shape, most + spent.last, power)
+    sets = [planes] if network_window is None else [planes, network_window.planes]
+    steps = join_clusters(sets, labels, shape, most + counts.last, power)
     labels = (
-        likeliest_division(step for step in steps if step.clusters <= most + spent.last)
+        likeliest_division(step for step in steps if step.clusters <= most + counts.last)
         if segments == "auto"
         else next(step.labels for step in steps if step.clusters <= segments)
     )
     shares = interior_shares(labels, shape)
-    axes = [axes_between(each, labels, shares) for each in sets]
+    axes = [axes_between(planes, labels, shares) for planes in sets]
     if not len(axes[0]):
         return labels * 0, axes[0]
     return refit_labels(project(axes, sets)[0], labels, shape, FINAL_ROUNDS, 1), axes[0]

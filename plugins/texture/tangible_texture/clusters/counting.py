@@ -44,7 +44,7 @@ def likeliest_division(steps: Iterable[Step]) -> Int32[np.ndarray, "n"]:
     every = list(steps)
     likelihoods = number_likelihoods(every)
     total = sum(map(exp, likelihoods))
-    best, *others = sorted(zip(likelihoods, every, strict=True), key=lambda each: -each[0])
+    best, *others = sorted(zip(likelihoods, every, strict=True), key=lambda rated: -rated[0])
     reason = "no two parts differ"
     if others:
         reason = f"the next best number is {others[0][1].clusters}, with {exp(others[0][0]) / total:.2f}"
@@ -55,13 +55,13 @@ def likeliest_division(steps: Iterable[Step]) -> Int32[np.ndarray, "n"]:
 
 def number_likelihoods(steps: Iterable[Step], weights: Weights = TWO_TEXTURES) -> list[float]:
     """Return the logarithm of the probability that joining ends at each step, up to a constant."""
-    joined, found = 0.0, list[float]()
+    joining_log, likelihoods = 0.0, list[float]()
     # The number is n if every joining before was of one texture, and the next is of two.
     for step in steps:
         odds = _log_odds(step, weights)
-        found.append(joined - _softplus(-odds))
-        joined -= _softplus(odds)
-    return found
+        likelihoods.append(joining_log - _softplus(-odds))
+        joining_log -= _softplus(odds)
+    return likelihoods
 
 
 def _log_odds(step: Step, weights: Weights) -> float:

@@ -52,12 +52,12 @@ def discriminant_axes(fit: Scatters, most: int) -> Float64[np.ndarray, "m d"]:
     apart = np.sqrt(fit.shares)[:, None] * (fit.means - centre)
     towards = solve(fit.within, apart)
     strengths, vectors = eigen(np.einsum("kd,jd->kj", apart, towards))
-    kept = np.flatnonzero(strengths > 1e-9)[:most]
-    return np.einsum("ak,kd->ad", vectors[kept] / np.sqrt(strengths[kept])[:, None], towards)
+    strongest = np.flatnonzero(strengths > 1e-9)[:most]
+    return np.einsum("ak,kd->ad", vectors[strongest] / np.sqrt(strengths[strongest])[:, None], towards)
 
 
 def principal_axes(planes: Float32[np.ndarray, "d n"], most: int, power: float = 0.0) -> Float64[np.ndarray, "m d"]:
     """Return leading principal axes of centred planes, divided by variance ** power; none for constant planes."""
     values, vectors = eigen(scatter_matrix(planes, np.ones(planes.shape[1], np.float32)) / planes.shape[1])
-    kept = np.flatnonzero(values > 1e-6 * max(values[0], 1e-6))[:most]
-    return vectors[kept] * np.array([value**-power for value in values[kept].tolist()])[:, None]
+    strongest = np.flatnonzero(values > 1e-6 * max(values[0], 1e-6))[:most]
+    return vectors[strongest] * np.array([value**-power for value in values[strongest].tolist()])[:, None]

@@ -57,16 +57,16 @@ class Pairs(NamedTuple):
         size = np.array([shares.size])
         cells = np.ascontiguousarray(planes[:, inside])
         means, scatters = _moments(cells, _weights(shares), np.zeros(1, np.int64), size)
-        kept = np.delete(np.arange(len(self.sizes)), higher)
-        joined = self._replace(
-            sizes=self.sizes[kept],
-            means=self.means[kept],
-            scatters=self.scatters[kept],
-            distances=self.distances[np.ix_(kept, kept)],
+        remaining = np.delete(np.arange(len(self.sizes)), higher)
+        pairs = self._replace(
+            sizes=self.sizes[remaining],
+            means=self.means[remaining],
+            scatters=self.scatters[remaining],
+            distances=self.distances[np.ix_(remaining, remaining)],
         )
-        joined.sizes[lower], joined.means[lower], joined.scatters[lower] = size[0], means[0], scatters[0]
-        _fill_distances(joined.means, joined.scatters, joined.ridge, lower, len(kept), joined.distances)
-        return joined
+        pairs.sizes[lower], pairs.means[lower], pairs.scatters[lower] = size[0], means[0], scatters[0]
+        _fill_distances(pairs.means, pairs.scatters, pairs.ridge, lower, len(remaining), pairs.distances)
+        return pairs
 
 
 def measure_pairs(
@@ -79,8 +79,8 @@ def measure_pairs(
     )
     ridge = RIDGE * np.einsum("k,kii->", sizes, scatters) / sizes.sum() / len(planes) + 1e-9
     distances = np.zeros((sizes.size, sizes.size))
-    for each in range(sizes.size):
-        _fill_distances(means, scatters, ridge, each, each, distances)
+    for cluster in range(sizes.size):
+        _fill_distances(means, scatters, ridge, cluster, cluster, distances)
     return Pairs(sizes, means, scatters, float(ridge), distances)
 
 
@@ -136,24 +136,24 @@ def join_clusters(
     sets: Sequence[Float32[np.ndarray, "_ n"]],
     labels: Int32[np.ndarray, "n"],
     shape: tuple[int, int],
-    renewed: int,
+    renewal_count: int,
     power: float = FEW_POWER,
 ) -> Iterator[Step]:
     """Yield divisions into ever fewer clusters, down to one: one less at least in each, one at once if none differ."""
-    together, projected = _discriminants(sets, labels, interior_shares(labels, shape))
-    labels = refit_labels(together, labels, shape, 2, 1) if projected else labels
+    together, projections = _discriminants(sets, labels, interior_shares(labels, shape))
+    labels = refit_labels(together, labels, shape, 2, 1) if projections else labels
     pairs: list[Pairs] = []
     # From `renewed` clusters down, discriminants are computed again before each joining, and cells settle with their
     # neighbours after it; before, those of the first division are used. Each set of features has its own discriminants;
     # a joining costs the geometric mean of its costs in each.
     while (count := int(labels.max()) + 1) > 1:
-        if not pairs or count <= renewed:
+        if not pairs or count <= renewal_count:
             shares = interior_shares(labels, shape)
-            if count <= renewed:
-                together, projected = _discriminants(sets, labels, shares)
-            if not projected:
+            if count <= renewal_count:
+                together, projections = _discriminants(sets, labels, shares)
+            if not projections:
                 break
-            pairs = [measure_pairs(each, labels, shares) for each in projected]
+            pairs = [measure_pairs(planes, labels, shares) for planes in projections]
         costs = pairs[0].joining_costs(power)
         if len(pairs) == 2:
             costs = np.sqrt(costs * pairs[1].joining_costs(power))
@@ -163,11 +163,11 @@ def join_clusters(
         names[other:] -= 1
         names[other] = one
         labels = names[labels]
-        if count <= renewed:
+        if count <= renewal_count:
             labels = refit_labels(together, labels, shape, 1, 1)
         else:
-            joined = zip(pairs, projected, strict=True)
-            pairs = [each.join(int(one), int(other), planes, labels, shape) for each, planes in joined]
+            sides = zip(pairs, projections, strict=True)
+            pairs = [side.join(int(one), int(other), planes, labels, shape) for side, planes in sides]
     yield Step(np.zeros_like(labels), 1, np.inf)
 
 
@@ -175,8 +175,8 @@ def _discriminants(
     sets: Sequence[Float32[np.ndarray, "_ n"]], labels: Int32[np.ndarray, "n"], shares: Float32[np.ndarray, "n"]
 ) -> tuple[Float32[np.ndarray, "_ n"], list[Float32[np.ndarray, "_ n"]]]:
     """Return the discriminating features of all sets, and of each set in which clusters differ: views of the former."""
-    together, each = project([axes_between(each, labels, shares) for each in sets], sets)
-    return together, [one for one in each if len(one)]
+    together, parts = project([axes_between(planes, labels, shares) for planes in sets], sets)
+    return together, [part for part in parts if len(part)]
 
 
 def project(
@@ -184,10 +184,10 @@ def project(
 ) -> tuple[Float32[np.ndarray, "_ n"], list[Float32[np.ndarray, "_ n"]]]:
     """Return the coordinates of cells along the axes of all sets, and those of each set: views, as copies are large."""
     together = np.zeros((sum(map(len, axes)), sets[0].shape[1]), np.float32)
-    each = np.split(together, np.cumsum([len(one) for one in axes])[:-1])
-    for one, planes, out in zip(axes, sets, each, strict=True):
+    parts = np.split(together, np.cumsum([len(one) for one in axes])[:-1])
+    for one, planes, out in zip(axes, sets, parts, strict=True):
         add_planes(one, planes, out)
-    return together, each
+    return together, parts
 
 
 def _step(

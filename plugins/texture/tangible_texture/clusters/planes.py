@@ -119,9 +119,9 @@ def _scatter_rows(planes, weights, first, step, result):
     for start in range(0, planes.shape[1], SUMMED):
         heavy = weights[start : start + SUMMED]
         for d in range(first, planes.shape[0], step):
-            weighted = heavy * planes[d, start : start + SUMMED]
+            products = heavy * planes[d, start : start + SUMMED]
             for e in range(d + 1):
-                result[d, e] += _dot(weighted, planes[e, start : start + SUMMED], lanes)
+                result[d, e] += _dot(products, planes[e, start : start + SUMMED], lanes)
 
 
 @njit(cache=True, nogil=True)

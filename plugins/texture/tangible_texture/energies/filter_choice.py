@@ -11,7 +11,7 @@ from tangible_core.plugins import note
 
 from ..signal.smoothing import remove_specks
 from .gabor_bank import Gabor
-from .local_energy import fft, mean_energies, spectrum_of, standardise
+from .local_energy import fft, mean_energies, picture_spectrum, standardise
 
 SAME = 0.03
 """The least relative spread of features of several textures; the spread of noise is ten times as large."""
@@ -53,14 +53,14 @@ def needed_filters(
     grey: Float32[np.ndarray, "h w"], filters: Sequence[Gabor], skip_weak: bool, skip_octaves: bool
 ) -> list[Gabor]:
     """Drop filters of wavelengths absent from the picture, and weak filters, each if requested, with a note."""
-    kept = filters_within_bandwidth(grey, filters) if skip_octaves else list(filters)
+    needed = filters_within_bandwidth(grey, filters) if skip_octaves else list(filters)
     if skip_weak:
-        strong = are_strongest(mean_energies(spectrum_of(grey, PAD_PX), kept))
-        kept = [each for each, keep in zip(kept, strong, strict=True) if keep]
-    if len(kept) < len(filters):
-        left = len(filters) - len(kept)
-        note(log, f"{left} of {len(filters)} filters left out: they hold hardly any energy")
-    return kept
+        strong = are_strongest(mean_energies(picture_spectrum(grey, PAD_PX), needed))
+        needed = [gabor for gabor, keep in zip(needed, strong, strict=True) if keep]
+    if len(needed) < len(filters):
+        dropped_count = len(filters) - len(needed)
+        note(log, f"{dropped_count} of {len(filters)} filters left out: they hold hardly any energy")
+    return needed
 
 
 def are_strongest(energies: Float64[np.ndarray, "filters"], share: float = ENOUGH) -> Bool[np.ndarray, "filters"]:
@@ -69,9 +69,9 @@ def are_strongest(energies: Float64[np.ndarray, "filters"], share: float = ENOUG
     # that the filters reproduce: Jain & Farrokhnia, Pattern Recognition 24 (1991), sec. 3.2.
     order = np.argsort(-energies, kind="stable")
     before = np.cumsum(energies[order]) - energies[order]
-    kept = np.empty(energies.shape, np.bool_)
-    kept[order] = before < share * energies.sum()
-    return kept if kept.any() else ~kept
+    mask = np.empty(energies.shape, np.bool_)
+    mask[order] = before < share * energies.sum()
+    return mask if mask.any() else ~mask
 
 
 def filters_within_bandwidth(
@@ -79,12 +79,12 @@ def filters_within_bandwidth(
 ) -> list[Gabor]:
     """Drop filters whose wavelengths are too short for the picture; keep all if none would be left."""
     down, right = (np.arange(side, dtype=np.float32) / (2 * side) for side in grey.shape)
-    squared = down[:, None] ** 2 + right**2
+    square_frequency = down[:, None] ** 2 + right**2
     power = np.square(fft.dctn(standardise(grey), norm="ortho", workers=thread_count()))
     # A wavelength is too short if waves of up to sqrt 2 times its length, where its octave begins, and all shorter ones
     # together hold less than `least` of the variance. A cosine transform has no seam at the frame.
     shares = {
-        wavelength: power[squared > 0.5 / wavelength**2].sum(dtype=np.float64) / grey.size
-        for wavelength in {each.wavelength_px for each in filters}
+        wavelength: power[square_frequency > 0.5 / wavelength**2].sum(dtype=np.float64) / grey.size
+        for wavelength in {gabor.wavelength_px for gabor in filters}
     }
-    return [each for each in filters if shares[each.wavelength_px] >= least] or list(filters)
+    return [gabor for gabor in filters if shares[gabor.wavelength_px] >= least] or list(filters)

@@ -40,8 +40,8 @@ def filter_part(values, shape, first, frequency, along, across, part):
                 _scale(values[row, column : column + run], gain[j : j + run], np.float32(1), part[i, j : j + run])
             else:
                 run = min(columns - j, wide - column)
-                mirrored = values[(high - row) % high, wide - column - run + 1 : wide - column + 1]
-                _scale(mirrored[::-1], gain[j : j + run], np.float32(-1), part[i, j : j + run])
+                mirror = values[(high - row) % high, wide - column - run + 1 : wide - column + 1]
+                _scale(mirror[::-1], gain[j : j + run], np.float32(-1), part[i, j : j + run])
             j += run
         _advance(gain, ratio, exp(bend))
 
@@ -56,8 +56,8 @@ def _advance(gain, ratio, shrink):
 @njit(cache=True, nogil=True)
 def _scale(values, gain, sign, part):
     for j in range(part.size):
-        each = np.float32(gain[j])
-        part[j] = complex(values[j].real * each, values[j].imag * (sign * each))
+        factor = np.float32(gain[j])
+        part[j] = complex(values[j].real * factor, values[j].imag * (sign * factor))
 
 
 @njit(cache=True, nogil=True)
@@ -97,8 +97,8 @@ def weighted_rows(values, first, weights):
 
 def even_responses(grey: Float32[np.ndarray, "h w"], filters: Sequence[Gabor]) -> Iterator[Float32[np.ndarray, "h w"]]:
     """Yield the picture convolved with each filter's even kernel; outside of the picture is its mirror image."""
-    kernels = [np.real(kernel(each)).astype(np.float32) for each in filters]
-    radius = max(len(each) // 2 for each in kernels)
+    kernels = [np.real(kernel(gabor)).astype(np.float32) for gabor in filters]
+    radius = max(len(even) // 2 for even in kernels)
     shape = [fft.next_fast_len(side + 2 * radius, real=True) for side in grey.shape]
     spectrum = fft.rfft2(np.pad(grey, radius, mode="symmetric"), shape, workers=thread_count())
     for even in kernels:
@@ -129,7 +129,7 @@ class Spectrum(NamedTuple):
 
 def padding(filters: Sequence[Gabor], sigma_px: float) -> int:
     """Return the width of the mirrored frame in px: the reach of the widest smoothing and two sigma of its filter."""
-    return ceil(max((REACH * smoothing_px(each, sigma_px) + 2 * each.sigma_px for each in filters), default=0.0))
+    return ceil(max((REACH * smoothing_px(gabor, sigma_px) + 2 * gabor.sigma_px for gabor in filters), default=0.0))
 
 
 def smoothing_px(gabor: Gabor, sigma_px: float) -> float:
@@ -137,15 +137,15 @@ def smoothing_px(gabor: Gabor, sigma_px: float) -> float:
     return max(sigma_px, RELATIVE_SIGMA * gabor.wavelength_px)
 
 
-def spectrum_of(grey: Float32[np.ndarray, "h w"], pad_px: int) -> Spectrum:
+def picture_spectrum(grey: Float32[np.ndarray, "h w"], pad_px: int) -> Spectrum:
     """Standardise, mirror and transform a picture. Raises: PictureError if it is empty or not finite."""
     if grey.ndim != 2 or grey.size == 0:
         raise PictureError(f"grey is (h, w) with at least one pixel, not {grey.shape}")
     check_finite(grey, "grey")
     shape = (fft.next_fast_len(grey.shape[0] + 2 * pad_px), fft.next_fast_len(grey.shape[1] + 2 * pad_px, real=True))
-    ends = [(pad_px, padded - pad_px - side) for padded, side in zip(shape, grey.shape, strict=True)]
-    mirrored = np.pad(standardise(grey), ends, mode="symmetric")
-    values = fft.rfft2(mirrored, norm="forward", workers=thread_count())
+    ends = [(pad_px, length - pad_px - side) for length, side in zip(shape, grey.shape, strict=True)]
+    mirror = np.pad(standardise(grey), ends, mode="symmetric")
+    values = fft.rfft2(mirror, norm="forward", workers=thread_count())
     values[0, 0] = 0
     return Spectrum(values, shape, pad_px)
 
@@ -154,10 +154,10 @@ def standardise(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
     """Return the picture with mean 0 and standard deviation 1; all 0 if its values differ by rounding only."""
     # Scaled first, so that no square overflows or vanishes.
     top = np.float32(max(float(grey.max()), -float(grey.min())))
-    scaled = grey / top if top else grey
-    scaled = scaled - np.float32(scaled.mean(dtype=np.float64))
-    deviation = float(np.sqrt(np.mean(np.square(scaled), dtype=np.float64)))
-    return scaled / np.float32(deviation) if deviation > 1e-7 else np.zeros_like(scaled)
+    values = grey / top if top else grey
+    values = values - np.float32(values.mean(dtype=np.float64))
+    deviation = float(np.sqrt(np.mean(np.square(values), dtype=np.float64)))
+    return values / np.float32(deviation) if deviation > 1e-7 else np.zeros_like(values)
 
 
 def energy_planes(

@@ -77,17 +77,17 @@ def _standardise(plane):
 
 
 @njit(cache=True, nogil=True)
-def _total(values, squared):
+def _total(values, is_squared):
     """Sum the values, or their squares, in LANES partial sums."""
     # No order of sums depends on the processor's vectors, and squares need no extra memory.
     lanes, whole = np.zeros(LANES), values.size // LANES * LANES
     for i in range(0, whole, LANES):
         for j in range(LANES):
             value = values[i + j]
-            lanes[j] += value * value if squared else value
+            lanes[j] += value * value if is_squared else value
     total = 0.0
     for j in range(LANES):
         total += lanes[j]
     for i in range(whole, values.size):
-        total += values[i] * values[i] if squared else values[i]
+        total += values[i] * values[i] if is_squared else values[i]
     return total

@@ -13,7 +13,7 @@ from tangible_core.runtime import plain_opencv
 
 from ..energies.filter_choice import is_flat, is_one_texture
 from ..energies.gabor_bank import bank, octaves
-from ..energies.local_energy import energy_planes, mean_energies, padding, spectrum_of, standardise
+from ..energies.local_energy import energy_planes, mean_energies, padding, picture_spectrum, standardise
 from .cells import CELL_PX, ENERGY_SIGMA_PX, cap_rare_values, standardise_roots, window_means
 from .channels import channels
 from .patterns import PATTERNS, pattern_frequencies
@@ -92,7 +92,7 @@ def _planes(
 ) -> tuple[Float32[np.ndarray, "d rows columns"], tuple[int, ...], int]:
     """Return energies, pattern frequencies and colours, cell by cell; the filters' numbers; and how many colours."""
     filters = bank(octaves(lambda_max_px))
-    spectrum = spectrum_of(grey, padding(filters, ENERGY_SIGMA_PX))
+    spectrum = picture_spectrum(grey, padding(filters, ENERGY_SIGMA_PX))
     means = mean_energies(spectrum, filters)
     numbers = tuple(np.flatnonzero(means >= least_energy * means.sum()).tolist())
     filters_used = [filters[number] for number in numbers]

@@ -34,14 +34,14 @@ def pattern_frequencies(
     for planes, (radius, sigma) in zip(frequencies.reshape(len(RADII), COUNTERS, *shape), RADII, strict=True):
         with plain_opencv():
             smooth = cv2.GaussianBlur(grey, (0, 0), sigma, borderType=cv2.BORDER_REFLECT_101) if sigma else grey
-        framed = np.pad(smooth, radius, mode="edge")
+        frame = np.pad(smooth, radius, mode="edge")
         in_blocks(
-            shape[0], lambda a, b, f=framed, r=radius, p=planes: _count(f, r, a, b, grey.shape, _FIRST, _SECOND, p), 4
+            shape[0], lambda a, b, f=frame, r=radius, p=planes: _count(f, r, a, b, grey.shape, _FIRST, _SECOND, p), 4
         )
     return frequencies
 
 
-def _pairs_of(code: int) -> Iterator[tuple[bool, ...]]:
+def _agreeing_pairs(code: int) -> Iterator[tuple[bool, ...]]:
     bits = [bool(code >> i & 1) for i in range(8)]
     axes = [(bits[i], bits[i + 4]) for i in range(4)]
     quarters = [[bits[(i + j) % 8] == bits[(i + j + 2) % 8] for j in (0, 4)] for i in range(4)]
@@ -50,7 +50,7 @@ def _pairs_of(code: int) -> Iterator[tuple[bool, ...]]:
     yield from zip(*quarters, strict=True)
 
 
-def _class_of(code: int) -> int:
+def _rotation_class(code: int) -> int:
     """Return the number of bright neighbours if they are contiguous, else 9."""
     bits = [code >> i & 1 for i in range(8)]
     return sum(bits) if sum(bits[i] != bits[i - 1] for i in range(8)) <= 2 else CLASSES - 1
@@ -60,13 +60,13 @@ def _pack_bits(flags: Iterable[bool], first_bit: int, width: int) -> int:
     return sum(1 << (first_bit + width * i) for i, flag in enumerate(flags) if flag)
 
 
-def _agreements_of(code: int) -> int:
-    dark, bright, *quarters = _pairs_of(code)
+def _agreement_word(code: int) -> int:
+    dark, bright, *quarters = _agreeing_pairs(code)
     return _pack_bits(dark, 0, 5) + _pack_bits(bright, 20, 5) + sum(_pack_bits(quarter, 40, 6) for quarter in quarters)
 
 
-_FIRST: UInt64[np.ndarray, "256"] = np.array([1 << 5 * _class_of(code) for code in range(256)], np.uint64)
-_SECOND: UInt64[np.ndarray, "256"] = np.array([_agreements_of(code) for code in range(256)], np.uint64)
+_FIRST: UInt64[np.ndarray, "256"] = np.array([1 << 5 * _rotation_class(code) for code in range(256)], np.uint64)
+_SECOND: UInt64[np.ndarray, "256"] = np.array([_agreement_word(code) for code in range(256)], np.uint64)
 
 
 @njit(cache=True, nogil=True)

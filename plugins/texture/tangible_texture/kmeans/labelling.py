@@ -42,11 +42,11 @@ def _silhouette(rows: Float32[np.ndarray, "n d"], labels: np.ndarray) -> float:
     squares = np.square(rows).sum(axis=1)
     away = np.sqrt(np.maximum(squares[:, None] + squares - 2 * combine_planes(rows, np.ascontiguousarray(rows.T)), 0))
     sizes = np.bincount(labels)
-    sums = np.stack([away[:, labels == each].sum(axis=1) for each in range(len(sizes))], axis=1)
-    each = np.arange(len(rows))
-    own = sums[each, labels] / np.maximum(sizes[labels] - 1, 1)
+    sums = np.stack([away[:, labels == label].sum(axis=1) for label in range(len(sizes))], axis=1)
+    row = np.arange(len(rows))
+    own = sums[row, labels] / np.maximum(sizes[labels] - 1, 1)
     means = sums / sizes
-    means[each, labels] = np.inf
+    means[row, labels] = np.inf
     other = means.min(axis=1)
     larger = np.maximum(np.maximum(own, other), np.finfo(np.float32).tiny)
     return float(np.where(sizes[labels] > 1, (other - own) / larger, 0).mean())

@@ -50,25 +50,25 @@ def _settle(rows: Float32[np.ndarray, "n d"], centres: Float32[np.ndarray, "k d"
     blocks = [slice(first, first + BLOCK) for first in range(0, len(rows), BLOCK)]
     sums = np.empty((len(blocks), *centres.shape))
     counts = np.empty((len(blocks), len(centres)), np.int64)
-    costs, moved = np.empty(len(blocks)), np.empty(len(blocks), np.int64)
+    costs, move_counts = np.empty(len(blocks)), np.empty(len(blocks), np.int64)
 
     def work(share: Iterable[int]) -> None:
         for i in share:
-            costs[i], moved[i] = _assign(rows[blocks[i]], centres, labels[blocks[i]], sums[i], counts[i])
+            costs[i], move_counts[i] = _assign(rows[blocks[i]], centres, labels[blocks[i]], sums[i], counts[i])
 
     for _ in range(rounds):
         in_turns(list(range(len(blocks))), work)
-        if not moved.any():
+        if not move_counts.any():
             break
         members = counts.sum(axis=0)
-        used = members > 0
-        centres[used] = sums.sum(axis=0)[used] / members[used, None]
-    used = counts.sum(axis=0) > 0
-    return Clusters((np.cumsum(used, dtype=np.int32) - 1)[labels], centres[used], float(costs.sum()))
+        has_members = members > 0
+        centres[has_members] = sums.sum(axis=0)[has_members] / members[has_members, None]
+    has_members = counts.sum(axis=0) > 0
+    return Clusters((np.cumsum(has_members, dtype=np.int32) - 1)[labels], centres[has_members], float(costs.sum()))
 
 
 @njit(cache=True, nogil=True)
-def _start(rows, uniform, weighted, least):
+def _start(rows, uniform, is_weighted, least):
     """Draw one starting row for each value of `uniform`; fewer if there are not as many distinct rows."""
     count = len(rows)
     centres = np.empty((len(uniform), rows.shape[1]), np.float32)
@@ -79,17 +79,17 @@ def _start(rows, uniform, weighted, least):
         for i in range(count):
             away[i] = min(away[i], _squared_distance(rows[i], centres[k - 1]))
             if away[i] > least:
-                total += away[i] if weighted else 1.0
+                total += away[i] if is_weighted else 1.0
         if total == 0.0:
             return centres[:k].copy()
-        left, chosen = uniform[k] * total, 0
+        rest, choice = uniform[k] * total, 0
         for i in range(count):
             if away[i] > least:
-                chosen = i
-                left -= away[i] if weighted else 1.0
-                if left < 0:
+                choice = i
+                rest -= away[i] if is_weighted else 1.0
+                if rest < 0:
                     break
-        centres[k] = rows[chosen]
+        centres[k] = rows[choice]
     return centres
 
 
@@ -107,7 +107,7 @@ def _assign(rows, centres, labels, sums, counts):
     """Write each row's nearest centre and the sums of rows by centre; return the cost and the number of new labels."""
     sums[:] = 0
     counts[:] = 0
-    cost, moved = 0.0, 0
+    cost, move_count = 0.0, 0
     upright = np.zeros((rows.shape[1], SIDE_BY_SIDE), np.float32)
     away = np.empty((len(centres), SIDE_BY_SIDE), np.float32)
     for first in range(0, len(rows), SIDE_BY_SIDE):
@@ -121,13 +121,13 @@ def _assign(rows, centres, labels, sums, counts):
             at = 0
             for k in range(1, len(centres)):
                 at = k if away[k, i] < away[at, i] else at
-            moved += labels[first + i] != at
+            move_count += labels[first + i] != at
             labels[first + i] = at
             cost += away[at, i]
             counts[at] += 1
             for d in range(part.shape[1]):
                 sums[at, d] += part[i, d]
-    return cost, moved
+    return cost, move_count
 
 
 @njit(cache=True, nogil=True)

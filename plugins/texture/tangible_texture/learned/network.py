@@ -39,8 +39,8 @@ class Weights(NamedTuple):
 
 @cache
 def _weights() -> Weights:
-    with as_file(files("tangible_texture.learned") / "weights.npz") as path, np.load(path) as stored:
-        first, first_bias, second, second_bias, last = (stored[name] for name in Weights._fields)
+    with as_file(files("tangible_texture.learned") / "weights.npz") as path, np.load(path) as arrays:
+        first, first_bias, second, second_bias, last = (arrays[name] for name in Weights._fields)
     return Weights(
         first.astype(np.float64),
         first_bias.astype(np.float32),
@@ -55,41 +55,41 @@ def learned_values(features: Features) -> Window | None:
     if min(features.narrow.shape) < MIN_CELLS:
         return None
     filters, shape = features.filters, features.middle.shape
-    known = [at for at, each in enumerate(filters) if each < FILTERS]
-    chosen = [*known, *range(len(filters), len(filters) + PATTERNS)]
-    weights, columns = _weights(), [*(filters[at] for at in known), *range(FILTERS, FILTERS + PATTERNS)]
+    usable = [at for at, number in enumerate(filters) if number < FILTERS]
+    numbers = [*usable, *range(len(filters), len(filters) + PATTERNS)]
+    weights, columns = _weights(), [*(filters[at] for at in usable), *range(FILTERS, FILTERS + PATTERNS)]
     # Fitted by `benchmarks.texture_fit` to prototypes, one class a texture (Snell, Swersky & Zemel, NIPS 2017). Weights
     # are tied so that a flip or a quarter turn exchanges values, and no distance changes. A filter that was left out
     # counts as one without differences.
-    hidden = np.zeros((len(weights.first), shape[0] * shape[1]), np.float32)
-    for start in range(0, len(chosen), GROUP):
+    layer = np.zeros((len(weights.first), shape[0] * shape[1]), np.float32)
+    for start in range(0, len(numbers), GROUP):
         own = columns[start : start + GROUP]
-        add_planes(weights.first[:, own].copy(), _reduce(features.narrow, chosen[start : start + GROUP], shape), hidden)
-    _rectify(hidden, weights.first_bias)
-    rest = np.zeros((len(weights.second), hidden.shape[1]), np.float32)
+        add_planes(weights.first[:, own].copy(), _reduce(features.narrow, numbers[start : start + GROUP], shape), layer)
+    _rectify(layer, weights.first_bias)
+    rest = np.zeros((len(weights.second), layer.shape[1]), np.float32)
     for index, sigma in enumerate(WINDOWS):
-        own = weights.second[:, index * len(hidden) :]
-        for start in range(0, len(hidden), GROUP):
-            values = hidden[start : start + GROUP]
+        own = weights.second[:, index * len(layer) :]
+        for start in range(0, len(layer), GROUP):
+            values = layer[start : start + GROUP]
             around = window_means(values.reshape(-1, *shape), sigma).reshape(values.shape) if sigma else values
             add_planes(own[:, start : start + len(values)].copy(), around, rest)
     result = combine_planes(weights.last, _rectify(rest, weights.second_bias))
     return Window(result - result.mean(axis=1, keepdims=True), shape)
 
 
-def _reduce(narrow: Window, chosen: list[int], shape: tuple[int, int]) -> Float32[np.ndarray, "k n"]:
+def _reduce(narrow: Window, numbers: list[int], shape: tuple[int, int]) -> Float32[np.ndarray, "k n"]:
     """Return means of 2 x 2 cells of the chosen planes."""
     import cv2
 
-    planes, reduced = narrow.planes.reshape(-1, *narrow.shape), np.empty((len(chosen), *shape), np.float32)
+    planes, means = narrow.planes.reshape(-1, *narrow.shape), np.empty((len(numbers), *shape), np.float32)
 
     @plain_opencv()
     def work(share: Iterable[int]) -> None:
         for i in share:
-            cv2.resize(planes[chosen[i]], shape[::-1], dst=reduced[i], interpolation=cv2.INTER_AREA)
+            cv2.resize(planes[numbers[i]], shape[::-1], dst=means[i], interpolation=cv2.INTER_AREA)
 
-    in_turns(list(range(len(chosen))), work)
-    return reduced.reshape(len(chosen), -1)
+    in_turns(list(range(len(numbers))), work)
+    return means.reshape(len(numbers), -1)
 
 
 def _rectify(values: Float32[np.ndarray, "k n"], bias: Float32[np.ndarray, "k"]) -> Float32[np.ndarray, "k n"]:

@@ -20,13 +20,7 @@ _SEVERAL = -2
 def basins(
     height: Float32[np.ndarray, "h w"], levels: Iterable[float], smallest_px: int
 ) -> tuple[Int32[np.ndarray, "h w"], int]:
-    """Label connected parts (4 neighbours) at or under a level with at least smallest_px pixels.
-
-    The levels rise. At a higher level, a part without a basin becomes a new one: a rough object between smooth ones has
-    its own basin, although it is nowhere as flat as they are. A part with one basin belongs to that basin entirely, as
-    in a watershed: water fills it before it flows over.
-    Returns: labels, -1 outside of the basins, and their number.
-    """
+    """Label connected parts (4 neighbours) of smallest_px or more at or under rising levels, -1 elsewhere."""
     labels = np.full(height.shape, UNSEEN, np.int32)
     count = 0
     # At a higher level, a part without a basin becomes a new one: a rough object between smooth ones has its own,

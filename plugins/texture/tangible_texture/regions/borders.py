@@ -79,9 +79,9 @@ def borders(
         _pairs(labels, land.steep, edges, slopes, edge_slope, ways, count)
         for slopes, ways in (((land.down, land.across), DOWN), ((land.across, land.down), ACROSS))
     ]
-    keys, highest, edged = (np.concatenate(each) for each in zip(*pairs, strict=True))
+    keys, highest, has_edge = (np.concatenate(parts) for parts in zip(*pairs, strict=True))
     bordering, which, number = np.unique(keys, return_inverse=True, return_counts=True)
-    sums = (np.bincount(which, weights, bordering.size).tolist() for weights in (highest, edged))
+    sums = (np.bincount(which, weights, bordering.size).tolist() for weights in (highest, has_edge))
     return {
         divmod(key, count): Border(*sums) for key, *sums in zip(bordering.tolist(), number.tolist(), *sums, strict=True)
     }

@@ -19,7 +19,7 @@ def merge(areas: list[int], borders: dict[tuple[int, int], Border], most: int) -
     # border times a b / (a + b), a and b being areas: small regions give way to large ones, as in Ward's method.
     graph = _Graph(areas, borders)
     graph.merge(most)
-    if graph.left > most:
+    if graph.remaining > most:
         graph.weigh()
         graph.merge(most)
     return np.array([graph.root(region) for region in range(len(areas))], np.int32)
@@ -27,12 +27,12 @@ def merge(areas: list[int], borders: dict[tuple[int, int], Border], most: int) -
 
 def weakest_border(borders: dict[tuple[int, int], Border], parts: Int32[np.ndarray, "n"]) -> float:
     """Return the least share of edges in the border of two merged regions; 0 for one region. `parts`: from `merge`."""
-    merged: dict[tuple[int, int], Border] = {}
+    totals: dict[tuple[int, int], Border] = {}
     for (one, other), border in borders.items():
         low, high = sorted((int(parts[one]), int(parts[other])))
         if low < high:
-            merged[low, high] = border.plus(merged[low, high]) if (low, high) in merged else border
-    return min((border.edges / border.pairs for border in merged.values()), default=0.0)
+            totals[low, high] = border.plus(totals[low, high]) if (low, high) in totals else border
+    return min((border.edges / border.pairs for border in totals.values()), default=0.0)
 
 
 class _Graph:
@@ -40,7 +40,7 @@ class _Graph:
 
     def __init__(self, areas: list[int], borders: dict[tuple[int, int], Border]) -> None:
         self.areas = areas.copy()
-        self.left = len(areas)
+        self.remaining = len(areas)
         self.weighing = False
         self.parent = list(range(len(areas)))
         self.neighbours: list[dict[int, Border]] = [{} for _ in areas]
@@ -70,7 +70,7 @@ class _Graph:
             reluctance, one, other, border = heapq.heappop(self.queue)
             if self.neighbours[one].get(other) is not border:
                 continue
-            if reluctance >= 0 and self.left <= most:
+            if reluctance >= 0 and self.remaining <= most:
                 break
             self.join(one, other)
 
@@ -82,14 +82,14 @@ class _Graph:
         a, b = self.areas[one], self.areas[other]
         return border.height / border.pairs * a * b / (a + b)
 
-    def join(self, survivor: int, lost: int) -> None:
+    def join(self, survivor: int, absorbed: int) -> None:
         """Make two regions one."""
-        self.parent[lost] = survivor
-        self.areas[survivor] += self.areas[lost]
-        self.left -= 1
-        borders, self.neighbours[lost] = self.neighbours[lost], {}
+        self.parent[absorbed] = survivor
+        self.areas[survivor] += self.areas[absorbed]
+        self.remaining -= 1
+        borders, self.neighbours[absorbed] = self.neighbours[absorbed], {}
         for far, border in borders.items():
-            del self.neighbours[far][lost]
+            del self.neighbours[far][absorbed]
             if far != survivor:
                 own = self.neighbours[survivor].get(far)
                 self.neighbours[survivor][far] = border.plus(own) if own else border
@@ -107,13 +107,13 @@ class _Graph:
 
 def number_in_reading_order(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
     """Renumber labels 0..n-1 in the order of their first pixels, row by row. Parameters: labels >= 0."""
-    numbered = np.empty_like(labels)
-    _rename(labels, np.full(int(labels.max()) + 1, -1, np.int32), numbered)
-    return numbered
+    result = np.empty_like(labels)
+    _rename(labels, np.full(int(labels.max()) + 1, -1, np.int32), result)
+    return result
 
 
 @njit(**KERNEL)
-def _rename(labels, order, numbered):
+def _rename(labels, order, result):
     count = 0
     for row in range(labels.shape[0]):
         for column in range(labels.shape[1]):
@@ -121,4 +121,4 @@ def _rename(labels, order, numbered):
             if order[label] < 0:
                 order[label] = count
                 count += 1
-            numbered[row, column] = order[label]
+            result[row, column] = order[label]

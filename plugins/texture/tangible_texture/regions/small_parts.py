@@ -14,16 +14,16 @@ def remove_seams(
     from scipy.ndimage import distance_transform_edt
 
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1))
-    framed = np.pad(labels, 2 * radius, mode="symmetric")
+    frame = np.pad(labels, 2 * radius, mode="symmetric")
     inner = tuple(slice(2 * radius, 2 * radius + side) for side in labels.shape)
     wide = np.zeros(labels.shape, np.bool_)
-    for each in range(int(labels.max()) + 1):
-        wide |= cv2.morphologyEx((framed == each).astype(np.uint8), cv2.MORPH_OPEN, disc)[inner] > 0
+    for label in range(int(labels.max()) + 1):
+        wide |= cv2.morphologyEx((frame == label).astype(np.uint8), cv2.MORPH_OPEN, disc)[inner] > 0
     if not wide.any():
         return labels, ~wide
     nearest = distance_transform_edt(~wide, return_distances=False, return_indices=True)
-    _, numbered = np.unique(labels[tuple(np.asarray(nearest))], return_inverse=True)
-    return numbered.reshape(labels.shape).astype(np.int32), wide
+    _, numbers = np.unique(labels[tuple(np.asarray(nearest))], return_inverse=True)
+    return numbers.reshape(labels.shape).astype(np.int32), wide
 
 
 def remove_small_parts(
@@ -32,8 +32,8 @@ def remove_small_parts(
     """Give parts (4 neighbours) of fewer flat pixels to the adjacent classes, up to the steepest pixels in between."""
     # An edge from dark to bright is not a segment of grey: pixels steeper than `flat` are in no part.
     markers = np.full(classes.shape, UNSEEN, np.int32)
-    for each in range(int(classes.max()) + 1):
-        _add_large_parts(markers, (classes == each) & (steep <= flat), each, smallest_px)
+    for label in range(int(classes.max()) + 1):
+        _add_large_parts(markers, (classes == label) & (steep <= flat), label, smallest_px)
     if markers.max() == UNSEEN:
         return np.zeros_like(classes)
     return watershed(steep, markers)

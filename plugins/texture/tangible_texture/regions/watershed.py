@@ -31,33 +31,33 @@ def watershed(height: Heights, markers: Labels) -> Labels:
     """Flood a landscape (>= 0) from markers, -1 elsewhere: each pixel gets the one whose water reaches it first."""
     top = float(height.max())
     scale = np.float32((LEVELS - 1) / np.sqrt(top) if top else 0)
-    flooded = np.empty_like(markers)
+    labels = np.empty_like(markers)
     # Meyer, Un algorithme optimal pour la ligne de partage des eaux, 1991, over 4 neighbours, without sheds; the queue
     # is an array of lists, one a level. No water comes from beyond a tile's margin unless a tile has no marker.
     for row in range(0, len(height), TILE_PX):
         for column in range(0, height.shape[1], TILE_PX):
-            _flood_tile(flooded, row, column, height, markers, scale)
-    return flooded if flooded.min() > UNSEEN else _flood(height, flooded, scale)
+            _flood_tile(labels, row, column, height, markers, scale)
+    return labels if labels.min() > UNSEEN else _flood(height, labels, scale)
 
 
-def _flood_tile(flooded: Labels, row: int, column: int, height: Heights, markers: Labels, scale: np.float32) -> None:
+def _flood_tile(result: Labels, row: int, column: int, height: Heights, markers: Labels, scale: np.float32) -> None:
     """Flood one tile with its margin, and keep the tile: a whole picture does not fit the cache."""
     top, left = max(0, row - AROUND_PX), max(0, column - AROUND_PX)
     window = np.s_[top : row + TILE_PX + AROUND_PX, left : column + TILE_PX + AROUND_PX]
     labels = _flood(np.ascontiguousarray(height[window]), np.ascontiguousarray(markers[window]), scale)
     inner = labels[row - top :, column - left :][:TILE_PX, :TILE_PX]
-    flooded[row : row + TILE_PX, column : column + TILE_PX] = inner
+    result[row : row + TILE_PX, column : column + TILE_PX] = inner
 
 
 def _flood(height: Heights, markers: Labels, scale: np.float32) -> Labels:
     rows, columns = height.shape
-    cells, flooded = np.empty(((rows + 2) * (columns + 2), 3), np.int32), np.empty_like(markers)
-    _pour(height, markers, scale, cells, np.full(LEVELS, _LAST, np.int32), np.empty(LEVELS, np.int32), flooded)
-    return flooded
+    cells, labels = np.empty(((rows + 2) * (columns + 2), 3), np.int32), np.empty_like(markers)
+    _pour(height, markers, scale, cells, np.full(LEVELS, _LAST, np.int32), np.empty(LEVELS, np.int32), labels)
+    return labels
 
 
 @njit(**KERNEL)
-def _pour(height, markers, scale, cells, first, last, flooded):
+def _pour(height, markers, scale, cells, first, last, labels):
     rows, columns = height.shape
     width = columns + 2
     _frame(height, markers, scale, cells)
@@ -78,7 +78,7 @@ def _pour(height, markers, scale, cells, first, last, flooded):
             pixel = cells[pixel, _NEXT]
     for row in range(rows):
         for column in range(columns):
-            flooded[row, column] = cells[(row + 1) * width + column + 1, _LABEL]
+            labels[row, column] = cells[(row + 1) * width + column + 1, _LABEL]
 
 
 @inner()

@@ -26,7 +26,7 @@ Map = Float32[np.ndarray, "h w"]
 def slopes(smooth: Float32[np.ndarray, "h w c"]) -> tuple[Map, Map, Map, Map]:
     """Return magnitude, across and down in the steepest channel, by central differences, and the noise of slopes."""
     across, down = np.empty(smooth.shape, np.float32), np.empty(smooth.shape, np.float32)
-    rows, across_rows, down_rows = (each.reshape(len(smooth), -1) for each in (smooth, across, down))
+    rows, across_rows, down_rows = (plane.reshape(len(smooth), -1) for plane in (smooth, across, down))
     _differences(rows, across_rows, down_rows, smooth.shape[2])
     magnitude = np.sqrt(across * across + down * down)
     # The parameter of its Rayleigh distribution, in the noisiest channel, from the flattest quarter of each tile: a

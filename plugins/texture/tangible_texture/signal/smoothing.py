@@ -18,7 +18,7 @@ def remove_specks(values: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, "
     # Conservative smoothing (Jain, Kasturi & Schunck, Machine Vision, 1995, ch. 4), limited by the spread: noise,
     # lines, corners and steps stay.
     around = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], np.uint8)
-    lowest, highest = (each(values, around).reshape(values.shape) for each in (cv2.erode, cv2.dilate))
+    lowest, highest = (extreme(values, around).reshape(values.shape) for extreme in (cv2.erode, cv2.dilate))
     calm = np.empty(values.size, values.dtype)
     _replace_specks(values.ravel(), lowest.ravel(), highest.ravel(), calm)
     return calm.reshape(values.shape)

@@ -77,5 +77,5 @@ def _directions(across: Plane, down: Plane) -> Planes:
     least = np.float32(1e-12)
     # The squares of the positive parts of cos 2t, -cos 2t, sin 2t and -sin 2t sum to 1 for every angle t.
     cosine, sine = (across * across - down * down) / (square + least), 2 * across * down / (square + least)
-    ways = [steep * np.square(np.maximum(each, 0)) for each in (cosine, -cosine, sine, -sine)]
+    ways = [steep * np.square(np.maximum(part, 0)) for part in (cosine, -cosine, sine, -sine)]
     return np.stack([*ways, 1 - steep])

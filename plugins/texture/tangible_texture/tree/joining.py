@@ -13,7 +13,7 @@ _NONE = -1
 
 
 def join_regions(
-    regions: Regions, weights: Float64[np.ndarray, "terms"], constant: float, seen: Float64[np.ndarray, "rows 8"]
+    regions: Regions, weights: Float64[np.ndarray, "terms"], constant: float, record: Float64[np.ndarray, "rows 8"]
 ) -> tuple[Int32[np.ndarray, "joins 2"], Float64[np.ndarray, "joins"], int]:
     """Join the two neighbours whose border costs least, until one is left; return joins, costs and rows written."""
     # That of joining i is node n + i, as in SciPy's linkages. A program that fits weights passes rows for the two nodes
@@ -22,11 +22,11 @@ def join_regions(
     joins, costs = np.empty((count - 1, 2), np.int32), np.empty(count - 1)
     owners = np.concatenate([regions.borders[:, 0], regions.borders[:, 1]]).astype(np.int32)
     links, first, marks = (np.full(size, _NONE, np.int32) for size in (2 * borders, count, count))
-    areas, colours, roughness = (each.copy() for each in (regions.areas, regions.colours, regions.roughness))
+    areas, colours, roughness = (sums.copy() for sums in (regions.areas, regions.colours, regions.roughness))
     pairs, strengths, prices = regions.pairs.copy(), regions.strengths.copy(), np.empty(borders)
     rows = _join(
         areas, colours, roughness, owners, links, first, marks, np.arange(count, dtype=np.int32), pairs, strengths,
-        prices, weights, constant, np.empty(TERMS), seen, joins, costs,
+        prices, weights, constant, np.empty(TERMS), record, joins, costs,
     )  # fmt: skip
     return joins, costs, rows
 
@@ -34,7 +34,7 @@ def join_regions(
 @njit(**KERNEL)
 def _join(
     areas, colours, roughness, owners, links, first, marks, nodes, pairs, strengths, prices, weights, constant, terms,
-    seen, joins, costs,
+    record, joins, costs,
 ):  # fmt: skip
     """Join regions in place; returns the number of rows seen."""
     count, borders, rows, total = areas.size, prices.size, 0, areas.sum()
@@ -45,56 +45,56 @@ def _join(
         one, other = owners[border], owners[border + borders]
         _measure(areas, colours, roughness, one, other, pairs[border], strengths[border], total, terms)
         prices[border] = _price(terms, weights, constant)
-        rows = _record(seen, rows, nodes[one], nodes[other], terms)
+        rows = _record(record, rows, nodes[one], nodes[other], terms)
     for step in range(count - 1):
         best = np.argmin(prices)
-        one, lost = owners[best], owners[best + borders]
-        joins[step, 0], joins[step, 1], costs[step] = nodes[one], nodes[lost], prices[best]
+        one, absorbed = owners[best], owners[best + borders]
+        joins[step, 0], joins[step, 1], costs[step] = nodes[one], nodes[absorbed], prices[best]
         nodes[one] = count + step
-        areas[one] += areas[lost]
+        areas[one] += areas[absorbed]
         for at in range(colours.shape[1]):
-            colours[one, at] += colours[lost, at]
+            colours[one, at] += colours[absorbed, at]
         for at in range(roughness.shape[1]):
-            roughness[one, at] += roughness[lost, at]
-        _join_borders(one, lost, owners, links, first, marks, pairs, strengths, prices)
+            roughness[one, at] += roughness[absorbed, at]
+        _join_borders(one, absorbed, owners, links, first, marks, pairs, strengths, prices)
         half = first[one]
         while half != _NONE:
             border, other = half % borders, owners[(half + borders) % (2 * borders)]
             _measure(areas, colours, roughness, one, other, pairs[border], strengths[border], total, terms)
             prices[border] = _price(terms, weights, constant)
-            rows = _record(seen, rows, nodes[one], nodes[other], terms)
+            rows = _record(record, rows, nodes[one], nodes[other], terms)
             half = links[half]
     return rows
 
 
 @inner()
-def _join_borders(one, lost, owners, links, first, marks, pairs, strengths, prices):
+def _join_borders(one, absorbed, owners, links, first, marks, pairs, strengths, prices):
     """Give the borders of a region to another; of two with the same neighbour the second is added to the first."""
     borders = prices.size
-    kept, head = _NONE, _NONE
-    for start in (first[one], first[lost]):
+    last_half, head = _NONE, _NONE
+    for start in (first[one], first[absorbed]):
         half = start
         while half != _NONE:
             following, border = links[half], half % borders
             owners[half] = one
             other = owners[(half + borders) % (2 * borders)]
-            if other in (one, lost):
+            if other in (one, absorbed):
                 prices[border] = np.inf
             elif prices[border] < np.inf:
                 if marks[other] == _NONE:
                     marks[other] = border
-                    if kept == _NONE:
+                    if last_half == _NONE:
                         head = half
                     else:
-                        links[kept] = half
-                    kept = half
+                        links[last_half] = half
+                    last_half = half
                 else:
                     pairs[marks[other]] += pairs[border]
                     strengths[marks[other]] += strengths[border]
                     prices[border] = np.inf
             half = following
-    if kept != _NONE:
-        links[kept] = _NONE
+    if last_half != _NONE:
+        links[last_half] = _NONE
     first[one] = head
     half = head
     while half != _NONE:
@@ -127,10 +127,10 @@ def _price(terms, weights, constant):
 
 
 @inner()
-def _record(seen, rows, one, other, terms):
-    if rows == len(seen):
+def _record(record, rows, one, other, terms):
+    if rows == len(record):
         return rows
-    seen[rows, 0], seen[rows, 1] = one, other
+    record[rows, 0], record[rows, 1] = one, other
     for at in range(terms.size):
-        seen[rows, 2 + at] = terms[at]
+        record[rows, 2 + at] = terms[at]
     return rows + 1

@@ -65,7 +65,7 @@ def measure_regions(
     """Sum over cells and pairs. A pair's strength is that of the change across the border, weighted over the cues."""
     count = int(labels.max()) + 1
     flat = labels.reshape(-1)
-    first, second = (np.concatenate(each) for each in zip(*_pairs(labels), strict=True))
+    first, second = (np.concatenate(parts) for parts in zip(*_pairs(labels), strict=True))
     strengths = np.empty(first.size, np.float32)
     _measure_pairs(labels, first, second, tensors.reshape(*tensors.shape[:2], -1), weights, strengths)
     one, other = flat[first].astype(np.int64), flat[second].astype(np.int64)

@@ -20,8 +20,8 @@ from tangible_texture.energies.local_energy import (
     energy_planes,
     mean_energies,
     padding,
+    picture_spectrum,
     smoothing_px,
-    spectrum_of,
 )
 from tangible_texture.signal.smoothing import gaussian
 
@@ -73,7 +73,7 @@ def direct(grey, filters, step_px, sigma_px):
 
 def local_energy(grey, wavelengths_px, orientations=6, step_px=4, sigma_px=4.0):
     filters = bank(wavelengths_px, orientations)
-    return energy_planes(spectrum_of(grey, padding(filters, sigma_px)), filters, grey.shape, step_px, sigma_px)
+    return energy_planes(picture_spectrum(grey, padding(filters, sigma_px)), filters, grey.shape, step_px, sigma_px)
 
 
 def worst(found, expected):
@@ -122,10 +122,10 @@ def test_flat_picture_has_no_energy():
 def test_mean_energies_are_those_of_the_mirrored_picture():
     grey = natural((150, 140), seed=5)
     filters = bank(OCTAVES)
-    means = mean_energies(spectrum_of(grey, padding(filters, 4.0)), filters)
+    means = mean_energies(picture_spectrum(grey, padding(filters, 4.0)), filters)
     assert means == pytest.approx(local_energy(grey, OCTAVES).mean(axis=(1, 2)), rel=0.5)
     tiled = np.tile(grating((128, 128), 8.0, 0.0), 2)
-    [own] = mean_energies(spectrum_of(tiled, 0), bank((8.0,), 1))
+    [own] = mean_energies(picture_spectrum(tiled, 0), bank((8.0,), 1))
     assert own == pytest.approx(2, rel=1e-4)
 
 

@@ -55,7 +55,7 @@ def edge_relief(
     """
     import cv2
 
-    extent_m = geometry.extent_of(views.shape, size.width_m)
+    extent_m = geometry.surface_extent(views.shape, size.width_m)
     small = reduce_to_cells(views, size.width_m)
     pitch_m = size.width_m / small.shape[1]
     with plain_opencv():

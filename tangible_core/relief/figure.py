@@ -88,7 +88,7 @@ def figure_relief(
         height_m = np.ascontiguousarray(height_m - height_m.min(), np.float32)
         limited = limit_slopes(height_m, pitch_m, choice.slope)
         shown = np.asarray(cv2.resize(limited, (columns, rows), interpolation=cv2.INTER_LINEAR))
-    return geometry.smooth(Relief(shown, geometry.extent_of(views.shape, size.width_m)), size.smooth_m)
+    return geometry.smooth(Relief(shown, geometry.surface_extent(views.shape, size.width_m)), size.smooth_m)
 
 
 def _shares(

@@ -45,7 +45,7 @@ def line_relief(views: Views, size: FeltSize, choice: ReliefChoice, *, areas: bo
     line_pitch_m = size.width_m / lines.mask.shape[1]
     ridges_m = _ridges(lines.centre, lines.width_px * line_pitch_m, line_pitch_m, size.relief_m, choice.slope)
     height_m = np.maximum(_enlarge(ridges_m, views.shape), _enlarge(base_m, views.shape))
-    relief = Relief(np.maximum(height_m, np.float32(0)), geometry.extent_of(views.shape, size.width_m))
+    relief = Relief(np.maximum(height_m, np.float32(0)), geometry.surface_extent(views.shape, size.width_m))
     return geometry.smooth(relief, size.smooth_m), len(texts.boxes)
 
 

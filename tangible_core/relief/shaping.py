@@ -64,7 +64,7 @@ def shape_relief(
     Raises: GeometryError as `geometry.make_relief`.
     """
     scale = scale or relief_scale(disparity, calibration, size.width_m, choice)
-    extent_m = geometry.extent_of(disparity.disparity_px.shape, size.width_m)
+    extent_m = geometry.surface_extent(disparity.disparity_px.shape, size.width_m)
     nearness = geometry.unit_nearness(disparity, _calibration(calibration, choice), scale.spans)
     cells = _on_cells(nearness, size.width_m, min(CELL_M, CELL_SHARE * size.smooth_m))
     pitch_m = size.width_m / cells.shape[1]

@@ -35,25 +35,25 @@ def combine_parts(
     elif files.stereo is not None:
         files = files.model_copy(update={"left": files.stereo, "right": files.stereo, "stereo": None})
     _check_sizes(files, parts)
-    measured = measured_size(files, parts["height"].shape) if files.height else None
+    map_size = measured_size(files, parts["height"].shape) if files.height else None
     parts = apply_framing(parts, files, warnings.append)
-    shown = None if files.height else _cut_out(parts, files, notes.append)
-    masked = files.non_finite == "mask" and files.main in PICTURES
-    known = _both(_fill(parts, files.main) if masked else None, shown)
+    opaque_mask = None if files.height else _cut_out(parts, files, notes.append)
+    has_mask = files.non_finite == "mask" and files.main in PICTURES
+    known_mask = _both(_fill(parts, files.main) if has_mask else None, opaque_mask)
     _stretch(parts, Path(getattr(files, files.main)).name, warnings.append)
     camera = files.calibration or (_UNIT_CAMERA if files.depth else None)
     views = None if files.height else Views(parts[files.main], parts.get("right"), camera)
     if rig is not None and views is not None:
-        views, known = rectify_views(views, rig)
-        shown = None
+        views, known_mask = rectify_views(views, rig)
+        opaque_mask = None
     if views is not None and views.calibration is not None and views.calibration.baseline_m >= FAR_APART_M:
         cure = "rig_unit_m: 0.001" if rig is not None else f"baseline_m: {views.calibration.baseline_m:g} mm"
         notes.append(
             f"the cameras stand {views.calibration.baseline_m:.4g} m apart; if these are millimetres, write `{cure}`"
         )
-    for each in (known, shown, parts.get("height"), parts.get("truth")):
-        if each is not None:
-            each.flags.writeable = False
+    for values in (known_mask, opaque_mask, parts.get("height"), parts.get("truth")):
+        if values is not None:
+            values.flags.writeable = False
     return {
         "views": views,
         "stated_kind": None if files.kind is None else PictureKind(files.kind),
@@ -61,10 +61,10 @@ def combine_parts(
         "segments": SegmentMap(parts["segments"]) if "segments" in parts else None,
         "height": parts.get("height"),
         "offset": float(parts.get(OFFSET, 0.0)),
-        "measured": measured,
+        "measured": map_size,
         "truth": parts.get("truth"),
-        "known": known,
-        "shown": shown,
+        "known": known_mask,
+        "shown": opaque_mask,
     }
 
 
@@ -94,18 +94,18 @@ def _check_sizes(files: SceneFiles, parts: Mapping[str, np.ndarray]) -> None:
 
 def _fill(parts: dict[str, np.ndarray], main: str) -> np.ndarray | None:
     """Fill non-finite pixels of the pictures; return the mask of the main one, None if it was finite everywhere."""
-    known: dict[str, np.ndarray] = {}
+    masks: dict[str, np.ndarray] = {}
     for name in parts.keys() & PICTURES:
-        parts[name], known[name] = fill_non_finite(parts[name])
-    return None if known[main].all() else known[main]
+        parts[name], masks[name] = fill_non_finite(parts[name])
+    return None if masks[main].all() else masks[main]
 
 
 def _cut_out(parts: dict[str, np.ndarray], files: SceneFiles, notify: Notify) -> np.ndarray | None:
     """Drop the fourth channel of the pictures; return the mask of the main one, None if it was opaque everywhere."""
-    shown: dict[str, np.ndarray] = {}
+    masks: dict[str, np.ndarray] = {}
     for name in [part for part in parts if part in PICTURES and parts[part].shape[2:] == (4,)]:
-        parts[name], shown[name] = cut_out(parts[name], str(getattr(files, name)))
-    main = shown.get(files.main)
+        parts[name], masks[name] = cut_out(parts[name], str(getattr(files, name)))
+    main = masks.get(files.main)
     if main is None or main.all():
         return None
     notify(f"{100 * (1 - main.mean()):.0f} % of {Path(getattr(files, files.main)).name} is transparent: flat ground")
@@ -115,9 +115,9 @@ def _cut_out(parts: dict[str, np.ndarray], files: SceneFiles, notify: Notify) ->
 def _stretch(parts: dict[str, np.ndarray], name: str, notify: Notify) -> None:
     """Stretch pictures of more than 8 bits that use little of their range to all of it, both views alike."""
     pictures = {part: values for part, values in parts.items() if part in PICTURES}
-    if (used := used_range(*pictures.values())) is not None:
-        parts.update({part: used.stretch(values) for part, values in pictures.items()})
-        notify(used.sentence(name))
+    if (value_range := used_range(*pictures.values())) is not None:
+        parts.update({part: value_range.stretch(values) for part, values in pictures.items()})
+        notify(value_range.sentence(name))
 
 
 def _both(one: np.ndarray | None, other: np.ndarray | None) -> np.ndarray | None:

@@ -22,32 +22,26 @@ SAMPLED = 4_000_000
 
 
 def apply_framing(parts: Mapping[str, np.ndarray], files: SceneFiles, warn: Notify = ignore) -> dict[str, np.ndarray]:
-    """Crop and rotate all parts of a scene; then invert and clip the photo or the heights, as `files` has it.
-
-    warn: receives the remark that heights look like no data. Raises: PictureError for a crop beyond the picture.
-    """
-    framed = {part: _rotate(_crop(values, files), files.rotate) for part, values in parts.items()}
+    """Crop and rotate all parts of a scene; then invert and clip the photo or the heights. Raises: PictureError."""
+    parts_framed = {part: _rotate(_crop(values, files), files.rotate) for part, values in parts.items()}
     if files.main == "height":
-        framed["height"], offset = _heights(framed["height"], files, warn)
-        framed[OFFSET] = np.array(offset)
+        parts_framed["height"], offset = _heights(parts_framed["height"], files, warn)
+        parts_framed[OFFSET] = np.array(offset)
     elif files.main == "photo":
-        framed["photo"] = _tones(framed["photo"], files)
-    return framed
+        parts_framed["photo"] = _tones(parts_framed["photo"], files)
+    return parts_framed
 
 
 def measured_size(files: SceneFiles, shape: tuple[int, ...] | None = None) -> MeasuredSize | None:
-    """Return the size that a height map states, or the one on the ground, of its cropped part; None without either.
-
-    shape: rows and columns of the whole map, where they are known. An inverted map keeps its proportions alone.
-    Raises: PictureError for metadata with wrong values.
-    """
+    """Return the size that a height map states, or the one on the ground, of its cropped part; None without either."""
     if files.height is None:
         return None
+    # An inverted map keeps its proportions alone.
     metadata = None if files.invert or files.cell_m else read_heights_metadata(files.height)
-    stated = metadata or _ground(files.height, files.cell_m, shape)
-    if stated is None:
+    map_size = metadata or _ground(files.height, files.cell_m, shape)
+    if map_size is None:
         return None
-    whole, (all_rows, all_columns) = stated.size, stated.shape
+    whole, (all_rows, all_columns) = map_size.size, map_size.shape
     _, _, columns, rows = files.crop or (0, 0, all_columns, all_rows)
     size_m = whole.width_m * columns / all_columns, whole.length_m * rows / all_rows
     width_m, length_m = size_m[::-1] if files.rotate in (90, 270) else size_m
@@ -63,15 +57,12 @@ def _ground(path: Path, cell_m: float | tuple[float, float] | None, shape: tuple
 
 
 def cut_out(picture: np.ndarray, name: str) -> tuple[np.ndarray, Bool[np.ndarray, "h w"]]:
-    """Drop the fourth channel of a picture and fill what it hides; return also the mask of opaque pixels.
-
-    Raises: PictureError if the whole picture is transparent.
-    """
-    shown = opaque(picture)
-    if not shown.any():
+    """Drop a picture's fourth channel, filling what it hides; return the opaque mask too. Raises: PictureError."""
+    mask = opaque(picture)
+    if not mask.any():
         raise PictureError(f"{name}: all of the picture is transparent; there is nothing to feel")
     colours = np.ascontiguousarray(picture[..., :3])
-    return colours if shown.all() else fill_from_nearest(colours, shown), shown
+    return colours if mask.all() else fill_from_nearest(colours, mask), mask
 
 
 def _crop(values: np.ndarray, files: SceneFiles) -> np.ndarray:
@@ -97,9 +88,9 @@ def _heights(
     values = without(values, *as_numbers(files.nodata))
     _warn_of_nodata(values, files, warn)
     values, offset = in_32_bits(values)
-    known = values[np.isfinite(values)]
-    if files.clip is not None and known.size:
-        values = np.clip(values, *np.percentile(known, files.clip).astype(np.float32))
+    finite = values[np.isfinite(values)]
+    if files.clip is not None and finite.size:
+        values = np.clip(values, *np.percentile(finite, files.clip).astype(np.float32))
     return (-values, -offset) if files.invert else (values, offset)
 
 
@@ -110,8 +101,8 @@ def _warn_of_nodata(values: Float[np.ndarray, "h w"], files: SceneFiles, warn: N
     name, texts = Path(str(files.height)).name, [number_text(mark) for mark in marks]
     others = values[np.isfinite(values) & ~np.isin(values, marks)]
     low, high = (f"{end:.6g}" for end in (others.min(), others.max()))
-    given = [f"{mark:.16g}" for mark in as_numbers(files.nodata)]
-    line = ", ".join([*given, *texts])
+    marks_given = [f"{mark:.16g}" for mark in as_numbers(files.nodata)]
+    line = ", ".join([*marks_given, *texts])
     warn(
         f"{100 * (1 - others.size / np.count_nonzero(np.isfinite(values))):.2g} % of {name} is "
         f"{' or '.join(texts)}, far from all other heights ({low} to {high}), and flattens them; if it stands for "
@@ -123,14 +114,14 @@ def _tones(picture: np.ndarray, files: SceneFiles) -> np.ndarray:
     """Clip every channel to percentiles of the brightness, and exchange light and dark."""
     if files.clip is None and not files.invert:
         return picture
-    changed = picture.copy()
-    tones = changed if changed.ndim == 2 else changed[..., :3]
+    result = picture.copy()
+    tones = result if result.ndim == 2 else result[..., :3]
     if files.clip is not None and tones.dtype != np.bool_:
         low, high = _range(picture, files.clip)
         np.clip(tones, low, high, out=tones)
     if files.invert:
         tones[...] = ~tones if tones.dtype.kind in "bu" else max(1.0, float(np.nanmax(tones, initial=0))) - tones
-    return changed
+    return result
 
 
 def _range(picture: np.ndarray, percent: tuple[float, float]) -> np.ndarray:

@@ -3,24 +3,20 @@
 from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
-from jaxtyping import Float, Float32, Float64, Shaped
+from jaxtyping import Float, Float32, Float64, Int, Shaped
 
 from ..data import Calibration, DisparityMap, Relief
 from ..errors import GeometryError
 from ..runtime.opencv import plain_opencv
-from .holes import fill_rows as fill_rows
 
 Holes = Literal["fill", "cut"]
 """Treatment of unknown places: `fill` takes the farther neighbour in the row, `cut` goes down to the base plane."""
 
 RANGE_PERCENT = (0.5, 99.5)
 """Percentiles of an estimated map between which the relief spans; values beyond, mostly wrong matches, are clipped."""
-
 TINY, HUGE = 1e-30, 1e30
 """Magnitudes beyond which operations on a float32 may leave its range."""
-
 MAX_RELIEF_M = 1
-"""Height of the highest relief."""
 
 Coordinate = TypeVar("Coordinate", float, np.ndarray)
 
@@ -71,34 +67,22 @@ def make_relief(
     holes: Holes = "fill",
     spans: ValueRange | None = None,
 ) -> Relief:
-    """Make the relief of a disparity map: the far end at 0, the near end at relief_m, pixels square.
-
-    With a calibration and a disparity in pixels, heights are linear in depth; otherwise in disparity. A disparity at or
-    beyond infinity is far. spans: the range of nearness that spans the relief, by default that of this map
-    (`nearness_range`); nearness beyond it is clipped.
-    Raises: GeometryError if width_m or relief_m is not positive, or if no depth is known.
-    """
+    """Make the relief of a disparity map, far 0 to near relief_m, its pixels square. Raises: GeometryError."""
+    # Linear in depth with a calibration, otherwise in disparity; at or beyond infinity is far, beyond `spans` clipped.
     nearness = _nearness(disparity, calibration)
-    return _relief(nearness, width_m, relief_m, holes, spans or _range_of(nearness, RANGE_PERCENT))
+    return _relief(nearness, width_m, relief_m, holes, spans or _value_range(nearness, RANGE_PERCENT))
 
 
 def unit_nearness(
     disparity: DisparityMap, calibration: Calibration | None, spans: ValueRange
 ) -> Float32[np.ndarray, "h w"]:
-    """Return nearness from 0 (`spans.low` or farther) to 1 (`spans.high` or nearer), its holes filled from behind.
-
-    calibration: as `nearness_range`. Raises: GeometryError if no depth is known.
-    """
+    """Return nearness, 0 at `spans.low` to 1 at `spans.high`, holes filled from behind. Raises: GeometryError."""
     return _unit_range(fill_rows(_nearness(disparity, calibration)), spans).astype(np.float32, copy=False)
 
 
 def nearness_range(disparity: DisparityMap, calibration: Calibration | None) -> ValueRange:
-    """Return the range of known nearness between RANGE_PERCENT: disparity, or, with a calibration, negative depth.
-
-    Both ends are equal if the map is constant: the relief is then flat at 0.
-    Raises: GeometryError if no depth is known.
-    """
-    return _range_of(_nearness(disparity, calibration), RANGE_PERCENT)
+    """Return RANGE_PERCENT of known nearness: disparity, or, with a calibration, -depth. Raises: GeometryError."""
+    return _value_range(_nearness(disparity, calibration), RANGE_PERCENT)
 
 
 def _nearness(disparity: DisparityMap, calibration: Calibration | None) -> Float[np.ndarray, "h w"]:
@@ -122,20 +106,53 @@ def scale_heights(
     holes: Holes = "fill",
     spans: ValueRange | None = None,
 ) -> Relief:
-    """Make the relief of a height map in any unit: its lowest place at 0, its highest at relief_m, pixels square.
-
-    Places that are NaN or infinite are holes. spans: the heights that become 0 and relief_m, by default the extremes.
-    Raises: GeometryError if width_m or relief_m is not positive, or if no height is known.
-    """
+    """Make the relief of a height map in any unit, lowest 0, highest relief_m, or of `spans`. Raises: GeometryError."""
     values = np.where(np.isfinite(heights), heights, np.nan)
     if np.isnan(values).all():
         raise GeometryError("the height map holds only NaN or infinity; use one with some known values")
-    return _relief(values, width_m, relief_m, holes, spans or _range_of(values, (0, 100)))
+    return _relief(values, width_m, relief_m, holes, spans or _value_range(values, (0, 100)))
+
+
+def fill_rows(values: Float[np.ndarray, "h w"]) -> Float[np.ndarray, "h w"]:
+    """Fill holes (NaN) from the background. Raises: GeometryError if every value is unknown.
+
+    >>> fill_rows(np.float32([[1, np.nan, 3]]))
+    array([[1., 1., 3.]], dtype=float32)
+    """
+    unknown = np.isnan(values)
+    if unknown.all():
+        raise GeometryError("holes cannot be filled: every value is unknown (NaN); use a map with some known values")
+    if not unknown.any():
+        return values
+    # A hidden place belongs to the surface behind: the farther of two known neighbours in the row (Hirschmueller, PAMI
+    # 2008, sec. 2.5); a row without any takes the nearest row with some.
+    before, after = _neighbours(unknown)
+    wall = np.pad(values, ((0, 0), (0, 1)), constant_values=np.inf)  # both -1 and w mean the wall
+    dense = np.minimum(np.take_along_axis(wall, before, axis=1), np.take_along_axis(wall, after, axis=1))
+    empty: np.ndarray = np.all(unknown, axis=1)
+    return dense[_nearest(~empty)] if empty.any() else dense
+
+
+def _neighbours(unknown: Shaped[np.ndarray, "h w"]) -> tuple[Int[np.ndarray, "h w"], Int[np.ndarray, "h w"]]:
+    """Return the column of the last known value up to each place (-1: none), and of the next one (w: none)."""
+    width = unknown.shape[1]
+    columns = np.arange(width, dtype=np.int32)
+    before = np.maximum.accumulate(np.where(unknown, np.int32(-1), columns), axis=1)
+    after = np.minimum.accumulate(np.where(unknown, np.int32(width), columns)[:, ::-1], axis=1)[:, ::-1]
+    return before, after
+
+
+def _nearest(mask: Shaped[np.ndarray, "n"]) -> Int[np.ndarray, "n"]:
+    """Return the index of the nearest True of a mask, the lower one of two."""
+    places, index = np.flatnonzero(mask), np.arange(mask.size)
+    after = np.searchsorted(places, index)
+    low, high = places[np.maximum(after - 1, 0)], places[np.minimum(after, places.size - 1)]
+    return np.where(index - low <= high - index, low, high)
 
 
 def flat_relief(shape: tuple[int, int], width_m: float) -> Relief:
     """Make a relief of height 0 with (h, w) square cells. Raises: GeometryError if empty or width_m is not positive."""
-    return Relief(np.zeros(shape, np.float32), extent_of(shape, width_m))
+    return Relief(np.zeros(shape, np.float32), surface_extent(shape, width_m))
 
 
 def _relief(
@@ -148,25 +165,25 @@ def _relief(
     heights *= relief_m
     if holes == "cut":
         heights = np.nan_to_num(heights, nan=0.0)
-    return Relief(heights.astype(np.float32, copy=False), extent_of(values.shape, width_m))
+    return Relief(heights.astype(np.float32, copy=False), surface_extent(values.shape, width_m))
 
 
-def extent_of(shape: tuple[int, ...], width_m: float) -> tuple[float, float]:
+def surface_extent(shape: tuple[int, ...], width_m: float) -> tuple[float, float]:
     """Return width and length of a surface of (h, w) square cells that is this wide, m."""
     return width_m, width_m * shape[0] / max(shape[1], 1)
 
 
-def _range_of(values: Float[np.ndarray, "h w"], percent: tuple[float, float]) -> ValueRange:
+def _value_range(values: Float[np.ndarray, "h w"], percent: tuple[float, float]) -> ValueRange:
     """Return percentiles of the known values, or their extremes if these are equal; one value for a constant map."""
-    known = values[np.isfinite(values)]
-    exponent = np.frexp(np.max(np.abs(known)))[1]  # divided out first: the largest floats have no difference
-    parts = np.ldexp(known.astype(np.float64), -exponent)
+    finite = values[np.isfinite(values)]
+    exponent = np.frexp(np.max(np.abs(finite)))[1]  # divided out first: the largest floats have no difference
+    parts = np.ldexp(finite.astype(np.float64), -exponent)
     low, high = np.percentile(parts, percent)
     if not low < high:
         low, high = parts.min(), parts.max()
     if high - low <= 4 * np.finfo(values.dtype).eps * max(abs(low), abs(high)):
         high = low
-    return ValueRange(*(float(np.ldexp(each, exponent)) for each in (low, high)))
+    return ValueRange(*(float(np.ldexp(end, exponent)) for end in (low, high)))
 
 
 def _unit_range(values: Float[np.ndarray, "h w"], spans: ValueRange) -> Float[np.ndarray, "h w"]:
@@ -210,15 +227,12 @@ def workspace_to_picture(
 
 
 def resample(relief: Relief, shape: tuple[int, int]) -> Relief:
-    """Resample the surface on another grid of (h, w) cells; extent and metres stay.
-
-    Each cell is taken as a tilted facet whose mean is its height, and each new height is the mean over its cell. So
-    the volume stays, a plane stays that plane, nothing overshoots between cells, and refining and back is the same.
-    Raises: GeometryError if the shape has no cell.
-    Source: van Leer, J. Comput. Phys. 32 (1979), the monotonised central slope.
-    """
+    """Resample the surface on another grid of (h, w) cells; extent and metres stay. Raises: GeometryError if empty."""
     if min(shape) < 1:
         raise GeometryError(f"a relief has at least one cell, not {shape[0]} x {shape[1]}")
+    # Each cell is taken as a tilted facet whose mean is its height, and each new height is the mean over its cell: the
+    # volume stays, a plane stays that plane, nothing overshoots, and refining and back is the same (van Leer, J.
+    # Comput. Phys. 32, 1979, the monotonised central slope).
     along = _resample_columns(relief.height_m.astype(np.float64).T, shape[0]).T
     return Relief(_resample_columns(along, shape[1]).astype(np.float32), relief.extent_m)
 
@@ -249,30 +263,24 @@ def _tilts(heights: Float64[np.ndarray, "h w"]) -> Float64[np.ndarray, "h w"]:
 
 
 def smooth(relief: Relief, sigma_m: float) -> Relief:
-    """Smooth the relief by a Gaussian of this standard deviation in metres, its borders extended constantly.
-
-    Matching noise is rough where the real surface is not, and a force law that follows slopes amplifies it.
-    Raises: GeometryError if sigma_m is negative or not finite.
-    """
+    """Smooth the relief by a Gaussian of this standard deviation, its borders extended. Raises: GeometryError."""
     if not 0 <= sigma_m < np.inf:
         raise GeometryError(f"sigma_m must be a length in metres, 0 or more, not {sigma_m}")
+    # Matching noise is rough where the real surface is not, and a force law that follows slopes amplifies it.
     sigmas = sigma_m / relief.pitch_m[0], sigma_m / relief.pitch_m[1]
     if max(sigmas) < 0.1:  # a pixel's own size hides it
         return relief
     import cv2
 
     with plain_opencv():
-        blurred = cv2.GaussianBlur(
+        smoothed = cv2.GaussianBlur(
             relief.height_m, (0, 0), max(sigmas[0], 1e-3), sigmaY=max(sigmas[1], 1e-3), borderType=cv2.BORDER_REPLICATE
         )
-    return Relief(np.maximum(blurred, 0), relief.extent_m)
+    return Relief(np.maximum(smoothed, 0), relief.extent_m)
 
 
 def slopes(relief: Relief) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
-    """Return slopes dh/dx and dh/dy in the workspace frame, metres per metre; y runs away from the user, against rows.
-
-    Central differences, one-sided at the border; 0 along an axis of one cell.
-    """
+    """Return slopes dh/dx and dh/dy in the workspace frame, by central differences; y runs against the rows."""
     across, along = relief.pitch_m
     heights = relief.height_m
     return _difference(heights, across, 1), -_difference(heights, along, 0)

@@ -1,11 +1,4 @@
-"""Checks of a pair's disparity: exchanged views, the same picture twice, hardly any match.
-
-In a pair in the right order, a larger disparity is nearer. With its views exchanged, every disparity has the other
-sign, so that parallel cameras give negative ones throughout. But so does a pair in order whose pictures were shifted
-against each other, as those of a stereo card. Occlusion decides: between two depths, a strip of one view is hidden in
-the other, and belongs to the farther surface. The contour, and with it an edge in the picture, is at the end of the
-strip that touches the nearer surface.
-"""
+"""Checks of a pair's disparity: exchanged views, the same picture twice, hardly any match."""
 
 from typing import NamedTuple
 
@@ -32,8 +25,7 @@ MIN_MATCHED_TO_JUDGE = 0.2
 MIN_STRIPS, MAJORITY = 20, 1.8
 """Fewest strips that decide where disparities are negative throughout, and the ratio of their votes."""
 MIN_STRIPS_AGAINST, MAJORITY_MIXED, MAJORITY_POSITIVE = 50, 2.0, 3.0
-"""The same for what overrules an order that the signs allow: signs of both kinds, as of cameras that look towards each
-other, and positive ones throughout, as of parallel cameras. Real pairs reach 2 to 40."""
+"""The same to overrule an order that mixed signs, or positive ones throughout, allow. Real pairs reach 2 to 40."""
 MIN_MATCHED = 0.25
 """Share of the picture below which hardly anything was matched: good pairs reach 0.5 to 0.9, noise 0.02 to 0.12."""
 
@@ -59,23 +51,22 @@ class _Votes(NamedTuple):
 
 
 def view_order(disparity: DisparityMap, left: np.ndarray, offset_px: float | None = None) -> ViewOrder:
-    """Judge from a disparity map whether its views were exchanged.
-
-    left: the picture that the map belongs to. offset_px: added to a disparity before it is converted to a distance;
-    None if the cameras are unknown.
-    """
+    """Judge from the disparity map of the picture `left` whether its views were exchanged; offset_px: the cameras'."""
     if disparity.unit != "px":
         return IN_ORDER
     count = min(MAX_ROWS, left.shape[0])
     rows = np.arange(count) * left.shape[0] // count
     values, confidence = disparity.disparity_px[rows], disparity.confidence[rows]
-    matched = np.isfinite(values) & (confidence > MATCHED)
-    if matched.mean() < MIN_MATCHED_TO_JUDGE:
+    valid_mask = np.isfinite(values) & (confidence > MATCHED)
+    if valid_mask.mean() < MIN_MATCHED_TO_JUDGE:
         return IN_ORDER
-    low, high = np.percentile(values[matched], [5, 95])
+    low, high = np.percentile(values[valid_mask], [5, 95])
     if offset_px is not None and low > NEGATIVE_PX:
         return IN_ORDER
-    votes = _votes(np.where(matched, values, np.float32(np.nan)), to_grey(left[rows]))
+    # In a pair in order, a larger disparity is nearer. Exchanged views have the other sign throughout, but so does a
+    # pair in order whose pictures were shifted, as a stereo card's. Occlusion decides: between two depths, a strip of
+    # one view is hidden in the other and belongs to the farther surface; the contour is at its end at the nearer one.
+    votes = _votes(np.where(valid_mask, values, np.float32(np.nan)), to_grey(left[rows]))
     if high < NEGATIVE_PX:
         return IN_ORDER if low + (offset_px or 0.0) > 0 else _of_negative(votes)
     majority = MAJORITY_MIXED if low <= NEGATIVE_PX else MAJORITY_POSITIVE
@@ -86,11 +77,11 @@ def view_order(disparity: DisparityMap, left: np.ndarray, offset_px: float | Non
 
 def _of_negative(votes: _Votes) -> ViewOrder:
     """Judge a map whose disparities are all negative: of exchanged views, or of pictures that were shifted."""
-    count, decided = sum(votes), sum(votes) >= MIN_STRIPS
-    if decided and votes.in_order >= MAJORITY * votes.exchanged:
+    count, enough = sum(votes), sum(votes) >= MIN_STRIPS
+    if enough and votes.in_order >= MAJORITY * votes.exchanged:
         reason = f"{votes.in_order} of {count} contours occlude as in this order"
         return ViewOrder(False, f"every disparity is negative, and yet left and right are in order: {reason}")
-    if decided and votes.exchanged >= MAJORITY * votes.in_order:
+    if enough and votes.exchanged >= MAJORITY * votes.in_order:
         reason = f"{votes.exchanged} of {count} contours occlude as in exchanged views"
         return _as_exchanged(f"every disparity is negative, and {reason}")
     return ViewOrder(
@@ -119,11 +110,11 @@ def _votes(values: Float32[np.ndarray, "h w"], grey: Float32[np.ndarray, "h w"])
     """Count the strips for either order. values: NaN where nothing was matched."""
     known_rows, known_columns = np.nonzero(~np.isnan(values))
     same_row = known_rows[1:] == known_rows[:-1]
-    row, before, after = (each[same_row] for each in (known_rows[1:], known_columns[:-1], known_columns[1:]))
+    row, before, after = (values_at[same_row] for values_at in (known_rows[1:], known_columns[:-1], known_columns[1:]))
     step, width = values[row, after] - values[row, before], after - before - 1
     fits = (step >= MIN_STEP_PX) & (np.abs(width - step) <= np.maximum(2, STEP_SHARE * step))
     inside = (before >= 3) & (after < values.shape[1] - 3)
-    row, before, after = (each[fits & inside] for each in (row, before, after))
+    row, before, after = (values_at[fits & inside] for values_at in (row, before, after))
     slope = _slope(grey)
     at_before, at_after = slope[row, before], slope[row, after]
     return _Votes(
@@ -153,13 +144,10 @@ def identical_views(views: Views, disparity: DisparityMap) -> str:
 
 
 def few_matches(disparity: DisparityMap, known: Bool[np.ndarray, "h w"] | None = None) -> str:
-    """Return a warning, with likely causes and cures, for a map that is mostly filled in; empty otherwise.
-
-    known: mask of the pixels at which the picture shows something.
-    """
-    matched = np.isfinite(disparity.disparity_px) & (disparity.confidence > MATCHED)
-    shown = matched if known is None else matched[known]
-    if disparity.unit != "px" or shown.size == 0 or (share := float(shown.mean())) >= MIN_MATCHED:
+    """Return a warning, with likely causes and cures, for a map that is mostly filled in; empty otherwise."""
+    valid_mask = np.isfinite(disparity.disparity_px) & (disparity.confidence > MATCHED)
+    visible = valid_mask if known is None else valid_mask[known]
+    if disparity.unit != "px" or visible.size == 0 or (share := float(visible.mean())) >= MIN_MATCHED:
         return ""
     return (
         f"hardly anything matches in the two pictures: a depth was found for {share:.0%} of the left one, and the rest "

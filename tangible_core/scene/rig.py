@@ -28,11 +28,7 @@ GROWTH = 2.0
 @named_fields
 @dataclass(frozen=True, eq=False)
 class Camera(Record):
-    """A camera: K in pixels, (3, 3), and the distortion of its lens.
-
-    distortion: OpenCV's k1, k2, p1, p2[, k3 ...] (radial-tangential), or k1 to k4 of a fisheye (equidistant).
-    Raises: GeometryError for values that no camera has.
-    """
+    """A camera: K in pixels, and OpenCV's k1, k2, p1, p2[, k3 ...], or a fisheye's k1 to k4. Raises: GeometryError."""
 
     matrix: Float64[np.ndarray, "3 3"]
     distortion: Float64[np.ndarray, "n"]
@@ -54,11 +50,7 @@ class Camera(Record):
 @named_fields
 @dataclass(frozen=True, eq=False)
 class StereoRig(Record):
-    """Two cameras: a point X_left in metres is X_right = rotation X_left + translation_m.
-
-    A rounded rotation becomes the nearest exact one.
-    Raises: GeometryError if the rotation is not one, or the right camera is neither right of the left one nor below it.
-    """
+    """Two cameras: X_left in metres is X_right = rotation X_left + translation_m. Raises: GeometryError."""
 
     left: Camera
     right: Camera
@@ -68,6 +60,7 @@ class StereoRig(Record):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.rotation.shape == (3, 3) and not _is_rotation(self.rotation, 1e-6) and _is_rotation(self.rotation):
+            # A rounded rotation becomes the nearest exact one.
             object.__setattr__(self, "rotation", as_read_only(_nearest_rotation(self.rotation)))
         if self.rotation.shape != (3, 3) or not _is_rotation(self.rotation):
             raise GeometryError(f"a rotation is orthogonal, (3, 3), of determinant 1, not {quoted(self.rotation)}")
@@ -97,13 +90,7 @@ class RectifiedViews(NamedTuple):
 
 
 def rectify_views(views: Views, rig: StereoRig) -> RectifiedViews:
-    """Rectify a raw pair: no distortion, rows along the baseline, a canvas that holds the left picture.
-
-    The new axes are the baseline, and the mean viewing direction made orthogonal to it. Depth is along the new axis.
-    Raises: PictureError if there is only one view; GeometryError if no canvas holds a picture of these cameras.
-    Source: Fusiello, Trucco & Verri, A compact algorithm for rectification of stereo pairs, 2000; OpenCV's
-    initUndistortRectifyMap for the lenses.
-    """
+    """Rectify a raw pair: no distortion, rows along the baseline. Raises: PictureError, GeometryError."""
     return Rectifier(rig, views.shape).rectify(views)
 
 
@@ -113,6 +100,8 @@ class Rectifier:
 
     def __init__(self, rig: StereoRig, shape: tuple[int, int]) -> None:
         """shape: (h, w) of each picture. Raises: GeometryError as `rectify_views`."""
+        # The new axes are the baseline, and the mean viewing direction made orthogonal to it (Fusiello, Trucco & Verri,
+        # 2000).
         along = np.array(rig.centre_m) / _length(np.array(rig.centre_m))
         across = np.cross(rig.rotation[2] + [0, 0, 1], along)  # orthogonal to the baseline and the view
         across /= max(_length(across), np.finfo(np.float64).tiny)
@@ -139,24 +128,21 @@ class Rectifier:
 
 
 def _canvas(lens: Camera, axes: np.ndarray, camera: np.ndarray, shape: tuple[int, int]) -> tuple[int, int]:
-    """Return the width and height that hold the rectified left picture; move the centre in `camera` accordingly.
-
-    Raises: GeometryError if a part of the picture comes to lie behind the camera.
-    """
+    """Return the width and height that hold the rectified left picture; move the centre in `camera` accordingly."""
     rows, columns = shape
     across, down = np.linspace(0, columns - 1, 33), np.linspace(0, rows - 1, 33)
     border = [np.column_stack([across, np.full(33, y)]) for y in (0, rows - 1)]
     border += [np.column_stack([np.full(33, x), down]) for x in (0, columns - 1)]
-    seen = undistort_points(np.vstack(border), lens, axes, camera)
-    if not np.isfinite(seen).all():
+    corners_px = undistort_points(np.vstack(border), lens, axes, camera)
+    if not np.isfinite(corners_px).all():
         raise GeometryError("the cameras look along their baseline or apart; such a pair cannot be rectified")
-    seen = np.round(seen, 6)  # so that a last bit does not add a row
-    low, high = np.floor(seen.min(axis=0)), np.ceil(seen.max(axis=0))
+    corners_px = np.round(corners_px, 6)  # so that a last bit does not add a row
+    low, high = np.floor(corners_px.min(axis=0)), np.ceil(corners_px.max(axis=0))
     lying = abs(axes[0, 1]) > abs(axes[0, 0])
     middle, most = (low + high) / 2, GROWTH * np.array([rows, columns] if lying else [columns, rows])
     low, high = np.maximum(low, np.floor(middle - most / 2)), np.minimum(high, np.ceil(middle + most / 2))
     camera[:2, 2] -= low
-    width, height = (int(each) + 1 for each in high - low)
+    width, height = (int(side) + 1 for side in high - low)
     return width, height
 
 
@@ -192,8 +178,8 @@ def _warp(picture: np.ndarray, columns: np.ndarray, rows: np.ndarray) -> np.ndar
         picture = picture.astype(np.float32)
     with plain_opencv():
         raw = np.ascontiguousarray(picture)
-        warped = cv2.remap(raw, columns, rows, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
-    return np.clip(warped, picture.min(), picture.max(), out=warped)
+        result = cv2.remap(raw, columns, rows, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
+    return np.clip(result, picture.min(), picture.max(), out=result)
 
 
 def _coefficients(lens: Camera) -> np.ndarray:

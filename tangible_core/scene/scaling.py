@@ -8,13 +8,7 @@ from ..runtime.opencv import plain_opencv
 
 
 def felt_factor(columns: int, width_m: float, finest_m: float) -> float:
-    """Return the factor by which a picture can be reduced before a pixel is wider than finest_m; at least 1.
-
-    In steps of a half, so that a new pixel is a mean of whole and half pixels.
-
-    >>> felt_factor(6000, 0.08, 3e-5), felt_factor(4032, 0.08, 3e-5), felt_factor(741, 0.08, 3e-5)
-    (2.0, 1.5, 1)
-    """
+    """Return the factor by which a picture can be reduced before a pixel is wider than finest_m; in halves, from 1."""
     return max(1, int(2 * finest_m * columns / width_m) / 2)
 
 
@@ -37,19 +31,19 @@ def reduced_map(values: Float32[np.ndarray, "h w"], shape: tuple[int, int]) -> F
     """Reduce a map to (r, c), each value the mean of the known values in its area; NaN if less than half is known."""
     if values.shape == shape:
         return values
-    known = np.isfinite(values)
-    if known.all():
+    valid_mask = np.isfinite(values)
+    if valid_mask.all():
         return _mean(values, *shape)
-    size = np.float32(np.abs(values[known]).max(initial=0)) or np.float32(1)  # divided out: sums stay finite
-    share = _mean(known.astype(np.float32), *shape)
-    sums = _mean(np.where(known, values / size, np.float32(0)), *shape)
+    size = np.float32(np.abs(values[valid_mask]).max(initial=0)) or np.float32(1)  # divided out: sums stay finite
+    share = _mean(valid_mask.astype(np.float32), *shape)
+    sums = _mean(np.where(valid_mask, values / size, np.float32(0)), *shape)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(share >= 0.5, sums / share * size, np.float32(np.nan))
 
 
-def reduced_mask(known: Bool[np.ndarray, "h w"], shape: tuple[int, int]) -> Bool[np.ndarray, "r c"]:
+def reduced_mask(mask: Bool[np.ndarray, "h w"], shape: tuple[int, int]) -> Bool[np.ndarray, "r c"]:
     """Reduce a mask to (r, c), True where at least half of an area is True."""
-    return known if known.shape == shape else _mean(known.astype(np.float32), *shape) >= 0.5
+    return mask if mask.shape == shape else _mean(mask.astype(np.float32), *shape) >= 0.5
 
 
 def reduced_disparity(disparity: DisparityMap, shape: tuple[int, int]) -> DisparityMap:
@@ -78,7 +72,7 @@ def middle_pixels(labels: Int32[np.ndarray, "h w"], shape: tuple[int, int]) -> I
     return labels[np.ix_(*(np.arange(new) * old // new + old // new // 2 for new, old in steps))]
 
 
-def in_pixels_of(disparity: DisparityMap, columns: int) -> DisparityMap:
+def to_picture_pixels(disparity: DisparityMap, columns: int) -> DisparityMap:
     """Convert disparity of reduced views, on their grid, to pixels of the pictures, which have this many columns."""
     if disparity.unit != "px" or disparity.disparity_px.shape[1] == columns:
         return disparity

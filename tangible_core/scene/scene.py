@@ -21,7 +21,7 @@ from .geometry import MAX_RELIEF_M, Holes, Rise, ValueRange, fill_rows, scale_he
 from .scaling import felt_factor, reduced_map, reduced_shape
 from .scene_files import BUILTINS, SceneFiles, scikit_image_data, unknown_scene
 from .scene_options import File, HeightOptions, PairOptions, PhotoOptions, Picture, VideoOptions
-from .scene_source import SceneSource, scene_name, source_of_arguments
+from .scene_source import SceneSource, make_source, scene_name
 from .video.files import Video
 
 
@@ -89,50 +89,34 @@ class Scene:
     @classmethod
     @named_options
     def photo(cls, photo: Picture, **options: Unpack[PhotoOptions]) -> Self:
-        """Make a scene of one picture. Transparent pixels of a fourth channel do not belong to it.
-
-        The options are those of `SceneFiles`; pictures and errors are those of `pair`.
-        """
+        """Make a scene of one picture; transparent pixels do not belong to it. Options and errors: as `pair`."""
         return cls._load({"photo": photo}, options)
 
     @classmethod
     @named_options
     def heights(cls, heights: Picture, **options: Unpack[HeightOptions]) -> Self:
-        """Make a scene of a height map (h, w) in any unit, NaN where unknown: a file or an array.
-
-        The options are those of `SceneFiles`, the errors those of `pair`.
-        """
+        """Make a scene of a height map (h, w) in any unit, NaN where unknown: a file or an array. As `pair`."""
         return cls._load({"height": heights}, options)
 
     @classmethod
     @named_options
     def video(cls, video: File | int, **options: Unpack[VideoOptions]) -> Self:
-        """Make a scene of a video: a file, a folder of pictures, or the number of a camera.
-
-        The options are those of `SceneFiles`, the errors those of `pair`.
-        """
+        """Make a scene of a video: a file, a folder of pictures, or the number of a camera. Errors: as `pair`."""
         return cls._load({"video": video}, options)
 
     @classmethod
     def _load(cls, parts: Mapping[str, Any], options: Mapping[str, Any]) -> Self:
-        return cls(**source_of_arguments({**parts, **options}).load())
+        return cls(**make_source({**parts, **options}).load())
 
     @classmethod
     def builtin(cls, name: str) -> Self:
-        """Make a scene from inside scikit-image: motorcycle, brick, coins, grass, gravel.
-
-        Raises: ConfigError for another name.
-        """
+        """Make a scene from inside scikit-image: motorcycle, brick, coins, grass, gravel. Raises: ConfigError."""
         name = str(name)
         return cls.read(name if name.startswith("builtin/") else f"builtin/{name}", Path())
 
     @classmethod
     def read(cls, scene: "str | SceneFiles", folder: Path) -> Self:
-        """Read a builtin scene by its name, or files relative to `folder`.
-
-        Raises: ConfigError for a name that is not builtin; PictureError for a file that cannot be read, or two files
-        that differ in size.
-        """
+        """Read a builtin scene by its name, or files relative to `folder`. Raises: ConfigError, PictureError."""
         if isinstance(scene, SceneFiles):
             return cls(**SceneSource(scene_name(scene), scene, folder, origin=scene).load())
         if scene not in BUILTINS:
@@ -174,13 +158,7 @@ class Scene:
         rise: Rise | None = None,
         notify: Notify = ignore,
     ) -> dict[str, Record]:
-        """Return the products that the scene provides, by name; heights become a relief of this size.
-
-        relief_m: used if the scene has none. holes: treatment of unknown heights. finest_m: heights on a finer grid are
-        reduced to it; 0 keeps them all. rise: a scale of heights, and their range.
-        notify: receives remarks on the scale.
-        Raises: GeometryError for heights that are unknown everywhere, or for a relief of more than MAX_RELIEF_M.
-        """
+        """Return the products that the scene provides, by name; heights become a relief. Raises: GeometryError."""
         relief = None
         if self.height is not None:
             factor = felt_factor(self.height.shape[1], width_m, finest_m)
@@ -204,30 +182,32 @@ class Scene:
         self, height: np.ndarray, width_m: float, relief_m: float, holes: Holes, rise: Rise, notify: Notify
     ) -> Relief:
         """Return the relief of these heights at a scale, or between the range that is given for them."""
-        measured, known = self.measured, height[np.isfinite(height)]
-        given, ends = (
+        size, finite = self.measured, height[np.isfinite(height)]
+        range_given, ends = (
             (rise.low_m, rise.high_m),
-            (0.0 if self.own_size else known.min(initial=np.inf), known.max(initial=-np.inf)),
+            (0.0 if self.own_size else finite.min(initial=np.inf), finite.max(initial=-np.inf)),
         )
         low, high = (
-            float(end) if value is None else value - self.offset for value, end in zip(given, ends, strict=True)
+            float(end) if value is None else value - self.offset for value, end in zip(range_given, ends, strict=True)
         )
-        if measured is not None and rise.m_per_m is not None:
-            relief_m = (high - low) * measured.unit_m * rise.m_per_m
+        if size is not None and rise.m_per_m is not None:
+            relief_m = (high - low) * size.unit_m * rise.m_per_m
             if relief_m > MAX_RELIEF_M:
                 raise GeometryError(
                     f"the relief would be {relief_m:.3g} m high, and may be {MAX_RELIEF_M:g} m at most; choose a "
                     "smaller scale or less exaggeration, or check the unit of the heights"
                 )
-        if beyond := np.count_nonzero((known < low) | (known > high)):
-            notify(f"{100 * beyond / known.size:.2g} % of the heights are beyond low_m or high_m, and made level there")
-        spans = None if given == (None, None) else ValueRange(low, high)
+        if beyond := np.count_nonzero((finite < low) | (finite > high)):
+            notify(
+                f"{100 * beyond / finite.size:.2g} % of the heights are beyond low_m or high_m, and made level there"
+            )
+        spans = None if range_given == (None, None) else ValueRange(low, high)
         relief = scale_heights(height, width_m, relief_m if relief_m > 0 else 1.0, holes, spans)
-        if measured is None:
+        if size is None:
             return relief
-        if text := scale_in_words(measured, width_m, relief_m / (high - low) if high > low else 0.0):
+        if text := scale_in_words(size, width_m, relief_m / (high - low) if high > low else 0.0):
             notify(text)
-        return Relief(relief.height_m, (width_m, width_m * measured.length_m / measured.width_m))
+        return Relief(relief.height_m, (width_m, width_m * size.length_m / size.width_m))
 
 
 def scale_in_words(measured: MeasuredSize, width_m: float, rise: float) -> str:

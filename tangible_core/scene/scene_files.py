@@ -146,29 +146,29 @@ class SceneFiles(Quantities):
 
     @model_validator(mode="after")
     def _one_scene(self) -> Self:
-        given = [name for name, value in self if isinstance(value, Path | float | str) and name != "non_finite"]
-        given += [name for name in ("nodata", "cell_m") if isinstance(getattr(self, name), tuple)]
-        given += ["video"] if isinstance(self.video, int) else []
-        given += [] if self.repeat else ["repeat"]
-        if "video" in given:
-            given += [] if self.non_finite == "error" else ["non_finite"]
-            self._check_video([*given, *(name for name in ("crop", *_OF_ONE_VIEW) if getattr(self, name))])
+        names = [name for name, value in self if isinstance(value, Path | float | str) and name != "non_finite"]
+        names += [name for name in ("nodata", "cell_m") if isinstance(getattr(self, name), tuple)]
+        names += ["video"] if isinstance(self.video, int) else []
+        names += [] if self.repeat else ["repeat"]
+        if "video" in names:
+            names += [] if self.non_finite == "error" else ["non_finite"]
+            self._check_video([*names, *(name for name in ("crop", *_OF_ONE_VIEW) if getattr(self, name))])
             return self
-        kinds = [kind for kind in (("left", "right"), ("stereo",), ("photo",), ("height",)) if set(kind) & set(given)]
-        if self.stereo and (idle := [name for name in ("left", "right", "photo", "height") if name in given]):
+        kinds = [kind for kind in (("left", "right"), ("stereo",), ("photo",), ("height",)) if set(kind) & set(names)]
+        if self.stereo and (idle := [name for name in ("left", "right", "photo", "height") if name in names]):
             raise ValueError(f"stereo already gives both views; leave out {', '.join(idle)}")
-        if len(kinds) != 1 or not set(kinds[0]) <= set(given):
-            named = ", ".join(given) or "nothing"
-            cure = f"; {'right' if 'left' in given else 'left'} is missing" if kinds == [("left", "right")] else ""
+        if len(kinds) != 1 or not set(kinds[0]) <= set(names):
+            listing = ", ".join(names) or "nothing"
+            cure = f"; {'right' if 'left' in names else 'left'} is missing" if kinds == [("left", "right")] else ""
             raise ValueError(
-                f"a scene is either left and right, or photo, or height, or video; this one gives {named}{cure}"
+                f"a scene is either left and right, or photo, or height, or video; this one gives {listing}{cure}"
             )
-        self._check_needs(given)
-        if "layout" in given and (not self.stereo or self.layout == "mono"):
+        self._check_needs(names)
+        if "layout" in names and (not self.stereo or self.layout == "mono"):
             raise ValueError("layout needs stereo or video; mono is for a video")
-        if idle := self.rig and [name for name in given if name in _OF_VIEWS or name == "segments"]:
+        if idle := self.rig and [name for name in names if name in _OF_VIEWS or name == "segments"]:
             raise ValueError(f"rig gives the cameras and rectifies the pictures; leave out {', '.join(idle)}")
-        if idle := self.height and [name for name in given if name in _OF_VIEWS]:
+        if idle := self.height and [name for name in names if name in _OF_VIEWS]:
             raise ValueError(f"height already gives all heights; leave out {', '.join(idle)}")
         if self.depth and self.disparity:
             raise ValueError("depth and disparity are two forms of one map; leave one of them out")
@@ -177,25 +177,25 @@ class SceneFiles(Quantities):
         self._check_framing()
         return self
 
-    def _check_needs(self, given: Collection[str]) -> None:
+    def _check_needs(self, names: Collection[str]) -> None:
         """Check that an option stands with the one that it needs. Raises: ValueError."""
         for name, other in _NEEDS.items():
-            if name in given and not set(other.split(" or ")) & set(given):
+            if name in names and not set(other.split(" or ")) & set(names):
                 raise ValueError(f"{name} needs {other}")
 
-    def _check_video(self, given: Collection[str]) -> None:
+    def _check_video(self, names: Collection[str]) -> None:
         """Check the options of a video. Raises: ValueError."""
-        self._check_needs(set(given) | ({"left"} if self.rig else set()))
+        self._check_needs(set(names) | ({"left"} if self.rig else set()))
         mono = self.layout in (None, "mono")
         fitting = {*_OF_VIDEOS, *(("rotate", "invert") if mono else _OF_VIDEO_PAIRS)}
-        idle = [name for name in given if name not in fitting]
+        idle = [name for name in names if name not in fitting]
         if mono and idle and set(idle) <= set(_OF_VIDEO_PAIRS):
             raise ValueError(f"{', '.join(idle)} is for two views; give their layout, such as layout: side-by-side")
         if not mono and idle and set(idle) <= {"rotate", "invert"}:
             raise ValueError(f"{' and '.join(idle)} is for one view: the rows of a pair's views belong together")
         if idle:
             raise ValueError(f"a video gives the whole scene; leave out {', '.join(idle)}")
-        if self.rig and (idle := [name for name in given if name in (*_OF_VIEWS, "segments", "crop")]):
+        if self.rig and (idle := [name for name in names if name in (*_OF_VIEWS, "segments", "crop")]):
             raise ValueError(f"rig gives the cameras and rectifies the pictures; leave out {', '.join(idle)}")
 
     def _check_framing(self) -> None:
@@ -240,8 +240,7 @@ BUILTINS: Mapping[str, SceneFiles] = {
     ),
     **{f"builtin/{name}": SceneFiles(photo=Path(f"{name}.png")) for name in ("brick", "coins", "grass", "gravel")},
 }
-"""Scenes whose files come inside scikit-image; nothing is ever downloaded. The motorcycle is Middlebury 2014
-(Scharstein et al., GCPR 2014) at a quarter of its size, with the calibration in `skimage.data.stereo_motorcycle`."""
+"""Scenes whose files come inside scikit-image; the motorcycle is Middlebury 2014, at a quarter of its size."""
 
 
 class SceneReader(Quantities, ABC):

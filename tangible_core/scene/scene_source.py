@@ -36,7 +36,7 @@ from .formats.pictures import (
 from .formats.rigs import find_rig, read_rig
 from .rig import StereoRig
 from .scene_files import SceneFiles, as_numbers
-from .video.files import parts_of, read_video
+from .video.files import frame_parts, read_video
 
 log: logging.Logger = logging.getLogger(__name__)
 
@@ -79,10 +79,7 @@ class SceneSource:
     """The builtin name or the files that identify the scene; None if a part is an array."""
 
     def load(self) -> dict[str, Any]:
-        """Read the parts and return the fields of their `Scene`.
-
-        Raises: PictureError for a file that cannot be read, or two parts that differ in size.
-        """
+        """Read the parts and return the fields of their `Scene`. Raises: PictureError."""
         arrays = self.arrays or {}
         paths = {
             part: as_path(self.folder) / as_path(path)
@@ -93,7 +90,7 @@ class SceneSource:
         notes: list[str] = []
         rig, size = (self.rig, None) if "rig" not in paths else read_rig(paths["rig"], files.rig_unit_m)
         first = None if files.video is None else read_video(files.video, files, rig, notes.append)
-        parts = {} if first is None else parts_of(first.picture, files, first.video.name)
+        parts = {} if first is None else frame_parts(first.picture, files, first.video.name)
         if files.left is not None:
             left, right = (
                 Stored(as_picture(part, arrays[part]).copy(), None, str(path))
@@ -116,9 +113,9 @@ class SceneSource:
             )
         if {"left", "right"} <= paths.keys() and not any(getattr(files, name) for name in _INSTEAD_OF_RIG):
             shape = (parts["left"].shape[0], parts["left"].shape[1])
-            if found := find_rig(paths["left"], paths["right"], shape):
-                named = found.relative_to(self.folder) if found.is_relative_to(self.folder) else found
-                notes.append(f"{found.name} states the cameras of the pair; write `rig: {named}` to use it")
+            if rig_file := find_rig(paths["left"], paths["right"], shape):
+                shown_path = rig_file.relative_to(self.folder) if rig_file.is_relative_to(self.folder) else rig_file
+                notes.append(f"{rig_file.name} states the cameras of the pair; write `rig: {shown_path}` to use it")
         warnings: list[str] = []
         fields = combine_parts(files, parts, rig, notes, warnings)
         for note in notes:
@@ -135,12 +132,8 @@ class SceneSource:
         }
 
 
-def source_of_arguments(arguments: Mapping[str, Any]) -> SceneSource:
-    """Return the source for the arguments of a `Scene`: files, arrays and options by their key in `SceneFiles`; also
-    `calibration`, `rig` and `name`.
-
-    Raises: ArgumentError for an argument of a wrong type, ConfigError for parts that do not make a scene.
-    """
+def make_source(arguments: Mapping[str, Any]) -> SceneSource:
+    """Return the source for a `Scene`'s arguments, by their key in `SceneFiles`. Raises: ArgumentError, ConfigError."""
     options = {key: value for key, value in arguments.items() if key not in (*_PARTS, "calibration", "rig", "name")}
     parts = {part: arguments.get(part) for part in _PARTS}
     calibration, rig, name = arguments.get("calibration"), arguments.get("rig"), arguments.get("name", "")
@@ -152,17 +145,19 @@ def source_of_arguments(arguments: Mapping[str, Any]) -> SceneSource:
     if not isinstance(cast(object, rig), StereoRig | str | PathLike | None):
         raise wrong_argument("rig", rig, "a StereoRig, or the path of its file")
     verbatim = {"video": video} if isinstance(video, int) or "://" in str(video) else {}
-    given = {part: value for part, value in {**parts, "rig": rig}.items() if value is not None and part not in verbatim}
+    sources = {
+        part: value for part, value in {**parts, "rig": rig}.items() if value is not None and part not in verbatim
+    }
     paths = {
         part: as_path(cast(Any, value), part).absolute()
-        for part, value in given.items()
+        for part, value in sources.items()
         if isinstance(value, str | PathLike)
     }
-    names = {part: Path(f"the array given as {part}") for part in given.keys() - paths.keys()}
+    names = {part: Path(f"the array given as {part}") for part in sources.keys() - paths.keys()}
     files = _validate({**paths, **names, **options, **verbatim}, calibration)
     if not names:
         return SceneSource(name or scene_name(files), files, origin=files)
-    arrays = {part: given[part] for part in names if part != "rig"}
+    arrays = {part: sources[part] for part in names if part != "rig"}
     return SceneSource(name or "arrays", files, arrays=arrays, rig=rig if isinstance(rig, StereoRig) else None)
 
 
@@ -172,11 +167,11 @@ def _validate(values: Mapping[str, Any], calibration: Calibration | None) -> Sce
     if calibration is not None:
         cameras = {"focal_px": calibration.focal_px, "baseline_m": calibration.baseline_m}
         cameras |= {"offset_px": calibration.offset_px} if calibration.offset_px else {}
-    given = {**values, **cameras}
+    options = {**values, **cameras}
     try:
-        return SceneFiles.model_validate(given)
+        return SceneFiles.model_validate(options)
     except ValidationError as error:
-        raise ConfigError(*(text for _, text in sentences_about(error, SceneFiles, given, ("scene",)))) from error
+        raise ConfigError(*(text for _, text in sentences_about(error, SceneFiles, options, ("scene",)))) from error
 
 
 def scene_name(files: SceneFiles) -> str:

@@ -31,9 +31,7 @@ SUITS: dict[ReliefKind, tuple[float, float]] = {
     "heights": (0.02, 0.0),
     "parts": (0.006, 0.0005),
 }
-"""Default height and smoothing, metres. An edge from black to white is then no steeper than h / (s sqrt(2 pi)): 1.06
-in a photograph, where every line is such an edge. The slopes of depth are limited (`relief:`) and only their edges are
-rounded. A height map is not smoothed, and the borders of parts only enough to soften a wall's edge."""
+"""Default height h and smoothing s, metres: an edge is no steeper than h / (s sqrt(2 pi)), 1.06 in a photograph."""
 
 
 FLAT: dict[ReliefKind, str] = {
@@ -116,8 +114,8 @@ class Workspace(Section):
 
     @model_validator(mode="after")
     def _one_size(self) -> Self:
-        given = self.model_fields_set
-        if self.scale is not None and (idle := [name for name in ("width_m", "relief_m") if name in given]):
+        fields_set = self.model_fields_set
+        if self.scale is not None and (idle := [name for name in ("width_m", "relief_m") if name in fields_set]):
             raise ValueError(f"scale already gives the size of the surface; leave out {' and '.join(idle)}")
         if self.scale is None and self.exaggeration != 1:
             raise ValueError("exaggeration needs scale; without it, relief_m is the height of the whole relief")

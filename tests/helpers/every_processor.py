@@ -36,7 +36,7 @@ from tangible_core.plugins.interfaces import Filming
 from tangible_core.plugins.registry import default_registry
 from tangible_core.preflight.bumps import feature_m
 from tangible_core.scene.geometry import make_relief, normals, resample, slopes, smooth
-from tangible_core.scene.scaling import enlarged_segments, in_pixels_of, on_grid, reduce_views
+from tangible_core.scene.scaling import enlarged_segments, on_grid, reduce_views, to_picture_pixels
 from tangible_core.scene.scene import Scene
 from tangible_depth.rectify.rectification import rectify
 from tangible_depth.rectify.rectified_pair import warp_pair
@@ -175,7 +175,7 @@ def reliefs() -> Found:
     yield "views of 16 bits, reduced", reduce_views(Views(pair().left.astype(np.uint16) * 257), 3)
     yield "views of floats, reduced", reduce_views(Views(np.asarray(pair().left / 255, np.float32)), 3)
     disparity = load_method("depth", "semi-global")().estimate(small)
-    yield "disparity, enlarged", on_grid(in_pixels_of(disparity, pair().shape[1]), pair().shape)
+    yield "disparity, enlarged", on_grid(to_picture_pixels(disparity, pair().shape[1]), pair().shape)
     segments = SegmentMap(labels(), np.asarray(mosaic() / 255, np.float32))
     yield "segments, enlarged", enlarged_segments(segments, (300, 331))
     yield "relative roughness", relative_roughness(segments, mosaic())

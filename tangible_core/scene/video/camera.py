@@ -39,18 +39,15 @@ class CameraFrames(VideoFrames):
     def __init__(
         self, number: int, fps: float | None, views_of: ViewsOf, open_capture: OpenCamera | None = None
     ) -> None:
-        """fps: requested from the camera. open_capture: replaces `open_camera` in tests.
-
-        Raises: PictureError if the camera is missing or delivers no picture.
-        """
+        """Open a camera; open_capture is for tests. Raises: PictureError if it is missing or delivers no picture."""
         super().__init__(fps or USUAL_FPS, views_of)
         self._camera, self._requested_fps = number, fps
         self._open = open_capture or video_capture.open_camera
-        self._changed, self._closed = Condition(), Event()
+        self._condition, self._stopped = Condition(), Event()
         self._newest: _Shot | None = None
-        self._lost: PictureError | None = None
+        self._fault: PictureError | None = None
         """The current fault of the camera; None once it was raised."""
-        self._taken, self._read_number, self._first_s = 0, -1, 0.0
+        self._shot_count, self._read_number, self._first_s = 0, -1, 0.0
         self._thread = Thread(target=self._watch, name=f"camera {number}", daemon=True)
         try:
             self._thread.start()
@@ -62,7 +59,7 @@ class CameraFrames(VideoFrames):
     @property
     def at_end(self) -> bool:
         """True once it was closed: a camera has no end."""
-        return self._closed.is_set()
+        return self._stopped.is_set()
 
     def next(self) -> VideoFrame | None:
         """Wait for the next picture. Raises: PictureError if none comes for seconds, or, once, for a lost camera."""
@@ -71,26 +68,26 @@ class CameraFrames(VideoFrames):
 
     def at(self, time_s: float) -> VideoFrame | None:
         """Return the newest picture, whatever the time. Raises: PictureError, once, if the camera is lost."""
-        with self._changed:
+        with self._condition:
             self._raise_lost()
         return None if self.at_end else self._newer()
 
     def close(self) -> None:
         """Close the camera within a second; if its driver hangs, it is released when the driver returns."""
-        if self._closed.is_set():
+        if self._stopped.is_set():
             return
-        self._closed.set()
-        with self._changed:
-            self._changed.notify_all()
+        self._stopped.set()
+        with self._condition:
+            self._condition.notify_all()
         if self._thread.is_alive():
             self._thread.join(ENDED_S)
 
     def _wait(self, most_s: float) -> None:
         """Wait until there is a newer picture. Raises: PictureError if none comes, or the camera is lost."""
         until_s = monotonic() + most_s
-        with self._changed:
+        with self._condition:
             while monotonic() < until_s:
-                if self._changed.wait_for(lambda: self._is_newer() or self._lost or self.at_end, SLICE_S):
+                if self._condition.wait_for(lambda: self._is_newer() or self._fault or self.at_end, SLICE_S):
                     return self._raise_lost()
         raise PictureError(
             f"camera {self._camera}: delivers no picture; check its cable, and that no other program uses it"
@@ -101,9 +98,9 @@ class CameraFrames(VideoFrames):
 
     def _raise_lost(self) -> None:
         """Raise the fault of a lost camera, once, when no unread picture is left. Raises: PictureError."""
-        if self._lost is not None and not self._is_newer():
-            lost, self._lost = self._lost, None
-            raise lost
+        if self._fault is not None and not self._is_newer():
+            fault, self._fault = self._fault, None
+            raise fault
 
     def _newer(self) -> VideoFrame | None:
         shot = self._newest
@@ -115,20 +112,20 @@ class CameraFrames(VideoFrames):
 
     def _watch(self) -> None:
         """Keep the newest picture, or, once, the fault, until closed; the body of the thread."""
-        reported = False
-        while not self._closed.is_set():
-            taken = self._taken
-            lost = self._follow()
-            reported &= self._taken == taken
-            if not reported:
-                with self._changed:
-                    self._lost, reported = lost, True
-                    self._changed.notify_all()
-            self._closed.wait(AGAIN_S)
+        is_reported = False
+        while not self._stopped.is_set():
+            shot_count = self._shot_count
+            fault = self._follow()
+            is_reported &= self._shot_count == shot_count
+            if not is_reported:
+                with self._condition:
+                    self._fault, is_reported = fault, True
+                    self._condition.notify_all()
+            self._stopped.wait(AGAIN_S)
 
     def _follow(self) -> PictureError:
         """Take pictures until that fails; return the reason."""
-        taken, capture = self._taken, None
+        shot_count, capture = self._shot_count, None
         try:
             capture = self._open(self._camera, self._requested_fps)
             if capture.isOpened():
@@ -141,7 +138,7 @@ class CameraFrames(VideoFrames):
         finally:
             if capture is not None:
                 capture.release()
-        if self._taken == taken:
+        if self._shot_count == shot_count:
             here = ", ".join(map(str, _cameras()))
             cure = f"name one of the others: {here}" if here else "check its cable, and that no other program uses it"
             return PictureError(f"camera {self._camera}: does not exist, or is in use; {cure}")
@@ -150,19 +147,19 @@ class CameraFrames(VideoFrames):
         )
 
     def _take_all(self, capture: Capture) -> None:
-        damaged = 0
-        while damaged < MAX_DAMAGED and not self._closed.is_set() and grab(capture):
+        damage_count = 0
+        while damage_count < MAX_DAMAGED and not self._stopped.is_set() and grab(capture):
             taken_s = monotonic()
             if (picture := retrieve(capture, f"camera {self._camera}")) is None:
-                damaged += 1
+                damage_count += 1
                 continue
-            damaged = 0
-            with self._changed:
-                self._first_s = self._first_s if self._taken else taken_s
-                self._newest = _Shot(self._taken, taken_s, picture)
-                self._taken += 1
-                self._lost = None
-                self._changed.notify_all()
+            damage_count = 0
+            with self._condition:
+                self._first_s = self._first_s if self._shot_count else taken_s
+                self._newest = _Shot(self._shot_count, taken_s, picture)
+                self._shot_count += 1
+                self._fault = None
+                self._condition.notify_all()
 
 
 def _cameras() -> list[int]:

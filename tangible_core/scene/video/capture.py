@@ -38,14 +38,12 @@ OpenCamera = Callable[[int, float | None], Capture]
 
 
 def open_file(path: Path) -> Capture:
-    """Open a video file. Raises: PictureError for a file without frames, and for one whose frames are too large.
-
-    Only FFmpeg is used: OpenCV's other readers take the digits in a name for the numbers of pictures.
-    """
+    """Open a video file. Raises: PictureError for one without frames, or with frames that are too large."""
     import cv2
 
     _check_is_file(path)
     with silent_opencv():
+        # OpenCV's readers other than FFmpeg take the digits in a name for the numbers of pictures.
         threads = [cv2.CAP_PROP_N_THREADS, min(thread_limit() or processors(), MAX_THREADS)]
         capture = cv2.VideoCapture(str(path.absolute()), cv2.CAP_FFMPEG, threads)
     if not capture.isOpened():
@@ -79,8 +77,8 @@ def retrieve(capture: Capture, name: object) -> UInt8[np.ndarray, "h w 3"] | Non
     import cv2
 
     with silent_opencv():
-        done, picture = capture.retrieve()
-    if not done or picture.size == 0:
+        is_whole, picture = capture.retrieve()
+    if not is_whole or picture.size == 0:
         return None
     picture = np.asarray(picture)
     check_frame(picture.shape, name)
@@ -155,10 +153,7 @@ class VideoFrame(NamedTuple):
 
 
 class VideoFrames(ABC):
-    """The frames of an open video: a context manager, for one reader in one thread.
-
-    A faulty frame is reported once: the call that reads it raises, and the next call goes on after it.
-    """
+    """The frames of an open video: a context manager, for one reader; a faulty frame is raised once, then passed."""
 
     def __init__(self, fps: float, views_of: ViewsOf) -> None:
         """fps: approximate frames a second. views_of: converts each picture."""
@@ -170,7 +165,7 @@ class VideoFrames(ABC):
         self.count: int | None = None
         """Number of frames that the file states; None if unknown."""
         self._views_of = views_of
-        self._raised: set[str] = set()
+        self._raised_kinds: set[str] = set()
 
     @property
     @abstractmethod
@@ -179,18 +174,11 @@ class VideoFrames(ABC):
 
     @abstractmethod
     def next(self) -> VideoFrame | None:
-        """Return the next frame in order, or the next one that a camera takes; None at the end.
-
-        Raises: PictureError for a frame that cannot be read, or that differs in size from the first.
-        """
+        """Return the next frame, or the next one a camera takes; None at the end. Raises: PictureError."""
 
     @abstractmethod
     def at(self, time_s: float) -> VideoFrame | None:
-        """Return the latest frame that is due at this time, or a camera's newest; earlier frames are skipped.
-
-        Returns: None at the end, or if no new frame is due. Times do not go back.
-        Raises: PictureError as `next`.
-        """
+        """Return the latest frame due, or a camera's newest; None if it is not new. Raises: as `next`."""
 
     @abstractmethod
     def close(self) -> None:
@@ -215,6 +203,6 @@ class VideoFrames(ABC):
 
     def _raise_once(self, kind: str, error: PictureError) -> None:
         """Raise an error, if none of its kind was raised before."""
-        if kind not in self._raised:
-            self._raised.add(kind)
+        if kind not in self._raised_kinds:
+            self._raised_kinds.add(kind)
             raise error

@@ -63,7 +63,7 @@ class FrameViews:
     def __call__(self, picture: np.ndarray) -> Views:
         """Convert a stored picture. Raises: PictureError if all of it is transparent."""
         video, files = self._video, self._files
-        parts = apply_framing(parts_of(picture, video.files, video.name), files)
+        parts = apply_framing(frame_parts(picture, video.files, video.name), files)
         parts = {
             part: values if values.shape[2] == 3 else cut_out(values, video.name)[0] for part, values in parts.items()
         }
@@ -82,11 +82,7 @@ class FirstFrame(NamedTuple):
 
 
 def read_video(source: Path | int, files: SceneFiles, rig: StereoRig | None, notify: Notify = ignore) -> FirstFrame:
-    """Open a video file, a folder of pictures or a camera, and read its first frame.
-
-    notify: receives the remark that it is a video.
-    Raises: PictureError if it is not a video, or cannot be played.
-    """
+    """Open a video, a folder of pictures or a camera, and read its first frame. Raises: PictureError."""
     name = _name(source)
     with _open(source, files.fps, False, cast(ViewsOf, np.asarray)) as frames:
         first = frames.next()
@@ -111,7 +107,7 @@ def still(files: SceneFiles) -> SceneFiles:
     return files.model_copy(update=defaults | parts)
 
 
-def parts_of(picture: np.ndarray, files: SceneFiles, name: str) -> dict[str, np.ndarray]:
+def frame_parts(picture: np.ndarray, files: SceneFiles, name: str) -> dict[str, np.ndarray]:
     """Return the parts of a scene in one frame of a video: a photo, or left and right."""
     if files.layout in (None, "mono"):
         return {"photo": picture}

@@ -43,32 +43,24 @@ SHORT = 0.1
 
 @final
 class FileFrames(VideoFrames):
-    """The frames of a video file.
-
-    A skipped frame is decoded, as later frames depend on it, but not converted to colours, which takes as long. This
-    needs certainty that the next frame is due as well: by a requested rate, or by time stamps that were even over the
-    whole file before. A frame that stands for seconds is never missed.
-    """
+    """The frames of a video file."""
 
     def __init__(self, path: Path, fps: float | None, repeat: bool, views_of: ViewsOf) -> None:
-        """fps: frames a second, instead of the file's time stamps.
-
-        Raises: PictureError if it is not a video.
-        """
+        """fps: frames a second, instead of the file's time stamps. Raises: PictureError if it is not a video."""
         self._capture: Capture | None = open_file(path)
         super().__init__(fps or stated_fps(self._capture) or USUAL_FPS, views_of)
         self.count: int | None = stated_count(self._capture)
-        self._path, self._repeat, self._timed = path, repeat, fps is None
-        self._grabbed = self._in_round = self._damaged = 0
+        self._path, self._repeat, self._uses_stamps = path, repeat, fps is None
+        self._frame_count = self._in_round = self._damage_count = 0
         self._waiting = False
         self._due_s = self._stamp_s = self._late_s = 0.0
         self._even, self._known_even = True, fps is not None
-        self._ended = False
+        self._is_over = False
 
     @property
     def at_end(self) -> bool:
         """True if the last frame was read and the video does not start again."""
-        return self._ended
+        return self._is_over
 
     def next(self) -> VideoFrame | None:
         """Return the next whole frame. Raises: PictureError, once, for a damaged one, or a file that is cut short."""
@@ -78,9 +70,7 @@ class FileFrames(VideoFrames):
         return None
 
     def at(self, time_s: float) -> VideoFrame | None:
-        """Return the latest frame that is due; if there are too many to skip in a tenth of a second, an earlier one,
-        after which all frames come later. Raises: PictureError as `next`.
-        """
+        """Return the latest frame due, or an earlier one if there are too many to skip. Raises: as `next`."""
         latest: VideoFrame | None = None
         began_s = monotonic()
         while self._waiting or self._advance():
@@ -102,17 +92,20 @@ class FileFrames(VideoFrames):
 
     def close(self) -> None:
         """Close the file."""
-        self._ended, self._waiting = True, False
+        self._is_over, self._waiting = True, False
         self._release()
 
     def _another_by(self, time_s: float) -> bool:
         """Tell whether the frame after the grabbed one is due at this time, too."""
+        # A skipped frame is decoded, as later ones depend on it, but not converted to colours, which takes as long.
+        # That needs certainty that the next frame is due as well: by a requested rate, or by stamps that were even over
+        # the whole file before. A frame that stands for seconds is never missed.
         last = self.count is not None and self._in_round >= self.count and not self._repeat
         return self._known_even and not last and self._due_s + self._late_s + (1 + UNEVEN) / self.fps <= time_s
 
     def _advance(self) -> bool:
         """Grab the next frame; False at the end. Raises: PictureError if the file ends before it should."""
-        while not self._ended:
+        while not self._is_over:
             if self._capture is None:
                 self._capture = open_file(self._path)
             if grab(self._capture):
@@ -125,13 +118,13 @@ class FileFrames(VideoFrames):
     def _time(self, capture: Capture) -> None:
         """Compute when the grabbed frame is due."""
         stamp_s, usual_s = position_s(capture), 1 / self.fps
-        step_s = stamp_s - self._stamp_s if self._in_round and self._timed else usual_s
+        step_s = stamp_s - self._stamp_s if self._in_round and self._uses_stamps else usual_s
         if not 0 < step_s <= LONGEST_S:
             step_s = usual_s
         self._even &= abs(step_s - usual_s) < UNEVEN * usual_s
-        self._due_s += step_s if self._grabbed else 0
+        self._due_s += step_s if self._frame_count else 0
         self._stamp_s = stamp_s
-        self._grabbed += 1
+        self._frame_count += 1
         self._in_round += 1
 
     def _take(self) -> VideoFrame | None:
@@ -140,20 +133,20 @@ class FileFrames(VideoFrames):
         picture = None if self._capture is None else retrieve(self._capture, self._path)
         if picture is None:
             self.skipped += 1
-            self._damaged += 1
+            self._damage_count += 1
             fault = f"{self._path}: frame {self._in_round - 1} is damaged and left out; copy or download the file again"
             self._raise_once("damaged", PictureError(fault))
             return None
-        return self._frame(self._grabbed - 1, self._due_s, picture, self._path)
+        return self._frame(self._frame_count - 1, self._due_s, picture, self._path)
 
     def _end_round(self) -> None:
         """Handle the end of the file. Raises: PictureError if it had no frame; once, if frames are missing."""
-        count, damaged = self._in_round, self._damaged
+        count, damage_count = self._in_round, self._damage_count
         self._known_even = self._even
-        self._in_round = self._damaged = 0
+        self._in_round = self._damage_count = 0
         self._release()
-        self._ended = not self._repeat
-        if count == damaged:
+        self._is_over = not self._repeat
+        if count == damage_count:
             raise PictureError(f"{self._path}: none of its frames can be played; convert it to an .mp4 with H.264")
         if self.count is not None and count + 2 < self.count * (1 - SHORT):
             fault = f"{self._path}: is damaged or cut short after {count} of {self.count} frames; copy it again"
@@ -167,16 +160,12 @@ class FileFrames(VideoFrames):
 
 @final
 class FolderFrames(VideoFrames):
-    """The pictures of a folder, in the order of the numbers in their names; skipped ones are not read.
-
-    The first one that is read decides the white of floats and of whole numbers of more than 16 bits, and the
-    orientation of pictures that state none.
-    """
+    """The pictures of a folder, in the order of the numbers in their names; skipped ones are not read."""
 
     def __init__(self, folder: Path, fps: float | None, repeat: bool, views_of: ViewsOf) -> None:
         """fps: 30 a second by default. Raises: PictureError if the folder has no picture."""
         super().__init__(fps or USUAL_FPS, views_of)
-        self._pictures = pictures_of(folder)
+        self._pictures = list_pictures(folder)
         self.count: int | None = len(self._pictures)
         self._folder, self._repeat = folder, repeat
         self._number = 0
@@ -228,17 +217,18 @@ class FolderFrames(VideoFrames):
             return None
         return self._frame(number, number / self.fps, picture, path)
 
-    def _like_first(self, stored: Stored) -> np.ndarray:
+    def _like_first(self, source: Stored) -> np.ndarray:
         """Return a picture with the orientation and white of the first one. Raises: PictureError as `picture_of`."""
-        first = self._first or stored
-        picture = picture_of(same_type(first, turn_alike(stored, first))[1], stored.name)
+        # It decides the white of floats and wide integers, and the orientation of pictures that state none.
+        first = self._first or source
+        picture = picture_of(same_type(first, turn_alike(source, first))[1], source.name)
         self._first = first
         if picture.dtype.kind == first.values.dtype.kind == "f":
             return np.clip(picture / full_scale(first.values), 0, 1)
         return picture
 
 
-def pictures_of(folder: Path) -> list[Path]:
+def list_pictures(folder: Path) -> list[Path]:
     """List the pictures in a folder, in the order of the numbers in their names. Raises: PictureError without one."""
     try:
         pictures = [
@@ -248,7 +238,7 @@ def pictures_of(folder: Path) -> list[Path]:
         raise PictureError(f"{folder}: cannot be read: {error.strerror or error}; check its permissions") from error
     if not pictures:
         raise PictureError(f"{folder}: holds no picture; name a folder of pictures (.png, .jpg, .tif), or a video file")
-    return sorted(pictures, key=lambda each: list(_natural(each.name)))
+    return sorted(pictures, key=lambda path: list(_natural(path.name)))
 
 
 def _natural(name: str) -> Iterator[tuple[int, str]]:
@@ -262,5 +252,5 @@ def as_frame(picture: np.ndarray) -> UInt8[np.ndarray, "h w c"]:
     """Convert a picture to eight bits: RGB, and a fourth channel of 0 or 255 if it has one."""
     if picture.shape[2:] != (4,):
         return to_rgb8(picture)
-    shown = opaque(picture)[..., None] * np.uint8(255)
-    return np.concatenate([to_rgb8(np.ascontiguousarray(picture[..., :3])), shown], axis=2)
+    opacity = opaque(picture)[..., None] * np.uint8(255)
+    return np.concatenate([to_rgb8(np.ascontiguousarray(picture[..., :3])), opacity], axis=2)

@@ -7,7 +7,7 @@ import pytest
 
 from tangible_core import Pipeline, Scene, Workspace
 from tangible_core.errors import ConfigError, PictureError
-from tangible_core.scene.scene_source import source_of_arguments
+from tangible_core.scene.scene_source import make_source
 from tangible_depth.luminance import Luminance
 from tangible_texture.gradient import Gradient
 
@@ -148,7 +148,7 @@ def test_crop_beyond_the_picture_is_refused(crop):
 )
 def test_wrong_options_are_refused(parts, message):
     with pytest.raises(ConfigError, match=message):
-        source_of_arguments(parts)
+        make_source(parts)
 
 
 def test_pipeline_file_takes_the_same_options(tmp_path: Path):

@@ -18,7 +18,7 @@ from tangible_core.pipeline.starter import starter
 from tangible_core.scene.formats.rigs import read_rig
 from tangible_core.scene.rig import Camera, StereoRig, rectify_views, undistort_points
 from tangible_core.scene.scene import Scene
-from tangible_core.scene.scene_source import source_of_arguments
+from tangible_core.scene.scene_source import make_source
 from tangible_depth import SemiGlobal
 
 SHAPE = 90, 120
@@ -429,4 +429,4 @@ def test_rig_with_incompatible_options_raises(name: str):
     with pytest.raises(ConfigError, match=f"leave out {name}"):
         Scene.pair(left=BLANK, right=BLANK, rig="rig.yml", **{name: np.ones(SHAPE, int)})
     with pytest.raises(ConfigError, match="rig needs left"):
-        source_of_arguments({"photo": BLANK, "rig": "rig.yml"})
+        make_source({"photo": BLANK, "rig": "rig.yml"})

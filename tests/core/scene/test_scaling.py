@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from tangible_core.data import Calibration, DisparityMap, SegmentMap, Views
-from tangible_core.scene.scaling import enlarged_segments, felt_factor, in_pixels_of, on_grid, reduce_views
+from tangible_core.scene.scaling import enlarged_segments, felt_factor, on_grid, reduce_views, to_picture_pixels
 
 
 def enlarge_disparity(disparity: DisparityMap, shape: tuple[int, int]) -> DisparityMap:
-    return on_grid(in_pixels_of(disparity, shape[1]), shape)
+    return on_grid(to_picture_pixels(disparity, shape[1]), shape)
 
 
 @pytest.mark.parametrize(

@@ -81,7 +81,7 @@ class DisparityStage(MethodStage):
         exchanged: True corrects a map of exchanged views.
         """
         ordered = pair_checks.correct_exchanged(estimate) if exchanged else estimate
-        return known_disparity(scaling.in_pixels_of(ordered, self.context.scene.shape[1]), self.grid.known_mask)
+        return known_disparity(scaling.to_picture_pixels(ordered, self.context.scene.shape[1]), self.grid.known_mask)
 
     def full_size(self, value: DisparityMap) -> DisparityMap:
         return self.grid.full_disparity(value)

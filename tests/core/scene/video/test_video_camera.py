@@ -77,7 +77,7 @@ def test_camera_keeps_the_newest_picture_only():
         assert frames.at(0) is None, "it was read"
         for _ in range(5):
             camera.may.release()
-        until(lambda: frames._taken == 6)
+        until(lambda: frames._shot_count == 6)
         newest = frames.at(0)
         assert (newest.number, frames.skipped) == (5, 4) and newest.time_s > 0
         camera.may.release()

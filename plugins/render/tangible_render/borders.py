@@ -27,14 +27,11 @@ class Borders(NamedTuple):
 
 
 def border_lines(labels: Int32[np.ndarray, "h w"]) -> Borders:
-    """Return smooth lines between the labels; each point lies within half a cell of its cell side.
-
-    The sides of cells form a staircase, and the border lies within half a cell of it. To find a smooth line there, each
-    line is low-passed and clipped to the half cells, in turn. The low-pass is 1 - (1 - G)^5, which does not shrink
-    circles. So a straight border is straight at any angle, and corners stay within half a cell.
-    Source: projections onto convex sets (Youla & Webb, IEEE Trans. Medical Imaging 1, 1982).
-    """
+    """Return smooth lines between the labels; each point lies within half a cell of its cell side."""
     points, neighbours = _sides(labels)
+    # The border lies within half a cell of the staircase of sides: each line is low-passed and clipped to the half
+    # cells, in turn (projections onto convex sets, Youla & Webb, IEEE Trans. Medical Imaging 1, 1982). The low-pass 1 -
+    # (1 - G)^5 does not shrink circles, so a border is straight at any angle, and corners stay within half a cell.
     at = lanes = np.ascontiguousarray(points.T)
     for _ in range(ROUNDS if len(points) else 0):
         at = np.clip(_low_pass(at, neighbours), lanes - 0.5, lanes + 0.5)
@@ -44,10 +41,7 @@ def border_lines(labels: Int32[np.ndarray, "h w"]) -> Borders:
 def border_distance(
     labels: Int32[np.ndarray, "h w"], pitch_m: tuple[float, float], most_m: float
 ) -> Float32[np.ndarray, "h w"]:
-    """Compute metres from each cell's centre to the nearest line of `border_lines`, at most most_m.
-
-    pitch_m: width and length of a cell. Distances are to the segments between the points, not to the points.
-    """
+    """Compute metres from each cell's centre (cells of pitch_m) to the nearest of `border_lines`, at most most_m."""
     distance_m = np.full(labels.shape, most_m, np.float32)
     lines = border_lines(labels)
     near = _near(labels, pitch_m, most_m)
@@ -121,10 +115,7 @@ def _blur(at: Lanes, before: Int64[np.ndarray, "n"], after: Int64[np.ndarray, "n
 
 
 def _sides(labels: Int32[np.ndarray, "h w"]) -> tuple[Points, Int64[np.ndarray, "n 2"]]:
-    """Return the middles of the cell sides between two labels, and the neighbours of each along the line.
-
-    Two sides are neighbours where they alone meet at a corner of cells; where three or four meet, lines end.
-    """
+    """Return the middles of the cell sides between two labels, and the neighbours of each along the line."""
     columns = labels.shape[1]
     upright, level = np.argwhere(labels[:, 1:] != labels[:, :-1]), np.argwhere(labels[1:] != labels[:-1])
     at = np.vstack([upright[:, ::-1] + [0.5, 0.0], level[:, ::-1] + [0.0, 0.5]]) if len(upright) + len(level) else None
@@ -134,6 +125,7 @@ def _sides(labels: Int32[np.ndarray, "h w"]) -> tuple[Points, Int64[np.ndarray, 
     (row, column), (row_level, column_level) = upright.T, level.T
     first = np.concatenate([row * corner + column + 1, (row_level + 1) * corner + column_level])
     last = np.concatenate([(row + 1) * corner + column + 1, (row_level + 1) * corner + column_level + 1])
+    # Two sides are neighbours where they alone meet at a corner of cells; where three or four meet, lines end.
     ends = np.stack([first, last], axis=1)
     neighbours = np.repeat(np.arange(len(at))[:, None], 2, axis=1)
     _, which, counts = np.unique(ends.ravel(), return_inverse=True, return_counts=True)

@@ -33,5 +33,5 @@ class ForceShading(ForceRenderer):
         heights = np.ascontiguousarray(surface.height_m, np.float32)
         out = np.ascontiguousarray(np.moveaxis(normals(surface.relief), 2, 0))
         labels, stiffness = stiffness_table(surface, self.stiffness_n_per_m)
-        fixed = (heights, out, labels, stiffness, *map(float, surface.extent_m))
-        return CompiledTouch(kernels.tick, fixed, stiffness=float(stiffness.max()))
+        arguments = (heights, out, labels, stiffness, *map(float, surface.extent_m))
+        return CompiledTouch(kernels.tick, arguments, stiffness=float(stiffness.max()))

@@ -34,5 +34,5 @@ class GreyLevel(ForceRenderer):
         from .kernels import grey_level as kernels
 
         heights = np.ascontiguousarray(surface.height_m, np.float32)
-        fixed = (heights, grey_levels(heights), *map(float, surface.extent_m), self.force_at_white_n)
-        return CompiledTouch(kernels.tick, fixed, stiffness=0.0)
+        arguments = (heights, grey_levels(heights), *map(float, surface.extent_m), self.force_at_white_n)
+        return CompiledTouch(kernels.tick, arguments, stiffness=0.0)

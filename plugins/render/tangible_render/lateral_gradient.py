@@ -33,5 +33,5 @@ class LateralGradient(ForceRenderer):
         """Return a new touch on this surface; its kernel is compiled on the first use on a machine, then loaded."""
         from .kernels import lateral as kernels
 
-        fixed = (*spline_surface(surface, self.dequantise), self.force_per_slope_n, 0.0)
-        return CompiledTouch(kernels.tick, fixed, stiffness=0.0)
+        arguments = (*spline_surface(surface, self.dequantise), self.force_per_slope_n, 0.0)
+        return CompiledTouch(kernels.tick, arguments, stiffness=0.0)

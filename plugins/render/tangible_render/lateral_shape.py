@@ -35,5 +35,5 @@ class LateralShape(ForceRenderer):
         """Return a new touch on this surface; its kernel is compiled on the first use on a machine, then loaded."""
         from .kernels import lateral as kernels
 
-        fixed = (*spline_surface(surface, self.dequantise), 0.0, self.stiffness_n_per_m)
-        return CompiledTouch(kernels.tick, fixed, stiffness=self.stiffness_n_per_m)
+        arguments = (*spline_surface(surface, self.dequantise), 0.0, self.stiffness_n_per_m)
+        return CompiledTouch(kernels.tick, arguments, stiffness=self.stiffness_n_per_m)

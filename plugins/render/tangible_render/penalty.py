@@ -40,5 +40,5 @@ class Penalty(ForceRenderer):
 
         shape = spline_surface(surface, self.dequantise)
         labels, stiffness = stiffness_table(surface, self.stiffness_n_per_m)
-        fixed = (*shape, labels, stiffness, self.damping_n_s_per_m)
-        return CompiledTouch(kernels.tick, fixed, stiffness=float(stiffness.max()))
+        arguments = (*shape, labels, stiffness, self.damping_n_s_per_m)
+        return CompiledTouch(kernels.tick, arguments, stiffness=float(stiffness.max()))

@@ -36,5 +36,5 @@ class PenaltyGradient(ForceRenderer):
 
         labels, stiffness = stiffness_table(surface, self.stiffness_n_per_m)
         heights = np.ascontiguousarray(surface.height_m, np.float32)
-        fixed = (heights, labels, stiffness, *map(float, surface.extent_m), self.damping_n_s_per_m)
-        return CompiledTouch(kernels.tick, fixed, stiffness=float(stiffness.max()))
+        arguments = (heights, labels, stiffness, *map(float, surface.extent_m), self.damping_n_s_per_m)
+        return CompiledTouch(kernels.tick, arguments, stiffness=float(stiffness.max()))

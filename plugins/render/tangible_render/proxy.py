@@ -81,15 +81,12 @@ class Proxy(ForceRenderer, Filming):
         return self
 
     def touch(self, surface: HapticSurface) -> Touch:
-        """Return a new touch on this surface, with the simplest kernel for its textures and materials.
-
-        The kernel is compiled on the first use on a machine, then loaded: each kernel has its own module, so that only
-        the required one is compiled.
-        """
+        """Return a new touch on this surface, with the simplest kernel for its textures and materials."""
         shape = spline_surface(surface, self.dequantise, self.radius_m)
+        # Each kernel has its own module, so that only the required one is compiled.
         law = self._law(surface)
-        fixed = (*shape, tile_bounds(shape[0]), *law.arguments)
-        return CompiledTouch(_still_tick(law.kind), fixed, law.memory, law.stiffness_n_per_m)
+        arguments = (*shape, tile_bounds(shape[0]), *law.arguments)
+        return CompiledTouch(_still_tick(law.kind), arguments, law.memory, law.stiffness_n_per_m)
 
     def film(self, surface: HapticSurface, period_s: float = 0.001, frame_s: float = 1 / 30) -> Film:
         """Return a film that begins with this surface, whose labels and materials stay in place.

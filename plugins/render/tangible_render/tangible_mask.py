@@ -48,8 +48,8 @@ class TangibleMask(ForceRenderer):
         across_m, along_m = surface.relief.pitch_m
         columns, rows = self._cells(across_m), self._cells(along_m)
         scales = self._newtons(columns, rows, across_m), self._newtons(rows, columns, along_m)
-        fixed = (heights, summed_tables(255 - grey_levels(heights)), *map(float, surface.extent_m))
-        return CompiledTouch(kernels.tick, (*fixed, rows // 2, columns // 2, *scales), stiffness=0.0)
+        arguments = (heights, summed_tables(255 - grey_levels(heights)), *map(float, surface.extent_m))
+        return CompiledTouch(kernels.tick, (*arguments, rows // 2, columns // 2, *scales), stiffness=0.0)
 
     def _cells(self, pitch_m: float) -> int:
         return self.mask_px or max(3, 2 * round((self.mask_m / pitch_m - 1) / 2) + 1)
@@ -61,10 +61,7 @@ class TangibleMask(ForceRenderer):
 
 
 def summed_tables(dark: np.ndarray) -> np.ndarray:
-    """Sum dark, dark x column and dark x row over all cells above and to the left: int64 (h + 1, w + 1, 3).
-
-    Source: Crow, Summed-area tables for texture mapping, SIGGRAPH 1984.
-    """
+    """Sum dark, dark x column and dark x row over all cells above and to the left (Crow 1984): (h + 1, w + 1, 3)."""
     rows, columns = dark.shape
     table = np.zeros((rows + 1, columns + 1, 3), np.int64)
     table[1:, 1:, 0] = dark

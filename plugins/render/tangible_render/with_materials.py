@@ -63,11 +63,7 @@ class WithMaterials(ForceRenderer):
     """A built-in material for a surface without any; by default such a surface feels like the inner force law alone."""
 
     def touch(self, surface: HapticSurface) -> Touch:
-        """Return a new touch on this surface; the inner force law's own where the materials add nothing.
-
-        Kernels are compiled on the first use on a machine, then loaded. Around a force law in plain Python the touch is
-        plain Python, too.
-        """
+        """Return a new touch on this surface; the inner force law's own where the materials add nothing."""
         _, law = build_law(self.law, _refusal)
         surface = self._with_material(surface)
         touch = law.touch(surface)
@@ -92,25 +88,23 @@ class WithMaterials(ForceRenderer):
 
 @final
 class MaterialsAdapter(PlainTouch):
-    """Materials around a force law in plain Python, by the kernel for compiled ones.
+    """Materials around a force law in plain Python, by the kernel for compiled ones."""
 
-    The kernel calls `stub_law`: it runs once to learn the state at which to evaluate the force law, after which its
-    memory is restored, and once more with the force for that state.
-    """
-
-    def __init__(self, law: Touch, wrapped: CompiledTouch) -> None:
-        self.stiffness_n_per_m: float | None = wrapped.stiffness_n_per_m
-        self._law, self._wrapped = law, wrapped
+    def __init__(self, law: Touch, kernel_touch: CompiledTouch) -> None:
+        self.stiffness_n_per_m: float | None = kernel_touch.stiffness_n_per_m
+        self._law, self._kernel_touch = law, kernel_touch
 
     def force(self, state: HapticState) -> Force:
         """Return the inner force law's force with the effects of the materials, N."""
-        (state_of_law, force_of_law), memory = self._wrapped.fixed[0], self._wrapped.fixed[-1]
+        (state_of_law, force_of_law), memory = self._kernel_touch.fixed[0], self._kernel_touch.fixed[-1]
+        # The kernel calls `stub_law`: it runs once to learn the state at which to evaluate the force law, after which
+        # its memory is restored, and once more with the force for that state.
         before = memory.copy()
-        self._wrapped.force(state)
+        self._kernel_touch.force(state)
         memory[:] = before
         x, y, z, vx, vy, vz = state_of_law.tolist()
         force_of_law[:] = self._law.force(HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons))
-        return self._wrapped.force(state)
+        return self._kernel_touch.force(state)
 
 
 def _wrap(
@@ -125,5 +119,5 @@ def _wrap(
     if not lateral:
         return CompiledTouch(kernels.tick, (law.fixed, law.address(), *rest), law.memory, stiffness)
     heights = np.ascontiguousarray(surface.height_m, np.float32)
-    fixed = (law.fixed, law.address(), heights, *rest)
-    return CompiledTouch(kernels.lateral_tick, fixed, law.memory, stiffness)
+    arguments = (law.fixed, law.address(), heights, *rest)
+    return CompiledTouch(kernels.lateral_tick, arguments, law.memory, stiffness)

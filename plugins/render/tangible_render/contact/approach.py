@@ -1,9 +1,4 @@
-"""Collision of the hand with the surface, and the starting point of the proxy; compiled.
-
-The memory of a touch: 0-2 the proxy, its z NaN without contact, 3-5 the last position of the hand, 6 is 1 while the
-proxy slides, 7 the phase.
-Imports numba: a method imports this module inside its verb.
-"""
+"""Collision of the hand with the surface, and the proxy's starting point; imports numba: import it inside a verb."""
 
 import numpy as np
 
@@ -13,7 +8,7 @@ from ..surface.bilinear import cell, over
 from ..surface.spline import height
 
 REMEMBERED = 8
-"""The number of values in the memory of a touch."""
+"""Values in a touch's memory: 0-2 the proxy, z NaN without contact; 3-5 the last hand; 6 sliding; 7 the phase."""
 LOST, BESIDE, FREE, TOUCHING = 0.0, 1.0, 2.0, 3.0
 """The phases: no valid hand; hand at the side, or entered below the rim; above the surface; in contact from above."""
 LEAP_M = 0.005

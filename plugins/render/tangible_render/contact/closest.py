@@ -1,9 +1,4 @@
-"""The resting point of the proxy on a C2 surface: the nearest point, or where friction holds it; compiled.
-
-It minimises |p - q|^2 / 2 over the surface's points p = (x, y, h(x, y)) for a hand q, by Newton's method with guards:
-without them it divides by zero or diverges on noise and cliffs. Imports numba: a method imports this module inside
-its verb.
-"""
+"""The resting point of the proxy on a C2 surface: the nearest point, or where friction holds it; compiled."""
 
 import math
 
@@ -31,11 +26,7 @@ STEEP = 0.1
 
 @inner(forceinline=True)
 def settle(shape, px, py, x, y, z, static_friction, dynamic_friction, slides):
-    """Return the proxy (x, y, height, slope_x, slope_y, slides) of a hand at (x, y, z), from the last one (px, py).
-
-    With friction the proxy stays in place while the force is within the static cone (the dynamic one if it slides
-    already), and otherwise moves until the force is on the dynamic cone.
-    """
+    """Return the proxy (x, y, height, slope_x, slope_y, slides) of a hand at (x, y, z), from the last one (px, py)."""
     coefficients, width_m, length_m, across_per_m, down_per_m = shape
     half, cell_m = (0.5 * width_m, 0.5 * length_m), 1.0 / max(across_per_m, down_per_m)
     near_m = max(NEAR_CELLS * cell_m, min(NEAR_M, NEAR_FINE_CELLS * cell_m))
@@ -45,6 +36,9 @@ def settle(shape, px, py, x, y, z, static_friction, dynamic_friction, slides):
         if along <= (dynamic_friction if slides > 0.0 else static_friction) * normal:
             return px, py, expansion[0], expansion[1], expansion[2], 0.0
         slides = 1.0
+    # Minimises |p - q|^2 / 2 over the surface's points p = (x, y, h(x, y)) for a hand q, by Newton's method with
+    # guards: without them it divides by zero or diverges on noise and cliffs. With friction the proxy moves until the
+    # force is on the dynamic cone.
     for _ in range(STEPS):
         away = x - px, y - py, z - expansion[0]
         share = 1.0

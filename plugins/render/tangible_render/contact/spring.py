@@ -1,7 +1,4 @@
-"""The spring and the damper between a hand and its proxy; compiled.
-
-Imports numba: a method imports this module inside its verb.
-"""
+"""The spring and the damper between a hand and its proxy; imports numba: import it inside a verb."""
 
 import numpy as np
 from numba import float32, float64, types
@@ -21,10 +18,7 @@ MEMORY = float64[::1]
 
 @inner(forceinline=True)
 def spring(shape, tiles_m, stiffness, memory, x, y, z, vx, vy, vz):
-    """Compute F = k (p - q), for one material without friction and damping.
-
-    In a level tile that already holds the proxy, the proxy is right above the hand.
-    """
+    """Compute F = k (p - q), for one material without friction and damping."""
     _, width_m, length_m, _, _ = shape
     if not approach(shape, tiles_m, memory, x, y, z, vx + vy + vz):
         return 0.0, 0.0, 0.0
@@ -34,6 +28,7 @@ def spring(shape, tiles_m, stiffness, memory, x, y, z, vx, vy, vz):
     if memory[7] == BESIDE:
         pass
     elif highest == lowest and (row, column) == cell(tiles_m.shape[0], tiles_m.shape[1], width_m, length_m, px, py):
+        # In a level tile that already holds the proxy, the proxy is right above the hand.
         px, py, top = x, y, np.float64(highest)
     else:
         px, py, top, _, _, _ = settle(shape, px, py, x, y, z, 0.0, 0.0, 0.0)
@@ -66,10 +61,8 @@ def spring_and_damper(shape, tiles_m, labels, table, memory, x, y, z, vx, vy, vz
 
 @inner()
 def _prefetch_ahead(shape, memory, px, py):
-    """Prefetch the coefficients for the tick after the next, if the proxy keeps its last step, memory to (px, py).
-
-    For a large surface they come from main memory, which takes longer than a tick of a path.
-    """
+    """Prefetch the coefficients for the tick after the next, if the proxy keeps its last step, memory to (px, py)."""
     coefficients, _, _, across_per_m, down_per_m = shape
+    # For a large surface they come from main memory, which takes longer than a tick of a path.
     ahead_x, ahead_y = px + 2.0 * (px - memory[0]), py + 2.0 * (py - memory[1])
     prefetch(coefficients, across_per_m, down_per_m, ahead_x, ahead_y)

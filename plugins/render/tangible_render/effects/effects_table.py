@@ -21,14 +21,11 @@ EFFECT_COLUMNS = [*TEXTURE_COLUMNS, -3, -2]
 def effects_table(
     surface: HapticSurface, friction: bool = True, texture: bool = True, damping: bool = True
 ) -> tuple[Int32[np.ndarray, "h w"], Table]:
-    """Return labels, and a row for each: its texture, then k, b, mu_s and mu_d; one cell and one row if all are equal.
-
-    Disabled effects are 0, and so are the rows of labels that do not occur. A texture that sticks and slips replaces
-    its material's friction. The surface must have materials.
-    """
+    """Return labels, and a row for each: its texture, then k, b, mu_s and mu_d; one cell and row if all are equal."""
     assert surface.labels is not None and surface.materials is not None
     rows = _rows(surface.materials, friction, texture, damping)
     present = np.flatnonzero(np.bincount(surface.labels.ravel()))
+    # So are disabled effects. A texture that sticks and slips replaces its material's friction.
     rows[np.setdiff1d(np.arange(len(rows)), present)] = 0
     if (rows[present] == rows[present[0]]).all():
         return np.zeros((1, 1), np.int32), rows[present[:1]]
@@ -38,11 +35,7 @@ def effects_table(
 def split_textures(
     surface: HapticSurface, friction: bool
 ) -> tuple[Int32[np.ndarray, "h w"], Float64[np.ndarray, "n 4"], Table, Float64[np.ndarray, "m"]] | None:
-    """Split the table for a force law with its own friction and damping.
-
-    Returns: labels, the columns k, b, mu_s and mu_d, a table of textures alone, and the memory of their touch; None if
-    no material of the surface has a texture.
-    """
+    """Split labels, the columns k, b, mu_s and mu_d, a table of textures, and their memory; None without texture."""
     if surface.labels is None or not surface.materials:
         return None
     labels, table = effects_table(surface, friction)

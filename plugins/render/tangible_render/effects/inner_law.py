@@ -12,10 +12,7 @@ Refusal = Callable[[type[ForceRenderer]], str]
 
 
 def build_law(law: Law, refusal: Refusal) -> tuple[str, ForceRenderer]:
-    """Return the name and the method.
-
-    Raises: ValueError if it has no name or is refused, TangibleError if it is not an installed force law.
-    """
+    """Return the name and the method. Raises: ValueError if it has no name or is refused, TangibleError."""
     from tangible_core.plugins.registry import load_method
 
     options: dict[str, Any] = {"use": law} if isinstance(law, str) else dict(law)

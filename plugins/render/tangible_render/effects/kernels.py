@@ -1,14 +1,4 @@
-"""The compiled wrapper of a force law: a fine texture on its surface, friction, and damping along its force.
-
-The texture is a height t(x, y) on top of the force law's surface. The force law sees a hand at (x, y, z) at
-(x, y, z - t), and its force G there becomes (G_x - t_x G_z, G_y - t_y G_z, G_z). Both do the same work: a force law
-that generates no energy generates none through a texture. Friction and damping are added to G and only take energy.
-
-The memory of a touch: first the state of the texture's own forces, then 0-2 the last position seen by the force law, x
-NaN if there is none; 3-4 the way along the surface; 5-7 the bristle of the friction, and 1 if that slides, 0 if it
-sticks, -1 in free air.
-Imports numba: a method imports this module inside its verb.
-"""
+"""The compiled wrapper of a force law: a fine texture on its surface, friction, and damping; import it in a verb."""
 
 import math
 
@@ -27,18 +17,18 @@ from ..surface.bilinear import bilinear, cell, over
 STIFFNESS, DAMPING, STATIC, DYNAMIC = range(HEAD + 4 * WAVES, HEAD + 4 * WAVES + 4)
 """The columns of a label's row, after those of its texture."""
 WAS_X, WAS_Y, WAS_Z, WAY_X, WAY_Y, BRISTLE_X, BRISTLE_Y, SLIDES = range(STATE, STATE + 8)
-"""The places in the memory of a touch, after the state of the texture's own forces."""
+"""Places in a touch's memory: the law's last hand, x NaN without; way; bristle; 1 sliding, 0 sticking, -1 free."""
 REMEMBERED = STATE + 8
 """The number of values in the memory of a touch."""
 
 
 @njit(**KERNEL)
 def tick(fixed, law, labels, width_m, length_m, table, bristle, memory, x, y, z, vx, vy, vz):
-    """Wrap a force law whose force is the push of the surface: friction lies across it, damping along it.
-
-    fixed, law: a kernel's arguments before the state, and its address. bristle: the stiffness of sticking friction.
-    """
+    """Wrap a law, whose force is the push of the surface, by its arguments and address; bristle: sticking stiffness."""
     label, t, tx, ty, dx, dy, dz = texture(labels, width_m, length_m, table, memory, x, y, z)
+    # The texture is a height t(x, y) on top of the force law's surface. The law sees a hand at (x, y, z - t), and its
+    # force G there becomes (G_x - t_x G_z, G_y - t_y G_z, G_z). Both do the same work: a law that generates no energy
+    # generates none through a texture. Friction and damping are added to G and only take energy.
     vz -= tx * vx + ty * vy
     fx, fy, fz = law(*fixed, x, y, z - t, vx, vy, vz)
     return effects(table, label, bristle, memory, tx, ty, dx, dy, dz, vx, vy, vz, fx, fy, fz)
@@ -59,15 +49,12 @@ def lateral_tick(fixed, law, height_m, labels, width_m, length_m, table, bristle
 
 @inner(forceinline=True)
 def texture(labels, width_m, length_m, table, memory, x, y, z):
-    """Return (label, t, t_x, t_y, dx, dy, dz): the label under or nearest to the hand, its texture, the hand's step.
-
-    The speed of a wave comes from the step since the last tick, at any rate of the servo. A hand that enters anew has
-    no step. dz is the step as the force law sees it.
-    """
+    """Return (label, t, t_x, t_y, dx, dy, dz): the label under or nearest to the hand, its texture, the hand's step."""
     at_x = x if abs(x) <= 0.5 * width_m else math.copysign(0.5 * width_m, x)  # finite for NaN, too
     at_y = y if abs(y) <= 0.5 * length_m else math.copysign(0.5 * length_m, y)
     row, column = cell(labels.shape[0], labels.shape[1], width_m, length_m, at_x, at_y)
     label = labels[row, column]
+    # The speed of a wave comes from this step, at any rate of the servo. dz is the step as the force law sees it.
     dx, dy, dz = x - memory[WAS_X], y - memory[WAS_Y], z - memory[WAS_Z]
     continues = dx * dx + dy * dy + dz * dz <= LEAP_M * LEAP_M
     if not continues:
@@ -119,12 +106,7 @@ def _release(memory):
 
 @inner(forceinline=True)
 def _friction(table, label, bristle, memory, dx, dy, vx, vy, push):
-    """Return lateral newtons after a step (dx, dy) along the surface at (vx, vy) m/s: friction and texture forces.
-
-    Friction is a bristle: it sticks while its pull is within the static cone (the dynamic one if it slides already),
-    and slides on the dynamic one. For any path, push and rotation of the surface it stores no more energy than it was
-    given, as it is only ever rotated or shortened (Hayward & Armstrong, Experimental Robotics VI, 2000).
-    """
+    """Return lateral newtons after a step (dx, dy) along the surface at (vx, vy) m/s: friction and texture forces."""
     if not push > 0.0:
         _release(memory)
         return 0.0, 0.0
@@ -134,6 +116,9 @@ def _friction(table, label, bristle, memory, dx, dy, vx, vy, push):
     memory[WAY_Y] += dy
     fx, fy = texture_force(table, label, memory, memory[WAY_X], memory[WAY_Y], vx, vy, push)
     static, dynamic = table[label, STATIC], table[label, DYNAMIC]
+    # Friction is a bristle: it sticks while its pull is within the static cone (the dynamic one if it slides already),
+    # and slides on the dynamic one. For any path, push and rotation of the surface it stores no more energy than it was
+    # given, as it is only rotated or shortened (Hayward & Armstrong, Experimental Robotics VI, 2000).
     zx, zy, slides = 0.0, 0.0, False
     if static > 0.0:
         zx, zy = memory[BRISTLE_X] + dx, memory[BRISTLE_Y] + dy

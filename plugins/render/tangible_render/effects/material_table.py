@@ -10,10 +10,7 @@ Row = tuple[float, float, float, float]
 
 
 def material_table(surface: HapticSurface, plain: Row) -> tuple[Int32[np.ndarray, "h w"], Float64[np.ndarray, "n 4"]]:
-    """Return labels, and a row for each; one cell and one row where the whole surface is equal.
-
-    plain: the row of a surface without materials.
-    """
+    """Return labels, and a row for each; one cell and one row where all are equal; plain: without materials."""
     if surface.labels is None or not surface.materials:
         return np.zeros((1, 1), np.int32), np.array([plain], np.float64)
     table = np.array(

@@ -1,9 +1,4 @@
-"""A stub for a force law in Python where a kernel calls a compiled one.
-
-It has its own module, so that it is compiled only where it is needed, which is rare.
-
-Imports numba: a method imports this module inside its verb.
-"""
+"""A stub for a force law in Python where a kernel calls a compiled one, alone so that it is compiled where needed."""
 
 from numba import float64
 

@@ -1,8 +1,4 @@
-"""A film of `proxy`: the surface under it moves from one relief to the next within the ticks.
-
-The coefficients of a frame are made within milliseconds, by finite filters instead of the recursive ones of a still
-surface.
-"""
+"""A film of `proxy`: the surface under it moves from one relief to the next within the ticks."""
 
 from typing import Any, final
 
@@ -27,10 +23,7 @@ HIGHEST_M = 1e6
 
 @final
 class SplineFilm(Film):
-    """A film whose memory consists of arrays read by the touch: one process may show frames and another render forces.
-
-    Only one process shows at a time.
-    """
+    """A film whose memory is arrays read by the touch: one process may show frames and another render forces."""
 
     def __init__(self, touch: CompiledTouch, slots: Slots, extent_m: tuple[float, float], most_m: float) -> None:
         """Wrap the touch and its slots. most_m: the longest way of any place of the surface in a frame."""
@@ -46,10 +39,7 @@ class SplineFilm(Film):
         return self._touch
 
     def show(self, relief: Relief, frame: int) -> None:
-        """Move the surface towards this relief, as far as it may go in the time of a frame.
-
-        Raises: GeometryError for a relief of another grid or extent than the first.
-        """
+        """Move the surface towards this relief, as far as it may go in a frame. Raises: GeometryError."""
         self._check(relief)
         if self._scratch is None:
             self._scratch = Scratch.of(*relief.height_m.shape)
@@ -90,9 +80,9 @@ def create_film(
     count = max(1, round(frame_s / period_s))
     slots, moving = Slots.still(coefficients, count), np.zeros(2)
     shape = width_m, length_m, columns / width_m, rows / length_m
-    shown = slots.pairs, slots.tiles_m, slots.frames, slots.shared, float(count)
+    film_arguments = slots.pairs, slots.tiles_m, slots.frames, slots.shared, float(count)
     touch = CompiledTouch(
-        tick, (*shown, *shape, *arguments, initial_memory(*spring), moving), memory, spring[0], moving
+        tick, (*film_arguments, *shape, *arguments, initial_memory(*spring), moving), memory, spring[0], moving
     )
     speed_m_per_s = min(SPEED_M_PER_S, STEP_N / (spring[0] * period_s))
     return SplineFilm(touch, slots, surface.extent_m, speed_m_per_s * count * period_s)
@@ -104,20 +94,17 @@ def _grid(shape: tuple[int, ...], extent_m: tuple[float, float]) -> str:
 
 
 def quick_coefficients(height_m: Float32[np.ndarray, "h w"], scratch: Scratch) -> Float32[np.ndarray, "h4 w4"]:
-    """Compute `spline_coefficients` within a hundred-thousandth of the heights; jumps are detected and eased alike.
-
-    This filters by 21 taps in float32 in place of a recursion in float64; grids too small for the taps use
-    `spline_coefficients` itself. The result is the scratch's own array, with the same bits on every processor.
-    Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal Processing 41 (1993), sec. II-B.
-    """
+    """Compute `spline_coefficients` within a hundred-thousandth of the heights; jumps are detected and eased alike."""
     height_m, highest_m = np.ascontiguousarray(height_m), height_m.max()
     if highest_m > HIGHEST_M:
         height_m, highest_m = np.minimum(height_m, np.float32(HIGHEST_M)), np.float32(HIGHEST_M)
     if min(height_m.shape) <= MARGIN:
         return spline_coefficients(height_m)
+    # By 21 taps in float32 in place of a recursion in float64 (Unser, Aldroubi & Eden 1993, sec. II-B), within
+    # milliseconds; the result is the scratch's own array.
     mark_jumps(height_m, highest_m * ROUNDING, *scratch[:3])
     # Of a height in the coefficients of its own cell and of its neighbours; their sum is 1.
     weights = (np.sqrt(3) - 2) ** np.arange(TAPS + 1)
     taps = np.asarray(weights / (2 * weights.sum() - 1), np.float32)
-    filter_coefficients(height_m, scratch.near, taps, scratch.values, scratch.eased, scratch.coefficients)
+    filter_coefficients(height_m, scratch.near, taps, scratch.values, scratch.smooth, scratch.coefficients)
     return scratch.coefficients

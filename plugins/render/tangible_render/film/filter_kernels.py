@@ -1,8 +1,4 @@
-"""Detection and easing of jumps, and the finite filter of spline coefficients; compiled.
-
-These kernels do the work of `surface.jumps` and `surface.coefficients` row by row in float32, in loops that compile to
-vector instructions. No sum has an order that the compiler might change. Imports numba: imported inside a verb.
-"""
+"""`surface.jumps` and `surface.coefficients` row by row in float32, in loops that compile to vector instructions."""
 
 import numpy as np
 from numba import float32, types, uint8, void
@@ -185,11 +181,11 @@ def _peak(a, b, c):
 
 
 @inner()
-def _ease_down(values, eased, row, before, here, after):
+def _ease_down(values, result, row, before, here, after):
     """Ease a row down the columns; before, here, after: masks of cells near a jump, of the row and its neighbours."""
     for i in range(here.shape[0]):
         j = i + MARGIN - RING
-        eased[j] = _ease_value(
+        result[j] = _ease_value(
             values[row - 2, j],
             values[row - 1, j],
             values[row, j],
@@ -202,12 +198,12 @@ def _ease_down(values, eased, row, before, here, after):
 
 
 @inner()
-def _ease_along(values, eased, near):
+def _ease_along(values, result, near):
     for i in range(values.shape[0]):
-        eased[i] = values[i]
+        result[i] = values[i]
     for i in range(1, near.shape[0] - 1):
         j = i + MARGIN - RING
-        eased[j] = _ease_value(
+        result[j] = _ease_value(
             values[j - 2],
             values[j - 1],
             values[j],
@@ -243,11 +239,8 @@ def _filter_along(values, taps, out):
 
 @njit(void(HEIGHTS, float32, MASK, MASK, MASK), **KERNEL)
 def mark_jumps(height_m, rounding, at, wide, near):
-    """Mark the cells at jumps as `surface.jumps` does, and in `near` also their neighbours up to two cells away.
-
-    rounding: the largest difference that is rounding. at, wide: scratch. near: extended by BORDER copies of the
-    outermost cells on each side, and a ring of 0 around these.
-    """
+    """Mark the cells at jumps as `surface.jumps` does, and in `near` also their neighbours up to two cells away."""
+    # near is extended by BORDER copies of the outermost cells on each side, and a ring of 0 around these.
     rows, columns = height_m.shape
     for row in range(rows):
         for column in range(columns):
@@ -258,35 +251,33 @@ def mark_jumps(height_m, rounding, at, wide, near):
 
 
 @njit(void(HEIGHTS, MASK, LINE, ROWS, ROWS, ROWS), **KERNEL)
-def filter_coefficients(height_m, near, taps, values, eased, coefficients):
+def filter_coefficients(height_m, near, taps, values, smooth, coefficients):
     """Compute `spline_coefficients`: extend, then ease and filter down the columns, then along the rows."""
     rows, columns = height_m.shape
     _continue(height_m, near, values)
     for row in range(rows + 2 * MARGIN):
         for i in range(columns + 2 * MARGIN):
-            eased[row, i] = values[row, i]
+            smooth[row, i] = values[row, i]
         i = row - MARGIN + RING
         if 0 < i < near.shape[0] - 1:
-            _ease_down(values, eased[row], row, near[i - 1], near[i], near[i + 1])
+            _ease_down(values, smooth[row], row, near[i - 1], near[i], near[i + 1])
     for row in range(rows + 2 * BORDER):
-        _filter_down(eased, taps, row, values[row])
-        _ease_along(values[row], eased[row], near[row + 1])  # no later row reads this one
-        _filter_along(eased[row], taps, coefficients[row])
+        _filter_down(smooth, taps, row, values[row])
+        _ease_along(values[row], smooth[row], near[row + 1])  # no later row reads this one
+        _filter_along(smooth[row], taps, coefficients[row])
 
 
 @njit(types.boolean(ROWS, PAIRS, PAIRS, float32), **KERNEL)
-def fill_slot(coefficients, played, free, most_m):
-    """Write the way from the end of the played slot to these coefficients, by at most most_m anywhere.
-
-    Returns: True if it falls short of them; the coefficients become the end of the way.
-    """
+def fill_slot(coefficients, before, free, most_m):
+    """Write the way from the played slot's end to these coefficients, by at most most_m; True if it falls short."""
+    # The coefficients become the end of the way.
     short = False
     rows, columns = coefficients.shape
     for row in range(rows):
         for i in range(columns):
-            begin, wanted = played[row, i, 1], coefficients[row, i]
-            way = wanted - begin
-            end = wanted if abs(way) <= most_m else (begin + most_m if way > NOTHING else begin - most_m)
+            begin, target = before[row, i, 1], coefficients[row, i]
+            way = target - begin
+            end = target if abs(way) <= most_m else (begin + most_m if way > NOTHING else begin - most_m)
             free[row, i, 0], free[row, i, 1], coefficients[row, i] = begin, end, end
-            short |= end != wanted
+            short |= end != target
     return short

@@ -1,12 +1,4 @@
-"""The surface of a film in each tick: slots that two processes share without locks; compiled.
-
-There are three slots, each with a first and a last surface. One is played, one may be published to come next, and the
-third is free for the host to write. One number, STATE, holds their roles, and either side replaces it only if the other
-has not done so meanwhile (compare and swap). So a published slot always begins with the last surface of the played one,
-and the surface continues exactly from there; the played slot is never written to; and neither side waits: a tick that
-loses a race stays in its slot, and tries again in the next tick.
-Imports numba: a method imports this module inside its verb.
-"""
+"""The surface of a film in each tick: slots that two processes share without locks; import it inside a verb."""
 
 # pyright: reportCallIssue=false
 
@@ -35,9 +27,7 @@ MOVING_SURFACE = (
     float64,
     *[float64] * 4,
 )
-"""The numba types of the first arguments of a film's kernel: `pairs`, `tiles_m`, `frames`, `shared`, the ticks of a
-slot, and the surface's extent and cells per metre. Each slot has pairs of coefficients (h, w, 2), their bounds, and a
-frame."""
+"""The numba types of a film kernel's first arguments, of which each slot has coefficients, bounds and a frame."""
 MOVING = float64[::1]
 
 
@@ -53,22 +43,22 @@ def _load(context, array, index):
 
 
 @intrinsic
-def _replace(context, array, index, expected, value):
+def _replace(context, array, index, old, value):
     """Replace a number of an int64 array atomically if it is the expected one; return True if it was."""
 
     def generate(context, builder, signature, arguments):
         data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
         at = builder.gep(data, [arguments[1]])
-        done = builder.cmpxchg(at, arguments[2], arguments[3], "acq_rel", "acquire")
-        return builder.extract_value(done, 1)
+        result = builder.cmpxchg(at, arguments[2], arguments[3], "acq_rel", "acquire")
+        return builder.extract_value(result, 1)
 
     return types.boolean(array, types.int64, types.int64, types.int64), generate
 
 
 @inner()
-def state(played, published):
+def state(current, published):
     """Return two slots as one number; both are equal where no slot is to follow."""
-    return SLOTS * played + published
+    return SLOTS * current + published
 
 
 @njit(types.UniTuple(int64, 2)(int64[::1]), **KERNEL)
@@ -79,14 +69,18 @@ def slots(shared):
 
 
 @njit(types.boolean(int64[::1], int64, int64, int64), **KERNEL)
-def publish(shared, played, published, next_one):
+def publish(shared, current, next_slot, next_one):
     """Publish a slot in place of another; return False if a tick has left the played slot meanwhile."""
-    return _replace(shared, int64(STATE), state(played, published), state(played, next_one))
+    return _replace(shared, int64(STATE), state(current, next_slot), state(current, next_one))
 
 
 @inner(forceinline=True)
 def play(frames, shared, count, moving):
     """Return the slot of a tick, the position in the slot after it, 0..1, and the share passed in it."""
+    # One slot is played, one may be published to come next, and the third is free for the host to write. STATE holds
+    # their roles, and either side replaces it only if the other has not done so meanwhile (compare and swap). So a
+    # published slot always begins with the last surface of the played one; the played slot is never written to; and
+    # neither side waits: a tick that loses a race stays in its slot, and tries again in the next tick.
     now = _load(shared, int64(STATE))
     slot, following, tick = now // SLOTS, now % SLOTS, shared[TICK]
     if tick >= count and following != slot and _replace(shared, int64(STATE), now, state(following, following)):
@@ -99,7 +93,7 @@ def play(frames, shared, count, moving):
 
 
 @inner(forceinline=True)
-def write_rise(pairs, across_per_m, down_per_m, passed, memory, moving):
+def write_rise(pairs, across_per_m, down_per_m, part, memory, moving):
     """Write to `moving` the rise of the surface at the proxy in this tick, m: its speed along z times the period."""
-    if passed > 0.0 and memory[7] == TOUCHING and not np.isnan(memory[2]):
-        moving[RISE_M] = height((pairs, -passed, passed), across_per_m, down_per_m, memory[0], memory[1])
+    if part > 0.0 and memory[7] == TOUCHING and not np.isnan(memory[2]):
+        moving[RISE_M] = height((pairs, -part, part), across_per_m, down_per_m, memory[0], memory[1])

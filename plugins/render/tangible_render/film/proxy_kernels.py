@@ -1,7 +1,4 @@
-"""The compiled kernel of `proxy` on materials, on a moving surface. Imports numba: imported inside `film`.
-
-`contact.approach` lists the memory of a touch.
-"""
+"""The compiled kernel of `proxy` on materials, on a moving surface. Imports numba: imported inside `film`."""
 
 from numba import float64
 
@@ -19,8 +16,8 @@ def moving_tick(
     moving, x, y, z, vx, vy, vz,
 ):  # fmt: skip
     """Compute `kernels.proxy.tick` on the surface at the end of this tick."""
-    slot, share, passed = play(frames, shared, count, moving)
+    slot, share, part = play(frames, shared, count, moving)
     shape = (pairs[slot], 1.0 - share, share), width_m, length_m, across_per_m, down_per_m
     fx, fy, fz = spring_and_damper(shape, tiles_m[slot], labels, table, memory, x, y, z, vx, vy, vz)
-    write_rise(pairs[slot], across_per_m, down_per_m, passed, memory, moving)
+    write_rise(pairs[slot], across_per_m, down_per_m, part, memory, moving)
     return steady(last, moving, x, y, z, vx, vy, vz, fx, fy, fz)

@@ -1,7 +1,4 @@
-"""The compiled kernel of `proxy` on materials with a texture, on a moving surface. Imports numba.
-
-`contact.approach` lists the memory of a touch.
-"""
+"""The compiled kernel of `proxy` on materials with a texture, on a moving surface. Imports numba."""
 
 from numba import float64
 
@@ -20,11 +17,11 @@ def moving_textured_tick(
     contact, last, moving, x, y, z, vx, vy, vz,
 ):  # fmt: skip
     """Compute `kernels.proxy_texture.textured_tick` on the surface at the end of this tick."""
-    slot, share, passed = play(frames, shared, count, moving)
+    slot, share, part = play(frames, shared, count, moving)
     shape = (pairs[slot], 1.0 - share, share), width_m, length_m, across_per_m, down_per_m
     label, t, tx, ty, dx, dy, dz = texture(labels, width_m, length_m, textures, contact, x, y, z)
     vz -= tx * vx + ty * vy
     fx, fy, fz = spring_and_damper(shape, tiles_m[slot], labels, table, memory, x, y, z - t, vx, vy, vz)
-    write_rise(pairs[slot], across_per_m, down_per_m, passed, memory, moving)
+    write_rise(pairs[slot], across_per_m, down_per_m, part, memory, moving)
     fx, fy, fz = steady(last, moving, x, y, z - t, vx, vy, vz, fx, fy, fz)
     return effects(textures, label, 1.0, contact, tx, ty, dx, dy, dz, vx, vy, vz, fx, fy, fz)

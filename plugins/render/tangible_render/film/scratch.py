@@ -22,21 +22,21 @@ class Scratch(NamedTuple):
     wide: UInt8[np.ndarray, "h w"]
     near: UInt8[np.ndarray, "h6 w6"]
     values: Float32[np.ndarray, "hm wm"]
-    eased: Float32[np.ndarray, "hm wm"]
+    smooth: Float32[np.ndarray, "hm wm"]
     coefficients: Float32[np.ndarray, "h4 w4"]
     ends: Float32[np.ndarray, "h4 w4"]
 
     @classmethod
     def of(cls, rows: int, columns: int) -> Self:
         """Allocate the arrays for heights of this size."""
-        padded = rows + 2 * MARGIN, columns + 2 * MARGIN
+        with_margin = rows + 2 * MARGIN, columns + 2 * MARGIN
         with_border = rows + 2 * BORDER, columns + 2 * BORDER
         return cls(
             np.empty((rows, columns), np.uint8),
             np.empty((rows, columns), np.uint8),
             np.empty((rows + 2 * RING, columns + 2 * RING), np.uint8),
-            np.empty(padded, np.float32),
-            np.empty(padded, np.float32),
+            np.empty(with_margin, np.float32),
+            np.empty(with_margin, np.float32),
             np.empty(with_border, np.float32),
             np.empty(with_border, np.float32),
         )

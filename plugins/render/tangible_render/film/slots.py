@@ -7,14 +7,12 @@ from jaxtyping import Float32, Float64, Int64
 
 from ..surface.tiles import tile_bounds
 from .filter_kernels import fill_slot
-from .playing import publish, slots
+from .playing import SLOTS, publish, slots
 
 SPEED_M_PER_S = 0.1
 """The greatest speed of any place of a surface, m/s: that of a hand."""
 STEP_N = 0.08
 """The greatest change of the spring force on a hand at rest in a tick, N: more feels like a knock."""
-SLOTS = 3
-"""The number of slots: played, published and free."""
 DROPPED = 0
 """The index in `host_state` of the number of frames never reached."""
 SHORT = 1
@@ -47,25 +45,22 @@ class Slots(NamedTuple):
         return cls(pairs, tiles_m, tiles_m.copy(), np.zeros(SLOTS), shared, np.zeros(SHORT + SLOTS, np.int64))
 
     def show(self, target: Float32[np.ndarray, "h4 w4"], frame: int, most_m: float, ends: np.ndarray) -> None:
-        """Publish a slot from the end of the played one to this surface, by at most most_m anywhere.
-
-        ends: scratch of the same shape.
-        """
+        """Publish a slot from the end of the played one to this surface, by at most most_m anywhere; ends: scratch."""
         while True:
-            played, published = slots(self.shared)
-            free = next(slot for slot in range(SLOTS) if slot not in (played, published))
+            current, next_slot = slots(self.shared)
+            free = next(slot for slot in range(SLOTS) if slot not in (current, next_slot))
             np.copyto(ends, target)
-            self._fill(free, played, ends, most_m)
+            self._fill(free, current, ends, most_m)
             self.frames[free] = frame
-            if publish(self.shared, played, published, free):
-                self.host_state[DROPPED] += played != published and self.frames[published] != frame
+            if publish(self.shared, current, next_slot, free):
+                self.host_state[DROPPED] += current != next_slot and self.frames[next_slot] != frame
                 return
 
-    def _fill(self, free: int, played: int, ends: np.ndarray, most_m: float) -> None:
+    def _fill(self, free: int, current: int, ends: np.ndarray, most_m: float) -> None:
         """Fill a slot that begins at the end of another. `ends`: the target coefficients, then those at its end."""
-        self.host_state[SHORT + free] = fill_slot(ends, self.pairs[played], self.pairs[free], most_m)
+        self.host_state[SHORT + free] = fill_slot(ends, self.pairs[current], self.pairs[free], most_m)
         self.ends_m[free] = bounds = tile_bounds(ends)
-        begins, bounds_of_both = self.ends_m[played], self.tiles_m[free]
+        begins, bounds_of_both = self.ends_m[current], self.tiles_m[free]
         np.maximum(bounds[..., 0], begins[..., 0], out=bounds_of_both[..., 0])
         np.minimum(bounds[..., 1], begins[..., 1], out=bounds_of_both[..., 1])
 

@@ -1,12 +1,4 @@
-"""A limit on the change of force due to a moving surface; compiled.
-
-A small motion of the surface may free the proxy: the ridge that held it sinks, and it slides off, or the ground under
-the hand falls away while the proxy still hangs on a wall. The spring's loss is then spread over several ticks: the
-point that pulls at the hand moves straight from its last place to the proxy, no faster than the limit for a hand at
-rest, or as the hand itself moves. It is never further from the hand than at one of the ends of its way, so that its
-energy comes from the hand and the surface alone.
-Imports numba: a method imports this module inside its verb.
-"""
+"""A limit on the change of force due to a moving surface; imports numba: import it inside a verb."""
 
 import math
 
@@ -21,18 +13,19 @@ from .slots import STEP_N
 
 STEADY = float64[::1]
 STIFFNESS, DAMPING, FORCE, HAND, SPEED, LATE, REMEMBERED = 0, 1, 2, 5, 8, 11, 12
-"""The places in the memory: stiffness and damping of the force law; then force, position and velocity of the last tick,
-a flag for a force short of the force law's, and the length of the memory."""
+"""Places in the memory: the law's stiffness and damping; the last force, hand and velocity; a flag; its length."""
 REACH = 8.0
 """The additional way of the point as a multiple of the hand's: it then slides off a ridge as on a still surface."""
 
 
 @inner(forceinline=True)
 def steady(memory, moving, x, y, z, vx, vy, vz, fx, fy, fz):
-    """Return the force law's force, its change limited for this tick; a slide may last longer than a frame.
-
-    For a limited force, `moving` gets the rise that does the same work on it as the surface did.
-    """
+    """Return the force law's force, its change limited for this tick; a slide may last longer than a frame."""
+    # A small motion of the surface may free the proxy: the ridge that held it sinks, or the ground falls away while the
+    # proxy still hangs on a wall. The spring's loss is then spread over several ticks: the point that pulls at the hand
+    # moves straight from its last place to the proxy, no faster than the limit for a hand at rest, or as the hand
+    # itself moves. It is never further from the hand than at an end of its way, so that its energy comes from hand and
+    # surface alone. For a limited force, `moving` gets the rise that does the same work on it as the surface did.
     stiffness = memory[STIFFNESS]
     dx, dy, dz = x - memory[HAND], y - memory[HAND + 1], z - memory[HAND + 2]
     ux, uy, uz = vx - memory[SPEED], vy - memory[SPEED + 1], vz - memory[SPEED + 2]

@@ -1,9 +1,4 @@
-"""Fine textures for force laws: heights in metres and forces in newtons, independent of any picture's resolution.
-
-Every model is one row of numbers for each material: plane waves, which are its heights (`waves`), a linear drag, and
-stick-slip friction (`table`). The compiled functions `heights.texture_height` and `forces.texture_force` evaluate a row
-at a point.
-"""
+"""Fine textures for force laws: heights in metres and forces in newtons, independent of any picture's resolution."""
 
 from .sample import Stroke, sample_tile, stroke
 from .spectrum import peak_wavelength_m, radial_spectrum

@@ -15,7 +15,7 @@ STATE = 7
 _TURNS = np.arange(1, 5)
 _SHAPE = np.sinc(_TURNS / 5) / _TURNS
 _REACH = float(np.max(np.einsum("n,ni->i", _SHAPE, np.sin(np.outer(_TURNS, np.linspace(0, math.pi, 1000))))))
-HARMONICS = tuple(float(each) / _REACH for each in _SHAPE)
+HARMONICS = tuple(float(amplitude) / _REACH for amplitude in _SHAPE)
 """Amplitudes of a sawtooth from -1 to 1, with Lanczos' factors against overshoot."""
 
 _X, _Y, _BRISTLE_X, _BRISTLE_Y, _PHASE, _LEVEL, _OWNER = range(STATE)
@@ -36,18 +36,15 @@ def _sawtooth(phase, turns):
 
 @inner()
 def _stretch(row, state, x, y, normal_n):
-    """Stretch the bristle, and let it slip beyond its greatest length.
-
-    The bristle z gives F = -k m z and slips at |z| = mu_d N / k (an elasto-plastic Dahl model; Hayward & Armstrong,
-    Experimental Robotics VI, 2000). While it slips, its level m follows a sawtooth of one grain in length, from the
-    static friction, m = mu_s / mu_d, to as far below 1; the mean is the dynamic friction.
-
-    It is passive for any path and N: over a tick from z to z', E = k m |z|^2 / 2 grows by no more than
-    the hand puts in, -F'.dx, if and only if m' / m <= 1 + 2 s / |z'| for a slip by s. The level rises no faster.
-    """
+    """Stretch the bristle, and let it slip beyond its greatest length."""
     bristle_x = state[_BRISTLE_X] + x - state[_X]
     bristle_y = state[_BRISTLE_Y] + y - state[_Y]
     length = math.sqrt(bristle_x * bristle_x + bristle_y * bristle_y)
+    # The bristle z gives F = -k m z and slips at |z| = mu_d N / k (an elasto-plastic Dahl model; Hayward & Armstrong,
+    # Experimental Robotics VI, 2000). While it slips, its level m follows a sawtooth of one grain in length, from the
+    # static friction, m = mu_s / mu_d, to as far below 1; the mean is the dynamic friction. It is passive for any path
+    # and N: over a tick from z to z', E = k m |z|^2 / 2 grows by no more than the hand puts in, -F'.dx, if and only if
+    # m' / m <= 1 + 2 s / |z'| for a slip by s. The level rises no faster.
     most = row[DYNAMIC] * normal_n / row[STIFFNESS]
     slip = length - most
     if slip > 0.0:
@@ -63,11 +60,7 @@ def _stretch(row, state, x, y, normal_n):
 
 @njit(types.UniTuple(float64, 2)(TEXTURES, int64, float64[::1], *[float64] * 5), **KERNEL)
 def texture_force(textures, material, state, x, y, vx, vy, normal_n):
-    """Return the lateral force (Fx, Fy), newtons, of drag and stick-slip friction, which are not heights.
-
-    state: STATE zeros at first, then passed from tick to tick, for any material; without contact (normal_n not above 0)
-    or with a value that is not finite, it is cleared, and the force is 0.
-    """
+    """Return the lateral force (Fx, Fy), newtons, of drag and stick-slip friction; state: STATE zeros at first."""
     if not (normal_n > 0.0 and np.isfinite(x + y + vx + vy + normal_n)):
         state[_OWNER] = 0.0
         return 0.0, 0.0
@@ -91,10 +84,7 @@ def texture_force(textures, material, state, x, y, vx, vy, normal_n):
 
 @njit(**KERNEL)
 def along(textures, material, state, positions_m, period_s, normal_n, result):
-    """Compute height and lateral force, metres and newtons, at every position of a path, one period apart.
-
-    The velocity is the last step over the period; 0 at first. result: (n, 5), a row of h, dh/dx, dh/dy, Fx and Fy each.
-    """
+    """Compute h, dh/dx, dh/dy, Fx and Fy (n, 5), in metres and newtons, along a path, its places a period apart."""
     for i in range(positions_m.shape[0]):
         x, y, before = positions_m[i, 0], positions_m[i, 1], positions_m[max(i - 1, 0)]
         vx, vy = (x - before[0]) / period_s, (y - before[1]) / period_s

@@ -1,10 +1,4 @@
-"""The height of a texture at a point, compiled. Imports numba, so import this module inside the verb that needs it.
-
-Sampling. A wave of frequency f, crossed at a velocity v, is a vibration of f.v hertz. Each wave is whole while a period
-spans 5 ticks or more, gone where it spans 3 or fewer, and attenuated by a cubic between: the servo never has to render
-more than a third of its rate. Campion & Hayward (World Haptics 2005): a texture needs a wavelength above 2 v T to be
-sampled at all, and 5 to 10 samples a period to feel right.
-"""
+"""The height of a texture at a point, compiled; import it inside the verb that needs it."""
 
 import math
 from typing import Any
@@ -22,7 +16,7 @@ from .table import COUNT, HEAD
 from .waves import WAVES
 
 WHOLE, GONE = 1 / 5, 1 / 3
-"""Turns a tick up to which a wave is whole, and from which it is gone."""
+"""Turns a tick up to which a wave is whole, and from which it is gone: no servo renders over 1/3 of its rate."""
 TEXTURES = types.Array(float64, 2, "C", readonly=True)
 
 SINE = tuple((-1.0) ** n * math.pi ** (2 * n + 1) / math.factorial(2 * n + 1) for n in range(8))
@@ -33,6 +27,8 @@ COSINE = tuple((-1.0) ** n * math.pi ** (2 * n) / math.factorial(2 * n) for n in
 @inner(forceinline=True)
 def remaining(turns):
     """Return the share of a wave's amplitude that remains at this many turns a tick."""
+    # A wave of frequency f, crossed at a velocity v, is a vibration of f.v hertz. Campion & Hayward (World Haptics
+    # 2005): it needs a wavelength above 2 v T to be sampled at all, and 5 to 10 samples a period to feel right.
     over = min(max((turns - WHOLE) / (GONE - WHOLE), 0.0), 1.0)
     return 1.0 - over * over * (3.0 - 2.0 * over)
 
@@ -56,7 +52,7 @@ def _scratch(_context, count):
         number = ir.DoubleType()
         data = cgutils.alloca_once(builder, ir.ArrayType(number, count.literal_value))
         array = context.make_array(signature.return_type)(context, builder)
-        sizes = (context.get_constant(types.intp, each) for each in (count.literal_value, 8, 8))
+        sizes = (context.get_constant(types.intp, size) for size in (count.literal_value, 8, 8))
         shape, stride, item = sizes
         populate_array(array, builder.bitcast(data, number.as_pointer()), [shape], [stride], item, None)
         return array._getvalue()
@@ -66,11 +62,9 @@ def _scratch(_context, count):
 
 @inner()
 def _sum_of_waves(row, x, y, step_x, step_y):
-    """Return height and gradient; unspecified where a number is not finite.
-
-    First all waves, vectorised, then their sums, in order: sums that a compiler may reorder have other last bits with
-    every width of a processor's vectors.
-    """
+    """Return height and gradient; unspecified where a number is not finite."""
+    # First all waves, vectorised, then their sums, in order: sums that a compiler may reorder have other last bits with
+    # every width of a processor's vectors.
     count = int(row[COUNT])
     heights, slopes_x, slopes_y = _scratch(WAVES), _scratch(WAVES), _scratch(WAVES)
     for i in range(count):  # from 0: a possibly negative index would be checked, which prevents vectorisation
@@ -92,11 +86,7 @@ def _sum_of_waves(row, x, y, step_x, step_y):
 
 @njit(types.UniTuple(float64, 3)(TEXTURES, int64, *[float64] * 5), **KERNEL)
 def texture_height(textures, material, x, y, vx, vy, dt):
-    """Return (h, dh/dx, dh/dy): height in metres over the mean, and its exact gradient; zeros if not finite.
-
-    textures, material: the table of `compile_textures`, and the row in it; x, y, vx, vy: metres and metres per second
-    in the workspace frame; dt: the servo's period, seconds. Zero velocity gives the whole texture.
-    """
+    """Return (h, dh/dx, dh/dy) in metres of a row of `compile_textures`, dt the servo's period; zeros if not finite."""
     step_x, step_y = vx * dt, vy * dt
     height, slope_x, slope_y = _sum_of_waves(textures[material], x, y, step_x, step_y)
     if not np.isfinite(x + y + step_x + step_y + height + slope_x + slope_y):

@@ -16,17 +16,14 @@ FINEST = 3
 
 
 def sample_tile(material: Material, width_m: float, pixels: int) -> Float32[np.ndarray, "n n"]:
-    """Return heights over the mean, metres, of a square around the workspace's origin; the top row is far.
-
-    Heights are those at the pixel centres. Waves that span fewer than 3 pixels along a row or a column are left out.
-    Raises: MaterialError if width_m is not positive and finite, or pixels under 1.
-    """
+    """Return heights over the mean, metres, of a square at the origin; the top row is far. Raises: MaterialError."""
     if not (0 < width_m < np.inf and pixels >= 1):
         raise MaterialError(
             f"a tile needs a positive width and at least one pixel, not {width_m} m and {pixels} pixels"
         )
     pitch_m = width_m / pixels
     parts = waves(material)
+    # A wave that spans fewer than FINEST pixels along a row or a column would be shown as another one.
     fine = np.maximum(np.abs(parts.fx), np.abs(parts.fy)) * pitch_m > 1 / FINEST
     amplitude_m = np.where(fine, 0, parts.amplitude_m)
     at_m = (np.arange(pixels) + 0.5) * pitch_m - width_m / 2
@@ -53,14 +50,9 @@ def stroke(
     period_s: float = 0.001,
     direction_deg: float = 0.0,
 ) -> Stroke:
-    """Compute a stroke from the workspace's origin at constant speed and normal force.
-
-    The force is the sum of the texture's, the slope's, -N dh/ds (Robles-De-La-Torre & Hayward, Nature 412, 2001), and
-    the dynamic friction if the texture has no friction. Compiles on the first use on a machine.
-    Raises: MaterialError if one of the numbers is not positive and finite (a direction: not finite).
-    """
+    """Compute a stroke from the workspace's origin at constant speed and normal force. Raises: MaterialError."""
     positive = (speed_m_per_s, normal_n, length_m, period_s)
-    if not (all(0 < each < np.inf for each in positive) and np.isfinite(direction_deg)):
+    if not (all(0 < number < np.inf for number in positive) and np.isfinite(direction_deg)):
         raise MaterialError(f"a stroke needs positive numbers and a direction, not {positive} and {direction_deg}")
     from . import forces
 
@@ -68,6 +60,8 @@ def stroke(
     along = np.array([np.cos(np.deg2rad(direction_deg)), np.sin(np.deg2rad(direction_deg))])
     textures, result = compile_textures([material]), np.empty((len(way_m), 5))
     cast(Any, forces).along(textures, 0, np.zeros(forces.STATE), np.outer(way_m, along), period_s, normal_n, result)
+    # The texture's force, the slope's, -N dh/ds (Robles-De-La-Torre & Hayward, Nature 412, 2001), and the dynamic
+    # friction if the texture has no friction.
     friction_n = 0.0 if textures[0, STIFFNESS] else material.dynamic_friction * normal_n
     lateral_n = result[:, 3:] - normal_n * result[:, 1:3]
     force_n = lateral_n[:, 0] * along[0] + lateral_n[:, 1] * along[1] - friction_n * (way_m > 0)

@@ -17,10 +17,7 @@ Spectrum = tuple[Float64[np.ndarray, " bins"], Float64[np.ndarray, " bins"]]
 
 
 def radial_spectrum(tile: Float[np.ndarray, "n n"], width_m: float) -> Spectrum:
-    """Return the power of a square tile by wavelength, over all directions; all zeros for a tile of zeros.
-
-    Uses a Hann window, and bins of STEP_OCTAVES blurred over BLUR_OCTAVES.
-    """
+    """Return the power of a square tile by wavelength, over all directions; all zeros for a tile of zeros."""
     return _by_octave(np.asarray(tile, np.float64), width_m)
 
 
@@ -48,12 +45,12 @@ def _by_octave(values: Float64[np.ndarray, "..."], side_m: float) -> Spectrum:
     edges = np.arange(
         1, log2(max(count / 2, 3)), STEP_OCTAVES
     )  # from two periods a side on, so that a period is complete
-    squared = powers_of_two(2 * np.append(edges, edges[-1] + STEP_OCTAVES))
+    radius_bounds = powers_of_two(2 * np.append(edges, edges[-1] + STEP_OCTAVES))
     # Not np.histogram, which sorts: the order of equal values depends on the processor.
-    bins = np.searchsorted(squared, radius2.ravel(), "right") - 1
+    bins = np.searchsorted(radius_bounds, radius2.ravel(), "right") - 1
     inside = (bins >= 0) & (bins < edges.size)
-    blurred = _blur(np.bincount(bins[inside], power.ravel()[inside], edges.size))
-    return side_m / powers_of_two(edges + STEP_OCTAVES / 2), blurred / max(blurred.sum(), 1e-300)
+    smooth = _blur(np.bincount(bins[inside], power.ravel()[inside], edges.size))
+    return side_m / powers_of_two(edges + STEP_OCTAVES / 2), smooth / max(smooth.sum(), 1e-300)
 
 
 def _blur(power: Float64[np.ndarray, " bins"]) -> Float64[np.ndarray, " bins"]:

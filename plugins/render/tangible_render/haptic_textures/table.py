@@ -10,8 +10,7 @@ from tangible_core.data import Material
 from .waves import WAVES, waves
 
 COUNT, DRAG, STIFFNESS, DYNAMIC, SWING, PER_M = range(6)
-"""Columns: number of waves; drag [N s/m]; for stick-slip friction the bristle's stiffness [N/m] (0 without such
-friction), the dynamic friction, the share by which friction swings about it, and slips per metre."""
+"""Columns: waves; drag [N s/m]; the bristle's stiffness [N/m] or 0, dynamic friction, its swing, slips per metre."""
 HEAD = 8
 """Number of columns before the waves: fx, fy, amplitude and phase, WAVES of each (see `waves`)."""
 MAX_SWING = 0.9
@@ -19,17 +18,14 @@ MAX_SWING = 0.9
 
 
 def compile_textures(materials: Sequence[Material]) -> Float64[np.ndarray, "n p"]:
-    """Compile materials to a read-only table, a row each, for `heights.texture_height` and `forces.texture_force`.
-
-    The bristle is as stiff as the material. A row with a bristle has all of the material's friction: a force law
-    leaves its own out there.
-    """
+    """Compile materials to a read-only table, a row each, for `heights.texture_height` and `forces.texture_force`."""
     table = np.zeros((len(materials), HEAD + 4 * WAVES))
     for row, material in zip(table, materials, strict=True):
         parts = waves(material)
         row[COUNT] = len(parts.phase)
         row[DRAG] = material.drag_n_s_per_m
         if material.texture == "stick-slip":
+            # A row with a bristle has all of the material's friction: a force law leaves its own out there.
             excess = material.static_friction / material.dynamic_friction - 1
             row[STIFFNESS : PER_M + 1] = (
                 material.stiffness_n_per_m, material.dynamic_friction, min(excess, MAX_SWING), 1 / material.grain_m,

@@ -1,9 +1,4 @@
-"""A material's heights as a sum of plane waves, h(x, y) = sum a_i cos(2 pi (fx_i x + fy_i y + p_i)).
-
-Waves of random directions and phases make a field that never repeats, has an exact gradient and an exact spectrum, and
-of which each wave can be left out alone where a servo could not follow it. Sums of plane waves for random fields:
-Shinozuka & Jan, J. Sound and Vibration 25(1), 1972.
-"""
+"""A material's heights as a sum of plane waves, h(x, y) = sum a_i cos(2 pi (fx_i x + fy_i y + p_i))."""
 
 import math
 from collections.abc import Callable
@@ -35,11 +30,10 @@ class Waves(NamedTuple):
 
 
 def waves(material: Material) -> Waves:
-    """Return the waves of a material; none if its roughness is 0.
-
-    For every model, the squares of the amplitudes sum up to that of the roughness, and the power is greatest at the
-    wavelength of the grain. The same name and seed give the same waves on every machine.
-    """
+    """Return the waves of a material, the same on every machine; none if its roughness is 0."""
+    # Waves of random directions and phases (Shinozuka & Jan, J. Sound and Vibration 25(1), 1972) make a field that
+    # never repeats, has an exact gradient and spectrum, and of which each wave can be left out alone where a servo
+    # could not follow it. The squares of the amplitudes sum up to that of the roughness.
     random = np.random.default_rng([material.seed, *material.name.encode()])
     octaves, rotation_deg, share, phase = _MAKE[material.texture](material, random)
     per_m = powers_of_two(octaves) / material.grain_m
@@ -52,7 +46,7 @@ def waves(material: Material) -> Waves:
 
 def powers_of_two(exponents: Float64[np.ndarray, " n"]) -> Float64[np.ndarray, " n"]:
     """Return 2^x, one by one: NumPy's power of an array has other last bits with AVX-512."""
-    return np.array([2.0**each for each in exponents.tolist()])
+    return np.array([2.0**exponent for exponent in exponents.tolist()])
 
 
 def directions(
@@ -86,12 +80,9 @@ def _smooth(material: Material, random: np.random.Generator) -> Spread:
 
 
 def _noise(material: Material, random: np.random.Generator) -> Spread:
-    """Return noise of one octave around the grain's wavelength, in directions over the half circle, or a part of it.
-
-    Lengths and directions are stratified, one in each stratum, so that every seed has the same spectrum: a triangle in
-    octaves with its tip at the grain. Beside friction, which dominates, there are fewer waves: both must fit into a
-    tick.
-    """
+    """Return noise of one octave around the grain's wavelength, in directions over the half circle, or a part of it."""
+    # Lengths and directions are stratified, so that every seed has the same spectrum: a triangle in octaves with its
+    # tip at the grain. Under friction, which dominates, there are fewer waves: both must fit into a tick.
     count = BESIDE_FRICTION if material.texture == "stick-slip" else WAVES
     strata = (np.arange(count) + 0.5) / count
     octaves = 0.5 * np.sign(strata - 0.5) * (1 - np.sqrt(1 - np.abs(2 * strata - 1)))
@@ -103,13 +94,13 @@ def _periodic(material: Material, random: np.random.Generator) -> Spread:
     """Return a set of lines, and another across it with (1 - anisotropy) of its amplitude, each with irregularity."""
     power = np.array([1.0, (1 - material.anisotropy) ** 2])
     sets = [_lines(material.irregularity, random) for _ in power]
-    shares = [each[2] * share for each, share in zip(sets, power / power.sum(), strict=True)]
-    rotations = [each[1] + right for each, right in zip(sets, (0, 90), strict=True)]
+    shares = [lines[2] * share for lines, share in zip(sets, power / power.sum(), strict=True)]
+    rotations = [lines[1] + right for lines, right in zip(sets, (0, 90), strict=True)]
     return (
-        np.concatenate([each[0] for each in sets]),
+        np.concatenate([lines[0] for lines in sets]),
         np.concatenate(rotations),
         np.concatenate(shares),
-        np.concatenate([each[3] for each in sets]),
+        np.concatenate([lines[3] for lines in sets]),
     )
 
 

@@ -1,7 +1,4 @@
-"""The compiled kernel of `proxy` on materials. Imports numba: the method imports this module inside `touch`.
-
-`contact.approach` lists the memory of a touch.
-"""
+"""The compiled kernel of `proxy` on materials. Imports numba: the method imports this module inside `touch`."""
 
 from numba import float64
 

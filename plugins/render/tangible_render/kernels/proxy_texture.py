@@ -1,7 +1,4 @@
-"""The compiled kernel of `proxy` on materials with a texture. Imports numba: imported inside `touch`.
-
-`contact.approach` lists the memory of a touch.
-"""
+"""The compiled kernel of `proxy` on materials with a texture. Imports numba: imported inside `touch`."""
 
 from numba import float64
 

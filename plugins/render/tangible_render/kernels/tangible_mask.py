@@ -24,10 +24,7 @@ def window(tables, row, column, half_rows, half_columns):
 
 @njit(NEWTONS(*SURFACE, *[float64] * 6), **KERNEL)
 def tick(height_m, tables, width_m, length_m, half_rows, half_columns, across_n, along_n, x, y, z, vx, vy, vz):
-    """Compute (across_n sum dark u, along_n sum dark v, 0) below the surface.
-
-    It is zero in free air and where the mask leaves the surface.
-    """
+    """Compute (across_n sum dark u, along_n sum dark v, 0) below the surface; zero where the mask leaves it."""
     if not (over(width_m, length_m, x, y) and np.isfinite(z + vx + vy + vz)):
         return 0.0, 0.0, 0.0
     rows, columns = height_m.shape

@@ -1,8 +1,4 @@
-"""The cell under a point, and the bilinear height there; compiled.
-
-Cells are areas: a grid of h x w cells covers the extent, row 0 is far (the greatest y), and a cell's value is at its
-centre. Imports numba: a method imports this module inside its verb.
-"""
+"""The cell under a point, and the bilinear height there; imports numba: import it inside a verb."""
 
 import numpy as np
 from numba import float64, int32, types, uint8
@@ -25,6 +21,7 @@ def over(width_m, length_m, x, y):
 @njit(**KERNEL)
 def cell(rows, columns, width_m, length_m, x, y):
     """Return (row, column) of the cell under a point over the extent."""
+    # Cells are areas: a grid of h x w cells covers the extent, and row 0 is far (the greatest y).
     row = int(0.5 * rows - y * (rows / length_m))
     column = int(0.5 * columns + x * (columns / width_m))
     return min(row, rows - 1), min(column, columns - 1)
@@ -32,12 +29,9 @@ def cell(rows, columns, width_m, length_m, x, y):
 
 @njit(**KERNEL)
 def bilinear(height_m, width_m, length_m, x, y):
-    """Return height and exact gradient (h, dh/dx, dh/dy) of the bilinear interpolant between the cells' centres.
-
-    From the outermost centres to the edge the heights continue unchanged, so that the slope across the edge is 0 there.
-    Float32 heights, arithmetic in float64.
-    """
+    """Return height and exact gradient (h, dh/dx, dh/dy) of the bilinear interpolant between the cells' centres."""
     rows, columns = height_m.shape
+    # From the outermost centres to the edge the heights continue unchanged, so that the slope across it is 0.
     left, right, across = _between(x * (columns / width_m) + 0.5 * (columns - 1), columns)
     far, near, down = _between(0.5 * (rows - 1) - y * (rows / length_m), rows)
     far_left, far_right = np.float64(height_m[far, left]), np.float64(height_m[far, right])

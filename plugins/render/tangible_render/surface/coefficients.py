@@ -1,7 +1,4 @@
-"""Coefficients of a C2 surface: a cubic B-spline through the heights at the cells' centres, except near jumps.
-
-For a blunt fingertip, the heights are first those of a ball that rolls over the surface.
-"""
+"""Coefficients of a C2 surface: a cubic B-spline through the heights at the cells' centres, except near jumps."""
 
 from collections.abc import Iterator
 from itertools import pairwise, product
@@ -25,16 +22,13 @@ GAIN = (1 - POLE) * (1 - 1 / POLE)
 
 
 def spline_coefficients(height_m: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h4 w4"]:
-    """Compute coefficients (h + 4, w + 4) of the cubic B-spline with these heights at the cells' centres.
-
-    Beyond the outermost centres the heights continue as their odd reflection, 2 h(0) - h(-x): a plane stays that plane
-    up to the border of the extent, and the curvature across the outermost centres is 0 (a natural spline).
-
-    At jumps, where it would overshoot by a tenth of a step or more, the spline leaves the heights: it joins the two
-    sides without a groove at the foot or a lip at the top, and continues level beyond the border.
-    Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal Processing 41 (1993).
-    """
+    """Compute coefficients (h + 4, w + 4) of the cubic B-spline with these heights at the cells' centres."""
     at = jumps(height_m)
+    # Beyond the outermost centres the heights continue as their odd reflection, 2 h(0) - h(-x): a plane stays that
+    # plane up to the border, and the curvature there is 0 (a natural spline). At jumps, where it would overshoot by a
+    # tenth of a step or more, the spline leaves the heights: it joins both sides without a groove at the foot or a lip
+    # at the top, and goes on level beyond the border. Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE
+    # Trans. Signal Processing 41 (1993).
     values = _extend(height_m, at)
     near = np.pad(np.pad(at, BORDER, mode="edge"), _RUN_IN - BORDER)
     inside = slice(_RUN_IN - BORDER, BORDER - _RUN_IN)
@@ -57,12 +51,9 @@ def _extend(height_m: Float32[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -
 
 
 def spline_filter(values: Float64[np.ndarray, "h w"]) -> None:
-    """Replace each column's values by the coefficients of the cubic B-spline through them, in place.
-
-    values: 3 rows or more, finite; beyond the outermost rows they go on as their mirror image.
-    The same bits as SciPy's `spline_filter1d(values, 3, axis=0, mode="mirror")`, without the import of `scipy.ndimage`,
-    which takes longer than the filter itself on any surface that one touches.
-    """
+    """Replace each column's values, 3 or more, by the coefficients of the cubic B-spline through them, in place."""
+    # The bits of SciPy's `spline_filter1d(values, 3, axis=0, mode="mirror")`, without the import of `scipy.ndimage`,
+    # which takes longer than the filter itself on any surface that one touches.
     values *= GAIN
     rows, last, part = [*values], len(values) - 1, np.empty_like(values[0])
     across, weight = POLE**last, POLE
@@ -88,10 +79,7 @@ def spline_filter(values: Float64[np.ndarray, "h w"]) -> None:
 def spline_surface(
     surface: HapticSurface, cells: Filter, radius_m: float = 0.0
 ) -> tuple[Float32[np.ndarray, "h4 w4"], float, float, float, float]:
-    """Return a kernel's arguments: the coefficients, width and length in m, and cells per metre along x and y.
-
-    Quantised heights are smoothed first, see `dequantise`. radius_m: of a ball that rolls over them, see `roll_ball`.
-    """
+    """Return a kernel's arguments: coefficients, width and length in m, and cells per metre along x and y."""
     (rows, columns), (width_m, length_m) = surface.height_m.shape, surface.extent_m
     height_m = roll_ball(dequantise(surface.height_m, cells), surface.extent_m, radius_m)
     return spline_coefficients(height_m), float(width_m), float(length_m), columns / width_m, rows / length_m
@@ -100,18 +88,14 @@ def spline_surface(
 def roll_ball(
     height_m: Float32[np.ndarray, "h w"], extent_m: tuple[float, float], radius_m: float
 ) -> Float32[np.ndarray, "h w"]:
-    """Return the height of the lowest point of a ball that lies on the surface, at each cell (the offset surface).
-
-    h_r(x) = max over |d| <= r of h(x + d) + sqrt(r^2 - |d|^2) - r: a dilation by the ball. The radius of curvature of
-    every bump grows by r, and a groove narrower than 2 r is shallower or gone. Beyond the border there is no surface.
-    The ball may touch cells' centres and the middles between them, where heights are means. On slopes of s, h_r is too
-    low by up to cell^2 ((1 + s^2)^(3/2) / r + 5 curvature) / 32.
-    extent_m: width and length. radius_m: not negative; 0 returns the heights.
-    Source: Serra, Image Analysis and Mathematical Morphology (1982), the dilation of a function by a ball.
-    """
+    """Return the height of the lowest point of a ball that lies on the surface, at each cell (the offset surface)."""
     if radius_m == 0:
         return height_m
     (rows, columns), (width_m, length_m) = height_m.shape, extent_m
+    # h_r(x) = max over |d| <= r of h(x + d) + sqrt(r^2 - |d|^2) - r: a dilation by the ball (Serra, Image Analysis and
+    # Mathematical Morphology, 1982). The radius of curvature of every bump grows by r, and a groove narrower than 2 r
+    # is shallower or gone. The ball may touch cells' centres and the middles between them; on slopes of s, h_r is too
+    # low by up to cell^2 ((1 + s^2)^(3/2) / r + 5 curvature) / 32.
     rolled = height_m.copy()
     for beside, beneath in product((0, 1), (0, 1)):  # half cells
         touched_m = _means(_means(height_m, beneath).T, beside).T

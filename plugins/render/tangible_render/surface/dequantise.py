@@ -24,16 +24,12 @@ ROUNDS = 8
 
 
 def dequantise(height_m: Float32[np.ndarray, "h w"], cells: Filter = "auto") -> Float32[np.ndarray, "h w"]:
-    """Smooth heights on a lattice of 16 to 255 equal steps within half a step; return other heights unchanged.
-
-    A height from 8 bits is known to half a step. To find a smooth surface within these bounds, the heights are
-    low-passed and clipped to the bounds, 8 times in turn. The low-pass is 1 - (1 - G)^5, G a Gaussian of `cells` cells
-    (auto: 4), flat enough to keep the slope of a wave of 64 cells within 0.3 degrees. Beyond the border the heights
-    continue as their odd reflection. So no place moves by more than half a step; planes, cliffs and spikes stay.
-    Source: projections onto convex sets (Youla & Webb, IEEE Trans. Medical Imaging 1, 1982).
-    """
+    """Smooth heights on a lattice of 16 to 255 equal steps within half a step; return other heights unchanged."""
     if cells == "never" or (step_m := lattice_step(height_m)) == 0:
         return height_m
+    # Low-passed and clipped to half a step, in turn (projections onto convex sets, Youla & Webb, IEEE Trans. Medical
+    # Imaging 1, 1982). The low-pass 1 - (1 - G)^5 keeps the slope of a wave of 64 cells within 0.3 degrees; beyond the
+    # border heights continue as their odd reflection: planes, cliffs and spikes stay.
     sigma = SIGMA_CELLS if cells == "auto" else cells
     lowest, highest = height_m - step_m / 2, height_m + step_m / 2
     smooth = height_m
@@ -78,7 +74,7 @@ def _gauss(values: Float32[np.ndarray, "h w"], sigma: float) -> Float32[np.ndarr
     import cv2
 
     reach = int(np.ceil(4 * sigma))
-    extended = np.pad(values, reach, mode="reflect", reflect_type="odd")
+    frame = np.pad(values, reach, mode="reflect", reflect_type="odd")
     with plain_opencv():
-        blurred = cv2.GaussianBlur(extended, (2 * reach + 1, 2 * reach + 1), sigma)
-    return np.asarray(blurred[reach:-reach, reach:-reach], np.float32)
+        smooth = cv2.GaussianBlur(frame, (2 * reach + 1, 2 * reach + 1), sigma)
+    return np.asarray(smooth[reach:-reach, reach:-reach], np.float32)

@@ -6,11 +6,9 @@ import numpy as np
 from jaxtyping import Bool, Float32, Float64
 
 JUMP = 1.5
-"""The least ratio, at a jump, of the fourth difference to the second ones up to two cells away: it is 3 at a step, 2 at
-a kink, 0.6 on a wave of 8 cells."""
+"""Least ratio, at a jump, of the fourth difference to nearby second ones: 3 at a step, 2 at a kink, 0.6 on a wave."""
 BORDER_JUMP, BORDER_CELLS = 0.9, 12
-"""The same ratio at the border, where a step between the last two cells has the ratio 1, and the number of cells whose
-second differences it is compared with."""
+"""The ratio at the border, where a step has 1, and the cells whose second differences it is compared with."""
 ROUNDING = 2.0**-17
 """The largest fourth difference due to rounding in float32, as a share of the greatest height."""
 REACH = 2
@@ -18,10 +16,7 @@ REACH = 2
 
 
 def jumps(height_m: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
-    """Return a mask of the cells at steps, kinks, spikes and noise, where a cubic spline would ring.
-
-    Waves of 8 cells and longer have none. Only the heights count, not their extension beyond the border.
-    """
+    """Return a mask of the cells at steps, kinks, spikes and noise, where a spline would ring; not of long waves."""
     mask = np.zeros(height_m.shape, bool)
     with np.errstate(over="ignore", invalid="ignore"):
         rounding = ROUNDING * np.abs(height_m).max()
@@ -47,18 +42,16 @@ def _dilate(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
 
 
 def ease(values: Float64[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -> None:
-    """Move the values at jumps, in place, so that a cubic spline through each column does not overshoot.
-
-    A spline lies within the range of its coefficients, so the values become coefficients; half its height is added to a
-    single peak, which keeps it. The values are moved to those of that spline.
-    """
+    """Move the values at jumps, in place, so that a cubic spline through each column does not overshoot."""
+    # A spline lies within the range of its coefficients, so the values become coefficients; half its height is added to
+    # a single peak, which keeps it. The values are moved to those of that spline.
     for columns in _blocks(values):
         if not (here := at[:, columns]).any():
             continue
-        wanted = values[:, columns].copy()
-        wanted[1:-1] += here[1:-1] * _peaks(np.diff(values[:, columns], axis=0))
-        passed = wanted[1:-1] + np.diff(wanted, 2, axis=0) / 6
-        np.copyto(values[1:-1, columns], passed, where=here[1:-1])
+        coefficients = values[:, columns].copy()
+        coefficients[1:-1] += here[1:-1] * _peaks(np.diff(values[:, columns], axis=0))
+        spline_values = coefficients[1:-1] + np.diff(coefficients, 2, axis=0) / 6
+        np.copyto(values[1:-1, columns], spline_values, where=here[1:-1])
 
 
 def _blocks(lines: np.ndarray) -> Iterator[slice]:

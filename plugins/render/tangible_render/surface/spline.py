@@ -1,11 +1,4 @@
-"""Height, slope and curvature of a C2 surface at a point: a cubic B-spline, compiled.
-
-The coefficients are those of `coefficients.py`: two rows and columns more on each side than there are cells. They may
-also be those of a moving surface, (pairs, first, last): pairs (h, w, 2) are two surfaces, weighted by first and last.
-numba compiles each form separately. Imports numba: a method imports this module inside its verb.
-
-Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal Processing 41 (1993).
-"""
+"""Height, slope and curvature of a C2 surface at a point (Unser, Aldroubi & Eden 1993); import it inside a verb."""
 
 # pyright: reportCallIssue=false
 
@@ -120,7 +113,7 @@ def _prefetch_line(context: Any, array: Any, offset: Any) -> Any:
         at = builder.gep(builder.bitcast(data, BYTE), [arguments[1]])
         kind = ir.FunctionType(ir.VoidType(), [BYTE, FLAG, FLAG, FLAG])
         prefetch = builder.module.declare_intrinsic("llvm.prefetch", [BYTE], kind)
-        builder.call(prefetch, [at, *(ir.Constant(FLAG, each) for each in (READ, KEEP, DATA))])
+        builder.call(prefetch, [at, *(ir.Constant(FLAG, flag) for flag in (READ, KEEP, DATA))])
         return context.get_dummy_value()
 
     return types.void(array, int64), generate
@@ -187,4 +180,5 @@ def _column(coefficients, row, column, weights):
 
 def _moves(kind):
     """Return True if numba's type of the coefficients is that of a moving surface."""
+    # The coefficients of a moving surface are (pairs, first, last): two surfaces (h, w, 2), weighted by first and last.
     return isinstance(kind, types.BaseTuple)

@@ -15,11 +15,9 @@ MAX_TILES = 256
 
 
 def tile_bounds(coefficients: Float32[np.ndarray, "h4 w4"]) -> Float32[np.ndarray, "r c 2"]:
-    """Compute an upper and a lower bound of the surface over each of r x c equal tiles: of 16 cells, or 256 a side.
-
-    A B-spline is nowhere above the greatest of its 4 x 4 coefficients, nor below the least: its weights are positive
-    and sum to 1. Where the two bounds of a tile are equal, the surface is level there.
-    """
+    """Compute an upper and a lower bound of the surface over each of r x c equal tiles: of 16 cells, or 256 a side."""
+    # A B-spline is nowhere above the greatest of its 4 x 4 coefficients, nor below the least: its weights are positive
+    # and sum to 1. Where both bounds of a tile are equal, the surface is level.
     highest, lowest = coefficients, coefficients
     for axis in (0, 1):
         highest, lowest = _reduce(np.max, highest, axis), _reduce(np.min, lowest, axis)

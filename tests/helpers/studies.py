@@ -6,7 +6,7 @@ from threading import Event
 
 import numpy as np
 
-from tangible_study.desks.desk import Desk, Left
+from tangible_study.desks.desk import Desk, ParticipantLeft
 from tangible_study.presenting.stimuli import Stimuli
 from tangible_study.session.running import Session, begin
 from tangible_study.study_file import parse_study
@@ -62,7 +62,7 @@ def leave_after(trials: int) -> Answering:
         if "1" in choices:
             left[0] -= 1
             if left[0] < 0:
-                raise Left
+                raise ParticipantLeft
         return next(iter(choices))
 
     return answer

@@ -68,10 +68,7 @@ def load_study(path: Path) -> StudyFile:
 
 
 def read_design(path: Path) -> Study:
-    """Read the keys of a study file alone, without pipelines and procedures: those of a finished study may be gone.
-
-    Raises: ConfigError with all mistakes.
-    """
+    """Read the keys of a study file alone: the pipelines of a finished study may be gone. Raises: ConfigError."""
     return _design(parse_source(read_text(path), path, EXPECTED))
 
 

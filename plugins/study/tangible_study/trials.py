@@ -70,10 +70,7 @@ COLUMNS = tuple(field.name for field in fields(Answer))
 
 
 def read_answers(path: Path) -> list[Answer]:
-    """Read a table of answers; [] if there is no such file. A last line that a crash cut off is left out.
-
-    Further columns are ignored. Raises: ResultsError for a file that cannot be read, with the line.
-    """
+    """Read a table of answers, [] without one, but for a last line that a crash cut off. Raises: ResultsError."""
     try:
         columns, lines = read_table(path, appended=True)
         rows = list(lines)
@@ -103,10 +100,7 @@ class AnswerFile:
     """A table of answers that one process appends to: an answer is on the disk before `add` returns."""
 
     def __init__(self, path: Path) -> None:
-        """Open the table, with its header if it is new; an incomplete last line is removed.
-
-        Raises: OutputError if it cannot be written, or another process is writing to it.
-        """
+        """Open the table, with its header if it is new. Raises: OutputError, also if another process writes it."""
         self._file = LineFile(path, in_use=IN_USE, header="\t".join(COLUMNS))
 
     def __enter__(self) -> Self:
@@ -116,10 +110,7 @@ class AnswerFile:
         self._file.close()
 
     def add(self, answer: Answer) -> None:
-        """Append an answer and wait until it is on the disk.
-
-        Raises: OutputError if it cannot be written; the file is then as before, and the call can be repeated.
-        """
+        """Append an answer and wait until it is on the disk; it can be repeated. Raises: OutputError."""
         self._file.add(answer.line())
 
 

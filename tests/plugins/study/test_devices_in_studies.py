@@ -16,7 +16,7 @@ from tangible_core.data import TICK_COLUMNS, HapticState
 from tangible_core.errors import ConfigError, DeviceError, OutputError
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.session import Recording
-from tangible_study.desks.desk import Left
+from tangible_study.desks.desk import ParticipantLeft
 from tangible_study.presenting.presenter import HeldLoop
 from tangible_study.presenting.stimuli import Stimuli
 from tangible_study.procedures.procedure import load_procedure
@@ -93,11 +93,11 @@ def test_stop_of_the_participant_ends_the_force_at_once(tmp_path: Path, loop_in_
     def answer(text: str, choices: dict[str, str]) -> str:
         asked.append(text)
         if "repeat" in text:
-            raise Left
+            raise ParticipantLeft
         return first_key(text, choices)
 
     session = begin(file, Stimuli(file), "P1", tmp_path / "out", Stopping(answer))
-    with pytest.raises(Left):
+    with pytest.raises(ParticipantLeft):
         session.run()
     assert asked[-1] == "Press Enter to repeat the trial."
     assert session.presenter.loop.close() == ""  # nothing runs any more

@@ -16,7 +16,7 @@ from studies import write_study
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import DeviceError
 from tangible_core.translation import translate
-from tangible_study.desks.desk import Left
+from tangible_study.desks.desk import ParticipantLeft
 from tangible_study.desks.page import Page, hand_changes, new_hand
 from tangible_study.presenting.presenter import HeldLoop
 from tangible_study.presenting.stimuli import Stimuli
@@ -66,7 +66,7 @@ def test_stop_ends_the_force_of_the_interval_and_leave_the_study():
         assert page.stop.is_set()
         asked = background.submit(page.ask, "Which?", {"1": ""})
         assert tab.answer(tab.hear(), "q")
-        with pytest.raises(Left):
+        with pytest.raises(ParticipantLeft):
             asked.result()
 
 

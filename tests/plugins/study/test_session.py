@@ -14,7 +14,7 @@ from studies import PIPELINE, STUDY, Scripted, first_key, leave_after, sit_down,
 from tangible_core.errors import ConfigError, OutputError
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.session import Recording, Writer
-from tangible_study.desks.desk import Left
+from tangible_study.desks.desk import ParticipantLeft
 from tangible_study.presenting.stimuli import Stimuli
 from tangible_study.session.folder import Place, faults_before, participants
 from tangible_study.session.running import begin
@@ -61,7 +61,7 @@ def test_all_answers_and_the_force_of_each_trial_are_kept(study: Path):
 
 
 def test_participant_who_left_resumes_at_the_next_trial(study: Path):
-    with pytest.raises(Left):
+    with pytest.raises(ParticipantLeft):
         sit_down(study, answer=leave_after(3)).run()
     first = answers(study)
     assert [each.trial for each in first] == [1, 2, 3]
@@ -157,7 +157,7 @@ def test_killed_session_loses_no_answer(study: Path):
 
 
 def test_name_or_study_that_does_not_fit_the_folder_is_refused(study: Path):
-    with pytest.raises(Left):
+    with pytest.raises(ParticipantLeft):
         sit_down(study, answer=leave_after(1)).run()
     for name, resume, words in (("P1", False, "begun already"), ("p1", True, "is written P1")):
         with pytest.raises(ConfigError, match=words):
@@ -177,7 +177,7 @@ def test_name_or_study_that_does_not_fit_the_folder_is_refused(study: Path):
 
 def test_damaged_description_is_no_fault_of_the_program(study: Path):
     """That of answers is written anew at each start; a study whose own description is damaged is not mixed with."""
-    with pytest.raises(Left):
+    with pytest.raises(ParticipantLeft):
         sit_down(study, answer=leave_after(2)).run()
     for text in ("", "[]", '{"Faults": 3}', '{"Faults": [1]}', '{"Faults": ' + "[" * 3000):
         (study.parent / "out/sub-P1/beh/sub-P1_task-small_beh.json").write_text(text)

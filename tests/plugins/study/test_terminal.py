@@ -4,7 +4,7 @@ import io
 
 import pytest
 
-from tangible_study.desks.desk import LEAVE, Left, Terminal
+from tangible_study.desks.desk import LEAVE, ParticipantLeft, Terminal
 
 GERMAN = {"Which one is rougher?": "Was ist rauer?", "the first": "das erste"}
 
@@ -29,5 +29,5 @@ def test_question_is_written_with_its_keys_and_answered_by_a_line(typed: str, an
 
 @pytest.mark.parametrize("typed", [f"{LEAVE.upper()}\n1\n", "", "5\n"])
 def test_participant_leaves_by_a_key_or_at_the_end_of_what_is_typed(typed: str):
-    with pytest.raises(Left):
+    with pytest.raises(ParticipantLeft):
         terminal(typed)[0].ask("Ready?", {"1": ""})

@@ -88,7 +88,7 @@ def run(
 
     from tangible_core.cli import show
 
-    from ..desks.desk import Left
+    from ..desks.desk import ParticipantLeft
     from ..session.running import begin
 
     hand = _own_hand(sets) if page and device is None else None
@@ -104,7 +104,7 @@ def run(
                 show.note("The participant does not agree; nothing was kept.")
                 return
             done = session.run()
-        except Left:
+        except ParticipantLeft:
             show.note(f"the answers so far are kept in {root}; --resume goes on from there")
             return
     if not is_quiet():

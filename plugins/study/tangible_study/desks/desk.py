@@ -14,7 +14,7 @@ LEAVE = "q"
 """Key that leaves the study; it goes on later with --resume."""
 
 
-class Left(Exception):
+class ParticipantLeft(Exception):
     """The participant left; what was answered is kept."""
 
 
@@ -32,16 +32,10 @@ class Desk(ABC):
 
     @abstractmethod
     def ask(self, text: str, choices: Mapping[str, str]) -> str:
-        """Ask, wait for one of the keys, and return it; keys from before the question do not count.
-
-        choices: what each key means; "" is Enter. Raises: Left.
-        """
+        """Ask, and return the key that answers; choices: meaning of each key, "" is Enter. Raises: ParticipantLeft."""
 
     def exploring(self, feeling: Feeling, servo: Servo, part: str | None) -> AbstractContextManager[None]:
-        """Return a block in which a surface can be felt: a desk with a hand of its own moves the device meanwhile.
-
-        part: name of the part to which the hand is led. Raises: DeviceError.
-        """
+        """Return a block in which a surface can be felt. part: to which the hand is led. Raises: DeviceError."""
         return nullcontext()
 
 
@@ -56,15 +50,12 @@ class Terminal(Desk):
 
     @property
     def stop(self) -> Event:
-        """An event that nobody sets: at a terminal, Ctrl-C ends the force and the session."""
         return self._stop
 
     def say(self, text: str) -> None:
-        """Print a line."""
         self._write(self._translate(text))
 
     def ask(self, text: str, choices: Mapping[str, str]) -> str:
-        """Print the question with its keys, and read lines until one of them is a key."""
         keys = [f"{key} = {self._translate(meaning)}" if meaning else key for key, meaning in choices.items() if key]
         listed = f" ({', '.join(keys)})" if keys else ""
         self._write(f"{self._translate(text)}{listed}")
@@ -74,7 +65,7 @@ class Terminal(Desk):
             line = self._keys.readline()
             key = line.strip().casefold()
             if not line or key == LEAVE:
-                raise Left
+                raise ParticipantLeft
             if key in choices:
                 return key
             self.say("That key has no meaning here.")

@@ -27,7 +27,7 @@ from tangible_web.parsing import FindRequest
 from tangible_web.server import BuiltPage, ServerThread
 from tangible_web.state_frame import OtherLaw, frame_of, frame_without_loop
 
-from .desk import LEAVE, Desk, Left
+from .desk import LEAVE, Desk, ParticipantLeft
 from .page_surface import surface_for_page
 
 LAST_S = 2.0
@@ -51,10 +51,7 @@ def hand_changes(hand: Hand) -> tuple[str, ...]:
 
 @final
 class Page(Desk):
-    """A server of the page, as a context manager. Reloading the page goes on with the current question.
-
-    It is the program of its tabs (`tangible_web.live.Program`): all of them move the hand.
-    """
+    """A server of the page as a context manager, and the program of its tabs: all of them move the hand."""
 
     def __init__(
         self,
@@ -63,12 +60,7 @@ class Page(Desk):
         hand: Hand | None = None,
         sounds: Sequence[str] = (),
     ) -> None:
-        """Build the page; nothing is served yet.
-
-        language: of the participant. translate: to that language. hand: moves the device from the page; None if
-        another device is felt. sounds: by which the page renders touch.
-        The page does not show the title of a study, which may name conditions.
-        """
+        """Build the page, which is served on entry. hand: moves the device from the page; None if another is felt."""
         self._language, self._text_of = language, translate
         self._stop, self._changed = Event(), Condition()
         self._events: list[dict[str, Any]] = []
@@ -91,7 +83,6 @@ class Page(Desk):
 
     @property
     def stop(self) -> Event:
-        """An event that Esc and the stop button set."""
         return self._stop
 
     def __enter__(self) -> Self:
@@ -109,23 +100,20 @@ class Page(Desk):
         self._open.__exit__(*error)
 
     def say(self, text: str) -> None:
-        """Say a text on the page."""
         self._add(self._text_of(text), None)
 
     def ask(self, text: str, choices: Mapping[str, str]) -> str:
-        """Ask on the page, and wait for one of the keys."""
         with self._changed:
             self._answer = None
             self._add(self._text_of(text), [[key, self._text_of(meaning)] for key, meaning in choices.items()])
             while self._answer is None:
                 self._changed.wait(1.0)  # so that Ctrl-C at the terminal is heard
             if self._answer == LEAVE:
-                raise Left
+                raise ParticipantLeft
             return self._answer
 
     @contextmanager
     def exploring(self, feeling: Feeling, servo: Servo, part: str | None) -> Iterator[None]:
-        """Put a surface under the hand of the page, if that is the device; it begins once the page has it."""
         device = feeling.device
         if not device.follows(self.hand.channel):
             yield

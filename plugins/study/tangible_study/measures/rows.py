@@ -76,12 +76,7 @@ def proportion_row(what: What, participant: str, hits: Sequence[int], chance: fl
 def over_participants(
     rows: Iterable[Row], pooled: Mapping[What, Row] | None = None, bounds: tuple[float, float] = (0.0, 1.0)
 ) -> list[Row]:
-    """Return a row about all participants for each thing: the mean over them.
-
-    pooled: rows of all trials together. The interval then holds that of the pooled trials and Student's interval of the
-    participants, and the greater p counts: participants who differ make a result uncertain, as do few trials.
-    bounds: the least and greatest value of the measure, beyond which no such interval reaches.
-    """
+    """Return a row about all participants for each thing: the mean over them, within the bounds."""
     groups: dict[What, list[Row]] = {}
     for row in rows:
         groups.setdefault(row.what, []).append(row)
@@ -96,6 +91,7 @@ def _mean_of(what: What, group: Sequence[Row], pooled: Row | None, bounds: tuple
     row = Row(what, ALL, estimate, group[0].unit, trials, None, chance, p)
     if pooled is None:
         return row
+    # The wider interval and the greater p count: participants who differ make a result uncertain, as do few trials.
     wider = intervals.wider(estimate, pooled.estimate)
     bounded = Estimate(wider.value, max(wider.low, bounds[0]), min(wider.high, bounds[1]))
     chances = [each for each in (p, pooled.p) if each == each]
@@ -107,21 +103,14 @@ def of_each_and_all(
     answers: ByParticipant,
     bounds: tuple[float, float] = (0.0, 1.0),
 ) -> tuple[list[Row], dict[What, Row]]:
-    """Return the rows of each participant, of all of several; and of all trials together, by what they are about.
-
-    rows_of: rows from a name and answers. bounds: as in `over_participants`.
-    """
+    """Return the rows of each participant and of all, and those of all trials together by quantity."""
     single = [row for name, some in answers.items() for row in rows_of(name, list(some))]
     pooled = {row.what: row for row in rows_of("pooled", together(answers))}
     return [*single, *(over_participants(single, pooled, bounds) if len(answers) > 1 else ())], pooled
 
 
 def contrast(one: Row, other: Row, groups: tuple[Sequence[Row], Sequence[Row]], pooled: Estimate | None = None) -> Row:
-    """Return how much larger a measure is in one condition than in another, by the participants who have both.
-
-    groups: the rows of single participants in both conditions. pooled: the difference of all trials together, whose
-    interval is within the result's. With one participant, the interval follows from both intervals.
-    """
+    """Return how much larger a measure is in one condition than in another, by the participants who have both."""
     what = What(f"difference of {one.what.measure}", one.what.condition, other.what.condition)
     row = Row(what, one.participant, Estimate(nan), one.unit, one.trials + other.trials, None, 0.0)
     seconds = {row.participant: row.estimate for row in groups[1]}
@@ -135,10 +124,7 @@ def contrast(one: Row, other: Row, groups: tuple[Sequence[Row], Sequence[Row]], 
 
 
 def contrasts(measure: str, rows: Sequence[Row], pooled: Mapping[What, Row] | None = None) -> list[Row]:
-    """Return the differences of a measure between all pairs of conditions, later ones less earlier ones.
-
-    rows: those of single participants and of all. pooled: as in `over_participants`.
-    """
+    """Return the differences of a measure between all pairs of conditions, later ones less earlier ones."""
     known = [each for each in rows if each.what.measure == measure]
     names = list(dict.fromkeys(each.what for each in known))
     found: list[Row] = []

@@ -43,10 +43,7 @@ def analyse_right_answers(
     *,
     compared: bool = False,
 ) -> Result:
-    """Analyse how often an answer was right.
-
-    chance: by guessing. inverse: d' from such a share. compared: whether conditions are compared with each other.
-    """
+    """Analyse how often an answer was right. chance: by guessing. inverse: d' from such a share."""
 
     def rows_of(name: str, some: list[Answer]) -> list[Row]:
         return share_rows(CORRECT, name, some, lambda each: each.correct, chance, one_sided=True)
@@ -74,11 +71,8 @@ def share_rows(
 
 
 def with_dprime(row: Row, inverse: Callable[[float], float]) -> Row:
-    """Return the row of d' that belongs to a row of shares. inverse: d' from a share.
-
-    All right, or all wrong, counts as half an answer less (Macmillan & Kaplan 1985); the bounds are not corrected.
-    """
-    edge = 0.5 / max(row.trials, 1)
+    """Return the row of d' that belongs to a row of shares. inverse: d' from a share."""
+    edge = 0.5 / max(row.trials, 1)  # all right, or all wrong: half an answer less (Macmillan & Kaplan 1985)
     found = row.estimate.mapped(inverse)
     value = inverse(min(max(row.estimate.value, edge), 1 - edge)) if row.estimate.value == row.estimate.value else nan
     return replace(row, what=row.what._replace(measure=DPRIME), estimate=Estimate(value, *found[1:]), chance=0.0)
@@ -97,10 +91,7 @@ def analyse_quantities(
     unit: str = "",
     about: Callable[[Answer], str] = label,
 ) -> Result:
-    """Analyse numbers by their mean, and how conditions differ.
-
-    origin: what they are counted from. chance: their mean by chance alone. about: what belongs together.
-    """
+    """Analyse numbers, less their origin, by their mean, and how conditions differ."""
     rows: list[Row] = []
     for name, some in answers.items():
         for condition, cell in group_answers(some, about).items():

@@ -106,13 +106,7 @@ class HeldLoop:
         on_start: Callable[[], None],
         part: str | None,
     ) -> None:
-        """Present a surface for some seconds, then nothing.
-
-        keep: called with all ticks. desk: may have a hand of its own; its `stop` ends the force at once. on_start:
-        called when the surface is there. part: a part to which the hand is pulled.
-        Raises: DeviceError if the device fails, or after `stop`; whatever `keep` or a faulty plugin raises. The loop
-        has ended then, and the next call opens the device anew.
-        """
+        """Present a surface for some seconds, then nothing. Raises: DeviceError, also after `desk.stop`."""
         try:
             servo = self._servo_on(feeling)
             servo.swap(feeling.touch, feeling.engine.config.safety)
@@ -167,13 +161,7 @@ class Presenter:
     def present(
         self, trial: Trial, intervals: tuple[Stimulus, ...], writer: Writer, start_s: float, rendering: Rendering
     ) -> None:
-        """Present intervals, and append their ticks to the recording, by the time since the trial began.
-
-        start_s: monotonic time at which the trial began. rendering: counts the ticks.
-
-        Raises: DeviceError if the device fails in an interval, KeyboardInterrupt, OutputError for the recording; the
-        force is zero then.
-        """
+        """Present intervals, and append their ticks to the recording. Raises: DeviceError, OutputError."""
         study = self.stimuli.file.study
         self.desk.stop.clear()
         for number, stimulus in enumerate(intervals, 1):

@@ -21,11 +21,7 @@ class Stimuli:
     """The surfaces of a study on a device, by comparison and stimulus; equal ones are made once."""
 
     def __init__(self, file: StudyFile, device: tuple[str, ...] = ()) -> None:
-        """Read all pipelines; nothing is made yet.
-
-        device: changes of each pipeline that choose the device, `key.key=value` each.
-        Raises: ConfigError for a pipeline without a device or a force law, or devices that differ.
-        """
+        """Read all pipelines; nothing is made yet. Raises: ConfigError."""
         self.file = file
         registry = default_registry()
         self._pipelines: dict[Recipe, Pipeline] = {}
@@ -62,10 +58,7 @@ class Stimuli:
         return Feeling(self._pipelines[self.recipes[comparison, stimulus]])
 
     def make(self, progress: Callable[[int], None]) -> None:
-        """Make every surface and force law. progress: called with the number that are made.
-
-        Raises: ConfigError that names the condition or level of what cannot be made.
-        """
+        """Make every surface and force law. progress: called with the number of these so far. Raises: ConfigError."""
         tried, made = set[Recipe](), 0
         for key, recipe in self.recipes.items():
             if recipe in tried:
@@ -82,10 +75,7 @@ class Stimuli:
         self.file.source.settle()
 
     def check(self) -> None:
-        """Check by preflight that the device renders everything; no device is opened.
-
-        Raises: ConfigError with a sentence for each condition or level that it does not, and its place.
-        """
+        """Check by preflight, without opening the device, that it renders everything. Raises: ConfigError."""
         checked = set[Recipe]()
         for key, recipe in self.recipes.items():
             if recipe not in checked:

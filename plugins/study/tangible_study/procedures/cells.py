@@ -56,10 +56,7 @@ def comparison_trial(comparison: Comparison, procedure: str, cell: Cell, positio
 def in_rounds(
     things: Sequence[T], repetitions: int, generator: np.random.Generator, make: Callable[[T, int], Trial]
 ) -> list[Trial]:
-    """Return trials in rounds: each round has everything once, in random order, so that fatigue meets all alike.
-
-    make: called with a thing and its number of the round, from a random start, to balance what alternates.
-    """
+    """Return trials in rounds: each has everything once, in random order, so that fatigue meets all alike."""
     starts = generator.integers(0, 1 << 16, len(things)).tolist()
     return [
         make(things[index], starts[index] + turn)

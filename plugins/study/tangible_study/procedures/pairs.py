@@ -20,16 +20,13 @@ class Pairs(Procedure):
         """Return one of the arrangements of a pair, by a number."""
 
     def course(self, comparison: Comparison, generator: np.random.Generator) -> Course:
-        """Return all trials in rounds, in which the arrangements of a pair take turns."""
         make = partial(self.trial, comparison)
         return Listed(in_rounds(cells_of(comparison), comparison.repetitions, generator, make))
 
     def stimuli(self, comparison: Comparison) -> tuple[Stimulus, ...]:
-        """Return both of each pair."""
         return stimuli_of(cells_of(comparison))
 
     def trials(self, comparison: Comparison) -> int:
-        """Return the number of trials."""
         return comparison.repetitions * len(cells_of(comparison))
 
 
@@ -38,11 +35,9 @@ class TwoAfc(Pairs):
     """Two-interval forced choice: each pair of conditions, or each level and the standard, equally often."""
 
     def refusal(self, comparison: Comparison) -> str:
-        """Return what is missing: a question about more."""
         return asks(comparison, "2afc")
 
     def trial(self, comparison: Comparison, cell: Cell, number: int) -> Trial:
-        """Return the pair in either order."""
         return comparison_trial(comparison, "2afc", cell, 1 + number % 2)
 
 
@@ -51,11 +46,9 @@ class Constant(Pairs):
     """Constant stimuli: each level is compared with the standard equally often, in two intervals."""
 
     def refusal(self, comparison: Comparison) -> str:
-        """Return what is missing: levels, a standard, or a question about more."""
         return asks(comparison, "constant") or without_levels(comparison)
 
     def trial(self, comparison: Comparison, cell: Cell, number: int) -> Trial:
-        """Return the level first or second."""
         return comparison_trial(comparison, "constant", cell, 1 + number % 2)
 
 
@@ -68,11 +61,9 @@ class Oddity(Pairs):
     """
 
     def refusal(self, comparison: Comparison) -> str:
-        """Return what is missing: the question, or two things that may differ."""
         return standard_among_levels(comparison) or asks(comparison, "oddity")
 
     def trial(self, comparison: Comparison, cell: Cell, number: int) -> Trial:
-        """Return one of six arrangements."""
         return odd_one(comparison, "oddity", cell, number)
 
 
@@ -85,13 +76,11 @@ class SameDifferent(Pairs):
     """
 
     def refusal(self, comparison: Comparison) -> str:
-        """Return what is missing: the question; or that levels vary."""
         if comparison.levels:
             return "compares conditions and no levels; for levels, ask `same` or `higher`"
         return asks(comparison, "same-different")
 
     def trial(self, comparison: Comparison, cell: Cell, number: int) -> Trial:
-        """Return both in one of two orders, or one of them twice."""
         one, other = cell
         intervals = ((one, other), (one, one), (other, one), (other, other))[number % 4]
         target = SAME if number % 2 else DIFFERENT
@@ -123,12 +112,9 @@ class Adjustment(Procedure):
     """
 
     def refusal(self, comparison: Comparison) -> str:
-        """Return what is missing: levels, a standard, or the question."""
         return asks(comparison, "adjustment") or without_levels(comparison)
 
     def course(self, comparison: Comparison, generator: np.random.Generator) -> Course:
-        """Return all trials in rounds."""
-
         def make(name: str, number: int) -> Trial:
             start, standard = comparison.levels[-(number % 2)], comparison.standard
             names = comparison.name, comparison.question, "adjustment"
@@ -138,6 +124,5 @@ class Adjustment(Procedure):
         return Listed(in_rounds(comparison.conditions, comparison.repetitions, generator, make))
 
     def stimuli(self, comparison: Comparison) -> tuple[Stimulus, ...]:
-        """Return all levels and the standard, in each condition."""
         levels = (comparison.standard, *comparison.levels)
         return tuple(dict.fromkeys(Stimulus(name, level) for name in comparison.conditions for level in levels))

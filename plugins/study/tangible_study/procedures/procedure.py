@@ -68,11 +68,9 @@ class Listed(Course):
         self._at = 0
 
     def next(self) -> Trial | None:
-        """Return the next trial of the list."""
         return self._trials[self._at] if self._at < len(self._trials) else None
 
     def take(self, trial: Trial, response: str) -> None:
-        """Go on to the next trial."""
         self._at += 1
 
 

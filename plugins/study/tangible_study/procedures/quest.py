@@ -27,16 +27,13 @@ class Quest(Procedure):
     """Shares of the trials in which a participant answers without attention, each as likely."""
 
     def refusal(self, comparison: Comparison) -> str:
-        """Return what is missing: levels, a standard, or the question."""
         itself = standard_among_levels(comparison) if _asks_for_odd_one(comparison) else ""
         return itself or asks(comparison, "quest") or without_levels(comparison)
 
     def course(self, comparison: Comparison, generator: np.random.Generator) -> Course:
-        """Begin one track a condition."""
         return _Tracks(self, comparison, generator)
 
     def stimuli(self, comparison: Comparison) -> tuple[Stimulus, ...]:
-        """Return all levels and the standard, in each condition."""
         return stimuli_of(cells_of(comparison))
 
 

@@ -23,7 +23,6 @@ class Single(Procedure):
         return (None,)
 
     def course(self, comparison: Comparison, generator: np.random.Generator) -> Course:
-        """Return all trials in rounds."""
         choices = self.choices(comparison)
 
         def make(thing: tuple[Stimulus, str | None], _: int) -> Trial:
@@ -35,11 +34,9 @@ class Single(Procedure):
         return Listed(in_rounds(things, comparison.repetitions, generator, make))
 
     def stimuli(self, comparison: Comparison) -> tuple[Stimulus, ...]:
-        """Return each condition, at each level if there are any."""
         return tuple(Stimulus(*each) for each in product(comparison.conditions, comparison.levels or (None,)))
 
     def trials(self, comparison: Comparison) -> int:
-        """Return the number of trials."""
         return comparison.repetitions * len(self.stimuli(comparison)) * len(self.targets(comparison))
 
 
@@ -48,17 +45,14 @@ class Naming(Single):
     """Naming: the hand is pulled gently to a part, feels it, and the participant chooses its name."""
 
     def refusal(self, comparison: Comparison) -> str:
-        """Return what is missing: the question, or names to choose from."""
         if len(set(comparison.names)) < max(2, len(comparison.names)):
             return "write at least two different `names:`, of which the participant chooses one"
         return asks(comparison, "naming")
 
     def choices(self, comparison: Comparison) -> tuple[str, ...]:
-        """Return the names of the parts."""
         return comparison.names
 
     def targets(self, comparison: Comparison) -> tuple[str, ...]:
-        """Return the names of the parts."""
         return comparison.names
 
 
@@ -67,11 +61,9 @@ class Rating(Single):
     """Rating: one interval, and a whole number on a scale."""
 
     def refusal(self, comparison: Comparison) -> str:
-        """Return what is missing: the question, or a scale of two numbers."""
         if comparison.scale.least >= comparison.scale.most:
             return "has a scale of less than two numbers; make `most:` greater than `least:`"
         return asks(comparison, "rating")
 
     def choices(self, comparison: Comparison) -> tuple[str, ...]:
-        """Return the numbers of the scale."""
         return tuple(map(str, range(comparison.scale.least, comparison.scale.most + 1)))

@@ -21,26 +21,21 @@ class More(Question):
     nouns: ClassVar[Mapping[str, str]] = {EQUALITY: "the level that feels equal"}
 
     def right_answer(self, trial: Trial) -> str:
-        """Return the interval with the greater level."""
         if trial.level is None or trial.standard is None or trial.position is None or trial.level == trial.standard:
             return ""
         return str(trial.position if trial.level > trial.standard else 3 - trial.position)
 
     def score(self, trial: Trial, response: str) -> Score:
-        """Return whether the comparison was chosen, and whether that is right."""
         chosen = None if trial.position is None else int(response == str(trial.position))
         return super().score(trial, response)._replace(chosen=chosen)
 
     def decide(self, trial: Trial, percept: Percept, generator: np.random.Generator) -> str:
-        """Return the interval that feels strongest."""
         return str(int(np.argmax(percept.felt)) + 1)
 
     def analyse_conditions(self, comparison: Comparison, answers: ByParticipant) -> Result:
-        """Analyse how often each condition was chosen."""
         return analyse_pairs(comparison, answers)
 
     def conclude(self, result: Result, who: str) -> Iterator[str]:
-        """Yield what was found; three or more conditions are on a scale."""
         if result.main != SCALE:
             yield from super().conclude(result, who)
             return
@@ -54,7 +49,6 @@ class More(Question):
             yield "Each of them differs from each other one: 0 is outside the 95 % interval of every difference."
 
     def describe(self, row: Row, who: str) -> str:
-        """Return which of two conditions is more."""
         one, other = row.what.condition, row.what.other
         more, less = (one, other) if row.estimate.value >= 0.5 else (other, one)
         claim, chose = f"{more} is {self.name} than {less}", f"{who} chose {one} in {share(row)}"

@@ -94,10 +94,7 @@ def design_digest(file: StudyFile) -> str:
 
 
 def prepare(root: Path, file: StudyFile) -> None:
-    """Write what belongs to the whole study, for its first participant.
-
-    Raises: OutputError if the folder has another study, or cannot be written.
-    """
+    """Write what belongs to the whole study, for its first participant. Raises: OutputError."""
     digest = design_digest(file)
     make_writable(root)
     with folder_lock(root):
@@ -145,10 +142,7 @@ def participants(root: Path) -> list[Participant]:
 
 
 def check_name(root: Path, name: str, resume: bool) -> int | None:
-    """Return the number of the participant who resumes, from 0; None for a new one.
-
-    Raises: ConfigError for a name that is taken, or nobody has, or that is not letters and digits.
-    """
+    """Return the number of the participant who resumes, from 0; None for a new one. Raises: ConfigError."""
     if not (name.isascii() and name.isalnum()):
         raise ConfigError(f"--participant {quoted(name)}: a name has letters and digits alone, such as P7")
     known = participants(root)
@@ -170,10 +164,7 @@ def check_name(root: Path, name: str, resume: bool) -> int | None:
 
 
 def enrol(root: Path, name: str, study: Study, resume: bool) -> int:
-    """Add a participant, or find the one who resumes; return the participant's number, from 0.
-
-    Raises: ConfigError as `check_name`; OutputError.
-    """
+    """Return the number, from 0, of a new participant or of the one who resumes. Raises: ConfigError, OutputError."""
     with folder_lock(root):
         if (number := check_name(root, name, resume)) is not None:
             return number

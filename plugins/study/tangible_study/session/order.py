@@ -22,8 +22,7 @@ SHARED = (
 
 
 def latin_square(count: int, row: int) -> list[int]:
-    """Return a row of a balanced Latin square (Williams 1949): over `count` rows, or twice as many if that is odd, each
-    thing comes at each place, and after each other one, equally often.
+    """Return a row of a balanced Latin square (Williams 1949).
 
     >>> [latin_square(4, row) for row in range(4)]
     [[0, 3, 1, 2], [1, 0, 2, 3], [2, 1, 3, 0], [3, 2, 0, 1]]
@@ -61,7 +60,6 @@ class StudyCourse(Course):
         self._taken = 0
 
     def next(self) -> Trial | None:
-        """Return the next trial, of the next comparison if one is over."""
         while self._left:
             index, phase = self._left[0]
             comparison = self._file.study.comparisons[index]
@@ -77,7 +75,6 @@ class StudyCourse(Course):
         return None
 
     def take(self, trial: Trial, response: str) -> None:
-        """Take the response to the trial that `next` returned."""
         assert self._course is not None
         self._course.take(trial, response)
         self._taken += 1
@@ -95,10 +92,7 @@ class StudyCourse(Course):
 
 
 def replay(course: Course, answers: Iterable[Answer]) -> int:
-    """Answer the trials of a course by the answers of an earlier start, and return their number.
-
-    Raises: ResultsError if they are answers to other trials: the study file or the program has changed since.
-    """
+    """Answer a course by the answers of an earlier start; return their number. Raises: ResultsError if they differ."""
     done, shared = list(answers), {*SHARED} - {"question", "procedure"}
     for answer in done:
         trial = course.next()

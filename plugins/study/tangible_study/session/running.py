@@ -42,10 +42,7 @@ class Session:
     faults: list[str] = field(default_factory=list[str])
 
     def run(self) -> int:
-        """Run all trials that are not answered yet; return the number of all that are.
-
-        Raises: Left, KeyboardInterrupt; all answers are kept. ResultsError if the answers fit another study.
-        """
+        """Run all trials that are not answered yet; return the number of answers. Raises: ParticipantLeft."""
         file, course = self.stimuli.file, StudyCourse(self.stimuli.file, self.number)
         before = read_answers(self.place.answers)
         done, last = replay(course, before), before[-1].comparison if before else ""
@@ -73,10 +70,7 @@ class Session:
         return done
 
     def ask_consent(self) -> bool:
-        """Read the consent text to the participant, unless that was done; return whether the participant agrees.
-
-        Raises: Left.
-        """
+        """Read the consent text, unless that was done; return whether the participant agrees."""
         study = self.stimuli.file.study
         if not study.consent or self.place.consent.exists():
             return True
@@ -193,10 +187,7 @@ def begin(
     in_real_time: bool = True,
     progress: Callable[[int], None] = lambda _: None,
 ) -> Session | None:
-    """Make all stimuli, check them on the device, and enrol the participant; None if the participant does not agree.
-
-    Raises: ConfigError for a stimulus that the device cannot render, or a name that is taken; OutputError; Left.
-    """
+    """Make and check all stimuli, and enrol the participant; None without consent. Raises: ConfigError, OutputError."""
     stimuli.make(progress)
     stimuli.check()
     place = folder.Place(root, name, file.study.study)

@@ -49,11 +49,7 @@ class Observer(Section, ABC):
 
 
 def decide(trial: Trial, magnitude: Callable[[Stimulus], float], base: float, generator: np.random.Generator) -> str:
-    """Return the response of an observer who feels each interval with noise of standard deviation 1.
-
-    magnitude: how strong a stimulus is, in standard deviations of the noise. base: d' between the parts that are named,
-    where the magnitude is 0.
-    """
+    """Return the response of an observer who feels each interval with noise of standard deviation 1."""
     felt = np.array([magnitude(interval) for interval in trial.intervals]) + generator.standard_normal(
         len(trial.intervals)
     )
@@ -75,17 +71,14 @@ class Detection(Observer):
     """Standard deviation of the noise in the unit of the levels, by default a quarter of their range."""
 
     def participant(self, generator: np.random.Generator) -> Self:
-        """Return a participant who feels differences of their own."""
         scale = 1 + self.spread * generator.standard_normal(2)
         base = max(self.base * float(scale[1]), 0.0)
         return self.model_copy(update={"difference": self.difference * float(scale[0]), "base": base})
 
     def refusal(self, comparison: Comparison) -> str:
-        """Return "": this observer answers every question."""
         return ""
 
     def respond(self, trial: Trial, comparison: Comparison, generator: np.random.Generator) -> str:
-        """Return the response by the decision rule that the question asks for."""
         noise = self.noise or (float(np.ptp(comparison.levels)) / 4 if comparison.levels else 0.0) or 1.0
 
         def magnitude(stimulus: Stimulus) -> float:
@@ -120,18 +113,15 @@ class Hand(Observer):
     """d' of the parts that are to be named, in the first condition."""
 
     def participant(self, generator: np.random.Generator) -> Self:
-        """Return a participant with a just noticeable difference of their own."""
         jnd = self.jnd or (JND_FORCE if self.quantity == "force" else JND_HEIGHT_M)
         return self.model_copy(update={"jnd": jnd * float(np.exp(self.spread * generator.standard_normal()))})
 
     def refusal(self, comparison: Comparison) -> str:
-        """Return which levels are not forces."""
         if self.quantity == "force" and any(level <= 0 for level in (comparison.standard or 1.0, *comparison.levels)):
             return "has levels that are not forces above 0; set quantity=height"
         return ""
 
     def respond(self, trial: Trial, comparison: Comparison, generator: np.random.Generator) -> str:
-        """Return the response by the decision rule that the question asks for."""
         jnd = self.jnd or (JND_FORCE if self.quantity == "force" else JND_HEIGHT_M)
 
         def magnitude(stimulus: Stimulus) -> float:
@@ -163,19 +153,16 @@ class Psychometric(Observer):
     """Difference of one participant's threshold from that of others, as a share of the width."""
 
     def participant(self, generator: np.random.Generator) -> Self:
-        """Return a participant with a threshold and a difference between conditions of their own."""
         difference = self.difference * (1 + self.spread * generator.standard_normal())
         shift = self.shift + self.personal * generator.standard_normal()
         return self.model_copy(update={"difference": float(difference), "shift": float(shift)})
 
     def refusal(self, comparison: Comparison) -> str:
-        """Return what is missing: levels."""
         if not (comparison.levels and load_question(comparison.question).has_threshold):
             return "has no levels that are compared, which this observer needs; take the observer `detection`"
         return ""
 
     def respond(self, trial: Trial, comparison: Comparison, generator: np.random.Generator) -> str:
-        """Return a response by the function of the condition."""
         width = self.width or 0.5 * float(np.ptp(comparison.levels)) or 1.0
         shift = self.difference * comparison.conditions.index(trial.condition) + self.shift * width
         truth = Threshold(self.threshold, shift, width, self.slope)
@@ -187,10 +174,7 @@ OBSERVERS: Mapping[str, type[Observer]] = {"psychometric": Psychometric, "detect
 
 
 def observer_of(name: str, sets: Sequence[str], file: StudyFile) -> Observer:
-    """Return an observer for a study. sets: its options, `key=value` each.
-
-    Raises: ConfigError for an unknown observer or option, or a comparison that the observer cannot take part in.
-    """
+    """Return an observer for a study. sets: its options, `key=value` each. Raises: ConfigError."""
     if name not in OBSERVERS:
         known = ", ".join(OBSERVERS)
         raise ConfigError(

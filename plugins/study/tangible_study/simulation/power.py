@@ -52,10 +52,7 @@ def kept_of(file: StudyFile, answers: Sequence[Sequence[Answer]]) -> Kept:
 
 
 def write_folder(root: Path, file: StudyFile, observer: Observer, participants: int, seed: int) -> int:
-    """Simulate participants, write the folder that `tangible study run` writes, and return the number of answers.
-
-    Raises: OutputError if the folder holds another study, or cannot be written; ConfigError if it has participants.
-    """
+    """Simulate participants into a folder like that of `study run`; return the number of answers."""
     folder.prepare(root, file)
     count = 0
     for name in names_of(participants):
@@ -108,11 +105,7 @@ def plan(
 ) -> list[Need]:
     """Return how many participants each comparison needs at each number of repetitions, to find what is there.
 
-    Each simulated participant runs through the same procedures and the same analysis; the differences that the analysis
-    finds have a mean and a standard deviation, from which the power of Student's t over participants follows.
-
-    Parameters: power, the share of such studies that are to find the difference; progress, called with a comparison and
-    a number of repetitions before these are tried.
+    power: share of such studies that are to find the difference. progress: called with a comparison and repetitions.
     """
     needs: list[Need] = []
     for comparison in file.study.comparisons:
@@ -129,10 +122,7 @@ def shorten_study(file: StudyFile, comparison: Comparison, repetitions: int) -> 
 
 
 def effects_of(result: Result) -> dict[tuple[str, str], list[float]]:
-    """Return the difference that each participant shows, for each pair of conditions.
-
-    A single measure that has a value by chance alone, such as the share of odd ones named, is compared with that.
-    """
+    """Return the difference that each participant shows, or its distance from chance, for each pair of conditions."""
     rows = [row for row in result.rows if row.participant != ALL]
     main = [row for row in rows if row.what.measure in (result.main, PAIRS.get(result.main, ""))]
     conditions = list(dict.fromkeys(row.what.condition for row in main))

@@ -40,17 +40,13 @@ class Scale(NamedTuple):
 
 
 def fit_scale(wins: Sequence[Float64[np.ndarray, "n n"]]) -> Scale:
-    """Fit the scale by maximum likelihood. wins: for each participant, how often each row was chosen over each column.
-
-    From five participants on, their differences count: the covariance is the sandwich of Liang & Zeger (1986), where it
-    is larger. Half a win is added to each pair that was compared if the likelihood has no maximum.
-    """
+    """Fit the scale by maximum likelihood. wins: of each row over each column, for each participant."""
     from scipy.sparse.csgraph import connected_components
 
     total = np.sum(wins, axis=0)
     count = len(total)
     strongly = connected_components(total > 0, directed=True, connection="strong")[0] == 1
-    if not strongly:
+    if not strongly:  # else the likelihood has no maximum
         total = total + 0.5 * (total + total.T > 0)
     values = np.zeros(count)
     centre = np.eye(count) - 1 / count
@@ -65,6 +61,7 @@ def fit_scale(wins: Sequence[Float64[np.ndarray, "n n"]]) -> Scale:
     degrees = np.inf
     if len(wins) >= FEWEST:
         scores = np.array([_derivatives(win, values)[0] for win in wins])
+        # The sandwich of Liang & Zeger (1986), where participants differ by more than chance.
         spread = scores.T @ scores * len(wins) / (len(wins) - 1)
         robust = covariance @ spread @ covariance
         if np.trace(robust) > np.trace(covariance):

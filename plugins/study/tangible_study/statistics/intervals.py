@@ -92,10 +92,7 @@ def mean_of_estimates(estimates: Sequence[Estimate], closed: bool = False) -> Es
 
 
 def difference(one: Estimate, other: Estimate) -> Estimate:
-    """Return one - other, with the interval that follows from both intervals if they are independent.
-
-    Source: Zou & Donner (2008), Statistics in Medicine 27:1693.
-    """
+    """Return one - other for independent estimates. Source: Zou & Donner (2008), Statistics in Medicine 27:1693."""
     value = one.value - other.value
     if not isfinite(value):
         return Estimate(value, one.low - other.high, one.high - other.low)

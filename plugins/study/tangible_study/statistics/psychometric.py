@@ -1,7 +1,4 @@
-"""Psychometric functions, fitted by psignifit: threshold, width, and their intervals.
-
-Source: Schütt, Harmeling, Macke & Wichmann (2016), Vision Research 122:105.
-"""
+"""Psychometric functions by psignifit (Schütt, Harmeling, Macke & Wichmann 2016, Vision Research 122:105)."""
 
 import warnings
 from itertools import pairwise
@@ -65,10 +62,7 @@ class Curve(NamedTuple):
 
 
 def fit_choice(blocks: Blocks, span: tuple[float, float]) -> Curve:
-    """Fit how often a level is chosen over the standard: a cumulative Gaussian, its threshold the point of equality.
-
-    span: least and greatest level of the study. Raises: ConfigError if psignifit is not installed.
-    """
+    """Fit how often a level is chosen over the standard, by a cumulative Gaussian. span: of the study's levels."""
     found = _fit(blocks, sigmoid="norm", experiment_type="equal asymptote", stimulus_range=span)
     threshold, width = _estimate(found, "threshold"), float(found.parameter_estimate["width"])
     curve = Curve(threshold, width_interval(blocks, threshold, width), found.parameter_estimate["lambda"], 0.0)
@@ -76,12 +70,7 @@ def fit_choice(blocks: Blocks, span: tuple[float, float]) -> Curve:
 
 
 def width_interval(blocks: Blocks, threshold: Estimate, width: float) -> Estimate:
-    """Return the width of a cumulative Gaussian with equal lapses, with the interval of the likelihood ratio.
-
-    Threshold and lapses are at their best for each width. A bound beyond six times the width, or a sixth of it, is
-    infinite, or 0. The interval of psignifit is as long and leans towards the middle of its prior, so that it holds
-    widths there in 97 % (docs/decisions/0042-studies-with-people.md).
-    """
+    """Return the width of a cumulative Gaussian with equal lapses, with the interval of the likelihood ratio."""
     from scipy import stats
 
     reach = threshold.high - threshold.low
@@ -93,6 +82,8 @@ def width_interval(blocks: Blocks, threshold: Estimate, width: float) -> Estimat
         rise = stats.norm.cdf((level - thresholds[:, None]) / (widths / GAUSSIAN))
         share = np.clip(lapses[:, None, None] + (1 - 2 * lapses[:, None, None]) * rise, 1e-12, 1 - 1e-12)
         likelihood += count * np.log(share) + (trials - count) * np.log1p(-share)
+    # Threshold and lapses are at their best for each width. The interval of psignifit is as long but leans towards the
+    # middle of its prior, so that it holds widths there in 97 % (docs/decisions/0042-studies-with-people.md).
     profile = likelihood.max(axis=(0, 1))
     lack = 2 * (profile.max() - profile) - stats.chi2.ppf(LEVEL, 1)
     inside = np.flatnonzero(lack <= 0)
@@ -103,11 +94,7 @@ def width_interval(blocks: Blocks, threshold: Estimate, width: float) -> Estimat
 
 
 def fit_difference(blocks: Blocks, span: tuple[float, float], choices: int = 3) -> Curve:
-    """Fit how often a difference is found: a Weibull function of the distance from the standard, from chance upwards.
-
-    blocks: levels are distances, above 0. The threshold is halfway from chance to certainty: 67 % right answers of
-    three intervals. Raises: ConfigError if psignifit is not installed.
-    """
+    """Fit how often a difference is found, by a Weibull function; its threshold is halfway up from chance."""
     logs = blocks._replace(levels=np.log(blocks.levels))
     within = (log(span[0]), log(span[1]))
     found = _fit(logs, sigmoid="weibull", experiment_type=f"{choices}AFC", stimulus_range=within)
@@ -117,13 +104,7 @@ def fit_difference(blocks: Blocks, span: tuple[float, float], choices: int = 3) 
 
 
 def _threshold_interval(curve: Curve, blocks: Blocks, beyond: float = -inf) -> Estimate:
-    """Return the threshold in an interval that also holds what the prior of psignifit leaves out.
-
-    By the likelihood ratio, a threshold beyond all levels may explain the answers too: it leaves the same share at all,
-    above the middle if it is below them. Then the interval has no bound there, and if it explains them as well as the
-    curve, there is no estimate but a bound. So may a step, which is anywhere between two levels.
-    beyond: the threshold that is below all levels.
-    """
+    """Return the threshold in an interval that also holds what the prior of psignifit leaves out."""
     from scipy import special, stats
 
     def lack(share: Any) -> float:
@@ -133,6 +114,8 @@ def _threshold_interval(curve: Curve, blocks: Blocks, beyond: float = -inf) -> E
     best, limit = -lack(curve.at(blocks.levels)), stats.chi2.ppf(LEVEL, 1) / 2
     same = hits.sum() / blocks.trials.sum()
     below, above = lack(np.clip(same, middle, 1)), lack(np.clip(same, curve.chance, middle))
+    # A threshold beyond all levels leaves the same share at all of them. If that may explain the answers, the interval
+    # has no bound there; if it does so as well as the curve, there is no estimate. So may a step between two levels.
     value, low, high = curve.threshold
     for one, other in pairwise(blocks.levels.tolist()):
         width = STEP * (log(other / one) if curve.chance else other - one)

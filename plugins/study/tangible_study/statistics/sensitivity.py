@@ -1,7 +1,4 @@
-"""Sensitivity d': the distance of two things in standard deviations of the observer's noise, from proportions correct.
-
-Source: Macmillan & Creelman, Detection Theory: A User's Guide, 2nd ed. (2005), ch. 7, 9 and 10, tables A5.2 and A5.5.
-"""
+"""Sensitivity d', from proportions correct: Macmillan & Creelman, Detection Theory, 2nd ed. (2005), ch. 7, 9, 10."""
 
 from collections.abc import Callable
 from functools import cache
@@ -39,8 +36,7 @@ def oddity(proportion: float) -> float:
     """Return d' from the proportion correct when the odd one of three is named, by the differencing rule.
 
     0 at and below chance, 1/3. The odd one is the one farthest from the other two. Source: Frijters (1979).
-
-    >>> [round(oddity(each), 2) for each in (0.3, 0.5, 0.8)]
+    >>> [round(oddity(share), 2) for share in (0.3, 0.5, 0.8)]
     [0.0, 1.47, 3.13]
     """
     return _inverse(oddity_correct, proportion)
@@ -56,19 +52,16 @@ def naming(proportion: float, choices: int) -> float:
 
 
 def same_different(hits: int, differing: int, alarms: int, equal: int) -> Estimate:
-    """Return d' of two intervals that are the same or different, by the differencing rule, with its interval.
+    """Return d' and its interval from two intervals that are the same or different, by the differencing rule.
 
-    hits: `different` of trials that differ. alarms: `different` of trials that are equal. For the value, half an answer
-    is added to each count (Hautus 1995), so that it is finite. The interval is that of the likelihood ratio, with the
-    criterion at its best for each d'; its upper bound may be infinite. NaN without trials of a kind.
-    Source: Macmillan & Creelman, ch. 9.
+    hits, alarms: `different` of the trials that differ, or are equal. NaN without trials of a kind.
     """
     from scipy.stats import chi2
 
     if not (differing and equal):
         return Estimate(nan)
     counts = np.array([hits, differing - hits, alarms, equal - alarms], float)
-    value = _DPRIMES[_likelihood(counts + 0.5).argmax()]
+    value = _DPRIMES[_likelihood(counts + 0.5).argmax()]  # half an answer keeps it finite (Hautus 1995)
     likelihood = _likelihood(counts)
     within = np.flatnonzero(2 * (likelihood.max() - likelihood) <= chi2.ppf(LEVEL, 1))
     high = inf if within[-1] == len(_DPRIMES) - 1 else float(_DPRIMES[within[-1]])

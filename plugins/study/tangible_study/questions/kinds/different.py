@@ -25,25 +25,20 @@ class Different(Question):
     procedures: ClassVar[tuple[str, ...]] = ("same-different",)
 
     def choices(self, trial: Trial, comparison: Comparison) -> dict[str, str]:
-        """Return a number for each word."""
         return {"1": "they were the same", "2": "they were different"}
 
     def response(self, trial: Trial, key: str, level: float | None) -> str:
-        """Return the word."""
         return trial.choices[int(key) - 1]
 
     def decide(self, trial: Trial, percept: Percept, generator: np.random.Generator) -> str:
-        """Return whether the two are farther apart than a criterion."""
         return DIFFERENT if abs(percept.felt[0] - percept.felt[1]) > CRITERION else SAME
 
     def analyse_conditions(self, comparison: Comparison, answers: ByParticipant) -> Result:
-        """Analyse how often the word was right; d' is that of the differencing rule."""
         result = analyse_right_answers(comparison, answers, 0.5)
         dprimes, _ = of_each_and_all(_dprimes, answers, bounds=(0.0, inf))
         return replace(result, rows=[*result.rows, *dprimes])
 
     def describe(self, row: Row, who: str) -> str:
-        """Return whether two conditions can be told apart."""
         return told_apart(row, f"{who} answered rightly")
 
 

@@ -25,31 +25,25 @@ class Equal(Question):
     has_threshold = True
 
     def choices(self, trial: Trial, comparison: Comparison) -> dict[str, str]:
-        """Return keys for more, less, and the end."""
         return {MORE: "no, it needs more", LESS: "no, it needs less", EQUAL: "yes, it was equal"}
 
     def response(self, trial: Trial, key: str, level: float | None) -> str:
-        """Return the level that was set."""
         return repr(level)
 
     def next_level(self, trial: Trial, key: str, level: float | None) -> float | None:
-        """Return the next level above or below, within those that can be set."""
         levels = [float(choice) for choice in trial.choices]
         if key == EQUAL or level is None:
             return None
         return levels[min(max(levels.index(level) + (1 if key == MORE else -1), 0), len(levels) - 1)]
 
     def decide(self, trial: Trial, percept: Percept, generator: np.random.Generator) -> str:
-        """Return the level that feels most like the first interval."""
         wanted = float(percept.felt[0]) + float(generator.standard_normal())
         return _nearest(wanted, trial, lambda level: percept.magnitude(Stimulus(trial.condition, level)))
 
     def draw(self, trial: Trial, comparison: Comparison, truth: Threshold, generator: np.random.Generator) -> str:
-        """Return the level that is nearest to one about the level that feels equal."""
         return _nearest(generator.normal(equal_level(comparison, truth), truth.width / GAUSSIAN), trial)
 
     def analyse_conditions(self, comparison: Comparison, answers: ByParticipant) -> Result:
-        """Analyse how far above the standard the level was set."""
         standard, unit = comparison.standard or 0.0, comparison.unit
         return analyse_quantities(
             comparison,
@@ -62,7 +56,6 @@ class Equal(Question):
         )
 
     def describe(self, row: Row, who: str) -> str:
-        """Return on which side of the standard the level was set."""
         (value, low, high), one = row.estimate, row.what.condition
         side = "above" if value > 0 else "below"
         went = f"{who} went {abs(value):.3g} {row.unit} {side} the standard on average"

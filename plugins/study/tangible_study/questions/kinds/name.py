@@ -22,29 +22,24 @@ class Name(Question):
     nouns: ClassVar[Mapping[str, str]] = {CORRECT: "the share of parts named rightly"}
 
     def choices(self, trial: Trial, comparison: Comparison) -> dict[str, str]:
-        """Return a number for each name."""
         return {str(number): name for number, name in enumerate(trial.choices, 1)}
 
     def response(self, trial: Trial, key: str, level: float | None) -> str:
-        """Return the name."""
         return trial.choices[int(key) - 1]
 
     def decide(self, trial: Trial, percept: Percept, generator: np.random.Generator) -> str:
-        """Return the part with the most evidence."""
         evidence = generator.standard_normal(len(trial.choices))
         strength = max(percept.base + percept.magnitude(trial.intervals[0]), 0.0)
         evidence[trial.choices.index(trial.target or "")] += strength
         return trial.choices[int(np.argmax(evidence))]
 
     def analyse_conditions(self, comparison: Comparison, answers: ByParticipant) -> Result:
-        """Analyse how often a part was named rightly, and how conditions differ."""
         count = len(comparison.names)
         return analyse_right_answers(
             comparison, answers, 1 / count, lambda proportion: sensitivity.naming(proportion, count), compared=True
         )
 
     def describe(self, row: Row, who: str) -> str:
-        """Return how often the name was right."""
         guess = f"guessing gives {100 * row.chance:.0f} %."
         return f"With {row.what.condition}, {who} named the right part in {share(row)}; {guess}"
 

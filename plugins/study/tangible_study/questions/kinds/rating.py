@@ -22,25 +22,20 @@ class Rating(Question):
     nouns: ClassVar[Mapping[str, str]] = {RATING: "the rating"}
 
     def ask(self, comparison: Comparison) -> str:
-        """Return the question for what the scale is about."""
         return f"How would you rate {comparison.scale.of}?" if comparison.scale.of else self.sentence
 
     def choices(self, trial: Trial, comparison: Comparison) -> dict[str, str]:
-        """Return the numbers, with the words for both ends."""
         ends = comparison.scale.ends or ("", "")
         return dict.fromkeys(trial.choices, "") | {trial.choices[0]: ends[0], trial.choices[-1]: ends[1]}
 
     def decide(self, trial: Trial, percept: Percept, generator: np.random.Generator) -> str:
-        """Return a number about the middle."""
         middle = (len(trial.choices) - 1) / 2
         return trial.choices[int(np.clip(round(middle + float(percept.felt[0])), 0, len(trial.choices) - 1))]
 
     def analyse_conditions(self, comparison: Comparison, answers: ByParticipant) -> Result:
-        """Analyse the ratings of each condition, and how conditions differ."""
         return analyse_quantities(comparison, answers, RATING)
 
     def describe(self, row: Row, who: str) -> str:
-        """Return the mean rating."""
         value, low, high = row.estimate
         return f"{who} gave {row.what.condition} a rating of {value:.3g} on average ({interval(low, high)})."
 

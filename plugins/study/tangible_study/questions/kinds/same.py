@@ -23,21 +23,17 @@ class Same(Question):
     has_threshold = True
 
     def right_answer(self, trial: Trial) -> str:
-        """Return the odd interval."""
         return str(trial.position)
 
     def decide(self, trial: Trial, percept: Percept, generator: np.random.Generator) -> str:
-        """Return the interval that feels farthest from the mean of the others."""
         felt = percept.felt
         others = (felt.sum() - felt) / (len(felt) - 1)
         return str(int(np.argmax(np.abs(felt - others))) + 1)
 
     def analyse_conditions(self, comparison: Comparison, answers: ByParticipant) -> Result:
-        """Analyse how often the odd one was found."""
         return analyse_right_answers(comparison, answers, 1 / 3, sensitivity.oddity)
 
     def describe(self, row: Row, who: str) -> str:
-        """Return whether two conditions can be told apart."""
         return told_apart(row, f"{who} found the odd one")
 
 

@@ -472,8 +472,7 @@ def _make_kits(folder: Path) -> None:
 
 
 def _kits(path: Path) -> object:
-    from tangible_bench.datasets.kits.kitti import kitti_2012
-    from tangible_bench.datasets.kits.middlebury import since_2014
+    from tangible_bench.datasets.kits import kitti_2012, since_2014
 
     top = next(each for each in path.parents if each.name in ("a", "b"))
     pairs = since_2014(top) if top.name == "a" else kitti_2012(top)

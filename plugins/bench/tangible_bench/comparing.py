@@ -58,12 +58,9 @@ def compare(
 ) -> ComparisonOutcome:
     """Measure what a comparison names, into `comparison.out`; existing rows are kept.
 
-    earlier: rows of an earlier comparison, to be compared with. retry: measure once more what failed before. progress:
-    called at the start and the end of every measurement. on_outlook: called first, with the known rows and the
-    measurements to do. stop: set from another thread, it ends the measurement under way, which is lost; the others are
-    kept. workers: the number of processes for a comparison of `errors_only`, whose measurements end in any order; one
-    a core if left out.
-    Raises: ConfigError, ResultsError, OutputError for files that are wrong or cannot be written; Stopped after `stop`.
+    earlier: rows to be compared with. on_outlook: called first, with the known rows and the measurements to do.
+    stop: ends the measurement under way, from another thread. workers: processes for a comparison of `errors_only`.
+    Raises: ConfigError, ResultsError, OutputError; Stopped after `stop`.
     """
     path = comparison.out / ROWS
     outlook = look(measurements(comparison), path, retry)

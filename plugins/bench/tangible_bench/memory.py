@@ -13,12 +13,9 @@ _STATUS, _CLEAR = Path("/proc/self/status"), Path("/proc/self/clear_refs")
 
 
 def start_peak() -> Callable[[], int | None]:
-    """Start to watch memory; return a function that returns the largest growth of the process since, in bytes.
-
-    On Linux, freed memory is given back to the system and the kernel's mark of the highest resident size is reset
-    (proc(5), `clear_refs`, and `VmHWM`). `ru_maxrss` is not enough: a child starts with its parent's mark, and the
-    mark never falls. On other systems there is only the mark, and growth below an earlier peak does not show.
-    """
+    """Start to watch memory; return a function that returns the largest growth of the process since, in bytes."""
+    # On Linux, the mark of the highest resident size is reset (proc(5), `clear_refs`). `ru_maxrss` is not enough:
+    # a child starts with its parent's mark, which never falls. Elsewhere, growth below an earlier peak does not show.
     gc.collect()
     if _reset():
         before = _kernel_bytes("VmRSS")
@@ -29,10 +26,7 @@ def start_peak() -> Callable[[], int | None]:
 
 
 def held_bytes(make: Callable[[], object]) -> int:
-    """Return the number of bytes that the result of a call keeps, as Python and NumPy count their allocations.
-
-    Unlike the size of a process, it is exact and repeatable; allocations of other libraries do not show.
-    """
+    """Return the bytes that the result of a call keeps, by Python's and NumPy's allocations, which repeat exactly."""
     gc.collect()
     tracemalloc.start()
     try:

@@ -1,10 +1,4 @@
-"""Paths of a hand over a surface, with the exact nearest points of analytic surfaces along them.
-
-All nearest points are closed forms except those of the waves. Each function takes hands inside and above its surface;
-the results of the ones above are meaningless. Where two faces meet in an edge, a point stays on the face through which
-the hand came in until its foot leaves that face, as a proxy does: the nearest point of both would leap through the body
-to the other side.
-"""
+"""Paths of a hand over a surface, with the exact nearest points of analytic surfaces to hands inside and above."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -52,10 +46,7 @@ def on_ridge(hands_m: Points, slope: float, top_m: float) -> Points:
 
 
 def on_step(hands_m: Points, high_m: float) -> Points:
-    """Return the point on the top (z = high, x >= 0), or on the ground (z = 0, x <= 0) and the wall.
-
-    The face is that through which the hand came in.
-    """
+    """Return the point on the top (z = high, x >= 0), or on the ground (z = 0, x <= 0) and the wall."""
     x, y, z = hands_m[:, 0], hands_m[:, 1], hands_m[:, 2]
     low = np.column_stack([np.minimum(x, 0), y, np.maximum(z, 0)])
     top = np.column_stack([np.maximum(x, 0), y, np.full(x.size, high_m)])
@@ -65,11 +56,7 @@ def on_step(hands_m: Points, high_m: float) -> Points:
 
 
 def on_waves(hands_m: Points, amplitude_m: float, wavelength_m: float) -> Points:
-    """Find the point by Newton's method on h = A + A sin(2 pi x / L) sin(2 pi y / L), from straight above the hand.
-
-    NaN for a hand at least 1 / (A k^2) from it, k = 2 pi / L, the crests' radius of curvature: so deep there may be
-    several nearest points.
-    """
+    """Find the point by Newton's method on h = A + A sin(2 pi x / L) sin(2 pi y / L); NaN where it is not unique."""
     places, step = hands_m[:, :2], np.full((len(hands_m), 2), np.inf)
     for _ in range(NEWTON_STEPS):
         height, slope, bend = _waves(places, amplitude_m, wavelength_m)
@@ -80,6 +67,7 @@ def on_waves(hands_m: Points, amplitude_m: float, wavelength_m: float) -> Points
         places = places + step
         if np.abs(step).max(initial=0.0) < CONVERGED_M:
             break
+    # Deeper than the crests' radius of curvature, 1 / (A k^2) with k = 2 pi / L, there may be several nearest points.
     points = np.column_stack([places, _waves(places, amplitude_m, wavelength_m)[0]])
     curve_m = (wavelength_m / (2 * np.pi)) ** 2 / amplitude_m
     only = (np.abs(step).max(axis=1) < CONVERGED_M) & (np.linalg.norm(points - hands_m, axis=1) < curve_m)
@@ -98,6 +86,7 @@ def _waves(
 
 def _face(inside: Flags, starts: Flags, leaves_first: Flags, leaves_second: Flags) -> Flags:
     """Test whether each point is on the second face: the face over which the hand came in, until it leaves that."""
+    # The nearest point of both faces would leap through the body to the other side; a proxy does not.
     second = bool(starts[:1].any())
     on_second = np.empty_like(inside)
     for tick, (within, start, first_ends, second_ends) in enumerate(
@@ -167,11 +156,7 @@ SURFACES: Mapping[str, Analytic] = {
 def analytic_stroke(
     name: str, cells: int = 256, depth_m: float = 0.001, path_m: Points | None = None, period_s: float = PERIOD_S
 ) -> KnownStroke:
-    """Return a path over one of SURFACES of cells x cells: `path_m`, or the scripted path at this depth.
-
-    Nearest points are NaN where the hand is outside of the surface's extent.
-    Raises: KeyError if no surface has this name.
-    """
+    """Return a path over one of SURFACES of cells x cells: `path_m`, or the scripted one. Raises: KeyError."""
     analytic = SURFACES[name]
     known = analytic.known((cells, cells))
     if path_m is None:
@@ -195,10 +180,7 @@ def relief_stroke(
 
 
 def scripted_path(relief: Relief, ride: Heights, depth_m: float, across_m: tuple[float, float] | None = None) -> Points:
-    """Return the path of a hand over a surface in four loops of 2 s, at 57 mm/s (on 80 x 80 mm; 84 at most).
-
-    x and y swing (Lissajous); each loop starts and ends in free air, over the highest point. (n, 3), 1 ms apart.
-    """
+    """Return the path of a hand over a surface, (n, 3), 1 ms apart: four loops of 2 s, from free air to free air."""
     t = np.arange(LOOPS * LOOP_TICKS + 1) / (LOOPS * LOOP_TICKS)
     width_m, length_m = relief.extent_m
     left, right = across_m or (-REACH * width_m, REACH * width_m)

@@ -38,9 +38,8 @@ class Forecast:
         return sum(self.expected_s)
 
     def left_s(self, number: int, taken_s: float) -> float:
-        """Return the time that is left before measurement `number`, if the earlier ones took `taken_s`.
+        """Return the time that remains before measurement `number`, corrected by the time of the earlier ones.
 
-        Finished measurements correct the forecast of the rest, as they show how fast this machine is.
         >>> Forecast((2.0, 2.0, 4.0)).left_s(2, taken_s=6.0)
         6.0
         """

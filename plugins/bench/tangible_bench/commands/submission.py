@@ -37,13 +37,7 @@ class Submitted:
 def submit(
     comparison: Comparison, folder: Path, started: Callable[[str, str], None] = lambda method, scene: None
 ) -> Iterator[Submitted]:
-    """Run every method on every pair of a set that takes submissions, write the files and yield each result.
-
-    Each method is called twice on its first pair, so that imports and compilation are not in its time. `fill:` is
-    applied, perturbations are not.
-    started: called before each run with the method and the scene.
-    Raises: ConfigError if no scene is from such a set, OutputError if the folder cannot be written.
-    """
+    """Run every method on every pair of a set that takes submissions. Raises: ConfigError, OutputError."""
     scenes = {
         name: spec
         for name, spec in comparison.scenes.items()
@@ -71,7 +65,7 @@ def _submit_pair(
     assert spec.set is not None
     (standard_pair,) = spec.list_pairs()
     method = entry.method_for({key: fact_of(pair) for key, fact_of in comparison.task.given.items()})
-    if entry.label not in warm:
+    if entry.label not in warm:  # so that imports and compilation are not in its time
         estimate(method, pair)  # pyright: ignore[reportArgumentType] - of the kind that is compared
         warm.add(entry.label)
     start_s = perf_counter()

@@ -82,10 +82,7 @@ class Comparison:
 
 
 def shorten(comparison: Comparison) -> Comparison:
-    """Return the comparison for a first look: one round, one call, no perturbations; its folder ends with `-quick`.
-
-    Its times are rough. Its errors are those of the whole comparison, as methods are deterministic.
-    """
+    """Return the comparison for a first look: one round, one call, no perturbations; its folder ends with `-quick`."""
     protocol = comparison.protocol.model_copy(update={"repeats": 1, "calls": 1})
     out = comparison.out.with_name(f"{comparison.out.name}-quick")
     return replace(comparison, protocol=protocol, damages=(Damage(),), out=out)
@@ -99,12 +96,7 @@ def errors_only(comparison: Comparison) -> Comparison:
 
 
 def comparison_of_set(name: str, folder: Path | None = None) -> str:
-    """Return the text of a comparison file for a standard set: the methods for pairs, with their defaults, once a pair.
-
-    name: of the set, with a size such as `@Q`, or `@test` for the pairs without truth. folder: the folder of the set;
-    by default a folder of its name in the current one.
-    Raises: ConfigError, PictureError as `datasets.pairs`, with the archive to fetch.
-    """
+    """Return the text of a comparison of a standard set, such as `NAME@Q`. Raises: ConfigError, PictureError."""
     options = named_set(name)
     if options is None:
         raise ConfigError(f"{name}: is not a standard set")
@@ -120,10 +112,7 @@ def preset(name: str) -> Path | None:
 
 
 def comparison_of_methods(names: Sequence[str], registry: Registry) -> str:
-    """Return the text of a comparison of these methods with their defaults, on the scenes of the shipped file.
-
-    Raises: ConfigError for names that no kind of comparable methods has together.
-    """
+    """Return the text of a comparison of these methods on the scenes of the shipped file. Raises: ConfigError."""
     kinds = {kind: registry.names(kind) for kind in TASKS}
     kind = next((kind for kind, known in kinds.items() if set(names) <= set(known)), None)
     file = kind and preset(f"compare-{kind}")
@@ -139,10 +128,7 @@ def comparison_of_methods(names: Sequence[str], registry: Registry) -> str:
 
 
 def load_comparison(path: Path, registry: Registry, overrides: Iterable[str] = ()) -> Comparison:
-    """Read and check a comparison file; relative paths are relative to its folder.
-
-    Raises: ConfigError with all mistakes, one a line.
-    """
+    """Read and check a comparison file; relative paths are relative to its folder. Raises: ConfigError."""
     return parse_comparison(read_text(path), path, registry, overrides)
 
 

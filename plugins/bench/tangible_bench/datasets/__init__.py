@@ -1,9 +1,4 @@
-"""Standard sets: the pairs of the stereo benchmarks, read as their archives unpack; nothing is downloaded.
-
->>> from tangible_bench import datasets
->>> [name for name in datasets.SETS if name.startswith("kitti")]
-['kitti-2012', 'kitti-2015']
-"""
+"""Standard sets: the pairs of the stereo benchmarks, read as their archives unpack; nothing is downloaded."""
 
 from .choosing import SetScene as SetScene
 from .choosing import pairs as pairs

@@ -27,11 +27,7 @@ def if_there(read: Callable[..., Cameras], path: Path, *more: object) -> Cameras
 
 
 def middlebury_cameras(path: Path) -> Cameras:
-    """Read `calib.txt` of Middlebury since 2014 and of ETH3D.
-
-    It has cam0=[f 0 cx; 0 f cy; 0 0 1], doffs in px, baseline in mm.
-    Raises: PictureError if the file holds no calibration, as do the other readers here.
-    """
+    """Read `calib.txt` (cam0, doffs in px, baseline in mm). Raises: PictureError, as the other readers here."""
     values = _values(path, r"^\s*(\w+)\s*=\s*(.*?)\s*$")
     focal_px = _numbers(path, values, "cam0")[0]
     baseline_m, offset_px = (_numbers(path, values, name)[0] for name in ("baseline", "doffs"))
@@ -40,10 +36,7 @@ def middlebury_cameras(path: Path) -> Cameras:
 
 
 def kitti_cameras(path: Path, left: str, right: str) -> Cameras:
-    """Read the projections of the two cameras, `P2: 12 numbers`: f 0 cx -f X.
-
-    The baseline is the difference of both X, in m. left, right: names of the projections.
-    """
+    """Read the projections of two cameras, `P2: 12 numbers`: f 0 cx -f X; the baseline is the difference of X, m."""
     values = _values(path, r"^\s*(\w+)\s*:\s*(.*?)\s*$")
     (one, other) = (_numbers(path, values, name, 12) for name in (left, right))
     baseline_m = (one[3] - other[3]) / one[0] if one[0] else 0.0

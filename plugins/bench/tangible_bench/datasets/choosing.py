@@ -32,12 +32,10 @@ def pairs(
 ) -> tuple[StandardPair, ...]:
     """Return the pairs of a set in a folder, by name; no picture is read before its pair is opened.
 
-    resolution: F, H, T or Q, for full, half, third or quarter size; a size that is not in the folder is made from a
-    larger one. By default, the largest size in the folder. split: training, or test for pairs whose truth the benchmark
-    keeps; by default training, or test if the folder has no others. variant: `clean` or `final` of Sintel. only: names
-    of pairs, in this order; a number stands for the name that YAML reads as that number, such as 000000_10.
-    Raises: ConfigError for an unknown set, size, variant or pair; PictureError, with the archive to fetch, for a folder
-    that is missing or holds no pair of the set.
+    resolution: F, H, T or Q; by default the largest in the folder, from which smaller ones are made. split: training,
+    or test for pairs whose truth the benchmark keeps. variant: `clean` or `final` of Sintel. only: names of pairs, in
+    this order; a number stands for the name that YAML reads as that number, such as 000000_10.
+    Raises: ConfigError for an unknown name; PictureError, with the archive to fetch, for a folder without the set.
     """
     if name not in SETS:
         raise ConfigError(f"no set is named {quoted(name)}{did_you_mean(str(name), SETS)}; known: {', '.join(SETS)}")
@@ -125,7 +123,6 @@ class SetScene(SceneReader):
         return with_folder_of_set(block)
 
     def files(self) -> SceneFiles:
-        """Return the files of the pair. Raises: ConfigError, PictureError as `pairs`."""
         assert self.folder is not None  # by _complete_folder
         (pair,) = pairs(
             self.set, self.folder, resolution=self.resolution, split=self.split, variant=self.variant, only=(self.name,)
@@ -136,7 +133,6 @@ class SetScene(SceneReader):
 
     @classmethod
     def suggest(cls, key: str, block: Mapping[str, Any]) -> Iterable[str]:
-        """Return the names of all sets, or of the pairs in the folder of a set."""
         try:
             return list(_values_of(key, block))
         except (TangibleError, TypeError):  # the earlier keys are not finished

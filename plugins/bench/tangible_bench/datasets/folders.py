@@ -30,10 +30,7 @@ class Folder(NamedTuple):
 
 
 def folders(root: Path) -> Iterator[Folder]:
-    """Yield the folder and all folders in it, by name; links are followed, but no folder is listed twice.
-
-    Raises: PictureError if a folder cannot be listed, or there are too many entries.
-    """
+    """Yield the folder and all folders in it, by name; links are followed, each once. Raises: PictureError."""
     seen = set[tuple[int, int]]()
     waiting, count = [(str(root), (root.absolute().name,))], 0
     while waiting:
@@ -67,10 +64,8 @@ _WILD = re.compile(r"\*\*/?|\*|\?|\[[^\]]+\]")
 def matched(folder: Path, patterns: Mapping[str, str], needed: tuple[str, str]) -> dict[str, dict[str, Path]]:
     """Return name -> part -> file, in the order of names; a name is the text that the stars match.
 
-    patterns: part -> pattern relative to the folder; `*` and `?` match within a name, `**/` any folders. needed: the
-    two parts that every name must have; the names are those of the first one.
-    Raises: ConfigError for patterns with different numbers of stars; PictureError if nothing matches, or a file has no
-    partner.
+    patterns: part -> pattern relative to the folder, with `*`, `?` and `**/`. needed: the two parts that each name has.
+    Raises: ConfigError for different numbers of stars; PictureError without a match or a partner.
     """
     first, second = needed
     wanted = len(_WILD.findall(patterns[first]))

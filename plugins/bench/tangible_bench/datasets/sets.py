@@ -5,9 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from .kits import middlebury
-from .kits.kitti import kitti_2012, kitti_2015
-from .kits.others import booster, eth3d, sintel
+from . import kits
 from .standard_pair import Resolution, StandardPair
 
 Read = Callable[[Path], Iterator[StandardPair]]
@@ -41,54 +39,54 @@ _KITTI = "https://www.cvlibs.net/datasets/kitti"
 SETS: Mapping[str, StandardSet] = {
     "middlebury-2001": StandardSet(
         "Middlebury 2001", "the zip of each scene", f"{_MIDDLEBURY}/data/scenes2001/",
-        "NAME/im2.ppm, im6.ppm and disp2.pgm", {"": middlebury.of_2001},
+        "NAME/im2.ppm, im6.ppm and disp2.pgm", {"": kits.of_2001},
     ),
     "middlebury-2003": StandardSet(
         "Middlebury 2003", "cones-png-2.zip and teddy-png-2.zip", f"{_MIDDLEBURY}/data/scenes2003/",
-        "cones/im2.png, im6.png and disp2.png", {"": middlebury.of_2003}, ("F", "H", "Q"),
+        "cones/im2.png, im6.png and disp2.png", {"": kits.of_2003}, ("F", "H", "Q"),
     ),
     "middlebury-2005": StandardSet(
         "Middlebury 2005", "ThirdSize 2-views zip files", f"{_MIDDLEBURY}/data/scenes2005/",
-        "ThirdSize/NAME/view1.png, view5.png and disp1.png", {"": middlebury.of_2005_and_2006}, ("F", "H", "T"),
+        "ThirdSize/NAME/view1.png, view5.png and disp1.png", {"": kits.of_2005_and_2006}, ("F", "H", "T"),
     ),
     "middlebury-2006": StandardSet(
         "Middlebury 2006", "ThirdSize 2-views zip files", f"{_MIDDLEBURY}/data/scenes2006/",
-        "ThirdSize/NAME/view1.png, view5.png and disp1.png", {"": middlebury.of_2005_and_2006}, ("F", "H", "T"),
+        "ThirdSize/NAME/view1.png, view5.png and disp1.png", {"": kits.of_2005_and_2006}, ("F", "H", "T"),
     ),
     "middlebury-2014": StandardSet(
         "Middlebury 2014", "NAME-perfect.zip of each scene", f"{_MIDDLEBURY}/data/scenes2014/",
-        "NAME-perfect/im0.png, im1.png, disp0.pfm and calib.txt", {"": middlebury.since_2014}, ("F", "H", "Q"),
+        "NAME-perfect/im0.png, im1.png, disp0.pfm and calib.txt", {"": kits.since_2014}, ("F", "H", "Q"),
     ),
     "middlebury-2021": StandardSet(
         "Middlebury 2021", "all.zip", f"{_MIDDLEBURY}/data/scenes2021/",
-        "data/NAME/im0.png, im1.png, disp0.pfm and calib.txt", {"": middlebury.since_2014}, ("F", "H", "Q"),
+        "data/NAME/im0.png, im1.png, disp0.pfm and calib.txt", {"": kits.since_2014}, ("F", "H", "Q"),
     ),
     "middlebury-eval3": StandardSet(
         "Middlebury v3", "MiddEval3-data-Q.zip and MiddEval3-GT0-Q.zip (or -H, -F)", f"{_MIDDLEBURY}/submit3/",
         "trainingQ/NAME/im0.png, im1.png, disp0GT.pfm, mask0nocc.png and calib.txt",
-        {"": middlebury.since_2014}, ("F", "H", "Q"),
+        {"": kits.since_2014}, ("F", "H", "Q"),
     ),
     "kitti-2012": StandardSet(
         "KITTI 2012", "data_stereo_flow.zip", f"{_KITTI}/eval_stereo_flow.php?benchmark=stereo",
-        "training/colored_0, colored_1, disp_occ and disp_noc", {"": kitti_2012},
+        "training/colored_0, colored_1, disp_occ and disp_noc", {"": kits.kitti_2012},
     ),
     "kitti-2015": StandardSet(
         "KITTI 2015", "data_scene_flow.zip (and data_scene_flow_calib.zip for the cameras)",
         f"{_KITTI}/eval_scene_flow.php?benchmark=stereo",
-        "training/image_2, image_3, disp_occ_0 and disp_noc_0", {"": kitti_2015},
+        "training/image_2, image_3, disp_occ_0 and disp_noc_0", {"": kits.kitti_2015},
     ),
     "eth3d": StandardSet(
         "ETH3D two-view", "two_view_training.7z and two_view_training_gt.7z", "https://www.eth3d.net/datasets",
-        "NAME/im0.png, im1.png, disp0GT.pfm and mask0nocc.png", {"": eth3d},
+        "NAME/im0.png, im1.png, disp0GT.pfm and mask0nocc.png", {"": kits.eth3d},
     ),
     "sintel": StandardSet(
         "MPI Sintel stereo", "MPI-Sintel-stereo-training-20150305.zip", "http://sintel.is.tue.mpg.de/stereo",
         "training/final_left, final_right, disparities and occlusions",
-        {"final": partial(sintel, variant="final"), "clean": partial(sintel, variant="clean")},
+        {"final": partial(kits.sintel, variant="final"), "clean": partial(kits.sintel, variant="clean")},
     ),
     "booster": StandardSet(
         "Booster", "booster_gt.zip", "https://cvlab-unibo.github.io/booster-web/",
-        "train/balanced/SCENE/camera_00, camera_02 and disp_00.npy", {"": booster}, ("F", "H", "Q"),
+        "train/balanced/SCENE/camera_00, camera_02 and disp_00.npy", {"": kits.booster}, ("F", "H", "Q"),
     ),
 }  # fmt: skip
 """Name of a set in files and commands -> the set."""

@@ -27,14 +27,12 @@ def shrink_views(views: Views, by: int) -> Views:
 
 
 def shrink_truth(truth_px: Float32[np.ndarray, "h w"], by: int) -> Float32[np.ndarray, "r c"]:
-    """Return the upper median of the known values of blocks, in pixels of the smaller size; NaN if most are unknown.
-
-    A mean would lie between the two surfaces at an edge, where there is nothing.
-    """
+    """Return the upper median of the known values of blocks, in smaller pixels; NaN if most are unknown."""
     if by == 1:
         return truth_px
     blocks = np.sort(_blocks(truth_px, by), axis=-1)  # NaN last
     known = np.isfinite(blocks).sum(axis=-1)
+    # A mean would lie between the two surfaces at an edge, where there is nothing.
     middle = np.take_along_axis(blocks, np.minimum(known // 2, by * by - 1)[..., None], axis=-1)[..., 0]
     return np.where(2 * known >= by * by, middle / np.float32(by), np.float32(np.nan))
 
@@ -75,13 +73,10 @@ class Mask(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class MarkedPair(Record):
-    """A pair with the truth, masks and range of its benchmark.
+    """A pair with the truth (px, NaN where unknown), masks and range of its benchmark.
 
-    truth_px: true disparity in px, NaN where unknown; None for a pair whose results are to be submitted.
-    noc: pixels that both views show; None if unknown. foreground: pixels of moving objects.
-    full_px: the width of a pixel in pixels of the full size, in which the benchmark's thresholds are given; None for a
-    set in one size.
-    most_px: the largest disparity that methods are given, in pixels of these pictures.
+    noc: pixels that both views show. foreground: pixels of moving objects. full_px: the width of a pixel in pixels of
+    the full size; None for a set in one size. most_px: the largest disparity that methods are given.
     """
 
     views: Views

@@ -19,11 +19,7 @@ Disparity = Float32[np.ndarray, "h w"]
 def write_submission(
     folder: Path, name: str, method: str, pair: StandardPair, disparity_px: Disparity, seconds: float
 ) -> tuple[Path, ...]:
-    """Write a method's disparity of a pair of a set, each file whole or not at all; return the files.
-
-    disparity_px: at the size of the pair, NaN where unknown. seconds: the time of the call.
-    Raises: ConfigError for a set that takes no submissions, OutputError if the folder cannot be written.
-    """
+    """Write the files of a pair, and return them; disparity is NaN where unknown. Raises: ConfigError, OutputError."""
     if name not in WRITERS:
         raise ConfigError(f"{name} takes no submissions; sets that do are {', '.join(WRITERS)}")
     label = _plain_name(method)

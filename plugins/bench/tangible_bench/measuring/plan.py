@@ -32,14 +32,11 @@ class Measurement:
 
 
 def measurements(comparison: Comparison) -> list[Measurement]:
-    """Return every measurement of a comparison, in order.
-
-    A round runs every method on a scene before the next scene, so that a drift of the machine affects all methods
-    alike and times can be compared within the round; each round starts with another method.
-    Raises: ConfigError naming every scene that cannot be read, before hours are spent on the others.
-    """
+    """Return every measurement of a comparison, in order. Raises: ConfigError naming every unreadable scene."""
     scenes = _known_scenes(comparison)
     planned: list[Measurement] = []
+    # A round runs every method on a scene before the next scene, so that a drift of the machine affects all alike and
+    # times can be compared within the round; each round starts with another method.
     for repeat in range(comparison.protocol.repeats):
         turn = repeat % len(comparison.methods)
         methods = (*comparison.methods[turn:], *comparison.methods[:turn])

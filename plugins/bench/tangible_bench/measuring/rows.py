@@ -51,10 +51,7 @@ class Row:
 
 
 def read_rows(path: Path) -> dict[str, Row]:
-    """Return the rows of a file by key, the last row of each key; a torn last line, as a kill leaves it, is ignored.
-
-    Raises: ResultsError for a file that cannot be read, or a damaged line within it.
-    """
+    """Return the last row of each key, but for a torn last line, as a kill leaves it. Raises: ResultsError."""
     try:
         lines = list(read_lines(path))
     except (OSError, UnicodeDecodeError) as error:
@@ -66,18 +63,12 @@ def read_rows(path: Path) -> dict[str, Row]:
 
 
 def mend(path: Path) -> None:
-    """Make the file ready for more rows: create its folder, remove a torn last line.
-
-    Raises: OutputError if the file cannot be written.
-    """
+    """Make the file ready for more rows: create its folder, remove a torn last line. Raises: OutputError."""
     JsonLines(path).close()
 
 
 def append(path: Path, row: Row) -> None:
-    """Add a row in one write; it is on the disk when this returns.
-
-    Raises: OutputError if the file cannot be written.
-    """
+    """Add a row in one write; it is on the disk when this returns. Raises: OutputError."""
     with JsonLines(path, sync_every_s=0.0) as file:
         file.add_row(asdict(row))
 

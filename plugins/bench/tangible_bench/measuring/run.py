@@ -40,10 +40,7 @@ class Outlook:
 
 
 def look(wanted: Sequence[Measurement], path: Path, retry: bool = False) -> Outlook:
-    """Return which of the measurements are in the file, and which are to do.
-
-    retry: repeat those that failed. Raises: ResultsError for a file that is damaged, or holds no results.
-    """
+    """Return which measurements are in the file and which are to do; retry: failed ones too. Raises: ResultsError."""
     keys = {each.row.key for each in wanted}
     in_file = read_rows(path) if path.exists() else {}
     kept = {key: row for key, row in in_file.items() if key in keys and not (retry and row.error)}
@@ -53,12 +50,7 @@ def look(wanted: Sequence[Measurement], path: Path, retry: bool = False) -> Outl
 def run(
     outlook: Outlook, path: Path, timeout_s: float, started: Report, finished: Report, stop: Event | None = None
 ) -> dict[str, Row]:
-    """Do the waiting measurements, add their rows to the file, and return all rows by key.
-
-    A method that failed on a scene is not tried there again in later rounds. An interruption loses at most the
-    measurement under way.
-    Raises: OutputError if the file cannot be written, Stopped after `stop` was set.
-    """
+    """Do the waiting measurements, add their rows to the file, return all rows by key. Raises: OutputError, Stopped."""
     with stoppable(stop):
         mend(path)
         rows = dict(outlook.kept)
@@ -134,10 +126,7 @@ def run_side_by_side(
     stop: Event | None = None,
     timeout_s: float = LONGEST_S,
 ) -> dict[str, Row]:
-    """Do the waiting measurements on all cores or n workers, add their rows to the file, and return all rows by key.
-
-    Raises: BatchError without the extra, OutputError if the file cannot be written, Stopped after `stop` was set.
-    """
+    """Do as `run` on all cores, or n workers. Raises: BatchError without the extra, OutputError, Stopped."""
     rows, workforce = dict(outlook.kept), Workforce(workers)
     if not outlook.waiting:
         return rows

@@ -1,9 +1,4 @@
-"""The worker: a process for one measurement. A job comes in and a result goes out, both as JSON.
-
-The job, with the place of its method, is one line on standard input. The process ends with the one
-that started it. The result is one line on the original standard output; whatever a method prints
-goes to standard error.
-"""
+"""The worker: a process for one measurement, with a job and a result as a line of JSON; it ends with its parent."""
 
 import gc
 import json

@@ -15,9 +15,7 @@ Counts = Integer[np.ndarray, "n m"]
 def segment_errors(labels: Labels, truth: Labels) -> dict[str, float]:
     """Compare two label maps, regardless of the numbers of their segments.
 
-    Returns: `ari`, the adjusted Rand index: 1 for the same segments, 0 on average for segments by chance; `accuracy`,
-    the share of the pixels that are right after the best one-to-one matching of the labels, in 0..1; `boundary_px`,
-    see `boundary_distance`; `segments`, the number of labels in the map.
+    Returns: `ari`, 0 on average for segments by chance; `accuracy` in 0..1; `boundary_px`; `segments` in the map.
     Raises: PictureError if the two differ in size, or are empty.
     """
     if labels.shape != truth.shape or labels.size == 0:
@@ -39,23 +37,18 @@ def contingency(labels: Labels, truth: Labels) -> Counts:
 
 
 def adjusted_rand_index(counts: Counts) -> float:
-    """Return the share of pairs of pixels that both maps keep together, corrected for chance: 1 for equal partitions.
+    """Return the share of pairs of pixels that both maps keep together, corrected for chance, 1 for equal maps.
 
-    With T pairs in all, A and B of them together in each of the maps, and S in both:
-    (S - A B / T) / ((A + B) / 2 - A B / T), in whole numbers of any size, so that only the last division rounds. Two
-    maps of a single segment are equal, and so are two in which every pixel is one.
     Source: Hubert & Arabie, Comparing partitions, Journal of Classification 2 (1985), eq. 5.
     """
+    # (S - A B / T) / ((A + B) / 2 - A B / T) in whole numbers of any size, so that only the last division rounds.
     both, first, second, every = _pair_counts(counts)
     chance, most = 2 * first * second, (first + second) * every
     return 1.0 if most == chance else (2 * both * every - chance) / (most - chance)
 
 
 def matched_accuracy(counts: Counts) -> float:
-    """Return the share of the pixels on the best matching of labels; pixels of labels without a partner are wrong.
-
-    Source: Kuhn, The Hungarian method for the assignment problem, 1955.
-    """
+    """Return the share of the pixels on the best matching of labels; pixels of labels without a partner are wrong."""
     from scipy.optimize import linear_sum_assignment
 
     return float(counts[linear_sum_assignment(counts, maximize=True)].sum() / counts.sum())
@@ -64,11 +57,9 @@ def matched_accuracy(counts: Counts) -> float:
 def boundary_distance(labels: Labels, truth: Labels) -> float:
     """Return the distance between the borders of two maps in pixels, the mean of both directions.
 
-    A border point lies in the middle between two neighbours, in a row or in a column, whose labels differ. Each
-    direction is the mean, over the border points of one map, of the distance to the nearest border point of the other.
     0 where neither map has a border; the picture's diagonal, which no distance exceeds, where only one has.
     """
-    one, other = border_points(labels), border_points(truth)
+    one, other = border_points(labels), border_points(truth)  # between two neighbours whose labels differ
     if not one.any() or not other.any():
         return hypot(*labels.shape) if one.any() or other.any() else 0.0
     return (_mean_distance(one, other) + _mean_distance(other, one)) / 2

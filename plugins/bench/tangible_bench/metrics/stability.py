@@ -35,8 +35,7 @@ def stiffness_limit(
 ) -> float:
     """Return the stiffness up to which a handle comes to rest on level ground, in N/m, by bisection to 0.1 %.
 
-    law: stiffness in N/m -> forces on ground at height_m. A force acts from `delay_ticks` ticks after its position was
-    read, and is held for a period.
+    law: stiffness in N/m -> forces on ground at height_m. delay_ticks: from the reading of a position to its force.
     Returns: NaN for a force law whose push is not in proportion to its stiffness, infinity for an always stable one.
     """
     low, high = RANGE_N_PER_M
@@ -62,10 +61,7 @@ def advance(
     decay: float,
     settling_s: float,
 ) -> tuple[float, float]:
-    """Return place and speed of a handle after a period under a constant force, m dv/dt = f - b v, solved exactly.
-
-    decay is exp(-b T / m), settling_s (1 - decay) m / b. Kernels call this function too.
-    """
+    """Return place and speed after a period under a constant force, m dv/dt = f - b v, exactly; kernels call it too."""
     steady = force_n / damping_n_s_per_m
     off = speed_m_per_s - steady
     return place_m + (steady * period_s + off * settling_s), steady + off * decay
@@ -100,10 +96,7 @@ Vectors = Float64[np.ndarray, "n 3"]
 
 
 def force_steps(force_n: Vectors) -> dict[str, float]:
-    """Return `step_n` and `step_p99_n`, the largest |F(t + T) - F(t)| in newtons, and its 99th percentile.
-
-    NaN for less than two ticks.
-    """
+    """Return `step_n` and `step_p99_n`: the largest |F(t + T) - F(t)| and its 99th percentile; NaN below two ticks."""
     steps_n = np.linalg.norm(np.diff(force_n, axis=0), axis=1)
     if not steps_n.size:
         return dict.fromkeys(("step_n", "step_p99_n"), float("nan"))
@@ -111,14 +104,10 @@ def force_steps(force_n: Vectors) -> dict[str, float]:
 
 
 def proxy_lag(position_m: Vectors, proxy_m: Vectors, nearest_m: Vectors) -> float:
-    """Return the lag of a proxy behind the true one along the hand's motion: |mean of (p - p*) . v / |v||, in metres.
-
-    The mean is over the ticks in contact (p* is not the hand itself) at which the hand moves; v is the central
-    difference of its positions. Sideways offsets on the way up and on the way down cancel: delay or friction is left.
-    NaN without such a tick.
-    """
+    """Return the lag of a proxy behind the true one along the hand's motion, |mean of (p - p*) . v / |v||, metres."""
     if len(position_m) < 2:
         return float("nan")
+    # Sideways offsets on the way up and on the way down cancel: delay or friction remains.
     motion = np.gradient(position_m, axis=0)
     speed = np.linalg.norm(motion, axis=1)
     offset = ((proxy_m - nearest_m) * motion).sum(axis=1)
@@ -127,12 +116,9 @@ def proxy_lag(position_m: Vectors, proxy_m: Vectors, nearest_m: Vectors) -> floa
 
 
 def loop_works(force_n: Vectors, position_m: Vectors, free: Bool[np.ndarray, "n"]) -> Float64[np.ndarray, "loops"]:
-    """Return the work done on the hand by each loop, J: from one tick that is free of contact to the next such tick.
-
-    Free ticks can be joined by a path through the air without force: so each loop is closed, and work above 0 is
-    energy given away. The trapezoidal rule is exact for a spring: the energy of sampling and holding is not part of a
-    force law. Ticks before the first free one and after the last belong to no loop.
-    """
+    """Return the work done on the hand by each loop, J: from one tick that is free of contact to the next such tick."""
+    # Free ticks can be joined through the air without force: so each loop is closed, and work above 0 is energy given
+    # away. The trapezoidal rule is exact for a spring: the energy of sampling and holding is not part of a force law.
     work = ((force_n[1:] + force_n[:-1]) / 2 * np.diff(position_m, axis=0)).sum(axis=1)
     at = np.flatnonzero(free)
     total = np.concatenate([[0.0], np.cumsum(work)])[at]

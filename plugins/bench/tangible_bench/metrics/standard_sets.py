@@ -22,15 +22,10 @@ def benchmark_errors(
 ) -> dict[str, float]:
     """Compute the measures of Middlebury's version 3 and of KITTI; values that are not finite are unknown.
 
-    Returns: `a50_px` to `a99_px`, the error that 50 to 99 % of the pixels with both do not exceed, in px; `invalid`,
-    the share of the pixels with truth that have no estimate; `bad3`, KITTI 2012's share of outliers, over 3 px; `d1`,
-    KITTI 2015's, over 3 px and 5 %; `d1_bg` and `d1_fg`, that of the pixels outside of the foreground and in it; all
-    in percent. A missing estimate is bad. `pixels`, `pixels_bg`, `pixels_fg`: how many have truth. NaN where there is
-    nothing to measure, or no foreground is given.
+    Returns: `a50_px` to `a99_px`, quantiles of the error; `invalid`, `bad3` (KITTI 2012), `d1` (2015: 3 px and 5 %),
+    `d1_bg`, `d1_fg` in percent of the pixels with truth, where a missing estimate is bad; and the numbers of pixels.
     Raises: PictureError if the two differ in size.
-    Source: Scharstein et al., High-resolution stereo datasets with subpixel-accurate ground truth, GCPR 2014; Geiger,
-    Lenz & Urtasun, Are we ready for autonomous driving?, CVPR 2012; Menze & Geiger, Object scene flow for autonomous
-    vehicles, CVPR 2015.
+    Source: Scharstein et al., GCPR 2014; Geiger, Lenz & Urtasun, CVPR 2012; Menze & Geiger, CVPR 2015.
     """
     error_px = absolute_error(disparity_px, truth_px)
     at = np.isfinite(truth_px)
@@ -54,10 +49,9 @@ def benchmark_errors(
 def visible_pixels(truth_px: Float[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
     """Find the pixels of the left view that the right view shows too, by the true disparity.
 
-    A pixel (row, x) is hidden if x - d lies outside of the right view, or if the truth puts there a surface nearer by
-    more than HIDING_STEP_PX. A pixel without truth counts as hidden, and hides nothing.
     Returns: bool (h, w). Exact for whole disparities; otherwise right to a quarter of a pixel at the edges.
     """
+    # Hidden: outside of the right view, or behind a surface nearer by more than the step. Without truth: hidden too.
     rows, columns = np.nonzero(np.isfinite(truth_px))
     shift_px = truth_px[rows, columns].astype(np.float64)
     target_px = columns - shift_px
@@ -87,12 +81,10 @@ LEFT_BY_ORACLE = {removed: f"{name}_by_oracle" for removed, name in LEFT.items()
 
 
 def sparsification_curve(confidence: Float[np.ndarray, " n"], wrong: Bool[np.ndarray, " n"]) -> Float[np.ndarray, " n"]:
-    """Return the share of wrong pixels among the k most confident ones, 0..1, for k = 1..n.
-
-    Pixels of equal confidence have no order: the value is the expected one over all orders.
-    """
+    """Return the share of wrong pixels among the k most confident ones, 0..1, for k = 1..n."""
     order = np.argsort(-confidence.astype(np.float64), kind="stable")
     sure = confidence[order]
+    # Pixels of equal confidence have no order: the value is the expected one over all orders.
     last = np.flatnonzero(np.append(sure[1:] != sure[:-1], sure.size > 0))
     kept = np.arange(1, sure.size + 1)
     wrong_kept = np.cumsum(wrong[order])[last]
@@ -104,12 +96,8 @@ def sparsification_errors(
 ) -> dict[str, float]:
     """Measure how well the confidence of a disparity map separates wrong pixels, over 2 px off or missing, from others.
 
-    Returns, in percent: `left_20` and its like, the share of wrong pixels among those left when the least confident
-    20 % of the pixels with truth are removed, for each of LEFT, and `left_20_by_oracle`, the same for an order that
-    removes every wrong pixel first; `ausc`, the mean of the whole `sparsification_curve`, which is `bad2` if confidence
-    is constant. And `ausc_by_oracle`, `ausc` over the oracle's: 1 is perfect, and NaN without wrong pixels. A missing
-    estimate is the least confident. NaN without truth.
-    Raises: PictureError if the disparity and its truth differ in size.
+    Returns, in percent: `left_20` and its like, the share of wrong pixels once the least confident 20 % are removed;
+    `ausc`, the mean of the whole curve; both by an oracle, which removes every wrong pixel first. NaN without truth.
     Source: Hu & Mordohai, A Quantitative Evaluation of Confidence Measures for Stereo Vision, PAMI 34(11), 2012.
     """
     measured = np.isfinite(truth_px)

@@ -28,10 +28,7 @@ DPI = 150
 
 
 def draw_plot(path: Path, results: Results) -> bool:
-    """Draw the means over all scenes as a PNG, whole or not at all; return False if no method has a mean.
-
-    A measure or curve that no method has gets no panel. Raises: OutputError if the file cannot be written.
-    """
+    """Draw the means over all scenes as a PNG; return False if no method has a mean. Raises: OutputError."""
     from matplotlib import style
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

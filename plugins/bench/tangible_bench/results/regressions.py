@@ -49,13 +49,7 @@ class Verdict:
 def find_regressions(before: Sequence[Row], after: Sequence[Row]) -> Verdict:
     """Compare two sets of rows cell by cell: method (by label), scene, perturbation.
 
-    A time is worse if its median over the repeats rose by more than max(3 s, 10 %), where s is the root of the sum of
-    both squared standard deviations, each from the median of the absolute deviations. Times are ratios to the baseline
-    where both files name the same one, else seconds. Memory likewise, with max(3 s, 5 %, 1 MiB). Errors are exact, as
-    methods are deterministic: worse if they rose by more than the measure's tolerance, half a unit of the last digit
-    that is shown. A method that fails now and did not fail before is worse.
-    Raises: ResultsError if the files have no cell in common, compare different kinds, or times are seconds of two
-    different machines.
+    Raises: ResultsError if the files have no cell in common, or cannot be compared.
     """
     if not before or not after:
         raise ResultsError("a file without rows cannot be compared; measure first")
@@ -104,6 +98,7 @@ def _regressions(old: Cell, new: Cell, measures: Mapping[str, Measure], by_ratio
 def _noisy(
     cell: Cell, what: str, old: Sequence[float], new: Sequence[float], share: float, least: float
 ) -> Iterable[Regression]:
+    # s is the root of the sum of both squared standard deviations: medians within 3 s of each other are the same.
     before, after = median(old), median(new)
     allowed = max(SPREADS * math.hypot(spread(old), spread(new)), share * before, least)
     return [Regression(*cell.key, what, before, after, allowed)] if after - before > allowed else []

@@ -72,10 +72,7 @@ def cells(rows: Iterable[Row], baseline: str | None) -> dict[Key, Cell]:
 
 
 def lines(all_cells: Mapping[Key, Cell], perturb: str, scenes: Sequence[str]) -> list[Line]:
-    """Return a line for each method, over these scenes under one perturbation.
-
-    The mean of a measure leaves out scenes on which no method has that measure, such as scenes without truth.
-    """
+    """Return a line for each method, over these scenes under one perturbation."""
     methods = dict.fromkeys(cell.method for cell in all_cells.values())
     known = {
         (cell.scene, name)
@@ -96,10 +93,7 @@ def median(values: Iterable[float]) -> float:
 
 
 def spread(values: Sequence[float]) -> float:
-    """Return the standard deviation of a value, from the median of the absolute deviations; 0 of an empty list.
-
-    Source: Rousseeuw & Croux, Alternatives to the Median Absolute Deviation, JASA 88 (1993): 1.4826 for a Gaussian.
-    """
+    """Return 1.4826 times the median absolute deviation (Rousseeuw & Croux, JASA 88, 1993); 0 of an empty list."""
     return 1.4826 * median(abs(value - median(values)) for value in values) if values else 0.0
 
 

@@ -16,9 +16,6 @@ FRONT = "*"
 def front(points: Sequence[tuple[float, ...]]) -> list[int]:
     """Return the indices of the Pareto-optimal points, in the order of their first coordinate; low is good.
 
-    A point beats another if it is as low in every coordinate, and lower in one. A point with a NaN is never on the
-    front, and beats none; equal points are on it together.
-
     >>> front([(1, 9), (2, 5), (3, 6), (4, 1)])
     [0, 1, 3]
     """
@@ -70,10 +67,7 @@ class Results:
         return tuple(name for name, measure in self.task.measures.items() if not measure.of_sets or name in known)
 
     def heading(self, measure: str, scenes: Sequence[str] | None = None) -> str:
-        """Return the heading of a column, such as `bad2@Q` for scenes at a quarter of their size.
-
-        scenes: the scenes of the column; all of them if left out. (Tables of the full size call this measure bad8.)
-        """
+        """Return the heading of a column, such as `bad2@Q` where its scenes are at a quarter of their size."""
         title, at_size = self.task.measures[measure].title, self.task.measures[measure].at_size
         name, _, unit = title.partition(" ")
         sizes = {self.task.size_of(scene) for scene in scenes or self.scenes}
@@ -106,10 +100,7 @@ class Table:
 
 
 def tables(results: Results, detail: bool = False) -> list[Table]:
-    """Return the means over the scenes, the effects of perturbations and the failures.
-
-    detail: return a table of every measure for each scene and perturbation too.
-    """
+    """Return the means over the scenes, effects of perturbations and failures; with `detail`, each scene too."""
     count = len(results.scenes)
     title = (f"mean of {count} scenes" if count > 1 else results.scenes[0]) + _suffix(results.perturbs[0])
     all_tables = [_figures(results, results.means(), title, results.task.columns, results.scenes)]

@@ -94,12 +94,10 @@ def flip(scene: KnownSegments, axis: float) -> KnownSegments:
 
 
 def rotate(scene: KnownSegments, degrees: float) -> KnownSegments:
-    """Turn the scene to the left about its centre, and crop it to a rectangle of the same proportions.
-
-    The crop has no empty corners: a rectangle w x h turned by an angle needs w |cos| + h |sin| by w |sin| + h |cos|.
-    """
+    """Turn the scene to the left about its centre, and crop it to a rectangle of the same proportions."""
     h, w = scene.labels.shape
     cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    # Without empty corners: a rectangle w x h that is turned needs w |cos| + h |sin| by w |sin| + h |cos|.
     share = min(w / (w * abs(cos) + h * abs(sin)), h / (w * abs(sin) + h * abs(cos)))
     rows, columns = _from_centre((max(1, int(h * share)), max(1, int(w * share))))
     return _sample(scene, np.stack([cos * rows + sin * columns, cos * columns - sin * rows]))

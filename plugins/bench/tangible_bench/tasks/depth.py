@@ -39,8 +39,6 @@ def estimate(method: DepthEstimator, pair: Pair) -> DisparityMap:
 def measure(disparity: DisparityMap, pair: Pair) -> dict[str, float]:
     """Return the errors over all pixels with truth, and (`_noc`) over those that the right view shows too.
 
-    Builtin and synthetic pairs have measures of the confidence too: how well it sorts wrong pixels from right ones.
-    Pairs of standard sets have the measures of their benchmarks instead; a pair without truth has none.
     Raises: PictureError if the disparity is relative, as it has no unit to compare.
     """
     if disparity.unit != "px":
@@ -54,10 +52,7 @@ def measure(disparity: DisparityMap, pair: Pair) -> dict[str, float]:
 
 
 def _benchmark_measures(disparity_px: np.ndarray, pair: MarkedPair) -> dict[str, float]:
-    """Return the measures of a benchmark, with estimates clipped to the range of its set, as Middlebury's kit does.
-
-    There are no `_noc` measures without a mask of the pixels that both views show.
-    """
+    """Return a benchmark's measures, with estimates clipped to the range of its set, as Middlebury's kit does."""
     if pair.truth_px is None:
         return {}
     if pair.most_px is not None:
@@ -78,10 +73,7 @@ def _benchmark_measures(disparity_px: np.ndarray, pair: MarkedPair) -> dict[str,
 
 
 def range_px(pair: Pair) -> int:
-    """Return the smallest multiple of 16 above every disparity, as OpenCV and most matchers count their range.
-
-    The range comes from the standard set if that has one, else from the truth.
-    """
+    """Return the smallest multiple of 16 above every disparity, as OpenCV and most matchers count their range."""
     if isinstance(pair, MarkedPair) and pair.most_px is not None:
         return STEP_PX * math.ceil(pair.most_px / STEP_PX)
     if pair.truth_px is None or not np.isfinite(pair.truth_px).any():

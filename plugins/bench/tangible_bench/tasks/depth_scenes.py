@@ -83,7 +83,6 @@ class DepthScene(SceneSpec):
 
     @classmethod
     def parse_name(cls, name: str) -> Mapping[str, Any]:
-        """Return the options of `builtin/NAME`, `synthetic/NAME`, or a set such as `middlebury-2014@Q`."""
         if (size := named_set(name)) is not None:
             return size
         kind, _, rest = name.partition("/")
@@ -95,7 +94,6 @@ class DepthScene(SceneSpec):
         return {kind: rest}
 
     def expand(self) -> "Mapping[str, DepthScene]":
-        """Return this scene, or one for each pair of a set, or one for each sub-folder that holds a pair."""
         if self.set is not None or self.pairs is not None:
             return self._expand_set()
         if self.folder is None or (self.folder / "left.png").exists():
@@ -103,7 +101,6 @@ class DepthScene(SceneSpec):
         return expand_folder(self, self.folder, "left.png", "left.png, right.png and disparity.npz")
 
     def open(self) -> KnownPair | MarkedPair:
-        """Read or make the pair. Raises: PictureError, ConfigError if there is none, or it has no truth."""
         if self.set is not None or self.pairs is not None:
             (pair,) = self.list_pairs()
             return pair.open()

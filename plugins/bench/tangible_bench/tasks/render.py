@@ -57,7 +57,6 @@ class RenderScene(SceneSpec):
 
     @classmethod
     def parse_name(cls, name: str) -> Mapping[str, Any]:
-        """Return the options of `analytic/NAME` or `builtin/NAME`."""
         kind, _, rest = name.partition("/")
         if kind not in ("analytic", "builtin"):
             raise ValueError(
@@ -66,14 +65,9 @@ class RenderScene(SceneSpec):
         return {kind: rest}
 
     def expand(self) -> "Mapping[str, RenderScene]":
-        """Return this scene alone."""
         return {self._name(): self}
 
     def open(self) -> KnownStroke:
-        """Read or make the surface, the path, and the nearest points as far as they are known.
-
-        Raises: ConfigError, PictureError, GeometryError, OutputError if a file cannot be read or has other content.
-        """
         path_m, period_s = (None, PERIOD_S) if self.recording is None else _read_path(self.recording)
         if self.analytic is not None:
             return analytic_stroke(self.analytic, self.cells, self.depth_m, path_m, period_s)
@@ -134,10 +128,7 @@ def feel(prepared: tuple[ForceRenderer, Touch], scene: KnownStroke) -> PathForce
 
 
 def measure(result: PathForces, scene: KnownStroke) -> dict[str, float]:
-    """Return all of MEASURES, against the force F = k (p - q).
-
-    p is the nearest point, and k the stiffness option of the force law, or STIFFNESS_N_PER_M if it has none.
-    """
+    """Return all of MEASURES, against the force F = k (p - q) to the nearest point p."""
     method, force_n = result.method, result.force_n
     stiffness = float(method.model_dump().get(STIFFNESS, STIFFNESS_N_PER_M))
     truth_n = stiffness * (scene.nearest_m - scene.position_m)
@@ -155,10 +146,7 @@ def measure(result: PathForces, scene: KnownStroke) -> dict[str, float]:
 
 
 def limits(method: ForceRenderer, surface: HapticSurface) -> dict[str, float]:
-    """Return `limit0`, `limit1`, `limit2`: the stiffness at which a simulated handle starts to shake, for each delay.
-
-    NaN unless the surface is level and the force law is a spring on it whose stiffness is an option.
-    """
+    """Return `limit0`, `limit1`, `limit2`: the stiffness at which a simulated handle shakes, for each delay."""
     unknown = {f"limit{delay}": float("nan") for delay in DELAYS}
     if STIFFNESS not in type(method).model_fields or np.ptp(surface.height_m) > 0:
         return unknown

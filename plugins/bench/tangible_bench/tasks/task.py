@@ -1,8 +1,4 @@
-"""The `Task`: all that the bench must know about a kind of method in order to compare its methods.
-
-A task has scenes, perturbations, the call to time, and the measures of its result. The other rooms of the bench know
-no kind: they plan, run, save, sum up and draw what a task measures.
-"""
+"""The `Task`: all that the bench must know about a kind of method; its other rooms know no kind."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
@@ -45,10 +41,7 @@ def check_one_kind(given: list[str], kinds: str) -> None:
 
 
 def expand_folder(spec: Spec, folder: Path, first: str, contents: str) -> dict[str, Spec]:
-    """Return a scene for each sub-folder that has the file `first`. contents: all files of a scene, in words.
-
-    Raises: PictureError if no sub-folder has the file.
-    """
+    """Return a scene for each sub-folder that has the file `first`. Raises: PictureError if none has."""
     folders = sorted(path.parent for path in folder.glob(f"*/{first}"))
     if not folders:
         raise PictureError(f"{folder}: neither it nor a folder in it holds {contents}")
@@ -62,10 +55,7 @@ def with_folder_of_file(block: Any) -> Any:
 
 
 def pick_pairs(matched: dict[str, Item], only: tuple[str | int, ...], folder: Path) -> dict[str, Item]:
-    """Return the named pairs, in the order of their names in `only`; all pairs if that is empty.
-
-    Raises: PictureError for a name that no pair has.
-    """
+    """Return the named pairs, in the order of `only`; all pairs if that is empty. Raises: PictureError."""
     if missing := next((name for name in only if str(name) not in matched), None):
         raise PictureError(f"{folder}: no pair in it is named {quoted(missing)}; there are {', '.join(matched)}")
     return {str(name): matched[str(name)] for name in only} if only else matched

@@ -71,14 +71,12 @@ class TextureScene(SceneSpec):
 
     @classmethod
     def parse_name(cls, name: str) -> Mapping[str, Any]:
-        """Return the options of `mosaic/SEGMENTS` or `smooth/SEGMENTS`."""
         kind, _, segments = name.partition("/")
         if kind not in ("mosaic", "smooth") or not segments.isdecimal():
             raise ValueError(f"no scene is named {quoted(name)}; write mosaic/4, smooth/14 or {{folder: ...}}")
         return {kind: int(segments)}
 
     def expand(self) -> "Mapping[str, TextureScene]":
-        """Return this scene, or one for each pair, or for each sub-folder that holds a picture with its labels."""
         if self.pairs is not None:
             return {name: self.model_copy(update={"only": (name,)}) for name in self._matching_pairs()}
         if self.folder is None or (self.folder / PICTURE).exists():
@@ -86,10 +84,6 @@ class TextureScene(SceneSpec):
         return expand_folder(self, self.folder, PICTURE, f"{PICTURE} and {LABELS}")
 
     def open(self) -> KnownSegments:
-        """Read or make the picture and its labels.
-
-        Raises: PictureError if they cannot be read, or there are too few textures.
-        """
         shape = (self.height_px, self.width_px)
         if self.pairs is not None:
             (files,) = self._matching_pairs().values()

@@ -1,1 +1,0 @@
-"""Readers for the folders of the standard sets: Middlebury, KITTI and the others."""

@@ -56,10 +56,7 @@ class PageHandler(logging.Handler):
 
 
 def tell_pages(tell: Tell, *, information: bool = False) -> PageHandler:
-    """Forward this process's logging and warnings to pages; standard error gets them as before.
-
-    information: also where no log was requested, as in a process whose standard error nobody reads.
-    """
+    """Forward logging and warnings to pages, too. information: also where no log was requested."""
     root, handler = logging.getLogger(), PageHandler(tell)
     if information:
         for name in OWN:

@@ -21,8 +21,7 @@ class PagePanel:
     title: Mapping[str, str]
     """Heading by language, "en" at least."""
     requests: Mapping[str, Callable[..., Any]] = field(default_factory=dict[str, Callable[..., Any]])
-    """Functions that answer the panel's requests, with JSON data: called with the document's pipeline, and the
-    request's arguments by name."""
+    """Functions of the panel's requests: called with the document's pipeline, and JSON arguments by name."""
     task: Literal["picture", "parts", "feel", "hand-on", "advanced"] = "advanced"
     """The task of the page that the panel serves; "advanced" puts it among the settings."""
 

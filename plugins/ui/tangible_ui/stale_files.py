@@ -19,10 +19,7 @@ NUMBER = re.compile(r"(?:.*-)?([0-9]{1,9})(?:-[\w.]+|\.\w+)")
 
 @contextmanager
 def folder_of_this_process() -> Generator[Path]:
-    """Make an empty folder for what pages fetch, for this user alone; remove those of servers that were killed.
-
-    Raises: OutputError if it cannot be made.
-    """
+    """Make an empty folder for what pages fetch; remove those of servers that were killed. Raises: OutputError."""
     try:
         for each in left_in(Path(tempfile.gettempdir()), f"{PREFIX}*"):
             shutil.rmtree(each, ignore_errors=True)
@@ -37,10 +34,7 @@ def folder_of_this_process() -> Generator[Path]:
 
 @contextmanager
 def channel_of_this_process() -> Generator[str]:
-    """Yield the channel of the page's own pointer; remove its files at the end, and now those of killed servers.
-
-    Raises: DeviceError if the folder of channels belongs to somebody else.
-    """
+    """Yield the channel of the page's pointer; remove its files at the end, now those of killed servers."""
     name = f"{CHANNEL}{os.getpid()}"
     folder = channel_path(name).parent
     for each in left_in(folder, f"{CHANNEL}*"):

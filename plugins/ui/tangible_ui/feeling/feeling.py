@@ -70,10 +70,7 @@ class LoopEnd(NamedTuple):
 
 @final
 class Feeling:
-    """The force loop, one at a time, and the page's hand in it.
-
-    Slow methods block: call them in a thread. `cut` and `frame` return at once and may be called at any moment.
-    """
+    """The force loop, one at a time, and the page's hand in it. Slow methods block; `cut` and `frame` do not."""
 
     def __init__(self, channel: str) -> None:
         """channel: of the page's own pointer device."""
@@ -114,10 +111,7 @@ class Feeling:
         return "" if self._servo is None else self._servo.how
 
     def start(self) -> float | None:
-        """Start the loop on the page's own device before there is a scene.
-
-        Returns: seconds that took, None after a stop. Raises: DeviceError.
-        """
+        """Start the loop on the page's own device; return the seconds, None after a stop. Raises: DeviceError."""
         from tangible_core import load_method
 
         options = {name: value for name, value in self.own_device.items() if name != "use"}
@@ -130,11 +124,7 @@ class Feeling:
         return None if is_stopped() else time.monotonic() - begun_s
 
     def feel(self, felt: LoopInput) -> float | None:
-        """Put a scene under the hand, between two ticks if the device stays the same.
-
-        Returns: seconds that took; None if a stop came before or meanwhile: the scene is then not used.
-        Raises: DeviceError if the device cannot be opened; then no loop runs.
-        """
+        """Put a scene under the hand; return the seconds, None after a stop. Raises: DeviceError; no loop runs then."""
         begun_s = time.monotonic()
         with self._lock:
             try:
@@ -174,10 +164,7 @@ class Feeling:
         return servo.ring.beacon.state.why or "ended"
 
     def cut(self) -> Callable[[], None]:
-        """Take all force away from the next tick on, until `allow`. Returns at once.
-
-        Returns: a function that waits until the current loops have ended, and leaves later ones alone.
-        """
+        """Take all force away until `allow`; return at once a function that waits for the end of the current loops."""
         self.stopped, self._stops = True, self._stops + 1
         self._told = self._servo
         self.hand.release()
@@ -219,10 +206,7 @@ class Feeling:
 
     @contextmanager
     def _unless_stopped(self) -> Iterator[Callable[[], bool]]:
-        """Suppress errors that a stop causes within the block. Yields: a function that tells if a stop came.
-
-        A loop that came to be meanwhile was not seen by that stop: it is ended here.
-        """
+        """Suppress errors that a stop causes within the block. Yields: a function that tells if a stop came."""
         before = self._stops
 
         def is_stopped() -> bool:

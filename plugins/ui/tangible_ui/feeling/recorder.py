@@ -19,10 +19,7 @@ class Recorder:
     """A growing recording, written by its own thread; `stop`, the end of the loop, or a write error end it."""
 
     def __init__(self, servo: Servo, path: Path, about: About, ended: Callable[[Path, int, str], None]) -> None:
-        """Begin recording. ended: called in the recorder's thread with the file, its number of ticks, and the reason.
-
-        Raises: OutputError if the file cannot be written.
-        """
+        """Begin. ended: called in a thread with the file, number of ticks and reason. Raises: OutputError."""
         self.path = path
         self._servo, self._ended = servo, ended
         self._writer = Writer(path, about, private=True)

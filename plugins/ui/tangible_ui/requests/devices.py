@@ -25,11 +25,7 @@ async def about_device(session: Session, tab: Tab | None, kind: str, name: str =
 
 @request()
 async def choose_device(session: Session, tab: Tab | None, kind: str, name: str = "", sure: bool = False) -> None:
-    """Use the page's own hand ("hand"), the document's device ("document"), or another one by name ("other").
-
-    Also after a stop. sure: the person was warned of its motor and agreed; without that it is not opened.
-    Raises: NotConfirmed, DeviceError if it cannot be opened.
-    """
+    """Use the page's own "hand", the "document"'s device, or an "other" one. sure: the person agreed to a motor."""
     choice = _choice(kind, name, sure)
     about = await _about(session, choice)
     if not about["simulated"] and not sure:

@@ -21,10 +21,7 @@ SHOWN_BY_BROWSERS = frozenset({".png", ".jpg", ".jpeg", ".webp", ".gif", ".bmp"}
 
 @request()
 async def begin(session: Session, tab: Tab | None, files: list[str], make_it: bool = True) -> dict[str, Any]:
-    """Open a pipeline file, pictures or a recording; make what can be felt.
-
-    Returns: the path of a recording, if it is one, for the panel of recordings.
-    """
+    """Open a pipeline file or pictures, and make what can be felt; or return the path of a recording, for its panel."""
     picture = as_path(files[0]) if files else Path()
     session.opening = picture if picture.suffix.lower() in SHOWN_BY_BROWSERS else None
     session.tabs.tell("opening", name=picture.name, picture=session.opening is not None)
@@ -48,11 +45,7 @@ async def begin(session: Session, tab: Tab | None, files: list[str], make_it: bo
 
 @request()
 async def edit(session: Session, tab: Tab | None, text: str, of: str = "", apply: bool = False) -> dict[str, Any]:
-    """Replace the document's text; all tabs get its values, or its errors.
-
-    of: digest of the text that was edited; if another text replaced that meanwhile, the edit is refused. apply: make it
-    unless something slow has to run. Raises: ConfigError.
-    """
+    """Replace the document's text, unless another text replaced that of digest `of` meanwhile. Raises: ConfigError."""
     async with session.document.texts.lock:
         if of and of != session.document.digest:
             raise ConfigError("the document was changed elsewhere meanwhile; look at what it says now")
@@ -144,10 +137,7 @@ async def open_batch(session: Session, tab: Tab | None, batch: str) -> dict[str,
 
 @request()
 async def save(session: Session, tab: Tab | None, path: str, replace: bool = False) -> dict[str, Any]:
-    """Write the document to a file of this machine; its relative paths lead to the same files from there.
-
-    Raises: ConfigError if a file exists and is not to be replaced; OutputError if it cannot be written.
-    """
+    """Write the document to a file of this machine, its paths relative to there. Raises: ConfigError, OutputError."""
     place = as_path(path)
     if not place.is_absolute():
         place = Path.cwd() / place

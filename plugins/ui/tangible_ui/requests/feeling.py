@@ -38,10 +38,7 @@ async def feel(session: Session, tab: Tab) -> None:
 
 @request()
 async def beacon(session: Session, tab: Tab | None, part: int | None) -> dict[str, Any]:
-    """Pull the hand to the part of this number; release it without a number. All tabs get every change.
-
-    Raises: DeviceError if no loop runs, ConfigError if there is no such part.
-    """
+    """Pull the hand to the part of this number, or release it. Raises: DeviceError without a loop, ConfigError."""
     if part is None:
         await asyncio.to_thread(session.feeling.pull_to, None)
         return _tell(session, None, "")
@@ -66,10 +63,7 @@ StudyQuestion = Literal["same", "rougher", "higher"]
 
 @request()
 async def compare_laws(session: Session, tab: Tab | None, use: str, options: str = "") -> None:
-    """Compare another law with the document's, on the same surface and hand; the document's acts first.
-
-    options: of the other law, in YAML. Raises: ConfigError for an invalid law.
-    """
+    """Compare another law, with options in YAML, on the same surface; the document's acts first."""
     other = await session.worker.quick("law_block", use=use, options=options)
     await _feel(session, 0, other)
 
@@ -96,10 +90,7 @@ async def end_laws(session: Session, tab: Tab | None) -> None:
 async def study_laws(
     session: Session, tab: Tab | None, question: StudyQuestion, language: Literal["en", "de"] = "en"
 ) -> dict[str, str]:
-    """Write a blind study of both laws into a folder of the user's.
-
-    Returns: paths and command lines, as `write_law_study`. Raises: ConfigError if there is no second law.
-    """
+    """Write a blind study of both laws; return paths and command lines. Raises: ConfigError without a second law."""
     if session.laws.other is None:
         raise ConfigError(NO_OTHER)
     told = {"other": session.laws.other, "names": session.laws.named, "question": question, "language": language}
@@ -107,12 +98,7 @@ async def study_laws(
 
 
 async def _feel(session: Session, which: int, other: dict[str, Any] | None = None) -> None:
-    """Use one of the two laws; compute the other one in the background.
-
-    other: a new second law.
-    Raises: DeviceError if no loop runs, ConfigError for an invalid law, NotConfirmed for a motor that nobody
-    agreed to; the law before stays.
-    """
+    """Use one of the two laws, and compute the other one in the background; after an error, the law before stays."""
     laws, feeling = session.laws, session.feeling
     if not feeling.running:
         raise DeviceError("nothing is felt; make and feel a surface first")

@@ -50,10 +50,7 @@ async def foresee(session: Session, apply: bool = False) -> None:
 
 
 async def long_job(session: Session, job: str, needs: str, sets: list[str], **told: Any) -> Any:
-    """Do a long job of the current document; None if it was stopped, which all tabs get to know.
-
-    needs: the product that it is made from. Raises: whatever the job raises.
-    """
+    """Do a long job of the current document, made from the product `needs`; None if stopped. Raises: as the job."""
     document = session.document.arguments(sets)
     digest, earlier, number = session.document.digest, set(session.long_jobs.running), session.long_jobs.begin()
     try:
@@ -100,8 +97,5 @@ async def _insist(session: Session, numbers: set[int]) -> None:
 
 @request()
 async def export(session: Session, tab: Tab | None, exports: list[dict[str, Any] | str]) -> dict[str, Any] | None:
-    """Write files of the document as it is on the screen; None if it was stopped.
-
-    exports: as `export:` of a pipeline file has them. Raises: ConfigError for invalid ones.
-    """
+    """Write files of the document, by `export:` of a pipeline file; None if it was stopped. Raises: ConfigError."""
     return await long_job(session, "export", "surface", sets=session.document.sets, exports=exports)

@@ -16,10 +16,7 @@ FETCHING = "tangible_networks.fetching"
 
 @request()
 async def add_networks(session: Session, tab: Tab | None, names: list[str], batch: str = "") -> None:
-    """Fetch networks, or make one from the file of a batch; all tabs get the progress, and in the end no name.
-
-    Raises: ConfigError if some are being fetched, or for a batch that is not one file.
-    """
+    """Fetch networks, or make one from the file of a batch, and send all tabs the progress. Raises: ConfigError."""
     if session.fetch is not None:
         raise ConfigError("networks are being fetched already; wait for them, or stop them")
     source = str(session.uploads.single(batch)) if batch else None

@@ -31,12 +31,7 @@ async def parts_save(
     of: str = "",
     beside: bool = False,
 ) -> dict[str, Any]:
-    """Save labels that a page has uploaded, and the document with the entries of their parts.
-
-    upload: their batch, a gzip of uint16. of: digest of the parts that were edited; if others replaced those
-    meanwhile, the request is refused. beside: a document without a file gets one next to the photograph, else in the
-    program's folder; no file that is there is replaced. Raises: ConfigError, OutputError; then nothing is changed.
-    """
+    """Save labels (batch `upload`: a gzip of uint16), and the document with the entries of parts, or change nothing."""
     async with session.document.texts.lock:
         sent = await asyncio.to_thread(session.uploads.single, upload)
         try:
@@ -68,11 +63,7 @@ async def parts_propose(
     within: list[float] | None = None,
     level: float = 0.5,
 ) -> dict[str, Any] | None:
-    """Propose the part under a stroke, in pixels of the picture; None if a newer stroke came before this began.
-
-    within: first column and row, and those after the last, which bound the proposal. level: the share of people who
-    would draw its border, for `regions`: less gives a smaller piece. Raises: ConfigError.
-    """
+    """Propose the part under a stroke, in pixels of the picture; None if a newer stroke came before this began."""
     told = {"points": points, "width_px": width_px, "kind": kind, "within": within, "level": level}
     told |= session.document.arguments()
     return await session.strokes.run(lambda: session.worker.quick("parts_propose", **told))
@@ -86,11 +77,7 @@ async def parts_heights(
     materials: list[str | None] | None = None,
     heights: dict[str, Any] | None = None,
 ) -> dict[str, Any] | None:
-    """Feel and show the parts at other heights, by number; the document stays unchanged.
-
-    heights_m: None for what the document's recipe finds. materials, heights: in place of the document's.
-    Returns: None if newer heights came before this began. Raises: TangibleError; the touch before stays.
-    """
+    """Feel and show the parts at other heights, by number; the document stays unchanged. None if newer ones came."""
     told = {"heights_m": heights_m, "materials": materials, "heights": heights}
 
     async def feel() -> dict[str, Any]:

@@ -40,10 +40,7 @@ async def fix(session: Session, tab: Tab | None, apply: bool = False) -> dict[st
 async def legible(
     session: Session, tab: Tab | None, medium: Medium, width_m: float | None = None
 ) -> dict[str, Any] | None:
-    """Judge the document by the rules of one medium; None if it was stopped.
-
-    width_m: of the whole picture there; by default as export draws it.
-    """
+    """Judge the document by the rules of a medium, at the width as export draws it by default; None if stopped."""
     return await long_job(session, "legible", "parts", sets=session.document.sets, medium=medium, width_m=width_m)
 
 

@@ -11,11 +11,7 @@ REQUESTS: dict[str, Request] = {}
 
 
 def request(name: str = "") -> Callable[[R], R]:
-    """Register a coroutine function as a request that tabs may send.
-
-    Its annotations are the types that arguments must have. name: of the request, where it is not the function's own.
-    Raises: ValueError if there is a request of this name.
-    """
+    """Register a coroutine as a request of tabs, whose annotations are the types of arguments. Raises: ValueError."""
 
     def register(function: R) -> R:
         key = name or function.__name__
@@ -28,10 +24,7 @@ def request(name: str = "") -> Callable[[R], R]:
 
 
 def find_request(name: str) -> Request:
-    """Return the request of this name: one of the table, or one that a job of the worker answers by itself.
-
-    The worker refuses a name that it does not know either, and checks the arguments: jobs are not imported here.
-    """
+    """Return a request of the table, or one that the worker answers or refuses: jobs are not imported here."""
 
     async def ask_worker(session: Any, tab: Any, /, **arguments: Any) -> Any:
         document = session.document.arguments()

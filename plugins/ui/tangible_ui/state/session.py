@@ -73,21 +73,14 @@ class Session:
             self.tabs.tell("loop", running=True, why="", device=felt.device_name, own_hand=felt.own_hand)
 
     async def feel_on(self, made: dict[str, Any]) -> None:
-        """Put a touch under the hand that hardly differs from the current one; announce it only if no loop ran.
-
-        Dragging makes many in a second: they must not fill the history. Raises: as `put`.
-        """
+        """Put a touch under the hand without an announcement: dragging makes many in a second. Raises: as `put`."""
         if self.laws.other is not None or not self.feeling.running:
             await self.feel(made)
         else:
             await self.put(LoopInput.of(made, self.feeling.channel))
 
     async def put(self, felt: LoopInput) -> float | None:
-        """Put a touch under the hand; return the seconds that took.
-
-        Returns: None after a stop, or if another device was chosen meanwhile: the touch is then not used.
-        Raises: NotConfirmed for a motor that nobody agreed to, DeviceError if the device cannot be opened.
-        """
+        """Put a touch under the hand; return the seconds, None if too late. Raises: NotConfirmed, DeviceError."""
         try:
             self.choice.check(felt.unmapped_device)
         except NotConfirmed:

@@ -63,10 +63,7 @@ class Tabs:
             self._say_who_holds()
 
     def leave(self, tab: Tab) -> None:
-        """Remove a tab that was closed or is gone. If it held the hand, nobody does until a tab takes it.
-
-        No tab gets the hand unasked: a mouse may lie pressed on a page that nobody looks at.
-        """
+        """Remove a tab that is gone; its hand is free: a mouse may lie pressed on a page that nobody looks at."""
         self.open.remove(tab)
         if self.holder is tab:
             self.hold(None)

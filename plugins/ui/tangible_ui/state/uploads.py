@@ -37,10 +37,7 @@ class UploadStore:
         return name
 
     async def put(self, batch: str, name: str, body: AsyncIterator[bytes]) -> None:
-        """Store a file; a broken transfer leaves nothing.
-
-        Raises: ConfigError for an unknown batch, an impossible name, too many or too large files, or a full disk.
-        """
+        """Store a file; a broken transfer leaves nothing. Raises: ConfigError, also for a full disk."""
         path = self._place(batch, name)
         try:
             with path.open("wb") as file:

@@ -31,11 +31,7 @@ class WorkerAbsent(TangibleError):
 
 @final
 class Worker:
-    """A process that does jobs. A killed one is replaced; jobs that waited for it raise WorkerKilled.
-
-    After three failed starts in a row it is given up: pages get `maker_gone` with the reason, and requests are refused
-    until `try_again`.
-    """
+    """A process that does jobs; a killed one is replaced, one that does not start three times is given up."""
 
     def __init__(self, folder: Path, hear: Callable[[Event], None]) -> None:
         """folder: for what pages fetch. hear: called in the event loop's thread for each event."""
@@ -52,11 +48,7 @@ class Worker:
         self._start()
 
     async def ask(self, job: str, **told: Any) -> Any:
-        """Do a job, and return its result.
-
-        Raises: WorkerKilled if the worker was killed meanwhile, WorkerAbsent if it does not start, and whatever the job
-        raises.
-        """
+        """Do a job, and return its result. Raises: WorkerKilled, WorkerAbsent, whatever the job raises."""
         if self._gone:
             raise WorkerAbsent(self._gone)
         number, future = next(self._numbers), self._loop.create_future()

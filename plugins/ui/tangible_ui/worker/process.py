@@ -1,7 +1,4 @@
-"""The worker's process: quick jobs and long ones, each kind in a thread of its own, one job after the other.
-
-A long job may hold Python's lock for seconds, or be killed: neither the page's server nor the force loop notices.
-"""
+"""The worker's process, which may be slow or killed: a thread for quick jobs and one for long ones."""
 
 import errno
 import os

@@ -67,11 +67,7 @@ class Work:
 
 @final
 class WorkerState:
-    """The last pipeline that was felt or shown, and the folder for pages.
-
-    Long jobs and quick ones come from two threads. The pipeline here is never worked on: a job works on another one,
-    which shares results, and puts it here when it is done. A failed job leaves the last good one.
-    """
+    """The last pipeline that was felt or shown, and the folder for pages."""
 
     def __init__(self, folder: Path, tell: Tell, cache: Cache | None = None) -> None:
         """cache: of results; the user's own by default."""

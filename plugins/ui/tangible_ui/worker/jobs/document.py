@@ -61,11 +61,7 @@ def change(
     written: dict[str, str],
     removed: list[str],
 ) -> dict[str, Any]:
-    """Change keys of a text, and return `check` of the result.
-
-    changes: values by key, as `render.stiffness_n_per_m`. written: the same, each value in YAML. removed: keys.
-    Raises: ConfigError if the text is not YAML, or a key leads nowhere; nothing else is checked.
-    """
+    """Change keys: values, values in YAML, keys to remove; return `check` of the result. Raises: ConfigError."""
     loaded = {key: _value(key, value) for key, value in written.items()}
     gone = dict.fromkeys(removed, REMOVE)
     return check(state, edit_text(text, path, {**gone, **changes, **loaded}), path, sets)
@@ -126,10 +122,7 @@ MOST = 2000
 
 @job(page=True)
 def folder(state: WorkerState, path: str = "") -> dict[str, Any]:
-    """List folders, and files that can be opened, by name. Raises: ConfigError if it is not a folder.
-
-    path: of a folder of this machine; the current one without a path.
-    """
+    """List the folders, and files that can be opened, of a folder (by default the current one). Raises: ConfigError."""
     place = as_path(path).absolute()
     try:
         found = [(each.name, "folder" if each.is_dir() else KINDS.get(each.suffix.lower())) for each in place.iterdir()]
@@ -146,10 +139,7 @@ def folder(state: WorkerState, path: str = "") -> dict[str, Any]:
 
 @job(quick=True)
 def begin(state: WorkerState, files: list[Path]) -> dict[str, Any]:
-    """Return the text and path of a pipeline file, or of a new one for pictures; or the path of a recording.
-
-    Of a pipeline file and its pictures, the file counts. Raises: ConfigError for files that cannot be opened together.
-    """
+    """Return text and path of a pipeline file, or of a new one for pictures; or the path of a recording."""
     pipelines = [file for file in files if file.suffix.lower() in PIPELINES]
     if len(pipelines) > 1:
         raise ConfigError(f"{', '.join(pipeline.name for pipeline in pipelines)}: open one pipeline file at a time")
@@ -189,10 +179,7 @@ def examples(state: WorkerState) -> list[str]:
 
 @job(quick=True)
 def save(state: WorkerState, text: str, path: Path, out: Path) -> None:
-    """Write the document of `path` to another place; its relative paths lead to the same files from there.
-
-    Raises: OutputError if it cannot be written; ConfigError if it is wrong.
-    """
+    """Write the document of `path` to another place, its paths relative to there. Raises: OutputError, ConfigError."""
     config = parse_config(text, path, state.registry)
     write_text(out, relocate_text(text, path, config, out))
 

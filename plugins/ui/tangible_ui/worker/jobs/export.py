@@ -33,11 +33,7 @@ KEPT = 2
 def export(
     state: WorkerState, number: int, text: str, path: Path, sets: list[str], exports: list[Any]
 ) -> dict[str, Any]:
-    """Run exporters into a folder that pages fetch from; return their outcomes.
-
-    exports: as `export:` of a pipeline file has them. Raises: ConfigError for invalid ones; TangibleError as
-    `Pipeline.export`.
-    """
+    """Run exporters into a folder that pages fetch from; return their outcomes. Raises: as `Pipeline.export`."""
     pipeline = state.pipeline_of(text, path, [*sets, f"export={json_in_yaml(exports)}"])
     at = state.folder / f"{FOLDER}{secrets.token_hex(8)}"
     try:
@@ -56,12 +52,7 @@ def export(
 def export_preview(
     state: WorkerState, text: str, path: Path, sets: list[str], block: dict[str, Any] | str
 ) -> dict[str, Any]:
-    """Draw what an exporter would write, into a file that pages fetch; nothing slow is made for that.
-
-    block: an item of `export:`. Returns: the file with its size in pixels and the width of the picture that is made, m;
-    no file for an exporter without a picture, or while something slow is not made yet (`waits`).
-    Raises: ConfigError; TangibleError if the exporter could not write.
-    """
+    """Draw what an exporter would write, into a file; no file without a picture, or where something slow `waits`."""
     pipeline = state.pipeline_of(text, path, [*sets, f"export={json_in_yaml([block])}"])
     (chosen,) = pipeline.config.export
     none = {"file": "", "waits": False, "columns": 0, "rows": 0, "width_m": 0.0}

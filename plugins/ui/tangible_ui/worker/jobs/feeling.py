@@ -54,10 +54,7 @@ def law_block(state: WorkerState, use: str, options: str) -> dict[str, Any]:
 def laws(
     state: WorkerState, text: str, path: Path, sets: list[str], others: list[dict[str, Any]]
 ) -> list[dict[str, Any]]:
-    """Return the loop's input for the document's law, then for others, which are blocks as `render:` has them.
-
-    Raises: ConfigError if the document has no law, or a block is wrong; TangibleError as `Pipeline.make`.
-    """
+    """Return the loop's input for the document's law, then for others as `render:` has them. Raises: ConfigError."""
     first = state.pipeline_of(text, path, sets)
     if first.config.render is None:
         raise first.config.missing("render")
@@ -76,12 +73,7 @@ def write_law_study(
     question: str,
     language: str,
 ) -> dict[str, str]:
-    """Write a study of the document's law and another one, with the document, into a new folder of the user's.
-
-    other: as `render:` has it. names: of both laws. question, language: as a study file has them.
-    Returns: path of the study's `file`, and the command lines that `run` and `analyse` it.
-    Raises: ConfigError for a wrong document; OutputError.
-    """
+    """Write a study of the document's law and another one; return its `file`, and the lines to `run`, `analyse`."""
     folder = user_folder("studies") / f"{datetime.now():%Y-%m-%d-%H.%M.%S}"
     file, pipeline, results = folder / "study.yaml", folder / "pipeline.yaml", folder / "results"
     run = ["tangible", "study", "run", str(file), "--page", "--participant", "P1", "--out", str(results)]

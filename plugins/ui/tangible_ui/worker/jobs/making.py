@@ -88,10 +88,7 @@ def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
 
 @job()
 def make(state: WorkerState, number: int, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any] | None:
-    """Make a product; send pages every stage, and the surface as soon as it can be drawn.
-
-    Returns: the loop's input, if a touch was wanted.
-    """
+    """Make a product, and show it on the way; return the loop's input, if a touch was wanted."""
     pipeline = state.pipeline_of(text, path, sets)
     with announced(state, number, pipeline, text, want) as (work, report):
         state.tell("plan", **plan_data(pipeline, text, want))
@@ -122,10 +119,7 @@ def announced(
 
 @job(quick=True)
 def give_way(state: WorkerState, number: int, text: str, path: Path, sets: list[str], want: str) -> bool:
-    """End the running job for this newer document; return True if that was at once, as no stage at work is needed.
-
-    Raises: ConfigError if the document is wrong; then the running job goes on.
-    """
+    """End the running job for this newer document; return True if that was at once. Raises: ConfigError."""
     return state.give_way(number, state.pipeline_of(text, path, sets), want)
 
 

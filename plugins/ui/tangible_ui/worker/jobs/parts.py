@@ -46,13 +46,7 @@ class DrawnPreview:
 def parts_open(
     state: WorkerState, text: str, path: Path, sets: list[str], opened: str = "", uploads: Path = Path()
 ) -> dict[str, Any]:
-    """Return what an editor begins with; write the picture, and the number of each pixel's part, into files.
-
-    opened: the document's text when its file was opened or saved. uploads: folder of uploaded pictures.
-
-    Raises: ConfigError for a wrong document; PictureError for a scene that cannot be read, or has too many parts;
-    OutputError if the files cannot be written.
-    """
+    """Return what an editor begins with; write the picture, and the part of each pixel, into files."""
     pipeline = opening.edited_of(state, text, path, sets)
     edited, config = opening.opened_of(state, pipeline), pipeline.config
     at = f"{opening.FOLDER}{digest_of((edited.picture, edited.parts))}"
@@ -80,11 +74,7 @@ def parts_open(
 
 @job(page=True)
 def parts_first(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
-    """Propose all parts of a picture that nobody has divided yet, as `tangible parts` does, with their heights.
-
-    Returns: the file of the number of each pixel's part, and the height of each part in metres; no parts for a scene
-    without a picture. Raises: TangibleError as `Pipeline.make`; OutputError if the file cannot be written.
-    """
+    """Propose all parts of an undivided picture: the file of each pixel's part, and the height of each part, m."""
     from tangible_authoring.first_parts import proposed_heights, proposed_parts, segments_for
 
     opened = opening.opened_of(state, opening.edited_of(state, text, path, sets))
@@ -113,10 +103,7 @@ def parts_propose(
     within: Sequence[float] | None,
     level: float,
 ) -> dict[str, Any]:
-    """Propose the part under a stroke: its box, and run lengths of pixels outside and inside in turn, row by row.
-
-    Raises: ConfigError for a stroke outside of the picture; otherwise as `parts_open`.
-    """
+    """Propose the part under a stroke: its box, and run lengths of pixels outside and inside, row by row."""
     opened = opening.opened_of(state, opening.edited_of(state, text, path, sets))
     stroke = as_points(points, opened.picture.shape)
     if kind == "regions":
@@ -153,16 +140,7 @@ def parts_save(
     beside: bool = False,
     earlier: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """Save labels that a page has uploaded, and the document with the entries of their parts.
-
-    of: digest of the parts that were edited, or "". opened: the document's text when its file was opened or saved; a
-    file with another text is left alone. A document without a file gets a new one: beside: next to the photograph,
-    else in the folder `drawn`. store: folder for labels that were replaced. earlier: texts of the document's history.
-    Returns: path of the labels, file of the document and its text; with `moved`, new versions of earlier texts, and of
-    this one, that named replaced labels.
-    Raises: ConfigError for invalid labels, parts that were changed elsewhere meanwhile, and invalid entries;
-    OutputError; then nothing is changed.
-    """
+    """Save labels that a page has uploaded, and the document with the entries of their parts, or change nothing."""
     pipeline = opening.edited_of(state, text, path, sets)
     if of and of != opening.digest(opening.opened_of(state, pipeline).parts, pipeline.config):
         raise ConfigError("the parts were changed elsewhere meanwhile, as in another tab; open the editor again")
@@ -196,13 +174,7 @@ def parts_heights(
     materials: Sequence[str | None] | None = None,
     heights: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """Return the loop's input for the document with other heights of its parts; the document stays unchanged.
-
-    heights_m: by number of the part; None for what the recipe finds, by guess or by depth. materials: the same; None
-    for those of the document. heights: the recipe, widths of rims and the like, in place of the document's.
-    Raises: ConfigError for a height above the workspace, an unknown part, a depth that is not made yet, a document
-    without a law or a device; MaterialError; TangibleError as `Pipeline.make`.
-    """
+    """Return the loop's input with other heights of parts, by number; None for what the recipe finds."""
     pipeline = opening.edited_of(state, text, path, sets)
     opening.opened_of(state, pipeline)
     config = preview_config(pipeline.config, heights, pipeline.scene.shape)

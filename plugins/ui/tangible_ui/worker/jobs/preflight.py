@@ -21,11 +21,7 @@ from .table import job
 def preflight(
     state: WorkerState, number: int, text: str, path: Path, sets: list[str], own: str, late: Late | None
 ) -> dict[str, Any]:
-    """Judge safety and touch on the document's device, or on the page's own hand without one.
-
-    own: the page's hand, as `--set` takes it. late: of the running loop; without one this process takes a sample.
-    Raises: ConfigError if there is no law; TangibleError as `Pipeline.make`.
-    """
+    """Judge on the document's device, or on the page's hand `own`; late: of the loop, by default of a sample."""
     pipeline, is_own = _pipeline_to_judge(state, text, path, sets, own)
     with announced(state, number, pipeline, text, "preflight") as (work, report):
         pipeline.make("touch", report, work.stop)
@@ -82,10 +78,7 @@ def _verdict_data(
 def legible(
     state: WorkerState, number: int, text: str, path: Path, sets: list[str], medium: Medium, width_m: float | None
 ) -> dict[str, Any]:
-    """Judge by the rules of one medium. width_m: of the whole picture there; by default as export draws it.
-
-    Raises: TangibleError as `Pipeline.legible`.
-    """
+    """Judge by the rules of one medium. width_m: of the whole picture there; by default as export draws it."""
     pipeline = state.pipeline_of(text, path, sets)
     with announced(state, number, pipeline, text, "legible") as (work, report):
         pipeline.make("parts", report, work.stop)

@@ -33,10 +33,7 @@ LARGEST_M = 0.1
 def texture_patch(
     state: WorkerState, digest: str, x_m: float, y_m: float, side_m: float, pixels: int = 192
 ) -> dict[str, Any]:
-    """Write the heights of the textures in a square around a place, metres, far row first; return the file.
-
-    digest: of the surface as pages know it. Raises: GeometryError if that is gone, or the square is invalid.
-    """
+    """Write the texture heights of a square around a place, metres, far row first. Raises: GeometryError."""
     at = state.folder / digest
     if not re.fullmatch("[0-9a-f]{32}", digest) or not (at / ABOUT).is_file():
         raise GeometryError("this surface is not kept any more; make it again")

@@ -25,12 +25,7 @@ JOBS: dict[str, Job] = {}
 
 
 def job(*, quick: bool = False, page: bool = False) -> Callable[[F], F]:
-    """Register a function as the job of its name.
-
-    page: it answers a request of pages by itself; it is quick. After the state it takes `text`, `path` and `sets` of
-    the document if it needs them, and then what the page says, whose types are checked.
-    Raises: ValueError if there is a job of this name.
-    """
+    """Register a function as the job of its name. page: it answers a request of pages by itself, quickly."""
 
     def register(function: F) -> F:
         if function.__name__ in JOBS:

@@ -19,11 +19,7 @@ TURN = 2
 def snap(
     picture: UInt8[np.ndarray, "h w 3"], outline: Float64[np.ndarray, "n 2"], reach_px: float
 ) -> Float64[np.ndarray, "m 2"]:
-    """Return the closed outline of least cost within reach, along the picture's edges.
-
-    The strip along the outline is resampled to a rectangle. The path through it is found by dynamic programming (Amini,
-    Weymouth and Jain 1990), twice round, so that its end meets its beginning.
-    """
+    """Return the closed outline of least cost within reach, by dynamic programming (Amini, Weymouth and Jain 1990)."""
     places = _resample(outline)
     if len(places) < 4 or not 0 < reach_px < np.inf:
         return outline

@@ -48,11 +48,7 @@ def propose(
     kind: Kind,
     within: Sequence[float] | None = None,
 ) -> tuple[Window, Bool[np.ndarray, "r c"]]:
-    """Return the part in the picture: its bounding box, and its mask in that box.
-
-    A reduced window around the stroke is segmented by GrabCut (Rother, Kolmogorov and Blake 2004) or by a watershed
-    (Meyer 1992); then the border alone is refined at the picture's own size.
-    """
+    """Return a part by GrabCut (Rother et al. 2004) or a watershed (Meyer 1992), as its bounding box and mask there."""
     import cv2
 
     width_px = float(np.clip(width_px, 1, max(picture.shape)))
@@ -78,10 +74,7 @@ def propose_region(
     level: float,
     within: Sequence[float] | None = None,
 ) -> tuple[Window, Bool[np.ndarray, "r c"]]:
-    """Return the regions under the stroke, between borders of at least a level, as `propose`: a lower level gives less.
-
-    A region counts if it holds at least MIN_UNDER as many pixels of the stroke as the one that holds the most.
-    """
+    """Return the regions under the stroke, as `propose`; a lower level of borders gives smaller ones."""
     labels = tree.cut(len(tree.joins) + 1, level).labels
     whole = Window(0, 0, labels.shape[1], labels.shape[0])
     stroke = _draw_stroke(points, float(np.clip(width_px, 1, max(labels.shape))), whole, labels.shape[::-1])

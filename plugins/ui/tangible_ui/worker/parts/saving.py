@@ -34,10 +34,7 @@ _TEXT, _PIXELS = b"tEXt", b"IDAT"
 
 
 def unpack(path: Path, shape: tuple[int, int]) -> UInt16[np.ndarray, "h w"]:
-    """Unpack labels that a page has uploaded: uint16, little-endian, row by row, as gzip.
-
-    At most one byte too many is unpacked. Raises: ConfigError for anything else, and another size.
-    """
+    """Unpack labels of a page: uint16, little-endian, row by row, as gzip. Raises: ConfigError for anything else."""
     size = 2 * shape[0] * shape[1]
     wrong = f"the labels that were sent are not a gzip of {shape[1]} x {shape[0]} numbers of two bytes; send them again"
     if not 0 < size <= 2 * MAX_PIXELS:
@@ -54,10 +51,7 @@ def unpack(path: Path, shape: tuple[int, int]) -> UInt16[np.ndarray, "h w"]:
 
 
 def as_png(labels: Int32[np.ndarray, "h w"], document: str) -> bytes:
-    """Return a PNG of labels, marked with the pipeline file that it belongs to.
-
-    document: name of that file. Raises: ConfigError for more labels than a picture may hold.
-    """
+    """Return a PNG of labels, marked with the name of its pipeline file. Raises: ConfigError for too many labels."""
     count = int(labels.max(initial=0)) + 1
     if count > MAX_LABELS:
         raise ConfigError(f"these are {count} parts, and at most {MAX_LABELS} are allowed; join some of them")
@@ -127,11 +121,7 @@ def warn_of_numbers(config: PipelineConfig, before: Opened, found: PartMap) -> N
 def number_parts(
     parts: Sequence[Mapping[str, Any]], labels: Sequence[int], numbers: Int32[np.ndarray, "h w"]
 ) -> tuple[dict[int, dict[str, Any]], dict[str, list[int]]]:
-    """Return the entries by number of the part, and the numbers that each label became.
-
-    labels: the label of each part. A label whose pixels are not connected becomes several parts: the largest keeps the
-    name, the others get numbered names. Raises: ConfigError if a label has two entries, or has no pixel.
-    """
+    """Return the entries by number of the part, and the numbers that each label became. Raises: ConfigError."""
     if not all(type(part.get("label")) is int for part in parts):
         raise ConfigError("parts: each entry needs the number of its label")
     told = {part["label"]: part for part in parts}
@@ -240,10 +230,7 @@ def is_in_file(path: Path, opened: str) -> bool:
 
 
 def folder_of_photograph(config: PipelineConfig, uploads: Path) -> Path | None:
-    """Return the folder of a document's picture; None for a built-in scene, an upload, or a folder to read alone.
-
-    uploads: folder of uploaded pictures, which a person never sees.
-    """
+    """Return the folder of a document's picture; None for a built-in scene, an upload, or one to read alone."""
     files = config.scene
     picture = (files.photo or files.left) if isinstance(files, SceneFiles) else None
     if picture is None:
@@ -254,10 +241,7 @@ def folder_of_photograph(config: PipelineConfig, uploads: Path) -> Path | None:
 
 
 def new_file(config: PipelineConfig, path: Path, drawn: Path, beside: bool) -> Path:
-    """Return the path of a new pipeline file: next to the photograph, else in a new folder below `drawn`.
-
-    path: of the document so far, whose name it keeps; a number is added where a file is there already.
-    """
+    """Return the path of a new pipeline file: next to the photograph, else in a new folder below `drawn`."""
     names = itertools.chain([path.stem], (f"{path.stem}-{number}" for number in itertools.count(2)))
     folder = folder_of_photograph(config, drawn.parent) if beside else None
     if folder is None:

@@ -35,11 +35,7 @@ MAX_SIDE = 4096
 
 
 def show(seen: SurfaceView, folder: Path) -> dict[str, Any]:
-    """Write a view's files atomically, and return the message `scene`.
-
-    Heights are float32 and not rounded: their slopes are drawn. Level 0 is the finest.
-    Raises: OutputError if they cannot be written.
-    """
+    """Write a view's files atomically, level 0 the finest, and return the message `scene`. Raises: OutputError."""
     at = folder / seen.digest
     about = _about(seen)
     leave(at, "what is to be drawn", partial(_write, seen, about))
@@ -49,10 +45,7 @@ def show(seen: SurfaceView, folder: Path) -> dict[str, Any]:
 
 
 def leave(at: Path, what: str, write: Callable[[Path], None]) -> None:
-    """Fill a folder that pages fetch from, atomically; an existing one stays.
-
-    what: its contents, in words. Raises: OutputError if it cannot be written.
-    """
+    """Fill a folder that pages fetch from, atomically; an existing one stays. Raises: OutputError."""
     if at.exists():
         return
     part = None

@@ -30,20 +30,14 @@ def any_calibration(device: str) -> bool:
 
 
 def save_calibration(device: str, serial: str, values: BaseModel) -> Path:
-    """Save a unit's calibration atomically, in place of the previous one; return its path.
-
-    Raises: OutputError if the place cannot be written.
-    """
+    """Save a unit's calibration in place of the previous one; return its path. Raises: OutputError."""
     path = calibration_path(device, serial)
     write_text(path, values.model_dump_json(indent=2) + "\n")
     return path
 
 
 def load_calibration(device: str, serial: str, model: type[M]) -> M | None:
-    """Load a unit's calibration; None if none was saved.
-
-    Raises: DeviceError naming the file if it cannot be read or does not fit: a wrong calibration is never ignored.
-    """
+    """Load a unit's calibration, None if none was saved; a wrong one is never ignored. Raises: DeviceError."""
     path = calibration_path(device, serial)
     try:
         return model.model_validate_json(read_bytes(path, MAX_TEXT_BYTES))

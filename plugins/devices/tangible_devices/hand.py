@@ -51,11 +51,8 @@ class MovingHand:
 
 
 def free_motion(hand: VirtualHand, period_s: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return the matrix that moves (x, v), relative to the point of rest, by a period: exp(T [[0, 1], [-k/m, -b/m]]).
-
-    It is exact, so that the hand alone is stable for every mass, damping, stiffness and period.
-    Source: the damped oscillator, m x'' + b x' + k x = 0, with roots -a +- r, a = b / 2m, r^2 = a^2 - k/m.
-    """
+    """Return the matrix that moves (x, v), relative to rest, by a period: exp(T [[0, 1], [-k/m, -b/m]]), exactly."""
+    # m x'' + b x' + k x = 0 has the roots -a +- r, a = b / 2m, r^2 = a^2 - k/m: the hand alone is always stable.
     square = hand.stiffness_n_per_m / hand.mass_kg
     decay = hand.damping_n_s_per_m / (2 * hand.mass_kg)
     root = cmath.sqrt(decay * decay - square)

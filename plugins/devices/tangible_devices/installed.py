@@ -47,10 +47,7 @@ def installed_devices(registry: Registry) -> tuple[InstalledDevice, ...]:
 
 
 def make_device(registry: Registry, name: str, sets: Sequence[str] = ()) -> HapticDevice:
-    """Make an installed device with options as `key=value`, without opening it.
-
-    Raises: UnknownMethod, BrokenMethod, ConfigError with every complaint of the options.
-    """
+    """Make an installed device with options as `key=value`, unopened. Raises: BrokenMethod, ConfigError."""
     cls = registry.load("device", name)
     source = parse_source("{}", Path(f"device {name}"), "options are key=value", sets)
     device = source.model((), cls, dict(source.tree))
@@ -59,10 +56,7 @@ def make_device(registry: Registry, name: str, sets: Sequence[str] = ()) -> Hapt
 
 
 def examine_device(registry: Registry, name: str, sets: Sequence[str] = ()) -> tuple[Finding, ...]:
-    """Check everything that this device needs before it can be opened, in the order in which to correct it.
-
-    An error of the device becomes the last finding. Raises: as `make_device`.
-    """
+    """Check all that this device needs to be opened, in the order in which to correct it. Raises: as `make_device`."""
     device, findings = make_device(registry, name, sets), list[Finding]()
     try:
         if not isinstance(device, Serviceable):

@@ -23,10 +23,7 @@ COLUMNS = ("time_s", "x_m", "y_m", "z_m")
 @final
 @dataclass(frozen=True)
 class Stroke:
-    """Points and their times, with straight lines in between; the first time is 0.
-
-    A closed stroke takes a whole number of ticks and repeats exactly; an open one stays at its ends.
-    """
+    """Points and times from 0, joined by straight lines; a closed one repeats exactly, an open one stays at its end."""
 
     times_s: tuple[float, ...]
     points_m: tuple[Vector, ...]
@@ -49,10 +46,7 @@ class Stroke:
 
 
 def walk(points_m: Points, speed_m_per_s: float, period_s: float) -> Stroke:
-    """Return a closed stroke through these points, the last joined to the first, at constant speed.
-
-    The speed is reduced so that a lap takes a whole number of periods.
-    """
+    """Return a closed stroke at constant speed, reduced so that a lap takes a whole number of periods."""
     closed = np.vstack([points_m, points_m[:1]])
     lengths = np.linalg.norm(np.diff(closed, axis=0), axis=1)
     gone = np.concatenate([[0.0], np.cumsum(lengths)])
@@ -105,10 +99,7 @@ def path_size(extent_m: tuple[float, float], most_m: tuple[float, float]) -> tup
 
 
 def read_csv(path: Path, period_s: float) -> Stroke:
-    """Read a recorded stroke, played once: columns time_s, x_m, y_m, z_m, one row a moment, times rising.
-
-    Raises: DeviceError that names the file, the line and the correction.
-    """
+    """Read a recorded stroke, played once: columns time_s, x_m, y_m, z_m, times rising. Raises: DeviceError."""
     try:
         columns, lines = read_table(path)
         _check_columns(path, columns)

@@ -28,11 +28,9 @@ class SimulatedLink(Link):
         self._applied = NO_FORCE
 
     def _read(self) -> HapticState:
-        """Return the next state, under the force sent last."""
         return self._move(self._applied)
 
     def _send(self, force: Force) -> None:
-        """Hold this force until the next one."""
         self._applied = force
 
     @property

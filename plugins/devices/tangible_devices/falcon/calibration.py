@@ -85,8 +85,5 @@ class Settings:
     event_character: bool
 
     def calibration_of(self, serial: str) -> Calibration:
-        """Return the option, else the saved calibration of this serial number, else the defaults.
-
-        Raises: DeviceError if the saved file is damaged.
-        """
+        """Return the option, else the calibration saved for this serial number, else the defaults."""
         return self.calibration or load_calibration("falcon", serial, Calibration) or Calibration()

@@ -48,10 +48,7 @@ class Falcon(HapticDevice, Serviceable, Adjustable):
         return self.settings().calibration_of(self.serial or "").spec()
 
     def open(self) -> Link:
-        """Find the Falcon, load its firmware if it has none, and wait until it is homed.
-
-        Raises: DeviceError if it is not there, not permitted, in use, has no firmware, or is not homed in time.
-        """
+        """Find the Falcon, load its firmware if it has none, and wait until it is homed. Raises: DeviceError."""
         from .opening import open_falcon
 
         return open_falcon(self.settings(), self.image(), None, time.perf_counter)

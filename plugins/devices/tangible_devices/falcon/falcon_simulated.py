@@ -62,10 +62,7 @@ class FalconSimulated(HapticDevice, Scripted):
         """Return None, as the path begins when the device is homed, at a tick that is not known before."""
 
     def open(self) -> Link:
-        """Open a new Falcon: its firmware is loaded, and the hand homes it.
-
-        Raises: DeviceError as device falcon, if a fault or an option causes it.
-        """
+        """Open a new Falcon: its firmware is loaded, and the hand homes it. Raises: DeviceError as device falcon."""
         from .opening import open_falcon
         from .simulator.bus import Bus
         from .simulator.chip import RealClock, SimulatedClock

@@ -119,10 +119,7 @@ class FalconLink(CompiledLink):
         return bool(tick.read(*self._buffers, self._state))
 
     def _read(self) -> HapticState:
-        """Return the position of a new answer; send packets until there is one.
-
-        Raises: DeviceError if the device stopped answering or lost its homing.
-        """
+        """Return the position of a new answer; send packets until there is one. Raises: DeviceError."""
         for _ in range(PATIENCE):
             if self.look():
                 x, y, z, vx, vy, vz, buttons = self._state.tolist()
@@ -133,7 +130,6 @@ class FalconLink(CompiledLink):
         )
 
     def _send(self, force: Force) -> None:
-        """Send a force at once and fetch the answer. Raises: DeviceError if the device stopped answering."""
         tick.write(*self._buffers, *force)
         self._exchange()
 
@@ -144,7 +140,6 @@ class FalconLink(CompiledLink):
         return Force(x, y, z)
 
     def _exchange(self) -> None:
-        """Send the packet, then wait until fewer packets than allowed are in flight."""
         try:
             while self._clock() - self._sent_s < FRAME_S:
                 self._fetch()
@@ -156,7 +151,7 @@ class FalconLink(CompiledLink):
             raise self._give_up(error) from error
 
     def _release(self) -> None:
-        """Send null packets, wait for the answer to each, so that none is left in flight, and close the port."""
+        # Null packets, with an answer to each, so that none is left in flight.
         health, self._in_flight = self.health(), 1
         try:
             for _ in range(GOODBYES):
@@ -169,10 +164,7 @@ class FalconLink(CompiledLink):
         log.info("%s: %s", self._port.place, health)
 
     def _receive(self) -> None:
-        """Read until fewer packets than allowed are in flight; count all of them as lost if no answer comes.
-
-        Raises: DeviceError if this happens several times in a row, or USB fails.
-        """
+        """Read until fewer packets than allowed are in flight; without an answer, all are lost. Raises: DeviceError."""
         quiet = 0
         while self._pending >= self._in_flight:
             if self._fetch():

@@ -1,7 +1,4 @@
-"""Measuring a Falcon with the user's help: its axes, the zeros of its arms, the strength of its motors.
-
-Imports numba.
-"""
+"""Measuring a Falcon with the user's help: its axes, arms' zeros and motors' strength. Imports numba."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -28,10 +25,7 @@ RAW = ("x", "y", "z")
 
 
 def measure_axes(link: Link, ask: Ask) -> tuple[Axis, Axis, Axis]:
-    """Measure which of the device's axes are the workspace's x, y and z. link: of a device whose axes are RAW.
-
-    Raises: DeviceError if a move was too short, or two went along one axis.
-    """
+    """Measure which of the axes are the workspace's. link: of a device whose axes are RAW. Raises: DeviceError."""
     ask("Hold the grip in the middle of its reach, and press Enter.")
     axes: list[Axis] = []
     start = _place(link)
@@ -46,23 +40,17 @@ def measure_axes(link: Link, ask: Ask) -> tuple[Axis, Axis, Axis]:
 
 
 def measure_offsets(link: Link, ask: Ask, offsets_deg: Vector) -> Vector:
-    """Measure the angles of the arms at 0 counts: all three must be equal when the tip is on the device's axis.
-
-    Their mean is left unchanged. link: of a device whose axes are RAW, and whose offsets are these.
-    """
+    """Measure the angles at 0 counts. link: of a device whose axes are RAW, and whose offsets are these."""
     ask("Push the grip all the way in, straight along the device's axis, hold it there, and press Enter.")
     x, y, z = _place(link)
     arms = [math.degrees(arm) for arm in kinematics.inverse(x, y, z + kinematics.CENTRE_M)]
-    mean = sum(arms) / 3
+    mean = sum(arms) / 3  # on the device's axis, all three are equal; their mean is left unchanged
     top, right, left = (offset - (arm - mean) for offset, arm in zip(offsets_deg, arms, strict=True))
     return top, right, left
 
 
 def measure_strength(link: Link, ask: Ask, counts_per_newton_metre: float) -> float:
-    """Measure the motor counts for a newton metre by a weight that the device carries; unchanged without a weight.
-
-    The force is measured with and without the weight, so that friction and the mechanics' own weight cancel out.
-    """
+    """Measure the motor counts for a newton metre by a weight that the device carries; unchanged without one."""
     grams = ask(
         "Now the motors push, up to a few newtons. Type the grams of a weight (100 to 300) that you can hang on the "
         "grip, or press Enter to leave their strength as it is."
@@ -72,16 +60,13 @@ def measure_strength(link: Link, ask: Ask, counts_per_newton_metre: float) -> fl
     weight_n = _number(grams) / 1000 * STANDARD_GRAVITY
     ask("Hold the grip in the middle of its reach, press Enter, and let go slowly.")
     height_m = _place(link)[2]
-    alone_n = _mean_lift_n(link, height_m)
+    alone_n = _mean_lift_n(link, height_m)  # so that friction and the mechanics' own weight cancel out
     ask("Hang the weight on the grip, and press Enter.")
     return counts_per_newton_metre * strength(alone_n, _mean_lift_n(link, height_m), weight_n)
 
 
 def strength(alone_n: float, laden_n: float, weight_n: float) -> float:
-    """Return the factor on the counts for a newton metre: the force commanded for a weight, over that weight.
-
-    Raises: DeviceError if the factor is below 0.2 or above 5.
-    """
+    """Return the force commanded for a weight, over that weight. Raises: DeviceError if it is below 0.2 or above 5."""
     factor = (laden_n - alone_n) / weight_n
     if not 0.2 <= factor <= 5:
         raise DeviceError(f"{weight_n:.2f} N of weight changed the force by {laden_n - alone_n:.2f} N; calibrate again")

@@ -21,10 +21,7 @@ AT_ONCE_S = 0.1
 
 
 def open_falcon(settings: Settings, image: bytes | None, backend: Any, clock: Callable[[], float]) -> FalconLink:
-    """Find a Falcon, load its firmware if none answers, and home it; backend: pyusb's, None for the system's libusb.
-
-    Raises: DeviceError if it is not there, not permitted, in use, has no firmware, is not homed in time, or fails.
-    """
+    """Find a Falcon, load its firmware if none answers, and home it; backend: pyusb's. Raises: DeviceError."""
     opener = partial(open_port, settings.serial, settings.index, backend)
     port = open_running(opener, image, settings.event_character)
     try:
@@ -51,10 +48,7 @@ def open_falcon(settings: Settings, image: bytes | None, backend: Any, clock: Ca
 
 
 def home(link: FalconLink, seconds: float, clock: Callable[[], float]) -> None:
-    """Exchange packets without force until the device is homed and force has faded in.
-
-    Raises: DeviceError if the device is not homed in time, or USB fails.
-    """
+    """Exchange packets without force until the device is homed and force has faded in. Raises: DeviceError."""
     start, guided = clock(), False
     while not link.is_homed:
         link.write(NO_FORCE)

@@ -1,7 +1,4 @@
-"""Force Dimension's devices: omega, delta, sigma, and the Falcon by this maker's library.
-
-They are used through `forcedimension_core.dhd`, the bindings to that library.
-"""
+"""Force Dimension's devices, and the Falcon by this maker's library, bound by `forcedimension_core.dhd`."""
 
 import io
 import math
@@ -149,7 +146,6 @@ class ForceDimensionLink(Link):
             raise
 
     def _read(self) -> HapticState:
-        """Return the position of the tip. Raises: DeviceError if the device stopped answering."""
         position, velocity = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
         check_result(self._dhd, self._dhd.getPosition(position, self._number), "reading its position", REPLUG)
         if self._dhd.getLinearVelocity(velocity, self._number) < 0:
@@ -161,7 +157,6 @@ class ForceDimensionLink(Link):
         return HapticState((y, -x, z), (vy, -vx, vz), time.perf_counter(), buttons)
 
     def _send(self, force: Force) -> None:
-        """Set the force. Raises: DeviceError as `_read`."""
         self._applied = NO_FORCE
         result = self._dhd.setForce([-force.y, force.x, force.z], self._number)
         check_result(self._dhd, result, "setting its force", REPLUG)
@@ -173,6 +168,5 @@ class ForceDimensionLink(Link):
         return self._applied
 
     def _release(self) -> None:
-        """Close the device."""
         self._dhd.close(self._number)
         OPENED.discard(self._number)

@@ -181,10 +181,7 @@ class HaplyLink(Link):
         self._answers = True
 
     def _read(self) -> HapticState:
-        """Return the answer to the last force, or to the same force sent again.
-
-        Raises: DeviceError if the service or the arm is gone.
-        """
+        """Return the answer to the last force, or to the same force sent again. Raises: DeviceError."""
         try:
             if not self._session.waits:
                 self._session.send(self._device_id, self._applied)
@@ -195,7 +192,6 @@ class HaplyLink(Link):
         return self._state(time.perf_counter(), answer)
 
     def _send(self, force: Force) -> None:
-        """Send a force. Raises: DeviceError as `_read`."""
         try:
             if self._session.waits:
                 self._session.newest(self._device_id)
@@ -211,7 +207,6 @@ class HaplyLink(Link):
         return self._applied
 
     def _release(self) -> None:
-        """Wait for the answer to the last force, and disconnect."""
         if self._answers:
             with suppress(DeviceError):
                 self._session.newest(self._device_id)

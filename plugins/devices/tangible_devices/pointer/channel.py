@@ -93,10 +93,7 @@ class Channel:
     """The mapped file of a channel, and this side's lock on it."""
 
     def __init__(self, name: str, side: str) -> None:
-        """side: "device", which creates the file, or "client".
-
-        Raises: DeviceError if the name is invalid, the side is taken, or the file is missing or cannot be created.
-        """
+        """side: "device", which creates the file, or "client". Raises: DeviceError."""
         self.path: Path = channel_path(name)
         self.lock: Lock = Lock(self.path.with_suffix(f".{side}"))
         if not any(self.lock.take() or time.sleep(0.01) for _ in range(5)):  # a test by `_lives` takes it briefly

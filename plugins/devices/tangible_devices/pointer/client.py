@@ -37,10 +37,7 @@ class PointerClient:
     """
 
     def __init__(self, channel: str = "pointer", wait_s: float = 0.0) -> None:
-        """Become the client of a channel, waiting up to wait_s for its device.
-
-        Raises: DeviceError if there is no such device, or it has a client.
-        """
+        """Become the client of a channel, waiting up to wait_s for its device. Raises: DeviceError."""
         self._name = channel
         _await_device(channel, wait_s)
         self._channel = Channel(channel, "client")
@@ -54,10 +51,7 @@ class PointerClient:
         self._open, self._released = True, False
 
     def send(self, position_m: Vector, buttons: int = 0, velocity_m_per_s: Vector | None = None) -> None:
-        """Send the position of the tip; without a velocity, send the mean velocity since the last call.
-
-        Raises: DeviceError if a number is not finite, or the device or this client is closed.
-        """
+        """Send the position of the tip; by default with the mean velocity since the last call. Raises: DeviceError."""
         self._check_open()
         now = time.monotonic()
         velocity = velocity_m_per_s or self._velocity(now, position_m)
@@ -72,21 +66,13 @@ class PointerClient:
         self._released = False
 
     def release(self) -> None:
-        """Let go of the pointer until the next `send`; no further calls are needed meanwhile.
-
-        At its next tick the device is high above the surface, where the force law gives no force; `force` returns zero
-        from now on. The next `send` starts anew: its position is taken without filtering, and at rest unless a velocity
-        is given. A closed client has let go already.
-        """
+        """Let go of the pointer until the next `send`, which starts anew, unfiltered; no force acts meanwhile."""
         if self._open:
             self._channel.set_flag(CLIENT_OPEN, False)
             self._last, self._released = None, True
 
     def force(self) -> Force:
-        """Return the force on the hand; zero if the device is silent, or after `release`.
-
-        Raises: DeviceError if the device or this client is closed.
-        """
+        """Return the force on the hand; zero if the device is silent, or after `release`. Raises: DeviceError."""
         self._check_open()
         now = time.monotonic()
         block = self._channel.take(FORCE, FORCE_WORDS)

@@ -34,11 +34,7 @@ def follow(
     as_json: bool,
     complain: Callable[[str], None],
 ) -> Iterator[str]:
-    """Move the pointer, and yield lines of position and force to print; the first is the heading.
-
-    complain: called with the fault of a typed line; the pointer stays where it was.
-    Raises: ConfigError for an unknown path or an invalid number, DeviceError as `PointerClient`.
-    """
+    """Move the pointer, and yield a heading, then lines of position and force. Raises: ConfigError, DeviceError."""
     if path and path not in DRAWN:
         raise ConfigError(f"--path {path}: there is no such path{did_you_mean(path, DRAWN)}; {', '.join(DRAWN)}")
     check_positive("--seconds", seconds)

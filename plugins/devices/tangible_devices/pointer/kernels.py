@@ -49,10 +49,7 @@ def fetch(words, kept):
 
 @njit(int64(WORDS, WORDS, NUMBERS, NUMBERS), **KERNEL)
 def read(words, kept, numbers, state):
-    """Write the newest sample, or the filtered tip, to state; without a client the tip is high above the surface.
-
-    Returns 0 if the client has been silent for too many reads. The first sample after that is not filtered.
-    """
+    """Write the newest sample, or the filtered tip, to state; return 0 if the client has been silent too long."""
     found = fetch(words, kept)
     if found == NOBODY:
         kept[AGE] = kept[OLDEST]
@@ -60,6 +57,7 @@ def read(words, kept, numbers, state):
             state[i] = HIGH_M if i == 2 else 0.0
         return 1
     if found == WHOLE and kept[0] != kept[LAST]:
+        # The first sample after a silence is not filtered.
         if kept[AGE] >= kept[OLDEST]:
             for i in range(6):
                 numbers[TIP + i] = numbers[1 + i]

@@ -92,10 +92,7 @@ class PointerLink(CompiledLink):
         self._words[DEVICE_OPEN] = 1
 
     def _read(self) -> HapticState:
-        """Return the client's position; high above the surface without a client.
-
-        Waits until half a millisecond after the last read, so that a loop without its own clock does not spin.
-        """
+        # Half a millisecond after the last read, so that a loop without its own clock does not spin.
         time.sleep(max(0.0, self._read_s + PACE_S - time.perf_counter()))
         now = time.perf_counter()
         passed_s, self._read_s = now - self._read_s, now
@@ -115,7 +112,6 @@ class PointerLink(CompiledLink):
         return self._tip._replace(time_s=now)
 
     def _send(self, force: Force) -> None:
-        """Write the force for the client."""
         self._code.write(self._words, self._kept, self._numbers, *force)
 
     @property
@@ -124,7 +120,6 @@ class PointerLink(CompiledLink):
         return Force(*self._held.tolist())
 
     def _release(self) -> None:
-        """Close the channel."""
         self._words[DEVICE_OPEN] = 0
         self._channel.close()
 

@@ -1,7 +1,4 @@
-"""Answers extracted from a stream of bytes that may lose bytes and gain others; compiled.
-
-Imports numba: a method imports this module inside its verb.
-"""
+"""Answers extracted from a stream of bytes that may lose bytes and gain others; compiled, so imported in verbs."""
 
 from numba import int64, void
 
@@ -33,12 +30,10 @@ def resume(begun, counts):
 
 @njit(int64(BYTES, int64, BYTES, int64[::1], BYTES), **KERNEL)
 def receive(chunk, size, begun, counts, answer):
-    """Take in an IN transfer of `size` bytes, copy its newest answer to `answer`, and return the number of its answers.
-
-    `begun` holds the bytes since the last `<` that may begin an answer. If 16 of them are not an answer, the search
-    goes on from the next `<` among them, so that a byte too few or too many costs one answer only.
-    """
+    """Take in an IN transfer of `size` bytes; copy its newest answer to `answer`, and return the number of answers."""
     completed = 0
+    # `begun` holds the bytes since the last `<` that may begin an answer. If 16 of them are not an answer, the search
+    # resumes at the next `<` among them, so that a byte too few or too many costs one answer only.
     for i in range(size):
         if i % USB_PACKET < STATUS:
             continue

@@ -1,9 +1,8 @@
-"""Kinematics of a Falcon: the tip for three arm angles, and the torques for a force; compiled.
+"""Kinematics of a Falcon: the tip for three arm angles, and the torques for a force; compiled, so imported in verbs.
 
 Frame: metres, z along the device's axis out to the user (0.075 in, 0.175 out), x right, y up, right-handed. Angles are
 those of the three thighs, in radians. Source: Stamper, A three degree of freedom parallel manipulator with only
 translational degrees of freedom, PhD thesis, University of Maryland 1997; lengths: libnifalcon, FalconGeometry.h.
-Imports numba: a method imports this module inside its verb.
 """
 
 import math
@@ -73,10 +72,7 @@ def solve(rows, right):
 
 @njit(types.Tuple((float64, float64, float64, boolean))(*[float64] * 6), **KERNEL)
 def forward(first, second, third, x, y, z):
-    """Find the tip for three angles, by Newton's method from the last tip; return (x, y, z, True if it was found).
-
-    No tip is found for impossible angles and NaN; the last tip is returned then.
-    """
+    """Find the tip for three angles by Newton's method; return (x, y, z, True), or the last tip and False."""
     from_x, from_y, from_z = x, y, z
     if not (min(first, second, third) >= LOW_RAD and max(first, second, third) <= HIGH_RAD):
         return x, y, z, False

@@ -1,8 +1,8 @@
-"""The 16 bytes to and from a running Falcon; compiled.
+"""The 16 bytes to and from a running Falcon; compiled, so imported in verbs.
 
 `<`, 14 bytes of 0x41 + value, `>`. Three signed 16-bit numbers as four nibbles each, the least significant one first;
 then lights and homing (out), or buttons and homed arms (in); then one byte of unknown meaning.
-Source: libnifalcon, FalconFirmwareNovintSDK.cpp. Imports numba: a method imports this module inside its verb.
+Source: libnifalcon, FalconFirmwareNovintSDK.cpp.
 """
 
 from numba import boolean, float64, int64, types, uint8, void
@@ -63,12 +63,10 @@ def encode(first, second, third, info, packet):
 
 @njit(types.Tuple((int64, int64, int64, float64))(float64, float64, float64), **KERNEL)
 def saturate(first, second, third):
-    """Return torques in whole counts, and the factor that scaled all three so that none exceeds MAX_COUNTS.
-
-    One factor for all keeps the direction of the force. Torques that are not finite become 0.
-    """
+    """Return torques in whole counts, 0 if not finite, and the one factor that keeps all within MAX_COUNTS."""
     largest = max(abs(first), abs(second), abs(third))
     if not abs(first) + abs(second) + abs(third) < float("inf"):
         return 0, 0, 0, 0.0
+    # One factor for all three keeps the direction of the force.
     factor = MAX_COUNTS / largest if largest > MAX_COUNTS else 1.0
     return int64(round(first * factor)), int64(round(second * factor)), int64(round(third * factor)), factor

@@ -1,7 +1,4 @@
-"""A Falcon's part in a tick of the force loop: answer to position and velocity, force to packet; compiled.
-
-Both kernels take the arrays of `Buffers` first. Imports numba: a method imports this module inside its verb.
-"""
+"""A Falcon's part in a tick of the force loop, on the arrays of `Buffers`; compiled, so imported in verbs."""
 
 from typing import NamedTuple
 
@@ -117,9 +114,7 @@ def rates(history, head, samples):
     """Return the counts per second of three encoders at the newest sample: the slope over the longest straight window.
 
     history: a ring of rows (time in seconds, counts of three encoders); head: the newest row; samples: their number.
-    Slow motion is averaged over many samples, which reduces the noise of single counts; fast motion over few, which
-    avoids delay. Every sample between the ends of the window is within one count of the line through them; the range
-    of slopes for which this holds is narrowed sample by sample.
+    Slow motion is averaged over many samples, which reduces the noise; fast motion over few, which avoids delay.
     Source: Janabi-Sharifi, Hayward & Chen, Discrete-time adaptive windowing for velocity estimation, IEEE Trans.
     Control Systems Technology 8(6), 2000, sec. III (end-fit).
     """
@@ -128,10 +123,8 @@ def rates(history, head, samples):
 
 @njit(boolean(int64[::1], float64[::1], float64[:, ::1], boolean, int64, int64, int64), **KERNEL)
 def sample(counts, held, history, doubtful, first, second, third):
-    """Remember the encoders; return False for a doubtful answer, until the next one confirms it.
-
-    Doubtful are the first answer, an answer after stray bytes, and one that does not continue the motion.
-    """
+    """Remember the encoders; return False for a doubtful answer, until the next one confirms it."""
+    # Doubtful: the first answer, one after stray bytes, and one that does not continue the motion (no checksum).
     going = goes_on(counts, held, history, first, second, third)
     if doubtful or not going:
         if not counts[SUSPECTED] or not confirms(held, first, second, third):
@@ -177,11 +170,7 @@ def let_go(counts, held, packet):
 
 @njit(int64(*FIXED, float64[::1]), **KERNEL)
 def read(answer, packet, counts, held, history, arms, frame, state):
-    """Write position, velocity and buttons of a new answer to state, float64 (7,); return 0 if there is none to trust.
-
-    The encoders are meaningless until all arms are homed. Arms that are not homed, angles that no tip has, and two
-    doubtful answers in a row remove the force.
-    """
+    """Write position, velocity and buttons of a new answer to state, float64 (7,); return 0 without one to trust."""
     fresh = counts[FRESH]
     if not fresh:
         return 0
@@ -189,7 +178,7 @@ def read(answer, packet, counts, held, history, arms, frame, state):
     first, second, third, info = decode(answer)
     homed, before = info & HOMED, counts[ARMS]
     counts[ARMS], counts[PRESSED] = homed, info & 15
-    if homed != HOMED:
+    if homed != HOMED:  # the encoders are meaningless until all arms are homed
         let_go(counts, held, packet)
         return 0
     if before != HOMED:
@@ -197,7 +186,7 @@ def read(answer, packet, counts, held, history, arms, frame, state):
     suspected = counts[SUSPECTED]
     if not sample(counts, held, history, fresh == DOUBTFUL, first, second, third):
         counts[REFUSED] += 1
-        if suspected:
+        if suspected:  # two doubtful answers in a row
             let_go(counts, held, packet)
         return 0
     angles = arms[0, 0] + RAD_PER_COUNT * first, arms[1, 0] + RAD_PER_COUNT * second, arms[2, 0] + RAD_PER_COUNT * third
@@ -222,10 +211,7 @@ def read(answer, packet, counts, held, history, arms, frame, state):
 
 @njit(void(*FIXED, float64, float64, float64), **KERNEL)
 def write(answer, packet, counts, held, history, arms, frame, x, y, z):
-    """Make the packet for this force in newtons: zero while the tip is unknown, less while the force fades in.
-
-    Torques above the limit are scaled down by one factor. `held` keeps the resulting force.
-    """
+    """Make the packet for this force in newtons: zero while the tip is unknown, less while the force fades in."""
     share = 0.0
     if counts[KNOWN]:
         share = min(max((held[NOW] - held[SINCE]) / RAMP_S, 0.0), 1.0)

@@ -1,7 +1,4 @@
-"""Arms, motors, encoders and grip of a simulated Falcon, and their motion, compiled.
-
-Imports numba: a method imports this module inside its verb.
-"""
+"""Arms, motors, encoders and grip of a simulated Falcon, and their motion, compiled, so imported in verbs."""
 
 import math
 from typing import Protocol, final
@@ -26,12 +23,8 @@ REACH_M = 0.055
 
 @njit(void(float64[::1], float64[::1], float64[::1], float64[::1], int64, float64), **KERNEL)
 def move(tip, torque, target, feel, steps, period_s):
-    """Move tip (position and velocity, 6 numbers) on by a period, in `steps` steps.
-
-    torque: N m of the three motors; target: the hand's target; feel: mass kg, viscous friction N s/m, Coulomb friction
-    N, the hand's stiffness N/m and damping N s/m.
-    Semi-implicit: velocity first, friction last and never beyond rest, so that it cannot drive the tip.
-    """
+    """Move tip (position and velocity, 6 numbers) on by a period; feel: mass, friction, stiffness and damping."""
+    # Semi-implicit: velocity first, Coulomb friction last and never beyond rest, so that it cannot drive the tip.
     mass_kg, viscous, coulomb, stiffness, damping = feel[0], feel[1], feel[2], feel[3], feel[4]
     step_s = period_s / steps
     for _ in range(steps):

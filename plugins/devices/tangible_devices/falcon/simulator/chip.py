@@ -51,10 +51,7 @@ class StallError(Exception):
 
 @final
 class Chip:
-    """The chip between USB and the processor.
-
-    Faults: `spoil(bytes_before, data)` changes a reply; `delay(replies_before)` delays one, s.
-    """
+    """The chip between USB and the processor. Faults: `spoil(bytes_before, data)` and `delay(replies_before)`, s."""
 
     def __init__(
         self,

@@ -32,10 +32,7 @@ class LoadError(Exception):
 
 
 def open_running(opener: Callable[[], Port], image: bytes | None, event_character: bool = False) -> Port:
-    """Open a port to a Falcon whose firmware answers; load the firmware if needed, on a new port for each attempt.
-
-    Raises: DeviceError if there is no image to load, or no attempt succeeds, or USB fails.
-    """
+    """Open a port to a Falcon, with firmware loaded if needed, on a new port each time. Raises: DeviceError."""
     place, failure = "", LoadError("")
     for attempt in range(1, TRIES + 1):
         port = opener()

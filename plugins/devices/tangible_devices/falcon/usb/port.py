@@ -137,10 +137,7 @@ class Port:
 
 
 def open_port(serial: str | None, index: int, backend: Any) -> Port:
-    """Open the Falcon with this serial number, or with this index in the order of the bus.
-
-    Raises: DeviceError if it is not there, not permitted, in use, or fails.
-    """
+    """Open the Falcon with this serial number, or this index in the order of the bus. Raises: DeviceError."""
     device, place = choose_device(connected_devices(backend), serial, index)
     port = Port(device, place)
     try:
@@ -152,10 +149,7 @@ def open_port(serial: str | None, index: int, backend: Any) -> Port:
 
 
 def connected_devices(backend: Any) -> list[Any]:
-    """Return every Falcon on the bus, as pyusb's devices; none is opened.
-
-    Raises: DeviceAbsent if libusb is missing, DeviceError if it fails.
-    """
+    """Return every Falcon on the bus, as pyusb's unopened devices. Raises: DeviceAbsent, DeviceError."""
     with usb_errors("Novint Falcon", "looking for it"):
         try:
             return _find(backend)
@@ -179,10 +173,7 @@ def _shipped_libusb() -> Any:
 
 
 def serial_of(device: Any) -> str | None:
-    """Open the device and return its serial number; None if the chip has none.
-
-    Raises: DeviceError if reading it is not permitted or fails.
-    """
+    """Open the device and return its serial number; None if the chip has none. Raises: DeviceError."""
     with usb_errors(place_of(device), "reading its serial number"):
         try:
             return device.serial_number
@@ -235,12 +226,9 @@ def _is_configured(device: Any) -> bool:
 
 
 def run_time(port: Port, event_character: bool) -> None:
-    """Set up the chip for packets: 1.5 Mbaud, and a latency timer of 1 ms.
-
-    With the event character the chip sends at once after a `>`, which is not known to work on every chip.
-    """
+    """Set up the chip for packets: 1.5 Mbaud, a latency timer of 1 ms, and the event character where it works."""
     port.request(LATENCY, 1)
-    if event_character:
+    if event_character:  # the chip sends at once after a `>`; not known to work on every chip
         port.request(EVENT, 0x0100 | ord(">"))
     port.request(BAUD, BAUD_1500000)
     port.purge()

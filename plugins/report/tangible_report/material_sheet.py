@@ -79,10 +79,7 @@ MATERIAL_PANELS = (
 
 
 def draw_material(path: Path, material: Material) -> None:
-    """Draw a material as a PNG, whole or not at all.
-
-    The stroke is at 50 mm/s under 1 N, from rest, at 1 kHz. Raises: OutputError if the file cannot be written.
-    """
+    """Draw a material, and a stroke at 50 mm/s under 1 N, from rest, at 1 kHz, as a PNG. Raises: OutputError."""
     tile = sample_tile(material, WIDTH_M, 240)
     across_deg = (material.direction_deg + 90) % 180
     across = " across its lines" if material.anisotropy else ""

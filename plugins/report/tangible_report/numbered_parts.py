@@ -35,10 +35,7 @@ INK, HALO = (0, 0, 0), (255, 255, 255)
 
 
 def numbered_parts(picture: np.ndarray, parts: PartMap, names: Sequence[str] = ()) -> bytes:
-    """Return a PNG of the picture, with every part outlined, and numbered in the middle of its largest disc.
-
-    picture: of the parts' size. names: of the parts, in their order, empty for none; written if there is room.
-    """
+    """Return a PNG of the picture, every part outlined, and numbered in the middle of its largest disc."""
     from PIL import Image, ImageDraw
     from PIL.PngImagePlugin import PngInfo
 
@@ -76,10 +73,7 @@ class Drawn(NamedTuple):
     """The number of the part at each place of a coarse grid."""
 
     def before(self, parts: PartMap) -> tuple[Before, ...] | None:
-        """Return the former state of each of these parts; None if they are from another picture.
-
-        Two parts are the same if, of all parts, each covers most of the other.
-        """
+        """Return the former state of each part, of which each covers most of the other; None from another picture."""
         now = _coarse(parts.labels, max(self.numbers.shape))
         if now.shape != self.numbers.shape:
             return None

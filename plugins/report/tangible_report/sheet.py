@@ -28,10 +28,7 @@ class Sheet(Exporter, Drawing):
         return (path,)
 
     def draw(self, work: Work, path: Path) -> str:
-        """Draw the sheet into a file, whole or not at all, and return a description of it, which is in the file too.
-
-        Raises: OutputError as `write`; PictureError if truth and disparity differ in size.
-        """
+        """Draw the sheet into a file, and return a description of it. Raises: OutputError, PictureError for sizes."""
         from .drawing.sheet import draw_sheet
 
         return draw_sheet(path, title=work.title, language=work.language, **work.products, **work.extras)

@@ -25,10 +25,7 @@ FORCES = ListedColormap(colormaps["magma_r"](np.linspace(0.3, 0.95, 256)), "forc
 
 
 def colours(count: int) -> Float64[np.ndarray, "n 3"]:
-    """Return n colours, no two alike: those of Okabe & Ito first.
-
-    Source for more than 24: Roberts, The unreasonable effectiveness of quasirandom sequences (2018).
-    """
+    """Return n colours, no two alike: those of Okabe & Ito; beyond 24, quasirandom (Roberts 2018)."""
     plain = np.array([to_rgb(colour) for colour in OKABE_ITO])
     first = np.vstack([plain, 0.5 * plain, 0.45 * plain + 0.55])
     step = 1 / 1.2207440846057596 ** np.arange(1, 4)

@@ -59,8 +59,6 @@ def describe_at_length(
 ) -> tuple[str, ...]:
     """Return the lines of a long description: title, overview, heading, and a line for each part.
 
-    parts: from near to far, by `facts`. kind: the kind of the scene, if it is known. people: known to be in front.
-
     >>> describe_at_length(HapticSurface.from_heights(np.zeros((8, 8))), "A plate")
     ('A plate', '', 'A surface 80 mm wide and 80 mm long. It is flat everywhere.')
     """
@@ -82,10 +80,7 @@ def page_of(
     *,
     named_in: str | None = None,
 ) -> str:
-    """Return `describe_at_length` as HTML: headings, an ordered list of parts, the system's colours, no script.
-
-    named_in: the tag of the language of the title and names, if it differs from the language of the words.
-    """
+    """Return `describe_at_length` as accessible HTML. named_in: language of title and names, if another."""
     other = named_in if named_in and named_in != language else ""
     told = tell(surface, title, language, parts, kind, people, lambda text: _quote(text, other))
     items = "".join(

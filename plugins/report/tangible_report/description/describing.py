@@ -44,13 +44,10 @@ def facts(
     parts: PartMap | None = None,
     names: tuple[str, ...] = (),
 ) -> tuple[PartFacts, ...]:
-    """Return facts about the parts of a surface from near to far: the highest first.
-
-    materials: those of the surface's labels, if the surface has none. parts, names: parts of any size, in place of the
-    surface's own labels and names.
+    """Return facts about the parts of a surface, the highest first; parts, names: in place of the surface's own.
 
     >>> bar = HapticSurface.from_heights(np.eye(2), 0.08, np.eye(2, dtype=np.int32))
-    >>> [(each.number, each.height_m, each.neighbours) for each in facts(bar)]
+    >>> [(fact.number, fact.height_m, fact.neighbours) for fact in facts(bar)]
     [(1, 1.0, (0,)), (0, 0.0, (1,))]
     """
     if (whole := surface.labels if parts is None else parts.labels) is None:
@@ -156,10 +153,7 @@ def describe(
 ) -> str:
     """Return one to three sentences on a surface and its scene, always the same for the same surface.
 
-    Places are those of the picture: `at the top` is far from the hand. Parts with a name are described one by one,
-    each with its material; without names, the materials are described.
-    kind: the kind of the scene, if it is to be mentioned (`kind_of`). people: known to be in front of the ground.
-    language: one of `LANGUAGES`.
+    kind: of the scene, to be mentioned. people: known to be in front of the ground. language: one of `LANGUAGES`.
     Raises: ArgumentError for another language.
 
     >>> describe(HapticSurface.from_heights(np.zeros((8, 8))), "a plate")

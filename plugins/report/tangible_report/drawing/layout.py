@@ -14,10 +14,7 @@ TALLEST_IN = 4.5
 
 
 class Cell(NamedTuple):
-    """The requested size of a panel: width over height of its axes, and the room around them in inches.
-
-    A cell narrower than its text, `least_in`, gets more room on the right.
-    """
+    """The requested size of a panel: width over height of its axes, and the room around them in inches."""
 
     aspect: float
     left_in: float
@@ -42,10 +39,7 @@ class Box(NamedTuple):
 
 
 def arrange(cells: Sequence[Cell], width_in: float) -> tuple[list[Box], float, float]:
-    """Return boxes for cells in reading order, and the width and height of the sheet that they fill.
-
-    The cells are broken into rows such that the heights of the rows are nearest to the preferred heights of the cells.
-    """
+    """Return boxes for cells in reading order, and the sheet's size; rows come nearest to the preferred heights."""
     rows = [(row, min(_height(row, width_in), TALLEST_IN)) for row in _break_into_rows(cells, width_in)]
     used_in = max(_width(row, height_in) for row, height_in in rows)
     boxes: list[Box] = []

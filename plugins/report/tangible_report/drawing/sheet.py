@@ -83,16 +83,11 @@ def draw_sheet(
     language: str = "en",
     **others: Record | None,
 ) -> str:
-    """Draw the products of a run as .png, .svg or .pdf, whole or not at all, and return a description in words.
+    """Draw the products of a run as .png, .svg or .pdf, and return a description in words, which is in the file too.
 
-    Panels without data are left out. The description is in the file too.
-    truth: disparity (h, w) in px, not finite where unknown; drawn as an error if the disparity is in px.
-    parts: drawn in place of their segments. relief: for a run without a surface, which has its own relief.
-    recording: drawn with the relief on which it was recorded. language: tag of the language of the title and names; the
-    sheet and the description of the surface are in it if its words are known. others: further products by name, for
-    panels of plugins.
-    Raises: OutputError for another suffix or a file that cannot be written, PictureError if truth and disparity differ
-    in size.
+    truth: disparity (h, w) in px, not finite where unknown. relief: for a run without a surface. language: of the title
+    and names. others: further products by name, for panels of plugins. Panels without data are left out.
+    Raises: OutputError for another suffix or a file that cannot be written, PictureError for sizes that differ.
     """
     from ..panels import PANELS, draw_segments
 
@@ -233,9 +228,7 @@ def _guard(draw: Callable[..., str]) -> Callable[..., str]:
 def show(product: Record, axes: Axes | None = None, **others: Any) -> Axes:
     """Draw a product as its panel on the sheet, with units; return the axes, whose title is the panel's headline.
 
-    axes: the axes to draw into; by default, those of a new pyplot figure with the panel's proportions.
-    others: other products that the panel can show too, by name: `views` and `materials` with segments, `views` and
-    `surface` with parts, `relief` with a recording.
+    axes: by default those of a new pyplot figure. others: other products that the panel can show too, by name.
     Raises: OutputError for a product that has no picture, such as materials without segments.
     """
     from matplotlib import style

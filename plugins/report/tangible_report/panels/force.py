@@ -61,10 +61,7 @@ def _draw_arrows(
 
 
 def spread(at_mm: Float64[np.ndarray, "n 3"], touching: Bool[np.ndarray, " n"], most: int) -> Int64[np.ndarray, " m"]:
-    """Return the indices of at most `most` samples in contact, at equal steps of the path in contact.
-
-    If the contact does not move, the steps are equal in time.
-    """
+    """Return the indices of at most `most` samples in contact, at equal steps of the path, or of time at rest."""
     some = np.flatnonzero(touching)
     if not some.size:
         return some

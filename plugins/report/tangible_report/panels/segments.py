@@ -36,10 +36,7 @@ SHORT, NUMBERS = 14, 3
 def draw_segments(
     axes: Axes, segments: SegmentMap, views: Views | None = None, materials: MaterialMap | None = None
 ) -> str:
-    """Draw regions tinted by material (or by segment), outlined, numbered, and named if there is room.
-
-    The legend has the materials in the order of their segments, and the numbers of their segments.
-    """
+    """Draw regions tinted by material (or by segment), outlined, numbered, and named if there is room."""
     names = [name_part(label, noun="segment") for label in range(segments.count)]
     if materials is not None:
         names = [material.name for material in materials.materials]
@@ -59,10 +56,7 @@ def draw_segments(
 
 
 def draw_parts(axes: Axes, parts: PartMap, views: Views | None = None, surface: HapticSurface | None = None) -> str:
-    """Draw parts, each in its own colour, outlined, numbered, and named if there is room.
-
-    The legend has the parts with their materials, from near to far if there is a surface, or else in their order.
-    """
+    """Draw parts, each in its own colour, outlined, numbered, and named if there is room."""
     names = [""] * parts.count if surface is None or surface.names is None else surface.names
     titles = [f"{shown_number(number)} {name}".rstrip() for number, name in enumerate(names)]
     labels = _drawn_size(parts.labels)

@@ -48,12 +48,7 @@ class Farm:
     """A cluster on this machine, or the scheduler at an address. It ends with `close`, or at the end of its block."""
 
     def __init__(self, workers: int, threads: int = 1, scheduler: str = "") -> None:
-        """Start workers on this machine, or connect to a scheduler.
-
-        workers: number of processes of this machine. threads: threads of the libraries in each process. Both are
-        ignored with a scheduler.
-        Raises: BatchError without the extra, if nothing answers at the address, or workers have another version.
-        """
+        """Start workers, with this number of threads each, or connect to a scheduler. Raises: BatchError."""
         self._threads, self._scheduler = threads, scheduler
         self._leaving = ExitStack()
         self._start(workers)
@@ -89,13 +84,7 @@ class Farm:
     def map(
         self, work: Callable[[J], R], jobs: Iterable[J], chunk: int = 1, timeout_s: float = LONGEST_S
     ) -> Iterator[Done[J, R]]:
-        """Yield work(job) for each job, on any worker, in the order in which they finish; each result comes once.
-
-        chunk: the number of jobs that are sent together, which saves the scheduler's time if jobs are short. A job
-        whose worker dies is tried again alone, after all others, so that no other job of its chunk fails with it. A
-        worker whose job takes longer than timeout_s is ended, whatever blocks it. Workers of this machine are restarted
-        after some thousand jobs each.
-        """
+        """Yield work(job) for each job, on any worker, in the order in which they finish; each result comes once."""
         work = partial(_run_in_time, work, timeout_s)
         todo = iter(jobs)
         while part := list(islice(todo, FRESH_AFTER * self.workers)):

@@ -44,12 +44,9 @@ class SceneRow(NamedTuple):
 def rows_of(over: str | Sequence[str], besides: Path | None = None) -> Iterator[SceneRow]:
     """Yield the rows of a .csv or .parquet file, or one for each picture or pair of a folder or a glob, in order.
 
-    over: a file, a folder or a glob; or the pictures that a shell has made of a glob. besides: a folder whose pictures
-    are left out: that of the results.
-
-    In a manifest, the column `id` names the row (by default its number), and each other column is a key of the pipeline
-    file (`scene.left`, `workspace.width_m`); empty cells change nothing. In a folder or glob, two pictures whose names
-    end with `_left` and `_right` are a pair; without any picture, the videos are taken, and then maps of heights.
+    over: a file, a folder or a glob; or the pictures that a shell has made of a glob. besides: a folder to leave out.
+    In a manifest, `id` names the row (by default its number); each other column is a key of the pipeline file, of which
+    empty cells change nothing. In a folder, NAME_left and NAME_right are a pair; else videos, then height maps count.
     Raises: BatchError if there is no such file, nothing in it, or two rows have the same name.
     """
     several = () if isinstance(over, str) else tuple(over)
@@ -89,10 +86,7 @@ def _existing_pictures(names: Iterable[str]) -> list[Path]:
 
 
 def rows_from(rows: Iterable[Mapping[str, Any]], base: Path) -> Iterator[SceneRow]:
-    """Yield the rows of mappings from key to value. base: the folder of relative files.
-
-    Raises: BatchError if two rows have the same name.
-    """
+    """Yield the rows of mappings from key to value. base: the folder of relative files. Raises: BatchError."""
     return _check_names(_rows(rows, base), "")
 
 

@@ -69,15 +69,11 @@ def batch(
 ) -> Iterator[Row]:
     """Yield each scene's row as soon as it is known: `id`, `outcome` (ok or failed), `error`, `seconds`, `figures`, ...
 
-    rows: mappings from keys of the pipeline file to values, `{"id": "one", "scene.photo": "one.jpg"}`; relative files
-    are relative to the current folder. out: folder for the files and `rows.jsonl`; rows of an earlier batch that would
-    be the same are not made again, and come first. workers, threads: number of processes of this machine, and of
-    threads in each; by default as many as there are cores. scheduler: address of a Dask scheduler, whose workers are
-    used instead. retry: repeat scenes that failed before. sheets: draw a whole report of each scene. cache: folder for
-    results that scenes have in common. timeout_s: a scene that takes longer is ended, and fails. stop: set from another
-    thread, it ends the batch with the next scene.
-    Raises: ConfigError for a pipeline that cannot be written as a file, BatchError for rows or workers, OutputError if
-    the folder cannot be written, Stopped after `stop`. A scene that fails is a row.
+    rows: mappings from keys of the pipeline file to values, `{"id": "one", "scene.photo": "one.jpg"}`. out: folder for
+    the files and `rows.jsonl`; what it holds already comes first. workers, threads: here, and in each worker.
+    scheduler: address of a Dask scheduler, used instead. retry: repeat scenes that failed. sheets: draw reports.
+    cache: folder for results in common. timeout_s: of a scene. stop: ends the batch with the next scene.
+    Raises: ConfigError, BatchError, OutputError, Stopped after `stop`. A scene that fails is a row.
     """
     if not isinstance(pipeline, Pipeline):  # pyright: ignore[reportUnnecessaryIsInstance] - not all callers are typed
         raise wrong_argument("pipeline", pipeline, "a Pipeline")

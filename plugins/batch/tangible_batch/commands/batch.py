@@ -97,11 +97,7 @@ def batch(
 
 
 def _divide(files: Sequence[Path], over: Sequence[str]) -> tuple[Path, str, list[str]]:
-    """Return the pipeline file, its text, and what it runs over: a shell makes many words of `--over *.jpg`.
-
-    Pictures alone run through the file that `tangible new` would write for the first of them.
-    Raises: ConfigError if there is nothing to run over; as `starter`.
-    """
+    """Return the pipeline file, its text, and what it runs over: a shell makes many words of `--over *.jpg`."""
     from tangible_core.errors import ConfigError
     from tangible_core.files.yaml import read_text
     from tangible_core.pipeline import are_pictures

@@ -48,12 +48,7 @@ class Guarded:
 
 
 def refusal_text(hosts: frozenset[str], method: str, host: str | None, origin: str | None) -> str:
-    """Return why a request is refused; "" if it is not.
-
-    A foreign name that was made to lead here (DNS rebinding) shows in the host; a foreign page that sends requests
-    here shows in the origin, which browsers send with every change and every websocket.
-    hosts: all names of the server. method: "" for a websocket. host, origin: headers of the request.
-    """
+    """Return why a request is refused, "" if it is not. hosts: names of the server. method: "" for a websocket."""
     if (host or "").lower() not in hosts:
         return "this address is not served"
     if method not in READING and (origin or "").lower() not in {f"http://{each}" for each in hosts}:

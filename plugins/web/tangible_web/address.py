@@ -1,7 +1,4 @@
-"""The page's address, printed and opened before the server itself is imported.
-
-The browser takes as long to open a page as the server takes to start; its first requests wait in the socket.
-"""
+"""The page's address, printed and opened before the server is imported: first requests wait in the socket."""
 
 import os
 import secrets
@@ -52,11 +49,7 @@ class Address:
     @classmethod
     @contextmanager
     def again(cls, memory: Path) -> Generator[Self]:
-        """Listen on the address of a program that was killed, so that its pages return; else on a free port.
-
-        memory: file with port and key, readable by this user alone, while a program listens; it goes with its end.
-        Raises: ConfigError if the page was not built.
-        """
+        """Listen on the address of a killed program, so that its pages return; else on a free port."""
         port, key = _remembered(memory)
         with ExitStack() as stack:
             try:

@@ -14,11 +14,7 @@ MAX_SHOWN = 200
 
 
 def checked_arguments(name: str, answer: Callable[..., Any], own: int, said: dict[str, Any]) -> dict[str, Any]:
-    """Return a page's arguments of a function, checked by their types; as they are, for one that takes any.
-
-    name: of the request. own: number of leading parameters that the page may not give.
-    Raises: ConfigError for wrong, missing and further arguments.
-    """
+    """Return a page's arguments of a function, without its `own` first, checked by type. Raises: ConfigError."""
     if any(parameter.kind is parameter.VAR_KEYWORD for parameter in inspect.signature(answer).parameters.values()):
         return said  # it checks them itself
     try:

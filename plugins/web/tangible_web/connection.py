@@ -23,11 +23,7 @@ PING_S = 5.0
 
 @final
 class Strangers:
-    """The connections that have not shown the key; of too many, the one that has been open longest is cut off.
-
-    So the holder of the key gets through whatever others open: the newest connection is never the one that is cut.
-    Used in the event loop's thread alone, so in the order in which connections are accepted.
-    """
+    """The connections that have not shown the key, in the order of acceptance; of too many, the oldest is cut off."""
 
     def __init__(self) -> None:
         self._open: dict[Any, None] = {}

@@ -37,10 +37,7 @@ NOBODY = Held()
 
 @final
 class Hand:
-    """The client of this server's pointer device.
-
-    A page sends positions in the picture; the document's mapping turns them into positions in the pointer's own frame.
-    """
+    """The client of this server's pointer device; positions are those in the picture."""
 
     def __init__(self, channel: str) -> None:
         self.channel = channel
@@ -110,8 +107,5 @@ class Hand:
 
 
 def high_without_client(to: Placement) -> bool:
-    """Return True if a pointer without a client, a metre up in its own frame, is above every surface.
-
-    Under a mapping that enlarges or lifts much, that metre may lie inside a surface.
-    """
+    """Return True if a pointer without a client, a metre up in its own frame, is above every surface."""
     return (FARTHEST_M - to.offset_z_m) / to.scale >= CLEAR_M

@@ -51,10 +51,7 @@ class BuiltPage(StaticFiles):
 
 @final
 class ServerThread:
-    """A server in a thread of its own, as a context manager; the hand that its page moves is released at the end.
-
-    What strangers send is not reported: the terminal is the program's.
-    """
+    """A server in a thread, as a context manager; the hand that its page moves is released at the end."""
 
     def __init__(self, routes: Sequence[BaseRoute], address: Address, hand: Hand) -> None:
         app = Guarded(Starlette(routes=routes, lifespan=self._lifespan), address.hosts)

@@ -149,11 +149,7 @@ def photo(picture: np.ndarray, most_bytes: int) -> str:
 def page_of(
     title: str, language: Language, named_in: str, data: Mapping[str, Any], script: str, style: str, licences: str
 ) -> str:
-    """Return the page. language: of its words; named_in: the tag of the language of title and names.
-
-    Whatever title and names contain is text: it is escaped in HTML, and in JSON written without `<`, `>` and `&`. A
-    name that turns the direction of writing does so within itself alone, as it is isolated.
-    """
+    """Return the page. language: of its words; named_in: the tag of the language of title and names."""
     if "</script" in script.lower() or "</style" in style.lower():
         raise ValueError("script and style must not end their elements")
     name, say = escape(one_line(title)), Words(language)

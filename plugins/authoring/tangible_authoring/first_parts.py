@@ -61,10 +61,7 @@ class FirstParts:
     it never names a missing file."""
 
     def write(self, force: bool = False) -> tuple[Path, ...]:
-        """Write the files, each whole or not at all. force: overwrite existing files.
-
-        Raises: OutputError if a file exists, cannot be written, or is being written by another process.
-        """
+        """Write the files, each whole or not at all. force: overwrite existing ones. Raises: OutputError."""
         with sole_writer(next(iter(self.contents))):
             check_free(self.contents, force=force)
             for path, content in self.contents.items():
@@ -102,10 +99,8 @@ def first_parts(
 ) -> FirstParts:
     """Find the parts of a photo, or of a pair, whose heights are then by depth; `FirstParts.write` writes the files.
 
-    file: the path of the pipeline file; its own paths are relative to that. method: the texture method that finds the
-    segments; by default the method of `starter`. overrides: `texture.key=value` each, for its options. most: the most
-    parts. smallest_mm: parts that hold no disc of this diameter, mm, on a surface whose longer side is 80 mm, are
-    joined to a neighbour.
+    file: the pipeline file to write. method: for the segments; by default that of `starter`, with options `overrides`.
+    most: the most parts. smallest_mm: diameter of the smallest, on a surface whose longer side is 80 mm.
     Raises: ConfigError for files that are not pictures, and for options; PictureError for an unreadable picture.
     """
     if most < 1:
@@ -127,11 +122,7 @@ def first_parts(
 
 
 def proposed_parts(pipeline: Pipeline, most: int = MAX_PARTS, smallest_mm: float = SMALLEST_MM) -> PartMap:
-    """Find the parts of a pipeline's picture: the segments of its texture method, joined until they are few and large.
-
-    Where a network for figures is here, segments are divided along the outline of what it sees.
-    most, smallest_mm: as in `first_parts`. Raises: TangibleError as `Pipeline.make`.
-    """
+    """Find the parts of a pipeline's picture: its segments, joined until they are few and large."""
     scene, segments = pipeline.scene, pipeline.make("segments")
     assert scene.views is not None
     if segments is None:
@@ -178,10 +169,7 @@ def _pipeline(
 
 
 def proposed_heights(pipeline: Pipeline, parts: PartMap, top_m: float | None = None) -> PartHeights:
-    """Find the heights of parts: by depth where the scene has depth, else by a guess; rounded down, metres.
-
-    top_m: the greatest height of a part; that of the starter file by default.
-    """
+    """Find the heights of parts, rounded down, metres: by depth where the scene has it, else by a guess."""
     scene, choice = pipeline.scene, HeightChoice(by="guess")
     if top_m is None:
         top_m = RELIEF_MM / 1000 - choice.bulge_m - choice.detail_m

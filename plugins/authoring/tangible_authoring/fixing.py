@@ -44,11 +44,7 @@ class Cured(NamedTuple):
 
 
 def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, cached: bool = True) -> Fixed:
-    """Apply the cures of preflight, the unsafe first, until none is left; `verdicts.safe` is True if it passes.
-
-    sets: `key.key=value` each, as `--set` takes them. out: the place for the file; nothing is written.
-    Raises: ConfigError as `load_config`; TangibleError as `Feeling.flight`.
-    """
+    """Apply the cures of preflight, the unsafe first, until none remains; nothing is written. Raises: TangibleError."""
     pipeline = Pipeline.from_yaml(path, sets := list(sets))
     if not cached:
         pipeline.engine.cache = None
@@ -67,11 +63,7 @@ def cure(
     sets: Sequence[str] = (),
     lateness: Lateness | None = None,
 ) -> Cured:
-    """Apply the cures of preflight to a text, and return it with its pipeline.
-
-    sets: overrides of the pipeline that the text does not have. lateness: that of a running loop, in place of this
-    process's. Raises: as `fix`.
-    """
+    """Apply the cures of preflight to a text, and return it with its pipeline. lateness: of a running loop."""
     flight = Feeling(pipeline).flight(hand=hand, loop=loop)
     flight = replace(flight, lateness=(lateness := lateness or flight.lateness))
     done: dict[str, Change] = {}
@@ -117,10 +109,7 @@ WORDS: Mapping[str, str] = {
 
 
 def losses(config: PipelineConfig, changes: Mapping[str, Change]) -> list[str]:
-    """Return what each change takes away, as the end of a sentence that begins with the surface.
-
-    config: the configuration before the changes.
-    """
+    """Return what each change takes away, as the end of a sentence that begins with the surface."""
     return [_loss(config, key, change.setting) for key, change in changes.items()]
 
 

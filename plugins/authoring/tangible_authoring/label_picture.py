@@ -9,11 +9,7 @@ from tangible_core.scene.formats import MAX_IN_PALETTE, SPARE, distinct_colours
 
 
 def label_picture(labels: Int32[np.ndarray, "h w"]) -> bytes:
-    """Write a PNG with a colour for each label, which `formats.pictures.read_labels` reads as the same segments.
-
-    Labels start at 0, and number at most `formats.pictures.MAX_LABELS`. The PNG has a palette, so that no brush mixes
-    two colours at a border; with more than 256 labels it has red, green and blue.
-    """
+    """Write a PNG with a colour for each label from 0 on, which `read_labels` reads as the same segments."""
     from PIL import Image
 
     count = int(labels.max()) + 1

@@ -53,10 +53,7 @@ class ListedParts(NamedTuple):
 
 
 def list_rows(parts: PartMap, heights: PartHeights | None, choices: Mapping[int, PartChoice]) -> tuple[ListedPart, ...]:
-    """Make a row for every part.
-
-    heights: None where the relief is not made of parts. choices: what the file has for parts, by label.
-    """
+    """Make a row for every part. heights: of the parts, if they have some. choices: of the file, by label."""
     step = -(-max(parts.labels.shape) // MAX_CELLS)
     shown, sizes = parts.labels[::step, ::step], part_sizes(parts)
 
@@ -76,11 +73,7 @@ def list_rows(parts: PartMap, heights: PartHeights | None, choices: Mapping[int,
 
 
 def list_parts(pipeline: Pipeline) -> ListedParts:
-    """List the parts of a pipeline's picture, even where its `parts:` is wrong.
-
-    Raises: ConfigError for a scene without segments, PictureError for too many parts; TangibleError as
-    `Pipeline.make`.
-    """
+    """List the parts of a pipeline's picture, even where its `parts:` is wrong. Raises: ConfigError, PictureError."""
     config, scene = pipeline.config, pipeline.scene
     alone = Pipeline.from_config(
         config.with_values(parts=None, heights=None, materials=MaterialChoice()), like=pipeline

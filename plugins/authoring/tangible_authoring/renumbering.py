@@ -52,12 +52,7 @@ def draw_numbers(
     force: bool = False,
     cached: bool = True,
 ) -> Numbers:
-    """List the parts of a pipeline file, and draw their numbers and names at `numbered`.
-
-    Where the numbers differ from those that were drawn there, and the file lists such parts, nothing is drawn: with
-    `renumber` the file is corrected first, with `force` the numbers alone are drawn.
-    Raises: OutputError for another file at `numbered`, unless forced; ConfigError and others as `list_parts`.
-    """
+    """List the parts of a pipeline file, and draw their numbers and names at `numbered`. Raises: OutputError."""
     drawn = as_drawn(numbered)
     if drawn is None:
         check_free([numbered], force=force)
@@ -104,10 +99,7 @@ def _write_together(contents: Mapping[Path, bytes]) -> None:
 
 
 def moves(written: Mapping[int, Any], before: Sequence[Before]) -> list[Moved]:
-    """Find the parts of the file that have another number now, or are gone.
-
-    written: the file's parts by their earlier numbers. before: the earlier number of each part; empty if unknown.
-    """
+    """Find the parts of the file that have another number now, or are gone. before: the earlier number of each part."""
     now = {each.number: number for number, each in enumerate(before) if each.number is not None}
     found = (
         Moved(number, now.get(number), str(_block(choice).get("name") or "")) for number, choice in written.items()
@@ -138,11 +130,7 @@ def parts_in(text: str, path: Path) -> dict[int, Any]:
 
 
 def renumber_parts(text: str, path: Path, before: Sequence[Before], found: Sequence[ListedPart]) -> str:
-    """Return the text with a line for each part, which has the name, height and material of its earlier number.
-
-    A new part has the height of the part that it was cut from, and no name.
-    Raises: ConfigError where `parts:` does not stand in lines of its own.
-    """
+    """Return the text with a line for each part, as that of its earlier number. Raises: ConfigError."""
     written = parts_in(text, path)
     parts = {number: _choice_of(written, earlier) for number, earlier in enumerate(before, 1)}
     comments = {shown_number(part.number): _comment(was, part) for was, part in zip(before, found, strict=True)}

@@ -17,7 +17,6 @@ else:
     Question = Literal[QUESTIONS]
 Order = Literal["latin-square", "random", "as-written"]
 Sound = Literal["contact", "texture", "force", "height"]
-"""A sound of a touch on the page."""
 
 
 class Condition(Section):

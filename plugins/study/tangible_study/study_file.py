@@ -16,7 +16,6 @@ from .procedures.procedure import Procedure, load_procedure, procedure_names
 from .questions import load_question
 
 EXPECTED = "a study is a mapping that starts with `study:`"
-"""Complaint about a file that is not a mapping."""
 
 
 class Recipe(NamedTuple):

@@ -14,46 +14,27 @@ MISSING = "n/a"
 
 @dataclass(frozen=True)
 class Answer:
-    """An answered trial: a line of the table; None is a missing value."""
+    """An answered trial: a line of the table, as `session/columns.json` describes it; None is a missing value."""
 
     trial: int
-    """Number of the trial, from 1, in the order of presentation."""
     phase: str
-    """training or test."""
     comparison: str
-    """Name of the comparison in the study file, to which question and procedure belong."""
     question: str
-    """Kind of the question."""
     procedure: str
-    """constant, 2afc, oddity, same-different, quest, adjustment, rating, or the name of another installed procedure."""
     condition: str
-    """Name of the condition under test."""
     other: str | None = None
-    """Name of the condition with which it is compared."""
     level: float | None = None
-    """Level of the quantity that varies, in the unit that the sidecar names; of an adjustment, where it began."""
     standard: float | None = None
-    """Level of the standard."""
     position: int | None = None
-    """Interval, from 1, in which the comparison (or the odd one) was presented."""
     response: str = ""
-    """Answer: the number of an interval, the name of a part, the level that was set, or a rating."""
     chosen: int | None = None
-    """1 if the comparison was chosen over the standard or the other condition, 0 if not."""
     correct: int | None = None
-    """1 or 0, where an answer can be right."""
     response_time: float = 0.0
-    """Seconds from the end of the last interval to the answer, by a clock that nobody sets."""
     repeat: int = 0
-    """Number of times that this trial was begun before this answer."""
     rendered: bool = True
-    """True if the device rendered what was requested."""
     why: str | None = None
-    """Reason why it did not."""
     recording: str | None = None
-    """Path of the recording of the forces, relative to the study's folder."""
     target: str | None = None
-    """Right answer, where it is not the number of an interval: the name of a part, or `same` or `different`."""
 
     def line(self) -> str:
         """Return the line of the table, without its end."""
@@ -66,7 +47,6 @@ class Answer:
 
 
 COLUMNS = tuple(field.name for field in fields(Answer))
-"""Names of the columns, in their order."""
 
 
 def read_answers(path: Path) -> list[Answer]:

@@ -7,7 +7,7 @@ import pytest
 
 from tangible_core import HapticSurface
 from tangible_core.materials.assignment import library
-from tangible_study.desks.page_surface import MAX_CELLS, surface_for_page
+from tangible_study.desks.page import MAX_CELLS, surface_for_page
 
 
 def test_surface_is_packed_without_what_would_name_it():

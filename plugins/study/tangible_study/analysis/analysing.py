@@ -24,7 +24,6 @@ class Kept:
     answers: Mapping[str, list[Answer]]
     """Answers of test trials that the device rendered, by participant."""
     training: int
-    """Number of training trials."""
     not_rendered: int
     """Number of test trials in which the device did not render what was requested."""
 
@@ -106,7 +105,6 @@ def counts(kept: Kept) -> str:
 
 
 def _difference(measure: str, what: str, row: Row) -> Iterator[str]:
-    """Yield sentences about a difference between two conditions."""
     one, other = row.what.condition, row.what.other
     value, low, high = (100 * each for each in row.estimate) if measure == CORRECT else row.estimate
     unit = "percentage points" if measure == CORRECT else row.unit

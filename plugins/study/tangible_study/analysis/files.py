@@ -144,7 +144,6 @@ def _draw_curves(axes: Axes, result: Result) -> None:
 
 
 def _draw_figures(axes: Axes, result: Result) -> None:
-    """Draw each figure with its interval, and the figures of single participants next to it."""
     from tangible_report.style import INK, OKABE_ITO
 
     shown = result.of_all(result.main)

@@ -3,21 +3,26 @@
 import asyncio
 import secrets
 import time
+from base64 import b64encode
 from collections.abc import Callable, Coroutine, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from dataclasses import asdict
 from importlib.resources import files
 from threading import Condition, Event
 from typing import Any, Self, final
 
+import numpy as np
 from starlette.requests import HTTPConnection, Request
 from starlette.responses import HTMLResponse, Response
 from starlette.routing import Mount, Route, Router, WebSocketRoute
 from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket
 
+from tangible_core.data import HapticSurface
 from tangible_core.errors import DeviceError
 from tangible_core.mapping import placement_of
 from tangible_core.pipeline import Feeling
+from tangible_core.scene import middle_pixels, reduced_map, reduced_shape
 from tangible_core.servo import Servo, part_number
 from tangible_web.address import HOST, Address, static
 from tangible_web.connection import show_key
@@ -28,7 +33,6 @@ from tangible_web.server import BuiltPage, ServerThread
 from tangible_web.state_frame import OtherLaw, frame_of, frame_without_loop
 
 from .desk import LEAVE, Desk, ParticipantLeft
-from .page_surface import surface_for_page
 
 LAST_S = 2.0
 """The longest time for which the end of a session waits for the page, s."""
@@ -211,7 +215,6 @@ class Page(Desk):
             self._server.post(lambda: [tab.say(event) for tab in self._tabs])
 
     def _routes(self) -> list[Mount]:
-        """Return the routes, all of them below the key."""
         html = files("tangible_study.desks").joinpath("page.html").read_text(encoding="utf-8")
 
         async def index(_: Request) -> Response:
@@ -248,3 +251,38 @@ async def surface(page: Page, _: LiveTab, which: int) -> dict[str, Any] | None:
 async def stop(page: Page, _: LiveTab) -> None:
     """End the force at once."""
     page.halt()
+
+
+MAX_CELLS = 200_000
+"""The most cells: the page draws nothing, and needs heights only to hold the hand over the surface."""
+
+
+def surface_for_page(surface: HapticSurface, number: int) -> dict[str, Any]:
+    """Return heights, labels and materials as JSON data. number: of the surface in this session."""
+    shape = reduced_shape(surface.height_m.shape, max(1.0, (surface.height_m.size / MAX_CELLS) ** 0.5))
+    height_m = np.ascontiguousarray(reduced_map(surface.height_m, shape), "<f4")
+    labels = None if surface.labels is None else middle_pixels(surface.labels, shape)
+    materials = [{**asdict(material), "name": ""} for material in surface.materials or ()] if labels is not None else []
+    meta = {
+        "digest": str(number),
+        "name": "",
+        "shows": "surface",
+        "rows": shape[0],
+        "columns": shape[1],
+        "extent_m": list(surface.extent_m),
+        "height_m": [float(height_m.min()), float(height_m.max())],
+        "levels": [{"step": 1, "rows": shape[0], "columns": shape[1]}],
+        "labels": 0 if labels is None else int(labels.max()) + 1,
+        "label_bytes": 2,
+        "materials": materials,
+        "parts": None,
+        "photo": False,
+        "fine_photo": None,
+        "layers": {},
+    }
+    return {
+        "meta": meta,
+        "heights": b64encode(height_m.tobytes()).decode(),
+        "labels": "" if labels is None else b64encode(labels.astype("<u2").tobytes()).decode(),
+        "kinds": list(range(len(materials))),
+    }

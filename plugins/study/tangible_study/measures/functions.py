@@ -51,7 +51,6 @@ class Function(ABC):
     """A psychometric function."""
 
     main: ClassVar[str]
-    """Measure of the result."""
     compared: ClassVar[tuple[str, ...]]
     """Measures by which conditions are compared."""
 

@@ -4,7 +4,6 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from types import TracebackType
 from typing import Self, final
 
 import numpy as np
@@ -45,7 +44,6 @@ class Rendering:
     late_s: list[float] = field(default_factory=list[float])
     """The 99th percentile and the maximum of each part of the ticks."""
     last_s: float = 0.0
-    """Time of the last tick."""
 
     def add(self, rows: np.ndarray) -> None:
         """Count more ticks, rows of `TICK_COLUMNS`."""
@@ -87,9 +85,7 @@ class HeldLoop:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> str:

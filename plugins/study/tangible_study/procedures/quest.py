@@ -96,7 +96,6 @@ class _Track:
         return self._comparison.levels[where]
 
     def update(self, level: float, yes: bool) -> None:
-        """Take an answer."""
         intensity = self._levels[self._comparison.levels.index(level)]
         self._quest.update(stim={"intensity": intensity}, outcome={"response": int(yes)})
 

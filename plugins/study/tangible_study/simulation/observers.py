@@ -170,7 +170,6 @@ class Psychometric(Observer):
 
 
 OBSERVERS: Mapping[str, type[Observer]] = {"psychometric": Psychometric, "detection": Detection, "hand": Hand}
-"""Observer models by name."""
 
 
 def observer_of(name: str, sets: Sequence[str], file: StudyFile) -> Observer:

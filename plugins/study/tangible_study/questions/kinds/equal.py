@@ -13,7 +13,6 @@ from ...statistics.psychometric import GAUSSIAN
 from ..question import Percept, Question
 
 MORE, LESS, EQUAL = "1", "2", "3"
-"""Keys of an adjustment."""
 
 
 class Equal(Question):

@@ -150,7 +150,6 @@ SURFACES: Mapping[str, Analytic] = {
         lambda x, y: 0.0,
     ),
 }
-"""The analytic surfaces by name."""
 
 
 def analytic_stroke(

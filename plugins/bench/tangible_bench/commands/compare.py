@@ -123,7 +123,6 @@ def _is_set(config: Path) -> bool:
 
 
 def _check_options(config: Path, folder: Path | None, table: str | None, submission: Path | None, json: bool) -> None:
-    """Check options together. Raises: ConfigError for some that do not go together."""
     from tangible_core.errors import ConfigError
 
     if folder is not None and not _is_set(config):

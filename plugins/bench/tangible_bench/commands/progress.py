@@ -65,7 +65,6 @@ class Progress:
     """Reports on the measurements of one comparison."""
 
     def __init__(self, path: Path) -> None:
-        """path: the file of results."""
         self.path = path
         self._forecast: Forecast | None = None
         self._start_s = 0.0

@@ -34,7 +34,6 @@ UNCOMPARED = {
     "device": "devices are not compared; `tangible devices stress NAME` measures how fast one is",
     "export": "exporters are not compared, as there is no truth that files could be compared with",
 }
-"""Kinds of methods that cannot be compared, and why."""
 Place = tuple[Any, ...]
 
 

@@ -17,9 +17,7 @@ class StandardSet:
 
     title: str
     archive: str
-    """The file to fetch."""
     page: str
-    """The page to fetch it from."""
     contents: str
     """The files in its folder once it is unpacked."""
     read: Mapping[str, Read]
@@ -89,4 +87,3 @@ SETS: Mapping[str, StandardSet] = {
         "train/balanced/SCENE/camera_00, camera_02 and disp_00.npy", {"": kits.booster}, ("F", "H", "Q"),
     ),
 }  # fmt: skip
-"""Name of a set in files and commands -> the set."""

@@ -97,7 +97,6 @@ class StandardPair:
     truth: Path | None = None
     """The true disparity; None if the benchmark keeps it."""
     truth_scale: TruthScale | None = None
-    """See `SceneFiles.truth_scale`."""
     noc: Mask | None = None
     """The mask of pixels that both views show; None to derive it from a dense truth."""
     foreground: Mask | None = None

@@ -46,13 +46,8 @@ def measurements(comparison: Comparison) -> list[Measurement]:
     return planned
 
 
-@dataclass(frozen=True)
-class KnownScene:
-    """The digest of a scene, and facts that methods may be given."""
-
-    digest: str
-    facts: Mapping[str, Any]
-    """Option of a method -> value for this scene."""
+KnownScene = tuple[str, Mapping[str, Any]]
+"""The digest of a scene, and facts that methods may be given: option of a method -> value for this scene."""
 
 
 def _known_scenes(comparison: Comparison) -> dict[str, KnownScene]:
@@ -65,7 +60,7 @@ def _known_scenes(comparison: Comparison) -> dict[str, KnownScene]:
             complaints.append(f"{comparison.path}: scene {name}: {error}")
         else:
             facts = {key: fact_of(scene) for key, fact_of in comparison.task.given.items()}
-            known[name] = KnownScene(scene.digest(), facts)
+            known[name] = scene.digest(), facts
     if complaints:
         raise ConfigError(*complaints)
     return known
@@ -74,9 +69,9 @@ def _known_scenes(comparison: Comparison) -> dict[str, KnownScene]:
 def _side_by_side(
     comparison: Comparison, methods: Sequence[Entry], scene: str, known: KnownScene, damage: Damage, repeat: int
 ) -> Iterator[Measurement]:
-    task, protocol = comparison.task, comparison.protocol
+    task, protocol, (digest, facts) = comparison.task, comparison.protocol, known
     for entry in methods:
-        options = entry.method_for(known.facts).model_dump(mode="json")
+        options = entry.method_for(facts).model_dump(mode="json")
         finishes = tuple(name for name, labels in comparison.finishes.items() if entry.label in labels)
         job = Job(
             task.kind, entry.chosen.name, options, comparison.scenes[scene].model_dump(mode="json"),
@@ -84,9 +79,9 @@ def _side_by_side(
         )  # fmt: skip
         installed = versions(entry.chosen.origin.partition(" ")[0])
         code = f"v{task.version} {_code(entry.chosen)} {installed} {machine()}"
-        plain = repr((asdict(replace(job, scene={})), entry.label, known.digest, damage.name, repeat, code))
+        plain = repr((asdict(replace(job, scene={})), entry.label, digest, damage.name, repeat, code))
         row = Row(
-            digest_of(plain), task.kind, entry.label, job.use, options, entry.chosen.origin, scene, known.digest,
+            digest_of(plain), task.kind, entry.label, job.use, options, entry.chosen.origin, scene, digest,
             damage.name, finishes, repeat, installed, machine(), comparison.baseline,
         )  # fmt: skip
         cls = type(entry.chosen.method)

@@ -22,7 +22,6 @@ class Row:
     """The hash of all that the result depends on: a measurement with the same key need not be repeated."""
     compare: str
     method: str
-    """The method's label."""
     use: str
     options: Mapping[str, Any]
     origin: str
@@ -42,7 +41,6 @@ class Row:
     peak_memory_bytes: int | None = None
     measures: Mapping[str, float | None] = field(default_factory=dict[str, float | None])
     error: str | None = None
-    """The reason why there is no result."""
 
     @property
     def cell(self) -> tuple[str, str, str]:

@@ -36,7 +36,6 @@ class Outlook:
     kept: dict[str, Row]
     """The rows that need not be measured again, by key."""
     waiting: tuple[Measurement, ...]
-    """The measurements to do."""
 
 
 def look(wanted: Sequence[Measurement], path: Path, retry: bool = False) -> Outlook:

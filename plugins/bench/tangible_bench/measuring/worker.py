@@ -29,7 +29,6 @@ class Job:
     use: str
     options: Mapping[str, Any]
     scene: Mapping[str, Any]
-    """The options of the task's scene."""
     perturb: str
     """The name of a perturbation, or `none`."""
     value: float

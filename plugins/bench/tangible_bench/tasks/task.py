@@ -82,7 +82,6 @@ class Clock:
     """The unit of times."""
 
     unit: str = "ms"
-    """The column heading."""
     per_second: float = 1e3
     pieces: Callable[[Any], int] = lambda scene: 1
     """(scene) -> number of pieces of work in a call; times are those of one piece."""
@@ -93,7 +92,6 @@ class Perturbation:
     """A controlled damage to a scene, the same for every method."""
 
     meaning: str
-    """The meaning of its values, with the unit and the range."""
     allowed: Callable[[float], bool]
     apply: Apply
 
@@ -131,7 +129,6 @@ class Task:
     plotted: tuple[str, ...]
     """The measures that are drawn over time, one panel each."""
     curve: Curve | None = None
-    """A curve that is drawn in its own panel."""
     prepare: Callable[[Any, Any], Any] = lambda method, scene: method
     """(method, scene) -> argument of `work`; called before each call. Untimed, but it counts for memory and for the
     very first call."""

@@ -27,7 +27,6 @@ class Held(NamedTuple):
     """A position of the hand; by default high above, which is a released hand."""
 
     at: Vector = HIGH_M
-    """Position in the picture's frame, m."""
     buttons: int = 0
     heard_s: float = -math.inf
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 from tangible_core.errors import ConfigError, did_you_mean, quoted
-from tangible_web.arguments import checked_arguments
+from tangible_web.parsing import checked_arguments
 
 F = TypeVar("F", bound=Callable[..., Any])
 

@@ -6,7 +6,6 @@ from pathlib import Path
 from tangible_core.files import as_path
 
 RECORDINGS = "recordings"
-"""Name of the folder of recordings."""
 
 
 def user_folder(name: str) -> Path:

@@ -18,7 +18,7 @@ from tangible_core.servo.ring import shared_folder
 from tangible_ui.feeling.feeling import Feeling, LoopInput
 from tangible_ui.requests.document import take
 from tangible_ui.serving.serve import watch
-from tangible_ui.state.texts import Text
+from tangible_ui.state.document import Text
 from tangible_web.framing import STATE_FRAME
 from waiting import happened, until
 

@@ -25,8 +25,7 @@ from tangible_ui.feeling.comparison import NOTHING, ComparisonLoop
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.requests import feeling as asks
 from tangible_ui.serving.serve import watch
-from tangible_ui.state.laws import Laws
-from tangible_ui.state.session import Session
+from tangible_ui.state.session import Laws, Session
 from tangible_web.framing import STATE_FRAME
 from waiting import happened
 

@@ -20,8 +20,7 @@ from tangible_core.errors import ConfigError, TangibleError
 from tangible_core.parts import find_parts
 from tangible_core.pipeline.config.editing import read_values
 from tangible_core.scene.formats.pictures import read_labels
-from tangible_ui.state.scheduling import LatestWins
-from tangible_ui.state.session import Session
+from tangible_ui.state.session import LatestWins, Session
 from tangible_ui.worker.jobs import JOBS, making
 from tangible_ui.worker.parts import opening
 from tangible_ui.worker.parts.opening import _places

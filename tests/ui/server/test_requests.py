@@ -17,8 +17,8 @@ from tangible_core.servo.ring import PERIOD_NS, SPINS
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.requests import devices, find_request, making, preflight
 from tangible_ui.requests import document as asks_document
+from tangible_ui.state.document import Text
 from tangible_ui.state.session import Session
-from tangible_ui.state.texts import Text
 from tangible_ui.worker.handle import WorkerKilled
 
 Ask = Callable[..., Coroutine[Any, Any, Any]]

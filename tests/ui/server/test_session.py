@@ -14,8 +14,7 @@ from tangible_core import load_method
 from tangible_core.errors import DeviceError, OutputError
 from tangible_ui.feeling.choice import NotConfirmed
 from tangible_ui.feeling.feeling import Feeling
-from tangible_ui.state.scheduling import LatestWins
-from tangible_ui.state.session import Session
+from tangible_ui.state.session import LatestWins, Session
 
 pytestmark = pytest.mark.anyio
 

@@ -17,9 +17,7 @@ class Choice:
     """The device that a person chose."""
 
     kind: Literal["hand", "document", "other"] = "hand"
-    """The page's own hand, the device of the document, or another device."""
     name: str = ""
-    """Name of the other device."""
     sure: bool = False
     """True if the person was warned of the motor and agreed."""
     agreed: type[HapticDevice] | None = None

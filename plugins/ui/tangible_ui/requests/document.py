@@ -8,9 +8,9 @@ from typing import Any
 from tangible_core.errors import ConfigError
 from tangible_core.files import as_path
 
+from ..state.document import Text
 from ..state.session import Session
 from ..state.tabs import Tab
-from ..state.texts import Text
 from .making import foresee, make
 from .table import request
 

@@ -3,9 +3,9 @@
 import asyncio
 from typing import Any, Literal
 
+from ..state.document import Text
 from ..state.session import Session
 from ..state.tabs import Tab
-from ..state.texts import Text
 from ..user_data import user_folder
 from .document import take
 from .making import foresee

@@ -1,12 +1,167 @@
 """The document that all tabs edit: the text of a pipeline file, with its history and its draft."""
 
-from collections.abc import Iterable
+import asyncio
+import json
+import logging
+import os
+from collections import deque
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
-from typing import Any, final
+from typing import Any, NamedTuple, final
 
+from tangible_core.errors import OutputError
+from tangible_core.files import write_text
+
+from ..stale_files import left_in
 from ..user_data import user_folder
-from .drafts import Drafts
-from .texts import Text, Texts
+
+log: logging.Logger = logging.getLogger(__name__)
+MAX_STEPS = 100
+MAX_LEFT = 10
+"""Number of drafts that are kept; older ones are removed."""
+
+
+class Text(NamedTuple):
+    """The text of a pipeline file, and its path."""
+
+    text: str
+    path: Path
+
+
+@final
+class Texts:
+    """Texts to undo and to redo."""
+
+    def __init__(self) -> None:
+        self.lock: asyncio.Lock = asyncio.Lock()
+        """Lock for reading the document, computing another text of it, and replacing it."""
+        self._before: deque[Text] = deque(maxlen=MAX_STEPS)
+        self._after: list[Text] = []
+
+    @property
+    def can_undo(self) -> bool:
+        """True if there is a text to undo to."""
+        return bool(self._before)
+
+    @property
+    def can_redo(self) -> bool:
+        """True if there is a text to redo."""
+        return bool(self._after)
+
+    @property
+    def all(self) -> list[str]:
+        """All texts of the history."""
+        return [each.text for each in (*self._before, *self._after)]
+
+    def rewrite(self, others: Mapping[str, str]) -> None:
+        """Replace texts by equivalent ones, after a file that they name was moved."""
+        before = [each._replace(text=others.get(each.text, each.text)) for each in self._before]
+        self._before = deque(before, maxlen=MAX_STEPS)
+        self._after = [each._replace(text=others.get(each.text, each.text)) for each in self._after]
+
+    def leave(self, now: Text) -> None:
+        """Add the text that is replaced to the history; what was undone is lost."""
+        if now.text:
+            self._before.append(now)
+        self._after.clear()
+
+    def before(self) -> Text | None:
+        """Return the text of one step back."""
+        return self._before[-1] if self._before else None
+
+    def after(self) -> Text | None:
+        """Return the text that was undone last."""
+        return self._after[-1] if self._after else None
+
+    def step(self, now: Text, *, back: bool) -> None:
+        """Move this text to the other side of the history, after a step to `before` or `after`."""
+        if back:
+            self._after.append(now)
+            self._before.pop()
+        else:
+            self._before.append(now)
+            self._after.pop()
+
+
+class Draft(NamedTuple):
+    """The unsaved document of a program that ended."""
+
+    file: Path
+    text: Text
+    at_s: float
+    """Time of the last edit, Unix time."""
+
+
+@final
+class Drafts:
+    """The draft of this program: a file that exists while the document differs from the saved one."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._file = folder / f"{os.getpid()}.json"
+        self._opened = ""
+        self._newest = self._kept = Text("", Path())
+        self._lock = asyncio.Lock()
+        self._failed = False
+        self.left: Draft | None = None
+        """The draft of an earlier program."""
+
+    def remember_opened(self, text: str) -> None:
+        """Remember the text that a file holds: it needs no draft."""
+        self._opened = text
+
+    @property
+    def opened_text(self) -> str:
+        """The text of the document's file when it was opened or saved."""
+        return self._opened
+
+    async def keep(self, text: Text) -> None:
+        """Write the document's text as a draft. A full disk is warned of once."""
+        self._newest = text
+        async with self._lock:  # one write at a time; of many edits the newest alone
+            if (text := self._newest) != self._kept:
+                await asyncio.to_thread(self._put, text)
+                self._kept = text
+
+    def look(self) -> Draft | None:
+        """Return the newest draft of an earlier program, and remove old ones."""
+        found = sorted(filter(None, map(_read, left_in(self._folder, "*.json"))), key=lambda draft: draft.at_s)
+        for draft in found[:-MAX_LEFT]:
+            _remove(draft.file)
+        self.left = found[-1] if found else None
+        return self.left
+
+    def drop(self) -> None:
+        """Remove the earlier program's draft: it was restored, or is not wanted."""
+        if self.left is not None:
+            _remove(self.left.file)
+            self.left = None
+
+    def _put(self, text: Text) -> None:
+        if text.text == self._opened:
+            _remove(self._file)
+            return
+        try:
+            write_text(self._file, json.dumps({"text": text.text, "path": str(text.path)}), private=True)
+            self._failed = False
+        except OutputError as error:
+            if not self._failed:
+                log.warning("unsaved edits are not kept for the next start: %s", error)
+            self._failed = True
+
+
+def _read(file: Path) -> Draft | None:
+    try:
+        said: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        return Draft(file, Text(str(said["text"]), Path(str(said["path"]))), file.stat().st_mtime)
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return None
+
+
+def _remove(file: Path) -> None:
+    with suppress(OSError):
+        file.unlink()
 
 
 @final
@@ -17,7 +172,6 @@ class Document:
         self.text: str = ""
         self.path: Path = Path.cwd() / "untitled.yaml"
         self.digest: str = ""
-        """Digest of the text, as events name it."""
         self.sets: list[str] = list(sets)
         """Changes from the command line, which override the file."""
         self.texts: Texts = Texts()

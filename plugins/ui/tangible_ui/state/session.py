@@ -1,12 +1,15 @@
 """The session that all tabs share: the document, running jobs, the force loop, the tabs."""
 
 import asyncio
-from collections.abc import Iterable
+import math
+from collections.abc import Awaitable, Callable, Iterable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, final
+from typing import Any, TypeVar, final
 
 from tangible_core.errors import DeviceError
 from tangible_web.live import describe_error
+from tangible_web.state_frame import ALONE, OtherLaw
 
 from ..feeling.choice import Choice, NotConfirmed
 from ..feeling.comparison import ComparisonLoop
@@ -16,13 +19,115 @@ from ..user_data import user_folder
 from ..worker import Worker
 from ..worker.messages import Event
 from .document import Document
-from .laws import Laws
-from .scheduling import LatestWins, LongJobs
 from .tabs import Tabs
 from .uploads import UploadStore
 
 DRAWN_PAUSE_S = 0.4
 """Pause between two drawings while a height is dragged, s: a browser draws once while the hand feels five heights."""
+
+
+T = TypeVar("T")
+
+
+@dataclass
+class Laws:
+    """The document's law and a second one; without a comparison, the document's alone."""
+
+    comparison: ComparisonLoop
+    other: dict[str, Any] | None = None
+    """The second law, as `render:` has it."""
+    named: tuple[str, str] = ("", "")
+    felt: int = 0
+    """Index of the law that acts."""
+
+    def alone(self) -> None:
+        """End the comparison."""
+        self.other, self.felt = None, 0
+
+    def follow(self, feeling: Feeling) -> None:
+        """Move the hand of the second law's loop to that of the first. Meant to be polled; returns at once."""
+        servo = feeling.servo
+        if not self.comparison.running or servo is None or (row := servo.ring.latest()) is None:
+            return
+        x, y, z = row[2:5].tolist()
+        self.comparison.follow((x, y, z if feeling.running else math.inf))
+
+    def other_law(self) -> OtherLaw:
+        """Return what frames show of the second law."""
+        return ALONE if self.other is None else OtherLaw(self.comparison.force_n)
+
+    @property
+    def shown_name(self) -> str:
+        """The name of the law that does not act."""
+        return self.named[1 - self.felt]
+
+    def message(self) -> dict[str, Any]:
+        """Return the message `laws`: what pages may know."""
+        if self.other is None:
+            return {"state": "one"}
+        return {"state": "two", "named": list(self.named), "felt": self.felt}
+
+
+@final
+class LongJobs:
+    """Numbers of long jobs: a newer one replaces those before it."""
+
+    def __init__(self) -> None:
+        self.newest: int = 0
+        self.running: set[int] = set()
+        """Numbers of the jobs that somebody waits for."""
+        self.apply_after: bool = False
+        """True if edits came during the running job: when it ends, apply them unless something slow has to run."""
+        self.killed: bool = False
+        """True if the worker was killed for an earlier job: if the newest job died with it, it is requested again."""
+
+    def begin(self) -> int:
+        """Return the number of a new job."""
+        self.newest += 1
+        self.running.add(self.newest)
+        return self.newest
+
+    def stop(self) -> None:
+        """Mark all running jobs as unwanted."""
+        self.newest += 1
+        self.killed, self.apply_after = True, False
+
+
+@final
+class LatestWins:
+    """A queue of one: the running call is finished, and of those that wait the newest alone is run."""
+
+    def __init__(self, pause_s: float = 0.0) -> None:
+        """pause_s: after each call, for others; the first call after a longer rest starts at once."""
+        self._pause_s = pause_s
+        self._busy = False
+        self._turn: asyncio.Future[bool] | None = None
+        """Resolved for the call that waits: True once it may run, False once a newer call came."""
+
+    async def run(self, work: Callable[[], Awaitable[T]]) -> T | None:
+        """Run the call once the running one has ended; None as soon as a newer call comes before that."""
+        self._resolve(False)
+        loop = asyncio.get_running_loop()
+        if self._busy:
+            self._turn = turn = loop.create_future()
+            if not await turn:
+                return None
+        self._busy = True
+        try:
+            return await work()
+        finally:
+            loop.call_later(self._pause_s, self._end)
+
+    def _end(self) -> None:
+        self._busy = self._resolve(True)
+
+    def _resolve(self, is_next: bool) -> bool:
+        """Tell the call that waits; return True if there is one."""
+        turn, self._turn = self._turn, None
+        if turn is None or turn.done():
+            return False
+        turn.set_result(is_next)
+        return True
 
 
 @final
@@ -45,7 +150,6 @@ class Session:
         self.drawn: LatestWins = LatestWins(DRAWN_PAUSE_S)
         """Requests for other heights of parts: to feel them, and to draw them."""
         self.choice: Choice = Choice()
-        """The chosen device."""
         self.uploads: UploadStore = UploadStore(user_folder("opened"), folder / "incoming")
         self.recorder: Recorder | None = None
         """The last recording, or the running one."""

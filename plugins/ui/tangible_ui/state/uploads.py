@@ -104,7 +104,6 @@ class UploadStore:
 
 
 def _digest(paths: list[Path]) -> str:
-    """Return the digest of names and contents."""
     digest = hashlib.sha256()
     for path in paths:
         digest.update(f"{path.name}\0{path.stat().st_size}\0".encode())

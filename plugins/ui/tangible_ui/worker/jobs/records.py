@@ -98,6 +98,5 @@ def try_law(state: WorkerState, text: str, path: Path, sets: list[str], record: 
 
 
 def _free(folder: Path, name: str) -> Path:
-    """Return the path of a new file."""
     numbered = (folder / f"{name}{f' {number}' if number else ''}.nc" for number in range(10_000))
     return next(path for path in numbered if not path.exists())

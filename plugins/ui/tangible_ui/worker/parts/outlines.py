@@ -4,7 +4,6 @@ import numpy as np
 from jaxtyping import Float32, Float64, Int, UInt8
 
 MAX_PLACES = 1500
-"""Maximum number of places along an outline."""
 MAX_STEPS = 24
 """Maximum number of steps to either side of it."""
 MAX_REACH_PX = 400.0

@@ -15,7 +15,6 @@ from tangible_core.plugins.failures import sentence
 from tangible_core.plugins.registry import Listing, Registry
 
 WARM_UP = 100
-"""Number of cycles before the measurement."""
 MAX_CYCLES = 10_000_000
 """Greatest number of cycles, as all of their times are in memory."""
 

@@ -3,7 +3,6 @@
 import math
 import time
 from itertools import count
-from types import TracebackType
 from typing import Self, final
 
 from tangible_core.data import NO_FORCE, Force, Vector
@@ -92,9 +91,7 @@ class PointerClient:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def _velocity(self, now: float, position_m: Vector) -> Vector:

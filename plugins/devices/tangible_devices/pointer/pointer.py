@@ -22,7 +22,6 @@ HIGH_M = (0.0, 0.0, 1.0)
 PACE_S = 0.0005
 """Shortest time between two reads from Python."""
 PERIOD_S = 0.001
-"""Period of a compiled loop."""
 
 
 class Pointer(HapticDevice, Attended):

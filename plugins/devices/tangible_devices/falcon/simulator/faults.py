@@ -13,7 +13,6 @@ ERRORS = {
     "stall": 32,
     "overflow": 75,
 }
-"""System error numbers by name."""
 
 
 class Fault(BaseModel):

@@ -52,10 +52,8 @@ class FirstParts:
     scene: Scene
     parts: PartMap
     listed: tuple[ListedPart, ...]
-    """The parts as the pipeline file lists them."""
     title: str
     method: str
-    """The name of the texture method that found the segments."""
     contents: Mapping[Path, bytes]
     """The content of the files by path: label picture, numbers, pipeline file. The pipeline file is the last, so that
     it never names a missing file."""

@@ -35,12 +35,10 @@ class Cured(NamedTuple):
     """A text to which preflight has no further cures."""
 
     changes: Mapping[str, Change]
-    """Changes by key, in their order."""
     flight: Flight
     verdicts: Preflight
     text: str
     pipeline: Pipeline
-    """The pipeline of the text."""
 
 
 def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, cached: bool = True) -> Fixed:

@@ -43,12 +43,10 @@ class Job:
     key: str
     """The hash of all that the scene's result depends on, as far as it is known beforehand."""
     text: str
-    """The text of the pipeline file."""
     path: str
     """The path of the pipeline file: for relative files in it, and for error messages."""
     sets: tuple[str, ...]
     folder: str
-    """The folder for the files of this scene."""
     threads: int | None = None
     """The number of threads; None for the limit of the worker's environment."""
     sheet: bool = False

@@ -29,7 +29,6 @@ class BatchOptions:
     retry: bool = False
     """Repeat scenes that failed before."""
     sheets: bool = False
-    """Draw a whole report of each scene."""
     cache: Path | None = None
     """Folder for results that scenes have in common; None for none."""
     chunk: int = 4

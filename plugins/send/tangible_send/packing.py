@@ -112,7 +112,6 @@ def _meta(
 
 
 def _words(surface: HapticSurface, work: Work) -> dict[str, Any]:
-    """Return descriptions by language."""
     return {
         "describes": {each: description(surface, work, each) for each in LANGUAGES},
         "says": {each: describe(surface, one_line(work.title), each) for each in LANGUAGES},

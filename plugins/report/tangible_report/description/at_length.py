@@ -40,7 +40,6 @@ class Told(NamedTuple):
 
     title: str
     overview: tuple[str, ...]
-    """Sentences on the whole."""
     heading: str
     """The heading of the list of parts; empty if there are none."""
     parts: tuple[ToldPart, ...]

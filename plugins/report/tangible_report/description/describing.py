@@ -27,7 +27,6 @@ class PartFacts(NamedTuple):
     place: str
     """The place of most of the part, as a key of every language's words; `- -` for no side."""
     share: float
-    """The part's share of the picture."""
     size_m: tuple[float, float]
     """The extent from left to right, and from far to near."""
     height_m: float

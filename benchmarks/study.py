@@ -9,10 +9,10 @@ from time import process_time
 import numpy as np
 from scipy import stats
 
-from tangible_study.analysis.analysing import analyse_comparison, analyse_kept
+from tangible_study.analysis.analysing import analyse_answers, analyse_comparison
 from tangible_study.measures.rows import ALL, Result, What, is_sure
-from tangible_study.simulation.observers import observer_of
-from tangible_study.simulation.power import kept_of, plan, shorten_study, simulate
+from tangible_study.simulation.observers import make_observer
+from tangible_study.simulation.power import count_answers, plan, shorten_study, simulate
 from tangible_study.statistics import sensitivity
 from tangible_study.statistics.psychometric import JND
 from tangible_study.study_file import StudyFile, parse_study
@@ -71,8 +71,8 @@ def _study(folder: Path, comparison: str) -> StudyFile:
 
 
 def _one(file: StudyFile, model: str, number: int, **options: float) -> Result:
-    observer = observer_of(model, [f"{key}={value!r}" for key, value in options.items()], file)
-    return analyse_kept(kept_of(file, [simulate(file, observer, number, 11)])).results[0]
+    observer = make_observer(model, [f"{key}={value!r}" for key, value in options.items()], file)
+    return analyse_answers(count_answers(file, [simulate(file, observer, number, 11)])).results[0]
 
 
 def _holds(result: Result, what: What, truth: float) -> bool:
@@ -138,11 +138,11 @@ def _groups(folder: Path) -> Iterator[Held]:
             (odd, What("proportion correct", "a", "b"), truth),
             (rating, What("difference of mean rating", "b", "a"), 0.6),
         ):
-            observer = observer_of(
+            observer = make_observer(
                 "detection", ["difference=1.6" if file is odd else "difference=0.6", "lapse=0"], file
             )
-            kept = kept_of(file, [simulate(file, observer, each, 100 + number) for each in range(8)])
-            [result] = analyse_kept(kept).results
+            kept = count_answers(file, [simulate(file, observer, each, 100 + number) for each in range(8)])
+            [result] = analyse_answers(kept).results
             row = next(row for row in result.rows if row.what == what and row.participant == ALL)
             yield f"{what.measure}, 8 participants who differ", row.estimate.holds(value)
 
@@ -151,7 +151,7 @@ def _power(folder: Path) -> tuple[int, float, float]:
     """Return the planned participants, and the shares of studies that found a difference that is, and is not, there."""
     file = _study(folder, "name: x, question: same, conditions: [a, b], repetitions: 12")
     need = next(
-        each for each in plan(file, observer_of("detection", ["difference=1.6"], file)) if each.repetitions == 12
+        each for each in plan(file, make_observer("detection", ["difference=1.6"], file)) if each.repetitions == 12
     )
     assert need.participants is not None
     one = shorten_study(file, file.study.comparisons[0], 12)
@@ -162,8 +162,8 @@ def _power(folder: Path) -> tuple[int, float, float]:
 
 
 def _finds(file: StudyFile, participants: int, difference: float, study: int) -> bool:
-    observer = observer_of("detection", [f"difference={difference}"], file)
-    kept = kept_of(file, [simulate(file, observer, number, 5000 + study) for number in range(participants)])
+    observer = make_observer("detection", [f"difference={difference}"], file)
+    kept = count_answers(file, [simulate(file, observer, number, 5000 + study) for number in range(participants)])
     [odd] = file.study.comparisons
     [row] = analyse_comparison(odd, kept.of(odd)).of_all("proportion correct")
     return is_sure(row) and row.estimate.value > 1 / 3

@@ -129,7 +129,7 @@ class Study(Quantities):
 
     def comparison(self, name: str) -> Comparison:
         """Return the comparison of this name. Raises: StopIteration."""
-        return next(each for each in self.comparisons if each.name == name)
+        return next(comparison for comparison in self.comparisons if comparison.name == name)
 
 
 SAME, DIFFERENT = "same", "different"

@@ -45,14 +45,14 @@ class StudyFile:
     def recipes(self) -> dict[tuple[str, Stimulus], Recipe]:
         """Return the pipeline of everything that may be presented, by comparison and stimulus."""
         return {
-            (comparison.name, stimulus): recipe_of(self.study, self.path.parent, comparison, stimulus)
+            (comparison.name, stimulus): make_recipe(self.study, self.path.parent, comparison, stimulus)
             for comparison in self.study.comparisons
             for stimulus in self.procedures[comparison.name].stimuli(comparison)
         }
 
     def place(self, comparison: str, stimulus: Stimulus) -> Location:
         """Return the location in the file of what makes a stimulus: its level, or its condition."""
-        index = [each.name for each in self.study.comparisons].index(comparison)
+        index = [entry.name for entry in self.study.comparisons].index(comparison)
         levels = self.study.comparisons[index].levels
         if stimulus.level is None:
             return ("conditions", stimulus.condition)
@@ -85,9 +85,9 @@ def parse_study(text: str, path: Path) -> StudyFile:
         if condition.pipeline is None and study.pipeline is None:
             source.complain(("conditions", name), f"{name}: has no pipeline; write `pipeline:` here or for the study")
     procedures = {
-        comparison.name: found
+        comparison.name: procedure
         for index, comparison in enumerate(study.comparisons)
-        if (found := _procedure(source, index, comparison, study)) is not None
+        if (procedure := _procedure(source, index, comparison, study)) is not None
     }
     source.settle()
     file = StudyFile(path, text, study, procedures, source)
@@ -96,7 +96,7 @@ def parse_study(text: str, path: Path) -> StudyFile:
     return file
 
 
-def recipe_of(study: Study, folder: Path, comparison: Comparison, stimulus: Stimulus) -> Recipe:
+def make_recipe(study: Study, folder: Path, comparison: Comparison, stimulus: Stimulus) -> Recipe:
     """Return the pipeline of a stimulus. folder: that of the study file."""
     condition = study.conditions[stimulus.condition]
     pipeline = condition.pipeline or study.pipeline
@@ -114,9 +114,9 @@ def _override(key: str, value: Any) -> str:
 def _expand(tree: Any) -> Any:
     """Return the tree with a procedure's name alone as a block."""
     block = plain(tree)
-    for each in block.get("comparisons") or () if isinstance(block.get("comparisons"), list) else ():
-        if isinstance(each, dict) and isinstance(cast(Any, each).get("procedure"), str):
-            each["procedure"] = {"use": each["procedure"]}
+    for entry in block.get("comparisons") or () if isinstance(block.get("comparisons"), list) else ():
+        if isinstance(entry, dict) and isinstance(cast(Any, entry).get("procedure"), str):
+            entry["procedure"] = {"use": entry["procedure"]}
     return block
 
 
@@ -126,11 +126,11 @@ def _design(source: Source) -> Study:
     source.settle()
     assert study is not None
     everything = {"conditions": tuple(study.conditions)}
-    filled = (
+    comparisons = (
         comparison if comparison.conditions else comparison.model_copy(update=everything)
         for comparison in study.comparisons
     )
-    return study.model_copy(update={"comparisons": tuple(filled)})
+    return study.model_copy(update={"comparisons": tuple(comparisons)})
 
 
 def _procedure(source: Source, index: int, comparison: Comparison, study: Study) -> Procedure | None:
@@ -141,17 +141,17 @@ def _procedure(source: Source, index: int, comparison: Comparison, study: Study)
     for number, name in enumerate(comparison.conditions):
         if name not in study.conditions:
             hint = did_you_mean(name, study.conditions)
-            known = ", ".join(study.conditions) or "none"
+            conditions = ", ".join(study.conditions) or "none"
             where = (*here, "conditions", number)
-            source.complain(where, f"no condition is called {quoted(name)}{hint}; there are: {known}")
+            source.complain(where, f"no condition is called {quoted(name)}{hint}; there are: {conditions}")
     if list(comparison.levels) != sorted(set(comparison.levels)):
         source.complain((*here, "levels"), "levels: must rise, each once")
     options = dict(comparison.procedure)
     name = options.pop("use", None) or question.procedures[0]
     if name not in procedure_names():
         hint = did_you_mean(str(name), procedure_names())
-        known = ", ".join(procedure_names())
-        source.complain((*here, "procedure"), f"no procedure is called {quoted(name)}{hint}; known: {known}")
+        conditions = ", ".join(procedure_names())
+        source.complain((*here, "procedure"), f"no procedure is called {quoted(name)}{hint}; known: {conditions}")
         return None
     try:
         procedure: Procedure | None = source.model((*here, "procedure"), load_procedure(name), options)
@@ -171,16 +171,16 @@ def _procedure(source: Source, index: int, comparison: Comparison, study: Study)
 
 def _check_pipelines(file: StudyFile, registry: Registry) -> None:
     """Complain about pipelines that cannot be read: unknown files, keys and values."""
-    seen = set[tuple[Location, str]]()
+    reported = set[tuple[Location, str]]()
     for (comparison, stimulus), recipe in file.recipes().items():
         try:
             config_of_recipe(recipe, registry)
         except ConfigError as error:
-            index = [each.name for each in file.study.comparisons].index(comparison)
+            index = [entry.name for entry in file.study.comparisons].index(comparison)
             for complaint in error.complaints:
                 where = _origin(file, index, stimulus, complaint)
-                if (where, complaint.text) not in seen:
-                    seen.add((where, complaint.text))
+                if (where, complaint.text) not in reported:
+                    reported.add((where, complaint.text))
                     file.source.complain(where, f"{recipe.pipeline.name}: {complaint.text}")
 
 
@@ -203,6 +203,6 @@ def _origin(file: StudyFile, index: int, stimulus: Stimulus, complaint: Complain
 
 
 def _overlap(key: str, location: Iterable[Any]) -> bool:
-    parts, there = key.split("."), [str(each) for each in location]
+    parts, there = key.split("."), [str(key_part) for key_part in location]
     shorter = min(len(parts), len(there))
     return shorter > 0 and parts[:shorter] == there[:shorter]

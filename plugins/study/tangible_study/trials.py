@@ -108,4 +108,4 @@ def _value(text: str, kind: Any) -> Any:
         return None if type(None) in kinds else kinds[0]()
     if bool in kinds:
         return {"true": True, "false": False}[text.casefold()]
-    return next(each for each in kinds if each is not type(None))(text)
+    return next(kind_of_value for kind_of_value in kinds if kind_of_value is not type(None))(text)

@@ -11,14 +11,14 @@ import pytest
 
 from tangible_core.errors import ConfigError, OutputError, ResultsError
 from tangible_core.files.writing import sole_writer
-from tangible_study.analysis.analysing import analyse, analyse_kept, counts
+from tangible_study.analysis.analysing import analyse, analyse_answers, counts
 from tangible_study.analysis.files import write_results
 from tangible_study.commands.results import analyse as analyse_study
 from tangible_study.commands.results import simulate as simulate_study
 from tangible_study.measures.rows import What
 from tangible_study.session import folder
-from tangible_study.simulation.observers import observer_of
-from tangible_study.simulation.power import kept_of, simulate, write_folder
+from tangible_study.simulation.observers import make_observer
+from tangible_study.simulation.power import count_answers, simulate, write_folder
 from tangible_study.study_file import StudyFile, parse_study
 from tangible_study.trials import AnswerFile, read_answers
 
@@ -50,9 +50,9 @@ def study_of(folder: Path, *names: str) -> StudyFile:
 
 
 def found(file: StudyFile, participants: int, model: str = "detection", *sets: str):
-    observer = observer_of(model, sets, file)
-    kept = kept_of(file, [simulate(file, observer, number, 5) for number in range(participants)])
-    analysis = analyse_kept(kept)
+    observer = make_observer(model, sets, file)
+    kept = count_answers(file, [simulate(file, observer, number, 5) for number in range(participants)])
+    analysis = analyse_answers(kept)
     [result] = analysis.results
     rows = {(row.what, row.participant): row for row in result.rows}
     assert len(rows) == len(result.rows)
@@ -62,7 +62,7 @@ def found(file: StudyFile, participants: int, model: str = "detection", *sets: s
 def test_answers_that_do_not_count_are_left_out_and_counted(tmp_path: Path):
     file = study_of(tmp_path, "odd")
     out = tmp_path / "out"
-    write_folder(out, file, observer_of("detection", ["difference=3"], file), 1, 0)
+    write_folder(out, file, make_observer("detection", ["difference=3"], file), 1, 0)
     table = next(out.glob("sub-*/beh/*.tsv"))
     answers = read_answers(table)
     table.unlink()
@@ -71,7 +71,7 @@ def test_answers_that_do_not_count_are_left_out_and_counted(tmp_path: Path):
             wrong = replace(answer, rendered=False, why="late", correct=0)
             again.add(wrong if answer.phase == "test" and answer.trial < 13 else answer)
     analysis = analyse(out)
-    assert counts(analysis.kept) == (
+    assert counts(analysis.answers) == (
         "20 answers of 1 participant count; 2 training trials and 10 that the device did not render as requested are "
         "left out."
     )
@@ -104,8 +104,8 @@ def test_odd_one_is_found_and_one_participant_is_said_to_be_few(tmp_path: Path):
 
 def test_files_have_every_figure_and_plots_have_a_description(tmp_path: Path):
     file = study_of(tmp_path, "odd", "higher")
-    kept = kept_of(file, [simulate(file, observer_of("detection", [], file), number, 1) for number in range(2)])
-    paths = write_results(tmp_path / "analysis", analyse_kept(kept))
+    kept = count_answers(file, [simulate(file, make_observer("detection", [], file), number, 1) for number in range(2)])
+    paths = write_results(tmp_path / "analysis", analyse_answers(kept))
     assert {path.name for path in paths} == {
         "results.md", "results.tsv", "odd.png", "odd.svg", "higher.png", "higher.svg",
     }  # fmt: skip
@@ -123,7 +123,7 @@ def test_files_have_every_figure_and_plots_have_a_description(tmp_path: Path):
 
 def test_results_of_another_analysis_are_not_written_meanwhile(tmp_path: Path):
     file, out = study_of(tmp_path, "odd"), tmp_path / "analysis"
-    analysis = analyse_kept(kept_of(file, [simulate(file, observer_of("detection", [], file), 0, 1)]))
+    analysis = analyse_answers(count_answers(file, [simulate(file, make_observer("detection", [], file), 0, 1)]))
     with sole_writer(out / "results.tsv"), pytest.raises(OutputError, match="another program is writing the same"):
         write_results(out, analysis)
     assert list(out.iterdir()) == []

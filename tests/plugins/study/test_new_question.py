@@ -33,7 +33,7 @@ class Liked(Question):
         return Score(chosen=int(response == str(trial.position)))
 
     def decide(self, trial, percept, generator):
-        return str(int(np.argmin(percept.felt)) + 1)
+        return str(int(np.argmin(percept.strengths)) + 1)
 
     def analyse_conditions(self, comparison, answers):
         rows, _ = of_each_and_all(lambda *each: share_rows(CHOSEN, *each, lambda answer: answer.chosen, 0.5), answers)
@@ -51,7 +51,7 @@ from pathlib import Path
 from studies import sit_down
 from tangible_study.analysis.analysing import analyse
 from tangible_study.analysis.files import write_results
-from tangible_study.simulation.observers import observer_of
+from tangible_study.simulation.observers import make_observer
 from tangible_study.simulation.power import write_folder
 from tangible_study.study_file import load_study
 
@@ -60,7 +60,7 @@ session = sit_down(path)
 print(session.run(), session.desk.said.count("Which interval do you like more?"))
 print(analyse(path.parent / "out").sentences["liked"][0])
 file = load_study(path)
-write_folder(path.parent / "models", file, observer_of("detection", ["difference=9", "lapse=0"], file), 2, 1)
+write_folder(path.parent / "models", file, make_observer("detection", ["difference=9", "lapse=0"], file), 2, 1)
 found = analyse(path.parent / "models")
 print(found.sentences["liked"][0], len(write_results(path.parent / "report", found)))
 print(json.loads(next(path.parent.glob("out/*/beh/*.json")).read_text())["question"]["Levels"]["liked"])

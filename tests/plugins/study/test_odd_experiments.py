@@ -35,7 +35,7 @@ def answers(counts: tuple[int, ...], trials: int, condition: str = "one") -> lis
     ]
 
 
-def rows_of(result: Result, whom: str, condition: str = "one") -> dict[str, Row]:
+def make_rows(result: Result, whom: str, condition: str = "one") -> dict[str, Row]:
     return {
         each.what.measure: each for each in result.rows if (each.participant, each.what.condition) == (whom, condition)
     }
@@ -52,10 +52,10 @@ def test_estimates_of_an_odd_experiment_are_inside_their_intervals(counts: tuple
 def test_where_all_or_none_is_chosen_there_is_a_bound_and_no_point_of_equality():
     """A threshold at the second level would have half of these unchosen, 10 of 20; one below all levels none."""
     result = analyse_comparison(HIGHER, {"S01": answers((20,) * 5, 20), "S02": answers((0,) * 5, 20)})
-    below, above = (rows_of(result, whom)["point of equality"].estimate for whom in ("S01", "S02"))
+    below, above = (make_rows(result, whom)["point of equality"].estimate for whom in ("S01", "S02"))
     assert below[:2] == (-inf, -inf) and below.high < 0.0015
     assert above[::2] == (inf, inf) and above.low > 0.0025
-    assert rows_of(result, ALL)["point of equality"].estimate[1:] == (-inf, inf)
+    assert make_rows(result, ALL)["point of equality"].estimate[1:] == (-inf, inf)
     assert "With one, the answers do not tell the point of equality: any level explains them." in sentences(result)
     alone = analyse_comparison(HIGHER, {"S01": answers((20,) * 5, 20)})
     assert sentences(alone)[0] == (

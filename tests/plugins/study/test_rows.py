@@ -7,12 +7,12 @@ from statistics import mean, stdev
 import pytest
 
 from tangible_core.errors import TangibleError
-from tangible_study.analysis.analysing import Analysis, Kept, analyse_comparison
+from tangible_study.analysis.analysing import Analysis, CountedAnswers, analyse_comparison
 from tangible_study.analysis.files import as_markdown, as_tsv
 from tangible_study.design import Comparison, Study
-from tangible_study.measures.functions import CHOICE, DISTANCE, blocks_of
+from tangible_study.measures.functions import CHOICE, DISTANCE, answer_blocks
 from tangible_study.measures.rows import ALL, Result, Row, What, is_sure
-from tangible_study.measures.shares import wins_of
+from tangible_study.measures.shares import count_wins
 from tangible_study.statistics.intervals import Estimate, proportion
 from tangible_study.trials import Answer
 
@@ -126,7 +126,7 @@ def test_answers_about_levels_are_counted_by_level_or_by_distance():
         answer("one", level=level, standard=2.0, chosen=chosen, correct=correct)
         for level, chosen, correct in ((3.0, 1, 1), (1.0, 1, 0), (3.0, 0, 0), (1.0, 0, 1), (2.5, 1, 1))
     ]
-    by_level, by_distance = blocks_of(some, CHOICE), blocks_of(some, DISTANCE)
+    by_level, by_distance = answer_blocks(some, CHOICE), answer_blocks(some, DISTANCE)
     assert [each.tolist() for each in by_level] == [[1.0, 2.5, 3.0], [1, 1, 1], [2, 1, 2]]
     assert [each.tolist() for each in by_distance] == [[0.5, 1.0], [1, 2], [1, 4]]
 
@@ -191,7 +191,7 @@ def test_three_conditions_are_on_a_scale_with_wins_on_the_right_side():
     result = analyse_comparison(
         Comparison(name="c", question="rougher", conditions=("one", "two", "three")), {"S01": given}
     )
-    assert wins_of(given, ["one", "two", "three"]).tolist() == [[0, 1, 0], [9, 0, 4], [10, 6, 0]]
+    assert count_wins(given, ["one", "two", "three"]).tolist() == [[0, 1, 0], [9, 0, 4], [10, 6, 0]]
     rows = table(result)
     scale = [rows["scale value", each, "", "S01"].estimate.value for each in ("one", "two", "three")]
     assert scale[0] < scale[1] < scale[2] and sum(scale) == pytest.approx(0, abs=1e-9)
@@ -227,7 +227,7 @@ def test_tables_have_each_figure_in_its_column():
         Row(What("share", "two", "four"), ALL, Estimate(0.25), "", 9, None, nan, 0.001),
     ]
     result = Result("c", "rating", ["S01", "S02"], rows, "share")
-    analysis = Analysis(Kept(Study(study="s", title="Of waves"), {}, 0, 0), [result])
+    analysis = Analysis(CountedAnswers(Study(study="s", title="Of waves"), {}, 0, 0), [result])
     assert [line for line in as_markdown(analysis).splitlines() if line.startswith(("# ", "| share"))] == [
         "# Of waves",
         "| share | one | two | 0.7 m | 0.41 to 0.9 | 0.333 | < .001 | 8 |",

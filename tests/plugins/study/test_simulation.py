@@ -10,8 +10,14 @@ from tangible_core.errors import ConfigError
 from tangible_study.design import Comparison
 from tangible_study.measures.rows import Result, Row, What
 from tangible_study.procedures import Stimulus, Trial
-from tangible_study.simulation.observers import Detection, Hand, Psychometric, observer_of
-from tangible_study.simulation.power import effects_of, kept_of, participants_needed, power_of, simulate
+from tangible_study.simulation.observers import Detection, Hand, Psychometric, make_observer
+from tangible_study.simulation.power import (
+    count_answers,
+    participant_effects,
+    participants_needed,
+    power_by_t_test,
+    simulate,
+)
 from tangible_study.statistics.intervals import Estimate
 from tangible_study.statistics.sensitivity import naming_correct, oddity_correct
 from tangible_study.study_file import StudyFile, load_study, parse_study
@@ -44,16 +50,16 @@ def test_shares_of_right_answers_are_those_of_theory(
     tmp_path: Path, comparison: str, model: str, sets: list[str], share: float
 ):
     file = study_of(tmp_path, comparison)
-    answers = simulate(file, observer_of(model, [*sets, "lapse=0", "spread=0"], file), 0, 7)
+    answers = simulate(file, make_observer(model, [*sets, "lapse=0", "spread=0"], file), 0, 7)
     correct = [each.correct for each in answers]
     assert np.mean(correct) == pytest.approx(share, abs=3.5 * (share * (1 - share) / len(correct)) ** 0.5)
-    kept = kept_of(file, [answers, answers])
-    assert (kept.trials, kept.training, list(kept.answers)) == (2 * len(answers), 0, ["S01", "S02"])
+    kept = count_answers(file, [answers, answers])
+    assert (kept.trials, kept.training, list(kept.by_participant)) == (2 * len(answers), 0, ["S01", "S02"])
 
 
 def test_same_seed_gives_the_same_answers_and_another_does_not(tmp_path: Path):
     file = study_of(tmp_path, ODD)
-    observer = observer_of("detection", [], file)
+    observer = make_observer("detection", [], file)
     assert simulate(file, observer, 1, 3) == simulate(file, observer, 1, 3)
     assert simulate(file, observer, 1, 3) != simulate(file, observer, 1, 4)
     times = [[each.response_time for each in simulate(file, observer, number, 3)] for number in (1, 2)]
@@ -66,13 +72,13 @@ def test_mistakes_about_observers_are_named(tmp_path: Path):
         ("psychometric", [], "odd"),
     ):  # fmt: skip
         with pytest.raises(ConfigError, match=named):
-            observer_of(model, sets, study_of(tmp_path, ODD))
+            make_observer(model, sets, study_of(tmp_path, ODD))
 
 
 @pytest.mark.parametrize("name", ["force-laws", "recognition"])
 def test_examples_can_be_planned(name: str):
     file = load_study(ROOT / f"configs/studies/{name}.yaml")
-    answers = simulate(file, observer_of("detection", ["difference=2", "spread=0"], file), 0, 1)
+    answers = simulate(file, make_observer("detection", ["difference=2", "spread=0"], file), 0, 1)
     assert 40 <= len(answers) <= 80  # half an hour
     assert file.study.consent
     assert set(file.study.comparisons[0].names) <= {"door", "front wheel", "seat", "tank", "engine"}
@@ -168,12 +174,14 @@ def test_effects_are_differences_of_conditions_or_from_chance():
         row("mean rating", name, value, condition) for name, of in ratings.items() for condition, value in of.items()
     ]
     rated = Result("c", "rating", ["S01", "S02"], single, "mean rating")
-    assert effects_of(rated) == {("two", "one"): [2.0, 3.0], ("three", "one"): [1.0], ("three", "two"): [-1.0]}
+    assert participant_effects(rated) == {("two", "one"): [2.0, 3.0], ("three", "one"): [1.0], ("three", "two"): [-1.0]}
     odd = [row("proportion correct", name, share, "one", "two", 1 / 3) for name, share in (("S01", 0.5), ("S02", 0.25))]
-    found = effects_of(Result("c", "same", ["S01", "S02"], odd, "proportion correct"))
+    found = participant_effects(Result("c", "same", ["S01", "S02"], odd, "proportion correct"))
     assert found == {("one", "two"): pytest.approx([1 / 6, -1 / 12])}
     chosen = [row("proportion chosen", "S01", 0.8, "one", "two", 0.5), row("scale value", "all", 0.3, "one")]
-    assert effects_of(Result("c", "rougher", ["S01"], chosen, "scale value")) == {("one", "two"): pytest.approx([0.3])}
+    assert participant_effects(Result("c", "rougher", ["S01"], chosen, "scale value")) == {
+        ("one", "two"): pytest.approx([0.3])
+    }
 
 
 def test_hand_feels_noticeable_differences_of_force_and_height():
@@ -202,5 +210,5 @@ def test_participants_needed_are_those_of_cohen_s_tables(apart: float, participa
     assert participants_needed([apart - 1.0, apart + 1.0] * 50_000, 0.8) == participants
     assert participants_needed([-apart - 1.0, 1.0 - apart] * 50_000, 0.8) == participants
     assert participants_needed([-0.1, 0.1], 0.8) is None
-    assert power_of(0.0, 1.0, 20) == pytest.approx(0.05)
-    assert power_of(0.0, 0.0, 9) == 0.0 < power_of(0.1, 0.0, 2) == 1.0
+    assert power_by_t_test(0.0, 1.0, 20) == pytest.approx(0.05)
+    assert power_by_t_test(0.0, 0.0, 9) == 0.0 < power_by_t_test(0.1, 0.0, 2) == 1.0

@@ -17,11 +17,11 @@ from ..trials import Answer, read_answers
 
 
 @dataclass(frozen=True)
-class Kept:
+class CountedAnswers:
     """The answers of a study that count, and how many others there are."""
 
     study: Study
-    answers: Mapping[str, list[Answer]]
+    by_participant: Mapping[str, list[Answer]]
     """Answers of test trials that the device rendered, by participant."""
     training: int
     not_rendered: int
@@ -30,47 +30,48 @@ class Kept:
     @property
     def trials(self) -> int:
         """Number of trials that count."""
-        return sum(map(len, self.answers.values()))
+        return sum(map(len, self.by_participant.values()))
 
     def of(self, comparison: Comparison) -> dict[str, list[Answer]]:
         """Return the answers of one comparison, by participant, in the order of its conditions and levels."""
 
         def place(answer: Answer) -> tuple[int, float]:
-            known = answer.condition in comparison.conditions
-            index = comparison.conditions.index(answer.condition) if known else len(comparison.conditions)
+            is_listed = answer.condition in comparison.conditions
+            index = comparison.conditions.index(answer.condition) if is_listed else len(comparison.conditions)
             return index, -1.0 if answer.level is None else answer.level
 
-        found = {
-            name: sorted((each for each in answers if each.comparison == comparison.name), key=place)
-            for name, answers in self.answers.items()
+        by_participant = {
+            name: sorted((answer for answer in answers if answer.comparison == comparison.name), key=place)
+            for name, answers in self.by_participant.items()
         }
-        return {name: answers for name, answers in found.items() if answers}
+        return {name: answers for name, answers in by_participant.items() if answers}
 
 
-def read_results(folder: Path) -> Kept:
+def read_results(folder: Path) -> CountedAnswers:
     """Read the folder that `tangible study run` or `simulate` wrote. Raises: ResultsError, ConfigError."""
     if not (folder / "study.yaml").is_file():
         raise ResultsError(f"{folder}: is not the folder of a study; name one that `tangible study run` wrote")
-    if renamed := next(folder.glob("sub-*/beh/*_beh.csv"), None):
-        raise ResultsError(f"{renamed}: is a table under another name; rename it to {renamed.stem}.tsv, or remove it")
+    if stray := next(folder.glob("sub-*/beh/*_beh.csv"), None):
+        raise ResultsError(f"{stray}: is a table under another name; rename it to {stray.stem}.tsv, or remove it")
     tables = {
         path.parts[-3].removeprefix("sub-"): read_answers(path) for path in sorted(folder.glob("sub-*/beh/*_beh.tsv"))
     }
     everything = [answer for answers in tables.values() for answer in answers]
     answers = {
-        name: [each for each in found if each.phase == "test" and each.rendered] for name, found in tables.items()
+        name: [answer for answer in table if answer.phase == "test" and answer.rendered]
+        for name, table in tables.items()
     }
-    kept = Kept(
+    results = CountedAnswers(
         read_design(folder / "study.yaml"),
-        {name: found for name, found in answers.items() if found},
-        sum(each.phase == "training" for each in everything),
-        sum(each.phase == "test" and not each.rendered for each in everything),
+        {name: own for name, own in answers.items() if own},
+        sum(answer.phase == "training" for answer in everything),
+        sum(answer.phase == "test" and not answer.rendered for answer in everything),
     )
-    if not kept.answers:
+    if not results.by_participant:
         raise ResultsError(
             f"{folder}: has no answer that counts yet; run a participant to the end of the training first"
         )
-    return kept
+    return results
 
 
 FEW = 6
@@ -82,31 +83,33 @@ MANY = 3
 def sentences(result: Result) -> list[str]:
     """Return what was found in one comparison, and how sure that is; notes come last."""
     who, question = people(len(result.participants)), load_question(result.question)
-    told = list(question.conclude(result, who))
+    texts = list(question.conclude(result, who))
     contrasts = [row for row in result.rows if row.what.measure == f"difference of {result.main}"]
     if result.main != SCALE:
         noun = question.nouns.get(result.main, f"the {result.main}")
-        told += [text for row in contrasts for text in _difference(result.main, noun, row)]
+        texts += [text for row in contrasts for text in _difference(result.main, noun, row)]
     against_chance = [] if result.main == CORRECT and contrasts else result.of_all(result.main)
-    tests = len([each for each in against_chance if each.p == each.p]) + len(contrasts)
+    tests = len([row for row in against_chance if row.p == row.p]) + len(contrasts)
     if tests >= MANY:
-        told.append(f"{tests} differences were looked for: if there were none, about one in 20 would seem to be there.")
+        texts.append(
+            f"{tests} differences were looked for: if there were none, about one in 20 would seem to be there."
+        )
     if len(result.participants) < FEW:
-        told.append(f"The result is about {who}, and says little about other people.")
-    return [*told, *result.notes]
+        texts.append(f"The result is about {who}, and says little about other people.")
+    return [*texts, *result.notes]
 
 
-def counts(kept: Kept) -> str:
+def counts(answers: CountedAnswers) -> str:
     """Return how many answers count, and which were left out."""
     return (
-        f"{kept.trials} answers of {people(len(kept.answers))} count; {kept.training} training trials and "
-        f"{kept.not_rendered} that the device did not render as requested are left out."
+        f"{answers.trials} answers of {people(len(answers.by_participant))} count; {answers.training} training trials and "
+        f"{answers.not_rendered} that the device did not render as requested are left out."
     )
 
 
 def _difference(measure: str, what: str, row: Row) -> Iterator[str]:
     one, other = row.what.condition, row.what.other
-    value, low, high = (100 * each for each in row.estimate) if measure == CORRECT else row.estimate
+    value, low, high = (100 * figure for figure in row.estimate) if measure == CORRECT else row.estimate
     unit = "percentage points" if measure == CORRECT else row.unit
     more = "greater" if value > 0 else "smaller"
     least, most = (low, high) if value > 0 else (-high, -low)
@@ -132,7 +135,7 @@ def _difference(measure: str, what: str, row: Row) -> Iterator[str]:
 class Analysis:
     """The results of a study."""
 
-    kept: Kept
+    answers: CountedAnswers
     results: list[Result]
 
     @property
@@ -143,10 +146,10 @@ class Analysis:
     def document(self) -> dict[str, Any]:
         """Return the results as `--json` prints them."""
         return {
-            "study": self.kept.study.study,
-            "participants": list(self.kept.answers),
-            "trials": self.kept.trials,
-            "left_out": {"training": self.kept.training, "not_rendered": self.kept.not_rendered},
+            "study": self.answers.study.study,
+            "participants": list(self.answers.by_participant),
+            "trials": self.answers.trials,
+            "left_out": {"training": self.answers.training, "not_rendered": self.answers.not_rendered},
             "comparisons": [
                 {
                     "name": result.comparison,
@@ -161,17 +164,17 @@ class Analysis:
 
 def analyse(folder: Path) -> Analysis:
     """Analyse the folder of a study. Raises: ResultsError, ConfigError; ConfigError without the extra `study`."""
-    return analyse_kept(read_results(folder))
+    return analyse_answers(read_results(folder))
 
 
-def analyse_kept(kept: Kept) -> Analysis:
+def analyse_answers(answers: CountedAnswers) -> Analysis:
     """Analyse answers; a comparison without any is left out."""
     return Analysis(
-        kept,
+        answers,
         [
-            analyse_comparison(comparison, kept.of(comparison))
-            for comparison in kept.study.comparisons
-            if kept.of(comparison)
+            analyse_comparison(comparison, answers.of(comparison))
+            for comparison in answers.study.comparisons
+            if answers.of(comparison)
         ],
     )
 

@@ -40,8 +40,8 @@ def as_tsv(analysis: Analysis) -> str:
 
 def as_markdown(analysis: Analysis) -> str:
     """Return what was found in sentences, with a table of the figures about all participants."""
-    study = analysis.kept.study
-    parts = [f"# {study.title or study.study}", counts(analysis.kept)]
+    study = analysis.answers.study
+    parts = [f"# {study.title or study.study}", counts(analysis.answers)]
     for result in analysis.results:
         parts += [f"## {result.comparison}", " ".join(analysis.sentences[result.comparison])]
         parts += ["\n".join(_table(result)), f"![{result.comparison}]({result.comparison}.png)"]
@@ -59,10 +59,10 @@ chance as this, if there were no difference."""
 
 def _table(result: Result) -> Iterator[str]:
     whom = {row.participant for row in result.rows}
-    shown = [row for row in result.rows if row.participant == "all"] if "all" in whom else result.rows
+    rows = [row for row in result.rows if row.participant == "all"] if "all" in whom else result.rows
     yield f"| {' | '.join(HEADINGS)} |"
     yield f"|{'---|' * len(HEADINGS)}"
-    for row in shown:
+    for row in rows:
         yield f"| {' | '.join(_cells(row))} |"
 
 
@@ -146,16 +146,18 @@ def _draw_curves(axes: Axes, result: Result) -> None:
 def _draw_figures(axes: Axes, result: Result) -> None:
     from tangible_report.style import INK, OKABE_ITO
 
-    shown = result.of_all(result.main)
-    for place, row in enumerate(shown):
-        single = [each.estimate.value for each in result.rows if each.what == row.what and each.participant != ALL]
+    rows = result.of_all(result.main)
+    for place, row in enumerate(rows):
+        single = [
+            figure.estimate.value for figure in result.rows if figure.what == row.what and figure.participant != ALL
+        ]
         axes.plot(single, place + 0.18 + 0.02 * np.arange(len(single)) % 0.2, "o", color="#999999", markersize=3)
         value, low, high = row.estimate
         if row.estimate.has_interval and np.isfinite((low, high)).all():
             axes.plot([low, high], [place, place], color=INK, linewidth=1.5)
         axes.plot(value, place, "D", color=OKABE_ITO[0], markersize=6)
-    if shown and shown[0].chance == shown[0].chance:
-        axes.axvline(shown[0].chance, color="#888888", linewidth=0.8, linestyle=(0, (4, 2)))
-    names = [" / ".join(filter(None, (row.what.condition, row.what.other))) for row in shown]
-    axes.set_yticks(range(len(shown)), names)
-    axes.set(ylim=(len(shown) - 0.5, -0.5), xlabel=f"{result.main} {shown[0].unit if shown else ''}".rstrip())
+    if rows and rows[0].chance == rows[0].chance:
+        axes.axvline(rows[0].chance, color="#888888", linewidth=0.8, linestyle=(0, (4, 2)))
+    names = [" / ".join(filter(None, (row.what.condition, row.what.other))) for row in rows]
+    axes.set_yticks(range(len(rows)), names)
+    axes.set(ylim=(len(rows) - 0.5, -0.5), xlabel=f"{result.main} {rows[0].unit if rows else ''}".rstrip())

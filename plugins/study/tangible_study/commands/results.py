@@ -59,12 +59,12 @@ def simulate(
     option `difference` is what there is to find.
     """
     from ..analysis.analysing import analyse as analyse_folder
-    from ..simulation.observers import observer_of
+    from ..simulation.observers import make_observer
     from ..simulation.power import plan, write_folder
     from ..study_file import load_study
 
     study = load_study(file)
-    model = observer_of(observer, sets or [], study)
+    model = make_observer(observer, sets or [], study)
     if power:
         _print_needs(plan(study, model, seed=seed, progress=_announce), as_json)
         return
@@ -83,10 +83,10 @@ def _report(analysis: Analysis, out: Path, as_json: bool) -> None:
     if as_json:
         show.print_json({**analysis.document(), "files": files})
     elif not is_quiet():
-        show.sentence(counts(analysis.kept))
-        for name, found in analysis.sentences.items():
+        show.sentence(counts(analysis.answers))
+        for name, texts in analysis.sentences.items():
             show.plain(f"{name}:")
-            for text in found:
+            for text in texts:
                 show.say(text)
         for path in files[:2]:
             show.plain(f"written: {path}")

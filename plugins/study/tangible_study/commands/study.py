@@ -103,12 +103,12 @@ def run(
             if session is None:
                 show.note("The participant does not agree; nothing was kept.")
                 return
-            done = session.run()
+            count = session.run()
         except ParticipantLeft:
             show.note(f"the answers so far are kept in {root}; --resume goes on from there")
             return
     if not is_quiet():
-        show.plain(f"{done} answers are kept in {root}")
+        show.plain(f"{count} answers are kept in {root}")
 
 
 def _terminal(design: Study) -> Desk:
@@ -123,7 +123,7 @@ def _own_hand(sets: list[str] | None) -> Hand:
     """Return the hand by which the page is the device. Raises: ConfigError if keys of another device are set."""
     from ..desks.page import new_hand
 
-    if any(each.startswith("device.") for each in sets or ()):
+    if any(setting.startswith("device.") for setting in sets or ()):
         raise ConfigError("--set device...: the page is the device; name another one with --device")
     return new_hand()
 
@@ -137,11 +137,11 @@ def _open_page(design: Study, hand: Hand | None, stack: ExitStack) -> Desk:
 
     from ..desks.page import Page
 
-    translated = partial(translate, to=design.language)
-    served = stack.enter_context(Page(design.language, translated, hand, design.sounds))
-    show.note(f"the page of the participant: {served.address}")
-    webbrowser.open(served.address)
-    return served
+    to_participant = partial(translate, to=design.language)
+    page = stack.enter_context(Page(design.language, to_participant, hand, design.sounds))
+    show.note(f"the page of the participant: {page.address}")
+    webbrowser.open(page.address)
+    return page
 
 
 def _open(file: Path, device: str | None, sets: list[str] | None, hand: Hand | None = None) -> Stimuli:
@@ -160,9 +160,9 @@ def _progress(stimuli: Stimuli) -> Callable[[int], None]:
     """Return a function that prints how many surfaces are made, without their names."""
     from tangible_core.cli import show
 
-    def count(made: int) -> None:
+    def count(number: int) -> None:
         if not is_quiet():
-            show.note(f"{made} of {len(stimuli)} surfaces are ready")
+            show.note(f"{number} of {len(stimuli)} surfaces are ready")
 
     return count
 

@@ -57,8 +57,8 @@ class Terminal(Desk):
 
     def ask(self, text: str, choices: Mapping[str, str]) -> str:
         keys = [f"{key} = {self._translate(meaning)}" if meaning else key for key, meaning in choices.items() if key]
-        listed = f" ({', '.join(keys)})" if keys else ""
-        self._write(f"{self._translate(text)}{listed}")
+        options = f" ({', '.join(keys)})" if keys else ""
+        self._write(f"{self._translate(text)}{options}")
         if self._keys.isatty():
             forget_typed(self._keys)
         while True:
@@ -69,4 +69,4 @@ class Terminal(Desk):
             if key in choices:
                 return key
             self.say("That key has no meaning here.")
-            self._write(f"{self._translate(text)}{listed}")
+            self._write(f"{self._translate(text)}{options}")

@@ -66,11 +66,11 @@ class Page(Desk):
     ) -> None:
         """Build the page, which is served on entry. hand: moves the device from the page; None if another is felt."""
         self._language, self._text_of = language, translate
-        self._stop, self._changed = Event(), Condition()
+        self._stop, self._condition = Event(), Condition()
         self._events: list[dict[str, Any]] = []
         self._answer: str | None = None
         self._sounds = list(sounds)
-        self._surfaces = self._seen = 0
+        self._surfaces = self._fetched_number = 0
         self._surface: dict[str, Any] | None = None
         self._servo: Servo | None = None
         self._tabs: list[LiveTab] = []
@@ -107,11 +107,11 @@ class Page(Desk):
         self._add(self._text_of(text), None)
 
     def ask(self, text: str, choices: Mapping[str, str]) -> str:
-        with self._changed:
+        with self._condition:
             self._answer = None
             self._add(self._text_of(text), [[key, self._text_of(meaning)] for key, meaning in choices.items()])
             while self._answer is None:
-                self._changed.wait(1.0)  # so that Ctrl-C at the terminal is heard
+                self._condition.wait(1.0)  # so that Ctrl-C at the terminal is heard
             if self._answer == LEAVE:
                 raise ParticipantLeft
             return self._answer
@@ -125,11 +125,11 @@ class Page(Desk):
         surface = feeling.pipeline.make("surface")
         lead = None if part is None else part_number(surface, part)
         number = self._surfaces + 1
-        packed = surface_for_page(surface, number)
-        with self._changed:
-            self._surfaces, self._surface = number, packed
+        message = surface_for_page(surface, number)
+        with self._condition:
+            self._surfaces, self._surface = number, message
             self._add("", None, {"surface": number, "sounds": self._sounds, "lead": lead})
-            there = self._changed.wait_for(lambda: self._seen >= number or self._stop.is_set(), SURFACE_S)
+            there = self._condition.wait_for(lambda: self._fetched_number >= number or self._stop.is_set(), SURFACE_S)
         try:
             if not there:
                 raise DeviceError("the page of the participant does not answer; open it again")
@@ -146,20 +146,20 @@ class Page(Desk):
         surface = self._surface
         if surface is None or number != self._surfaces:
             return None
-        with self._changed:
-            self._seen = number
-            self._changed.notify_all()
+        with self._condition:
+            self._fetched_number = number
+            self._condition.notify_all()
         return surface
 
     def take(self, number: int, key: str) -> bool:
         """Take the answer to a question, if it is the current one and has this key."""
-        with self._changed:
+        with self._condition:
             question = self._events[-1] if self._events else {}
-            keys = [LEAVE, *(each for each, _ in question.get("choices") or [])]
+            keys = [LEAVE, *(choice for choice, _ in question.get("choices") or [])]
             if question.get("line") != number or key not in keys or self._answer is not None:
                 return False
             self._answer = key
-            self._changed.notify_all()
+            self._condition.notify_all()
             return True
 
     def halt(self) -> None:
@@ -208,10 +208,10 @@ class Page(Desk):
         return event
 
     def _add(self, text: str, choices: list[list[str]] | None, more: Mapping[str, Any] | None = None) -> None:
-        with self._changed:
+        with self._condition:
             event = {"event": "said", "line": len(self._events) + 1, "text": text, "choices": choices, **(more or {})}
             self._events.append(event)
-            self._changed.notify_all()
+            self._condition.notify_all()
             self._server.post(lambda: [tab.say(event) for tab in self._tabs])
 
     def _routes(self) -> list[Mount]:

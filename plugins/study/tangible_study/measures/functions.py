@@ -19,7 +19,7 @@ from .rows import (
     Result,
     Row,
     What,
-    bound,
+    bound_in_words,
     contrasts,
     group_answers,
     interval,
@@ -51,7 +51,7 @@ class Function(ABC):
     """A psychometric function."""
 
     main: ClassVar[str]
-    compared: ClassVar[tuple[str, ...]]
+    contrast_measures: ClassVar[tuple[str, ...]]
     """Measures by which conditions are compared."""
 
     @abstractmethod
@@ -88,23 +88,23 @@ class Function(ABC):
         if isinf(high) and low in (-inf, 0.0):
             yield f"With {row.what.condition}, the answers do not tell the {self.main}: any level explains them."
         elif row.estimate.is_bound:
-            yield f"With {row.what.condition}, {self.meaning(row)} is {bound(row)} (95 %)."
+            yield f"With {row.what.condition}, {self.meaning(row)} is {bound_in_words(row)} (95 %)."
         else:
-            yield from self.estimated(result, row)
+            yield from self.describe_estimate(result, row)
 
     @abstractmethod
     def meaning(self, row: Row) -> str:
         """Return what the main measure is, in words."""
 
     @abstractmethod
-    def estimated(self, result: Result, row: Row) -> Iterator[str]:
+    def describe_estimate(self, result: Result, row: Row) -> Iterator[str]:
         """Yield sentences about an estimate that is not only a bound."""
 
 
 @final
 class _Choice(Function):
     main = EQUALITY
-    compared: ClassVar[tuple[str, ...]] = (EQUALITY, NOTICEABLE)
+    contrast_measures: ClassVar[tuple[str, ...]] = (EQUALITY, NOTICEABLE)
 
     def intensities(self, levels: Float64[np.ndarray, "n"], standard: float | None) -> Float64[np.ndarray, "n"]:
         return levels
@@ -129,7 +129,7 @@ class _Choice(Function):
 
     def figures(self, curve: Curve, comparison: Comparison) -> list[tuple[str, Estimate, str, float]]:
         standard = comparison.standard if comparison.standard is not None else np.nan
-        noticeable = curve.width.mapped(lambda width: JND * width)
+        noticeable = curve.width.map(lambda width: JND * width)
         return [
             (EQUALITY, curve.threshold, comparison.unit, standard),
             (NOTICEABLE, noticeable, comparison.unit, np.nan),
@@ -142,19 +142,19 @@ class _Choice(Function):
     def meaning(self, row: Row) -> str:
         return f"what feels equal to the standard, {row.chance:.3g} {row.unit},"
 
-    def estimated(self, result: Result, row: Row) -> Iterator[str]:
+    def describe_estimate(self, result: Result, row: Row) -> Iterator[str]:
         (value, low, high), unit, condition = row.estimate, row.unit, row.what.condition
         equal = f"feels equal to the standard, {row.chance:.3g} {unit}"
         yield f"With {condition}, {value:.3g} {unit} {equal} ({interval(low, high)})."
-        for noticed in result.of_all(NOTICEABLE):
-            if noticed.what.condition == condition and not isinf(noticed.estimate.high):
-                yield f"A difference of {noticed.estimate.value:.3g} {unit} is noticed in three of four trials."
+        for jnd_row in result.of_all(NOTICEABLE):
+            if jnd_row.what.condition == condition and not isinf(jnd_row.estimate.high):
+                yield f"A difference of {jnd_row.estimate.value:.3g} {unit} is noticed in three of four trials."
 
 
 @final
 class _Distance(Function):
     main = THRESHOLD
-    compared: ClassVar[tuple[str, ...]] = (THRESHOLD,)
+    contrast_measures: ClassVar[tuple[str, ...]] = (THRESHOLD,)
 
     def intensities(self, levels: Float64[np.ndarray, "n"], standard: float | None) -> Float64[np.ndarray, "n"]:
         return np.abs(levels - (standard or 0.0))
@@ -182,10 +182,10 @@ class _Distance(Function):
     def meaning(self, row: Row) -> str:
         return "the difference that is named rightly in two of three trials"
 
-    def estimated(self, result: Result, row: Row) -> Iterator[str]:
+    def describe_estimate(self, result: Result, row: Row) -> Iterator[str]:
         (value, low, high), condition = row.estimate, row.what.condition
-        named = f"a difference of {value:.3g} {row.unit} is named rightly in two of three trials"
-        yield f"With {condition}, {named} ({interval(low, high)})."
+        sentence = f"a difference of {value:.3g} {row.unit} is named rightly in two of three trials"
+        yield f"With {condition}, {sentence} ({interval(low, high)})."
 
 
 CHOICE = _Choice()
@@ -212,7 +212,7 @@ def analyse_levels(comparison: Comparison, answers: ByParticipant, function: Fun
     for name, some in answers.items():
         for condition, cell in group_answers(some, lambda each: each.condition).items():
             key = f"{name}/{condition}"
-            blocks[key] = blocks_of(cell, function)
+            blocks[key] = answer_blocks(cell, function)
             if len(blocks[key].levels) < 2:
                 unfit.append(key)
                 continue
@@ -227,10 +227,10 @@ def analyse_levels(comparison: Comparison, answers: ByParticipant, function: Fun
         raise TangibleError(f"{comparison.name}: has answers at one level only; run it to the end")
     if len(answers) > 1:
         rows += over_participants(rows)
-    for measure in function.compared:
+    for measure in function.contrast_measures:
         rows += contrasts(measure, rows)
     notes = function.notes(together(answers))
-    notes += [f"{each} has answers at one level only, and no function." for each in unfit]
+    notes += [f"{key} has answers at one level only, and no function." for key in unfit]
     notes += [
         f"The threshold of {key} is outside the levels that were presented; it is a guess."
         for key, curve in curves.items()
@@ -239,14 +239,14 @@ def analyse_levels(comparison: Comparison, answers: ByParticipant, function: Fun
     return Result(comparison.name, comparison.question, list(answers), rows, function.main, curves, blocks, notes)
 
 
-def blocks_of(answers: list[Answer], function: Function) -> Blocks:
+def answer_blocks(answers: list[Answer], function: Function) -> Blocks:
     """Return answers by level, on the axis of the function."""
 
-    def where(each: Answer) -> float:
-        return float(function.intensities(np.array([each.level or 0.0]), each.standard)[0])
+    def where(answer: Answer) -> float:
+        return float(function.intensities(np.array([answer.level or 0.0]), answer.standard)[0])
 
     cells = sorted(group_answers(answers, where).items())
-    hits = [[function.hit(each) or 0 for each in cell] for _, cell in cells]
+    hits = [[function.hit(answer) or 0 for answer in cell] for _, cell in cells]
     return Blocks(
         np.array([level for level, _ in cells], float),
         np.array([sum(hit) for hit in hits], float),

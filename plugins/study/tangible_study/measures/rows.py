@@ -74,42 +74,44 @@ def proportion_row(what: What, participant: str, hits: Sequence[int], chance: fl
 
 
 def over_participants(
-    rows: Iterable[Row], pooled: Mapping[What, Row] | None = None, bounds: tuple[float, float] = (0.0, 1.0)
+    rows: Iterable[Row], all_together: Mapping[What, Row] | None = None, bounds: tuple[float, float] = (0.0, 1.0)
 ) -> list[Row]:
     """Return a row about all participants for each thing: the mean over them, within the bounds."""
     groups: dict[What, list[Row]] = {}
     for row in rows:
         groups.setdefault(row.what, []).append(row)
-    return [_mean_of(what, group, (pooled or {}).get(what), bounds) for what, group in groups.items()]
+    return [_mean_row(what, group, (all_together or {}).get(what), bounds) for what, group in groups.items()]
 
 
-def _mean_of(what: What, group: Sequence[Row], pooled: Row | None, bounds: tuple[float, float]) -> Row:
-    known = [row.estimate for row in group if row.estimate.value == row.estimate.value]
-    estimate, chance = intervals.mean_of_estimates(known, closed=pooled is not None), group[0].chance
-    p = intervals.p_of_mean([single.value for single in known], chance) if isfinite(chance) else nan
-    trials = sum(each.trials for each in group)
+def _mean_row(what: What, group: Sequence[Row], all_together: Row | None, bounds: tuple[float, float]) -> Row:
+    estimates = [row.estimate for row in group if row.estimate.value == row.estimate.value]
+    estimate, chance = intervals.mean_of_estimates(estimates, closed_ends=all_together is not None), group[0].chance
+    p = intervals.p_of_mean([single.value for single in estimates], chance) if isfinite(chance) else nan
+    trials = sum(row.trials for row in group)
     row = Row(what, ALL, estimate, group[0].unit, trials, None, chance, p)
-    if pooled is None:
+    if all_together is None:
         return row
     # The wider interval and the greater p count: participants who differ make a result uncertain, as do few trials.
-    wider = intervals.wider(estimate, pooled.estimate)
-    bounded = Estimate(wider.value, max(wider.low, bounds[0]), min(wider.high, bounds[1]))
-    chances = [each for each in (p, pooled.p) if each == each]
-    return replace(row, estimate=bounded, count=pooled.count, p=max(chances, default=nan))
+    wider = intervals.wider(estimate, all_together.estimate)
+    within_bounds = Estimate(wider.value, max(wider.low, bounds[0]), min(wider.high, bounds[1]))
+    chances = [p_value for p_value in (p, all_together.p) if p_value == p_value]
+    return replace(row, estimate=within_bounds, count=all_together.count, p=max(chances, default=nan))
 
 
 def of_each_and_all(
-    rows_of: Callable[[str, list[Answer]], list[Row]],
+    make_rows: Callable[[str, list[Answer]], list[Row]],
     answers: ByParticipant,
     bounds: tuple[float, float] = (0.0, 1.0),
 ) -> tuple[list[Row], dict[What, Row]]:
     """Return the rows of each participant and of all, and those of all trials together by quantity."""
-    single = [row for name, some in answers.items() for row in rows_of(name, list(some))]
-    pooled = {row.what: row for row in rows_of("pooled", together(answers))}
-    return [*single, *(over_participants(single, pooled, bounds) if len(answers) > 1 else ())], pooled
+    single = [row for name, some in answers.items() for row in make_rows(name, list(some))]
+    all_together = {row.what: row for row in make_rows("pooled", together(answers))}
+    return [*single, *(over_participants(single, all_together, bounds) if len(answers) > 1 else ())], all_together
 
 
-def contrast(one: Row, other: Row, groups: tuple[Sequence[Row], Sequence[Row]], pooled: Estimate | None = None) -> Row:
+def contrast(
+    one: Row, other: Row, groups: tuple[Sequence[Row], Sequence[Row]], all_together: Estimate | None = None
+) -> Row:
     """Return how much larger a measure is in one condition than in another, by the participants who have both."""
     what = What(f"difference of {one.what.measure}", one.what.condition, other.what.condition)
     row = Row(what, one.participant, Estimate(nan), one.unit, one.trials + other.trials, None, 0.0)
@@ -118,25 +120,29 @@ def contrast(one: Row, other: Row, groups: tuple[Sequence[Row], Sequence[Row]], 
     differences = [intervals.difference(*pair) for pair in pairs if not any(isnan(side.value) for side in pair)]
     if len(differences) < 2:
         return replace(row, estimate=intervals.difference(one.estimate, other.estimate))
-    estimate = intervals.mean_of_estimates(differences, closed=pooled is not None)
+    estimate = intervals.mean_of_estimates(differences, closed_ends=all_together is not None)
     p = intervals.p_of_mean([apart.value for apart in differences], 0.0)
-    return replace(row, estimate=estimate if pooled is None else intervals.wider(estimate, pooled), p=p)
+    return replace(row, estimate=estimate if all_together is None else intervals.wider(estimate, all_together), p=p)
 
 
-def contrasts(measure: str, rows: Sequence[Row], pooled: Mapping[What, Row] | None = None) -> list[Row]:
+def contrasts(measure: str, rows: Sequence[Row], all_together: Mapping[What, Row] | None = None) -> list[Row]:
     """Return the differences of a measure between all pairs of conditions, later ones less earlier ones."""
-    known = [each for each in rows if each.what.measure == measure]
-    names = list(dict.fromkeys(each.what for each in known))
-    found: list[Row] = []
+    same_measure = [row for row in rows if row.what.measure == measure]
+    names = list(dict.fromkeys(row.what for row in same_measure))
+    differences: list[Row] = []
     for other, one in combinations(names, 2):
         groups = tuple(
-            [each for each in known if each.what == what and each.participant != ALL] for what in (one, other)
+            [row for row in same_measure if row.what == what and row.participant != ALL] for what in (one, other)
         )
-        totals = [next((row for row in reversed(known) if row.what == what), None) for what in (one, other)]
+        totals = [next((row for row in reversed(same_measure) if row.what == what), None) for what in (one, other)]
         if totals[0] is not None and totals[1] is not None:
-            both = None if pooled is None else intervals.difference(pooled[one].estimate, pooled[other].estimate)
-            found.append(contrast(totals[0], totals[1], (groups[0], groups[1]), both))
-    return found
+            both = (
+                None
+                if all_together is None
+                else intervals.difference(all_together[one].estimate, all_together[other].estimate)
+            )
+            differences.append(contrast(totals[0], totals[1], (groups[0], groups[1]), both))
+    return differences
 
 
 def as_record(row: Row) -> dict[str, Any]:
@@ -172,7 +178,7 @@ def label(answer: Answer) -> str:
 
 def together(answers: ByParticipant) -> list[Answer]:
     """Return the answers of all participants."""
-    return [each for one in answers.values() for each in one]
+    return [answer for own in answers.values() for answer in own]
 
 
 def people(count: int) -> str:
@@ -195,17 +201,17 @@ def odds(row: Row) -> str:
 
 def share(row: Row) -> str:
     """Return a share of the trials with its interval."""
-    value, low, high = (100 * each for each in row.estimate)
+    value, low, high = (100 * figure for figure in row.estimate)
     return f"{value:.0f} % of {row.trials} trials (95 % interval {low:.0f} to {high:.0f} %)"
 
 
-def told_apart(row: Row, answered: str) -> str:
+def discrimination_in_words(row: Row, claim: str) -> str:
     """Return whether two conditions can be told apart. answered: who answered what rightly."""
     what, one, other = share(row), row.what.condition, row.what.other
     guess = f"guessing gives {100 * row.chance:.0f} %."
     if is_sure(row):
-        return f"{one} and {other} can be told apart: {answered} in {what}; {guess}"
-    return f"It is open whether {one} and {other} can be told apart: {answered} in {what}, and {guess}"
+        return f"{one} and {other} can be told apart: {claim} in {what}; {guess}"
+    return f"It is open whether {one} and {other} can be told apart: {claim} in {what}, and {guess}"
 
 
 def interval(low: float, high: float) -> str:
@@ -217,7 +223,7 @@ def interval(low: float, high: float) -> str:
     return f"95 % interval {low:.3g} to {high:.3g}" if isfinite(low) else f"95 % interval up to {high:.3g}"
 
 
-def bound(row: Row) -> str:
+def bound_in_words(row: Row) -> str:
     """Return an estimate that is the end of its interval."""
     _, low, high = row.estimate
     return f"below {high:.3g} {row.unit}" if high < inf else f"above {low:.3g} {row.unit}"

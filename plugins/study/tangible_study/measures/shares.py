@@ -41,15 +41,15 @@ def analyse_right_answers(
     chance: float,
     inverse: Callable[[float], float] | None = None,
     *,
-    compared: bool = False,
+    with_contrasts: bool = False,
 ) -> Result:
     """Analyse how often an answer was right. chance: by guessing. inverse: d' from such a share."""
 
-    def rows_of(name: str, some: list[Answer]) -> list[Row]:
+    def make_rows(name: str, some: list[Answer]) -> list[Row]:
         return share_rows(CORRECT, name, some, lambda each: each.correct, chance, one_sided=True)
 
-    rows, pooled = of_each_and_all(rows_of, answers)
-    between = contrasts(CORRECT, rows, pooled) if compared else []
+    rows, all_together = of_each_and_all(make_rows, answers)
+    between = contrasts(CORRECT, rows, all_together) if with_contrasts else []
     dprimes = [] if inverse is None else [with_dprime(row, inverse) for row in rows]
     return Result(comparison.name, comparison.question, list(answers), [*rows, *dprimes, *between], CORRECT)
 
@@ -64,18 +64,19 @@ def share_rows(
     one_sided: bool = False,
 ) -> list[Row]:
     """Return the share of hits among a participant's answers, for each condition, and level if one varies."""
-    cells = group_answers(answers, lambda each: What(measure, label(each), each.other or ""))
+    cells = group_answers(answers, lambda answer: What(measure, label(answer), answer.other or ""))
     return [
-        proportion_row(what, name, [hit(each) or 0 for each in cell], chance, one_sided) for what, cell in cells.items()
+        proportion_row(what, name, [hit(answer) or 0 for answer in cell], chance, one_sided)
+        for what, cell in cells.items()
     ]
 
 
 def with_dprime(row: Row, inverse: Callable[[float], float]) -> Row:
     """Return the row of d' that belongs to a row of shares. inverse: d' from a share."""
     edge = 0.5 / max(row.trials, 1)  # all right, or all wrong: half an answer less (Macmillan & Kaplan 1985)
-    found = row.estimate.mapped(inverse)
+    dprime = row.estimate.map(inverse)
     value = inverse(min(max(row.estimate.value, edge), 1 - edge)) if row.estimate.value == row.estimate.value else nan
-    return replace(row, what=row.what._replace(measure=DPRIME), estimate=Estimate(value, *found[1:]), chance=0.0)
+    return replace(row, what=row.what._replace(measure=DPRIME), estimate=Estimate(value, *dprime[1:]), chance=0.0)
 
 
 SPREAD = "standard deviation"
@@ -95,7 +96,7 @@ def analyse_quantities(
     rows: list[Row] = []
     for name, some in answers.items():
         for condition, cell in group_answers(some, about).items():
-            values = [_number(each) - origin for each in cell]
+            values = [_number(answer) - origin for answer in cell]
             p = nan if chance != chance else intervals.p_of_mean(values, chance)
             rows.append(Row(What(measure, condition), name, intervals.mean(values), unit, len(cell), None, chance, p))
             if len(values) > 1:
@@ -123,18 +124,18 @@ DIFFERENCE = f"difference of {SCALE}"
 def analyse_pairs(comparison: Comparison, answers: ByParticipant) -> Result:
     """Analyse how often each condition was chosen over each other one; three or more are placed on a scale."""
 
-    def rows_of(name: str, some: list[Answer]) -> list[Row]:
+    def make_rows(name: str, some: list[Answer]) -> list[Row]:
         return share_rows(CHOSEN, name, some, lambda each: each.chosen, 0.5)
 
-    rows, _ = of_each_and_all(rows_of, answers)
+    rows, _ = of_each_and_all(make_rows, answers)
     dprimes = [with_dprime(row, two_afc) for row in rows]
     notes = note_on_order(together(answers))
     names = [condition for condition in comparison.conditions if any(condition in (row.what[1:]) for row in rows)]
     if len(names) < 3:
         return Result(comparison.name, comparison.question, list(answers), [*rows, *dprimes], CHOSEN, notes=notes)
-    scale = fit_scale([wins_of(list(some), names) for some in answers.values()])
+    scale = fit_scale([count_wins(list(some), names) for some in answers.values()])
     whom, trials = ALL if len(answers) > 1 else next(iter(answers)), sum(map(len, answers.values()))
-    values = [Row(What(SCALE, each), whom, scale.estimate(index), "", trials) for index, each in enumerate(names)]
+    values = [Row(What(SCALE, name), whom, scale.estimate(index), "", trials) for index, name in enumerate(names)]
     between = [
         Row(What(DIFFERENCE, one, other), whom, scale.difference(first, second), "", trials, None, 0.0)
         for second, other in enumerate(names)
@@ -147,7 +148,7 @@ def analyse_pairs(comparison: Comparison, answers: ByParticipant) -> Result:
     return Result(comparison.name, comparison.question, list(answers), everything, SCALE, notes=notes)
 
 
-def wins_of(answers: list[Answer], names: list[str]) -> Float64[np.ndarray, "n n"]:
+def count_wins(answers: list[Answer], names: list[str]) -> Float64[np.ndarray, "n n"]:
     """Return how often each condition (row) was chosen over each other one (column)."""
     wins = np.zeros((len(names), len(names)))
     for answer in answers:

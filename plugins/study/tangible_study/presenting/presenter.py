@@ -21,7 +21,7 @@ from ..desks.desk import Desk
 from ..questions import load_question
 from .stimuli import Stimuli
 
-TIME, LATE, FLAGS = (TICK_COLUMNS.index(each) for each in ("time_s", "late_s", "flags"))
+TIME, LATE, FLAGS = (TICK_COLUMNS.index(name) for name in ("time_s", "late_s", "flags"))
 LIMITED = {
     TickFlag.FORCE_LIMITED: "the force was limited to the greatest that is allowed",
     TickFlag.STIFFNESS_LIMITED: "the force law was softened, as it is too stiff for this device",
@@ -40,7 +40,7 @@ class Rendering:
     ticks: int = 0
     touching: int = 0
     overruns: int = 0
-    flagged: dict[TickFlag, int] = field(default_factory=dict[TickFlag, int])
+    flag_counts: dict[TickFlag, int] = field(default_factory=dict[TickFlag, int])
     late_s: list[float] = field(default_factory=list[float])
     """The 99th percentile and the maximum of each part of the ticks."""
     last_s: float = 0.0
@@ -54,12 +54,12 @@ class Rendering:
         self.touching += int(np.count_nonzero(flags & (TickFlag.TOUCHING | TickFlag.NOT_FINITE | TickFlag.STALE)))
         self.overruns += int(np.count_nonzero(flags & TickFlag.OVERRUN))
         for flag in LIMITED:
-            self.flagged[flag] = self.flagged.get(flag, 0) + int(np.count_nonzero(flags & flag))
+            self.flag_counts[flag] = self.flag_counts.get(flag, 0) + int(np.count_nonzero(flags & flag))
         self.late_s += [float(np.percentile(rows[:, LATE], 99)), float(rows[:, LATE].max())]
 
     def why_not(self, limits: Limits) -> str | None:
         """Return why the device did not render what was requested; None if it did."""
-        flag, count = max(self.flagged.items(), key=lambda each: each[1], default=(None, 0))
+        flag, count = max(self.flag_counts.items(), key=lambda counts: counts[1], default=(None, 0))
         if flag is not None and self.touching and count > limits.limited * self.touching:
             return f"{LIMITED[flag]}, in {100 * count / self.touching:.0f} % of the time in contact"
         if self.ticks and self.overruns > limits.late * self.ticks:
@@ -115,9 +115,9 @@ class HeldLoop:
                     stop.wait(min(left_s, LOOK_EVERY_S))
                     drain.look()
                 if stop.is_set() or not servo.running:
-                    ended = self.close()
+                    why = self.close()
                     drain.look()
-                    raise DeviceError(STOPPED if stop.is_set() else ended)
+                    raise DeviceError(STOPPED if stop.is_set() else why)
             servo.pull_to(None)
             servo.swap(null_touch())
         except BaseException:
@@ -199,9 +199,9 @@ class Presenter:
             _check_end(feeling.run(seconds, keep=keep, on_start=begin, beacon=part, stop=self.desk.stop).stopped)
 
 
-def _check_end(stopped: str) -> None:
+def _check_end(why: str) -> None:
     """Raise the error for an interval that ended early."""
-    if stopped == INTERRUPTED:
+    if why == INTERRUPTED:
         raise KeyboardInterrupt
-    if stopped:
-        raise DeviceError(stopped)
+    if why:
+        raise DeviceError(why)

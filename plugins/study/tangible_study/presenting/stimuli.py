@@ -26,7 +26,7 @@ class Stimuli:
         registry = default_registry()
         self._pipelines: dict[Recipe, Pipeline] = {}
         self.recipes: Mapping[tuple[str, Stimulus], Recipe] = {
-            key: Recipe(each.pipeline, (*each.sets, *device)) for key, each in file.recipes().items()
+            key: Recipe(recipe.pipeline, (*recipe.sets, *device)) for key, recipe in file.recipes().items()
         }
         for key, recipe in self.recipes.items():
             if recipe not in self._pipelines:
@@ -59,27 +59,27 @@ class Stimuli:
 
     def make(self, progress: Callable[[int], None]) -> None:
         """Make every surface and force law. progress: called with the number of these so far. Raises: ConfigError."""
-        tried, made = set[Recipe](), 0
+        visited, count = set[Recipe](), 0
         for key, recipe in self.recipes.items():
-            if recipe in tried:
+            if recipe in visited:
                 continue
-            tried.add(recipe)
+            visited.add(recipe)
             try:
                 self._pipelines[recipe].make("touch")
             except TangibleError as error:
                 self.file.source.complain(self.file.place(*key), str(error))
             else:
-                made += 1
-                progress(made)
+                count += 1
+                progress(count)
         self._check_names()
         self.file.source.settle()
 
     def check(self) -> None:
         """Check by preflight, without opening the device, that it renders everything. Raises: ConfigError."""
-        checked = set[Recipe]()
+        visited = set[Recipe]()
         for key, recipe in self.recipes.items():
-            if recipe not in checked:
-                checked.add(recipe)
+            if recipe not in visited:
+                visited.add(recipe)
                 if problem := _problem(self.feeling(*key).preflight(None, QUICK)):
                     self.file.source.complain(self.file.place(*key), f"{self.device} cannot render this: {problem}")
         self.file.source.settle()
@@ -93,11 +93,11 @@ class Stimuli:
             there = self._pipelines[recipe].surface.names or ()
             for name in names:
                 if name not in there:
-                    index = [each.name for each in self.file.study.comparisons].index(comparison)
-                    known = ", ".join(filter(None, there)) or "none"
+                    index = [entry.name for entry in self.file.study.comparisons].index(comparison)
+                    names_there = ", ".join(filter(None, there)) or "none"
                     where = ("comparisons", index, "names", names.index(name))
                     self.file.source.complain(
-                        where, f"{stimulus.condition} has no part named {name!r}; it has: {known} (see `parts:`)"
+                        where, f"{stimulus.condition} has no part named {name!r}; it has: {names_there} (see `parts:`)"
                     )
 
 
@@ -108,4 +108,4 @@ def _problem(verdicts: Preflight) -> str:
         for verdict in verdicts
         if verdict.verdict == "unsafe" or (verdict.verdict != "ok" and verdict.check in NOT_RENDERED)
     )
-    return next((f"{each.says} ({each.cure})" if each.cure else each.says for each in wrong), "")
+    return next((f"{worst.says} ({worst.cure})" if worst.cure else worst.says for worst in wrong), "")

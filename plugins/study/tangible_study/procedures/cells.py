@@ -20,7 +20,7 @@ class Cell(NamedTuple):
     against: Stimulus
 
 
-def cells_of(comparison: Comparison) -> list[Cell]:
+def compared_cells(comparison: Comparison) -> list[Cell]:
     """Return each level against the standard, for each condition; without levels, each pair of conditions."""
     if comparison.levels:
         return [
@@ -31,7 +31,7 @@ def cells_of(comparison: Comparison) -> list[Cell]:
     return [Cell(Stimulus(one), Stimulus(other)) for one, other in combinations(comparison.conditions, 2)]
 
 
-def stimuli_of(cells: Iterable[Cell]) -> tuple[Stimulus, ...]:
+def cell_stimuli(cells: Iterable[Cell]) -> tuple[Stimulus, ...]:
     """Return everything that cells present, each once."""
     return tuple(dict.fromkeys(stimulus for cell in cells for stimulus in cell))
 

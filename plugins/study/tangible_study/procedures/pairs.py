@@ -8,7 +8,7 @@ from typing import final
 import numpy as np
 
 from ..design import DIFFERENT, SAME, Comparison, Stimulus, Trial
-from .cells import Cell, asks, cells_of, comparison_trial, in_rounds, stimuli_of, without_levels
+from .cells import Cell, asks, cell_stimuli, compared_cells, comparison_trial, in_rounds, without_levels
 from .procedure import Course, Listed, Procedure
 
 
@@ -21,13 +21,13 @@ class Pairs(Procedure):
 
     def course(self, comparison: Comparison, generator: np.random.Generator) -> Course:
         make = partial(self.trial, comparison)
-        return Listed(in_rounds(cells_of(comparison), comparison.repetitions, generator, make))
+        return Listed(in_rounds(compared_cells(comparison), comparison.repetitions, generator, make))
 
     def stimuli(self, comparison: Comparison) -> tuple[Stimulus, ...]:
-        return stimuli_of(cells_of(comparison))
+        return cell_stimuli(compared_cells(comparison))
 
     def trials(self, comparison: Comparison) -> int:
-        return comparison.repetitions * len(cells_of(comparison))
+        return comparison.repetitions * len(compared_cells(comparison))
 
 
 @final

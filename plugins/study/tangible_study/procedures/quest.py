@@ -10,7 +10,7 @@ from ..design import Comparison, Stimulus, Trial
 from ..extra import need
 from ..measures.functions import Function
 from ..questions import load_question
-from .cells import Cell, asks, cells_of, comparison_trial, stimuli_of, without_levels
+from .cells import Cell, asks, cell_stimuli, compared_cells, comparison_trial, without_levels
 from .pairs import odd_one, standard_among_levels
 from .procedure import Course, Procedure, score
 
@@ -34,7 +34,7 @@ class Quest(Procedure):
         return _Tracks(self, comparison, generator)
 
     def stimuli(self, comparison: Comparison) -> tuple[Stimulus, ...]:
-        return stimuli_of(cells_of(comparison))
+        return cell_stimuli(compared_cells(comparison))
 
 
 @final

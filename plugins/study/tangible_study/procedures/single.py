@@ -34,7 +34,7 @@ class Single(Procedure):
         return Listed(in_rounds(things, comparison.repetitions, generator, make))
 
     def stimuli(self, comparison: Comparison) -> tuple[Stimulus, ...]:
-        return tuple(Stimulus(*each) for each in product(comparison.conditions, comparison.levels or (None,)))
+        return tuple(Stimulus(*pair) for pair in product(comparison.conditions, comparison.levels or (None,)))
 
     def trials(self, comparison: Comparison) -> int:
         return comparison.repetitions * len(self.stimuli(comparison)) * len(self.targets(comparison))

@@ -26,11 +26,11 @@ class More(Question):
         return str(trial.position if trial.level > trial.standard else 3 - trial.position)
 
     def score(self, trial: Trial, response: str) -> Score:
-        chosen = None if trial.position is None else int(response == str(trial.position))
-        return super().score(trial, response)._replace(chosen=chosen)
+        choice = None if trial.position is None else int(response == str(trial.position))
+        return super().score(trial, response)._replace(chosen=choice)
 
     def decide(self, trial: Trial, percept: Percept, generator: np.random.Generator) -> str:
-        return str(int(np.argmax(percept.felt)) + 1)
+        return str(int(np.argmax(percept.strengths)) + 1)
 
     def analyse_conditions(self, comparison: Comparison, answers: ByParticipant) -> Result:
         return analyse_pairs(comparison, answers)
@@ -43,8 +43,8 @@ class More(Question):
         yield f"From most to least {self.name.removesuffix('er')}: {', '.join(row.what.condition for row in values)}."
         open_pairs = [row.what for row in result.of_all(DIFFERENCE) if not is_sure(row)]
         if open_pairs:
-            listed = "; ".join(f"{open_pair.condition} and {open_pair.other}" for open_pair in open_pairs)
-            yield f"Which of these is more is open: {listed}."
+            pairs = "; ".join(f"{open_pair.condition} and {open_pair.other}" for open_pair in open_pairs)
+            yield f"Which of these is more is open: {pairs}."
         else:
             yield "Each of them differs from each other one: 0 is outside the 95 % interval of every difference."
 

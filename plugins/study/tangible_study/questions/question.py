@@ -23,7 +23,7 @@ class Score(NamedTuple):
 class Percept(NamedTuple):
     """What an observer who is a model feels in a trial."""
 
-    felt: np.ndarray
+    strengths: np.ndarray
     """Each interval, with noise of standard deviation 1."""
     magnitude: Callable[[Stimulus], float]
     """How strong a stimulus is without noise, in standard deviations of it."""
@@ -98,7 +98,7 @@ class Question(ABC):
 
     def analyse(self, comparison: Comparison, answers: ByParticipant) -> Result:
         """Analyse the answers of a comparison, whichever procedure asked."""
-        varies = any(each.level is not None for some in answers.values() for each in some)
+        varies = any(answer.level is not None for some in answers.values() for answer in some)
         if varies and self.function is not None:
             return analyse_levels(comparison, answers, self.function)
         return self.analyse_conditions(comparison, answers)

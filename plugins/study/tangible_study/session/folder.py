@@ -145,21 +145,23 @@ def check_name(root: Path, name: str, resume: bool) -> int | None:
     """Return the number of the participant who resumes, from 0; None for a new one. Raises: ConfigError."""
     if not (name.isascii() and name.isalnum()):
         raise ConfigError(f"--participant {quoted(name)}: a name has letters and digits alone, such as P7")
-    known = participants(root)
-    names = [each.participant_id.casefold() for each in known]  # a file system may not tell p7 from P7
+    enrolled_before = participants(root)
+    names = [person.participant_id.casefold() for person in enrolled_before]  # a file system may not tell p7 from P7
     number = names.index(f"sub-{name}".casefold()) if f"sub-{name}".casefold() in names else None
     if number is None:
         if resume:
             raise ConfigError(f"--participant {name}: has not begun yet; leave out --resume")
-    elif known[number].has_finished:
+    elif enrolled_before[number].has_finished:
         raise ConfigError(f"--participant {name}: has answered all trials; give this participant another name")
     elif not resume:
         raise ConfigError(
             f"--participant {name}: has begun already; --resume goes on where this participant stopped, and somebody "
             "else needs another name"
         )
-    elif known[number].participant_id != f"sub-{name}":
-        raise ConfigError(f"--participant {name}: is written {known[number].participant_id.removeprefix('sub-')}")
+    elif enrolled_before[number].participant_id != f"sub-{name}":
+        raise ConfigError(
+            f"--participant {name}: is written {enrolled_before[number].participant_id.removeprefix('sub-')}"
+        )
     return number
 
 
@@ -168,23 +170,26 @@ def enrol(root: Path, name: str, study: Study, resume: bool) -> int:
     with folder_lock(root):
         if (number := check_name(root, name, resume)) is not None:
             return number
-        known = participants(root)
-        _write(root, [*known, Participant(f"sub-{name}", study.language, now())])
-        return len(known)
+        enrolled_before = participants(root)
+        _write(root, [*enrolled_before, Participant(f"sub-{name}", study.language, now())])
+        return len(enrolled_before)
 
 
 def finish(root: Path, name: str) -> None:
     """Note that a participant has answered all trials. Raises: OutputError."""
     with folder_lock(root):
-        known = participants(root)
+        enrolled_before = participants(root)
         _write(
             root,
-            [each._replace(finished=now()) if each.participant_id == f"sub-{name}" else each for each in known],
+            [
+                person._replace(finished=now()) if person.participant_id == f"sub-{name}" else person
+                for person in enrolled_before
+            ],
         )
 
 
-def _write(root: Path, known: list[Participant]) -> None:
-    lines = ["\t".join(each) for each in (Participant._fields, *known)]
+def _write(root: Path, people: list[Participant]) -> None:
+    lines = ["\t".join(cells) for cells in (Participant._fields, *people)]
     write_text(root / "participants.tsv", "\n".join(lines) + "\n")
 
 
@@ -220,10 +225,10 @@ def write_sidecar(place: Place, file: StudyFile, facts: Mapping[str, Any]) -> No
 def _describe_answers(units: Mapping[str, str]) -> dict[str, Any]:
     """Return the description of each column of the table of answers. units: of the levels, by comparison."""
     unit = next(iter(units.values())) if len(set(units.values())) == 1 else dumps(dict(units))
-    described = {"Units": unit} if units else {}
+    units_of_level = {"Units": unit} if units else {}
     answers = _columns()["answers"]
     questions = {"Levels": {name: load_question(name).about for name in QUESTIONS}}
-    more = {"question": questions, "level": described, "standard": described}
+    more = {"question": questions, "level": units_of_level, "standard": units_of_level}
     return answers | {name: answers[name] | facts for name, facts in more.items()}
 
 

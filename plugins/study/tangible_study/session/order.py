@@ -28,7 +28,7 @@ def latin_square(count: int, row: int) -> list[int]:
     [[0, 3, 1, 2], [1, 0, 2, 3], [2, 1, 3, 0], [3, 2, 0, 1]]
     """
     first = [place // 2 if place % 2 == 0 else count - 1 - place // 2 for place in range(count)]
-    order = [(each + row) % count for each in first]
+    order = [(step + row) % count for step in first]
     return order[::-1] if count % 2 and row // count % 2 else order
 
 
@@ -49,7 +49,7 @@ class StudyCourse(Course):
     def __init__(self, file: StudyFile, participant: int) -> None:
         """Begin before the first trial. participant: number from 0, in the order of their first trials."""
         self._file = file
-        self._left = [
+        self._remaining = [
             (index, phase)
             for index in comparison_order(file, participant)
             for phase in (TRAINING, TEST)
@@ -57,27 +57,27 @@ class StudyCourse(Course):
         ]
         self._participant = participant
         self._course: Course | None = None
-        self._taken = 0
+        self._answer_count = 0
 
     def next(self) -> Trial | None:
-        while self._left:
-            index, phase = self._left[0]
+        while self._remaining:
+            index, phase = self._remaining[0]
             comparison = self._file.study.comparisons[index]
             if self._course is None:
                 seed = [self._file.study.seed, self._participant, index, phase]
                 procedure = self._file.procedures[comparison.name]
-                self._course, self._taken = procedure.course(comparison, np.random.default_rng(seed)), 0
-            over = phase == TRAINING and self._taken >= comparison.training
+                self._course, self._answer_count = procedure.course(comparison, np.random.default_rng(seed)), 0
+            over = phase == TRAINING and self._answer_count >= comparison.training
             if not over and (trial := self._course.next()) is not None:
                 return replace(trial, phase="training") if phase == TRAINING else trial
-            self._left.pop(0)
+            self._remaining.pop(0)
             self._course = None
         return None
 
     def take(self, trial: Trial, response: str) -> None:
         assert self._course is not None
         self._course.take(trial, response)
-        self._taken += 1
+        self._answer_count += 1
 
     @property
     def trials(self) -> int:
@@ -93,20 +93,20 @@ class StudyCourse(Course):
 
 def replay(course: Course, answers: Iterable[Answer]) -> int:
     """Answer a course by the answers of an earlier start; return their number. Raises: ResultsError if they differ."""
-    done, shared = list(answers), {*SHARED} - {"question", "procedure"}
-    for answer in done:
+    earlier, in_common = list(answers), {*SHARED} - {"question", "procedure"}
+    for answer in earlier:
         trial = course.next()
-        if trial is None or any(getattr(trial, each) != getattr(answer, each) for each in shared):
+        if trial is None or any(getattr(trial, name) != getattr(answer, name) for name in in_common):
             raise ResultsError(
                 f"trial {answer.trial}: is an answer to another trial than this study asks now; run the study with the "
                 "version of the program that began it, which the file next to the answers names"
             )
         course.take(trial, answer.response)
-    return len(done)
+    return len(earlier)
 
 
-def answer_of(trial: Trial, number: int, response: str, seconds: float) -> Answer:
+def make_answer(trial: Trial, number: int, response: str, seconds: float) -> Answer:
     """Return the line of the table for a response to a trial. number: of the trial, from 1."""
-    chosen, correct = score(trial, response)
-    told = {"response": response, "chosen": chosen, "correct": correct, "response_time": round(seconds, 4)}
-    return Answer(number, **{each: getattr(trial, each) for each in SHARED}, **told)
+    choice, correct = score(trial, response)
+    answer = {"response": response, "chosen": choice, "correct": correct, "response_time": round(seconds, 4)}
+    return Answer(number, **{name: getattr(trial, name) for name in SHARED}, **answer)

@@ -19,7 +19,7 @@ from ..questions import load_question
 from ..study_file import StudyFile
 from ..trials import Answer, AnswerFile, read_answers
 from . import folder
-from .order import StudyCourse, answer_of, replay
+from .order import StudyCourse, make_answer, replay
 
 CONSENT = "Do you agree?"
 AGREE = {"y": "yes, I agree", "n": "no, I do not"}
@@ -45,7 +45,7 @@ class Session:
         """Run all trials that are not answered yet; return the number of answers. Raises: ParticipantLeft."""
         file, course = self.stimuli.file, StudyCourse(self.stimuli.file, self.number)
         before = read_answers(self.place.answers)
-        done, last = replay(course, before), before[-1].comparison if before else ""
+        count, last = replay(course, before), before[-1].comparison if before else ""
         self.faults += folder.faults_before(self.place)
         self._save_facts()
         with AnswerFile(self.place.answers) as table, self.presenter.loop:
@@ -54,12 +54,12 @@ class Session:
                     if trial.comparison != last:
                         self._introduce(trial)
                         last = trial.comparison
-                    elif done and done % file.study.breaks.every == 0:
-                        self._take_break(done, course.trials)
-                    answer = self._run_trial(trial, done + 1, course.trials)
+                    elif count and count % file.study.breaks.every == 0:
+                        self._take_break(count, course.trials)
+                    answer = self._run_trial(trial, count + 1, course.trials)
                     self._keep(table, answer)
                     course.take(trial, answer.response)
-                    done += 1
+                    count += 1
                     if trial.phase == "training":
                         self._give_feedback(trial, answer)
             finally:
@@ -67,7 +67,7 @@ class Session:
                     self._save_facts()
         folder.finish(self.place.root, self.place.name)
         self.desk.say("That was the last trial. Thank you.")
-        return done
+        return count
 
     def ask_consent(self) -> bool:
         """Read the consent text, unless that was done; return whether the participant agrees."""
@@ -91,9 +91,9 @@ class Session:
             self.desk.say("First some trials for training.")
         self.desk.ask("Press Enter to begin.", GO_ON)
 
-    def _take_break(self, done: int, trials: int) -> None:
+    def _take_break(self, count: int, trials: int) -> None:
         seconds = self.stimuli.file.study.breaks.seconds
-        self.desk.say(f"A break of {seconds:.0f} seconds. {done} of {trials} trials are done.")
+        self.desk.say(f"A break of {seconds:.0f} seconds. {count} of {trials} trials are done.")
         self.wait(seconds)
         self.desk.ask("Press Enter to go on.", GO_ON)
 
@@ -114,7 +114,7 @@ class Session:
             self.lateness_s += rendering.late_s
             why = rendering.why_not(self.stimuli.file.study.limits)
             return replace(
-                answer_of(trial, number, key, seconds),
+                make_answer(trial, number, key, seconds),
                 repeat=repeat,
                 rendered=why is None,
                 why=why,
@@ -167,10 +167,10 @@ CHOOSES_DEVICE = ("device.", "mapping.")
 
 def device_changes(device: str | None, sets: list[str]) -> tuple[str, ...]:
     """Return the changes of each pipeline that choose the device. Raises: ConfigError for other keys."""
-    for each in sets:
-        if not each.startswith(CHOOSES_DEVICE):
+    for setting in sets:
+        if not setting.startswith(CHOOSES_DEVICE):
             raise ConfigError(
-                f"--set {quoted(each)}: what varies stands in the study file; only keys of the device are set here, "
+                f"--set {quoted(setting)}: what varies stands in the study file; only keys of the device are set here, "
                 "such as device.path=circle"
             )
     return (*([] if device is None else [f"device.use={device}"]), *sets)

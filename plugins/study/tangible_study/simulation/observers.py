@@ -50,10 +50,10 @@ class Observer(Section, ABC):
 
 def decide(trial: Trial, magnitude: Callable[[Stimulus], float], base: float, generator: np.random.Generator) -> str:
     """Return the response of an observer who feels each interval with noise of standard deviation 1."""
-    felt = np.array([magnitude(interval) for interval in trial.intervals]) + generator.standard_normal(
+    strengths = np.array([magnitude(interval) for interval in trial.intervals]) + generator.standard_normal(
         len(trial.intervals)
     )
-    return load_question(trial.question).decide(trial, Percept(felt, magnitude, base), generator)
+    return load_question(trial.question).decide(trial, Percept(strengths, magnitude, base), generator)
 
 
 @final
@@ -172,12 +172,12 @@ class Psychometric(Observer):
 OBSERVERS: Mapping[str, type[Observer]] = {"psychometric": Psychometric, "detection": Detection, "hand": Hand}
 
 
-def observer_of(name: str, sets: Sequence[str], file: StudyFile) -> Observer:
+def make_observer(name: str, sets: Sequence[str], file: StudyFile) -> Observer:
     """Return an observer for a study. sets: its options, `key=value` each. Raises: ConfigError."""
     if name not in OBSERVERS:
-        known = ", ".join(OBSERVERS)
+        names = ", ".join(OBSERVERS)
         raise ConfigError(
-            f"--observer: no observer is called {quoted(name)}{did_you_mean(name, OBSERVERS)}; known: {known}"
+            f"--observer: no observer is called {quoted(name)}{did_you_mean(name, OBSERVERS)}; known: {names}"
         )
     options: dict[str, Any] = {".".join(keys): value for keys, value in map(parse_override, sets)}
     observer = OBSERVERS[name](**options)

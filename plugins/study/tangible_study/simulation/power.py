@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy import stats
 
-from ..analysis.analysing import Kept, analyse_comparison
+from ..analysis.analysing import CountedAnswers, analyse_comparison
 from ..design import Comparison
 from ..measures.rows import ALL, Result
 from ..questions import load_question
 from ..session import folder
-from ..session.order import StudyCourse, answer_of
+from ..session.order import StudyCourse, make_answer
 from ..study_file import StudyFile
 from ..trials import Answer, AnswerFile
 from .observers import Observer
@@ -31,31 +31,31 @@ def simulate(file: StudyFile, observer: Observer, number: int, seed: int) -> lis
     while (trial := course.next()) is not None:
         response = individual.answer(trial, file.study.comparison(trial.comparison), generator)
         seconds = MEDIAN_S * float(np.exp(0.4 * generator.standard_normal()))
-        answers.append(answer_of(trial, len(answers) + 1, response, seconds))
+        answers.append(make_answer(trial, len(answers) + 1, response, seconds))
         course.take(trial, response)
     return answers
 
 
-def names_of(participants: int) -> list[str]:
+def participant_names(participants: int) -> list[str]:
     """Return the names of simulated participants."""
     return [f"S{number + 1:02d}" for number in range(participants)]
 
 
-def kept_of(file: StudyFile, answers: Sequence[Sequence[Answer]]) -> Kept:
+def count_answers(file: StudyFile, answers: Sequence[Sequence[Answer]]) -> CountedAnswers:
     """Return answers as the analysis reads them from a folder, without writing them."""
     tests = {
-        name: [each for each in some if each.phase == "test"]
-        for name, some in zip(names_of(len(answers)), answers, strict=True)
+        name: [answer for answer in some if answer.phase == "test"]
+        for name, some in zip(participant_names(len(answers)), answers, strict=True)
     }
-    training = sum(each.phase == "training" for some in answers for each in some)
-    return Kept(file.study, tests, training, 0)
+    training = sum(answer.phase == "training" for some in answers for answer in some)
+    return CountedAnswers(file.study, tests, training, 0)
 
 
 def write_folder(root: Path, file: StudyFile, observer: Observer, participants: int, seed: int) -> int:
     """Simulate participants into a folder like that of `study run`; return the number of answers."""
     folder.prepare(root, file)
     count = 0
-    for name in names_of(participants):
+    for name in participant_names(participants):
         number = folder.enrol(root, name, file.study, resume=False)
         place = folder.Place(root, name, file.study.study)
         options = observer.model_dump(mode="json")
@@ -117,21 +117,21 @@ def plan(
 
 def shorten_study(file: StudyFile, comparison: Comparison, repetitions: int) -> StudyFile:
     """Return a study of one comparison alone, without training."""
-    changed = comparison.model_copy(update={"repetitions": repetitions, "training": 0})
-    return replace(file, study=file.study.model_copy(update={"comparisons": (changed,)}))
+    shorter = comparison.model_copy(update={"repetitions": repetitions, "training": 0})
+    return replace(file, study=file.study.model_copy(update={"comparisons": (shorter,)}))
 
 
-def effects_of(result: Result) -> dict[tuple[str, str], list[float]]:
+def participant_effects(result: Result) -> dict[tuple[str, str], list[float]]:
     """Return the difference that each participant shows, or its distance from chance, for each pair of conditions."""
     rows = [row for row in result.rows if row.participant != ALL]
     main = [row for row in rows if row.what.measure in (result.main, PAIRS.get(result.main, ""))]
     conditions = list(dict.fromkeys(row.what.condition for row in main))
     if any(row.what.other for row in main) or len(conditions) == 1:
-        found: dict[tuple[str, str], list[float]] = {}
+        differences: dict[tuple[str, str], list[float]] = {}
         for row in main:
             if isfinite(row.chance):
-                found.setdefault(row.what[1:], []).append(row.estimate.value - row.chance)
-        return found
+                differences.setdefault(row.what[1:], []).append(row.estimate.value - row.chance)
+        return differences
     values = {(row.participant, row.what.condition): row.estimate.value for row in main}
     return {
         (later, earlier): [
@@ -160,12 +160,12 @@ def participants_needed(effects: Sequence[float], power: float) -> int | None:
     if not abs(mean) > 2 * spread / len(effects) ** 0.5:
         return None
     for count in range(2, MOST + 1):
-        if power_of(mean, spread, count) >= power:
+        if power_by_t_test(mean, spread, count) >= power:
             return count
     return None
 
 
-def power_of(mean: float, spread: float, participants: int) -> float:
+def power_by_t_test(mean: float, spread: float, participants: int) -> float:
     """Return the share of studies with this many participants in which Student's t, two-sided at 5 %, finds a mean."""
     if spread == 0:
         return float(mean != 0)
@@ -180,12 +180,14 @@ def _need(
     one = shorten_study(file, comparison, repetitions)
     curves = bool(comparison.levels) and load_question(comparison.question).function is not None
     answers = [simulate(one, observer, number, seed) for number in range(TRIED_CURVES if curves else TRIED)]
-    [changed], trials = one.study.comparisons, len(answers[0])
-    effects = effects_of(analyse_comparison(changed, kept_of(one, answers).of(changed)))
+    [shorter], trials = one.study.comparisons, len(answers[0])
+    effects = participant_effects(analyse_comparison(shorter, count_answers(one, answers).of(shorter)))
     if not all(isfinite(effect) for some in effects.values() for effect in some):
         return Need(comparison.name, repetitions, trials, nan, nan, None)
     worst = min(
-        effects.values(), key=lambda each: abs(float(np.mean(each))) / (float(np.std(each)) or 1e-9), default=[]
+        effects.values(),
+        key=lambda effects_of_pair: abs(float(np.mean(effects_of_pair))) / (float(np.std(effects_of_pair)) or 1e-9),
+        default=[],
     )
     if len(worst) < 2:
         return Need(comparison.name, repetitions, trials, nan, nan, None)

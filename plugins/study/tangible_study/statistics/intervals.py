@@ -31,9 +31,9 @@ class Estimate(NamedTuple):
         """True if the answers give no estimate but a bound: the value is at an end of the interval."""
         return self.value in (self.low, self.high)
 
-    def mapped(self, function: Callable[[float], float]) -> "Estimate":
+    def map(self, function: Callable[[float], float]) -> "Estimate":
         """Return the estimate on another scale. function: rises with its argument."""
-        return Estimate(*(function(each) if each == each else nan for each in self))
+        return Estimate(*(function(bound) if bound == bound else nan for bound in self))
 
 
 def proportion(count: int, trials: int) -> Estimate:
@@ -68,7 +68,7 @@ def mean(values: Sequence[float]) -> Estimate:
     return Estimate(middle, middle - half, middle + half)
 
 
-def mean_of_estimates(estimates: Sequence[Estimate], closed: bool = False) -> Estimate:
+def mean_of_estimates(estimates: Sequence[Estimate], closed_ends: bool = False) -> Estimate:
     """Return the mean of the values with Student's interval, in which infinite bounds count, and so do bounds alone.
 
     closed: the ends of an interval may be values as others are, such as a share of 0 or 1.
@@ -79,7 +79,7 @@ def mean_of_estimates(estimates: Sequence[Estimate], closed: bool = False) -> Es
     values = [estimate.value for estimate in estimates]
     if len(estimates) < 2:
         return mean(values)
-    bounds = [estimate.is_bound and not closed for estimate in estimates]
+    bounds = [estimate.is_bound and not closed_ends for estimate in estimates]
     low, high = (
         mean([end if alone or isinf(end) else value for end, value, alone in zip(ends, values, bounds, strict=True)])
         for ends in list(zip(*estimates, strict=True))[1:]
@@ -107,14 +107,14 @@ def wider(one: Estimate, other: Estimate) -> Estimate:
     return Estimate(one.value, min(one.low, other.low), max(one.high, other.high))
 
 
-def p_of_mean(values: Sequence[float], expected: float) -> float:
+def p_of_mean(values: Sequence[float], null: float) -> float:
     """Return the probability, two-sided by Student's t, of a mean this far from the expected one; NaN if unknown."""
     if len(values) < 2 or not all(map(isfinite, values)) or np.ptp(values) == 0:
         return nan
     from scipy import stats
 
-    found: Any = stats.ttest_1samp(values, expected)
-    return float(found.pvalue)
+    result: Any = stats.ttest_1samp(values, null)
+    return float(result.pvalue)
 
 
 def p_of_count(count: int, trials: int, chance: float, one_sided: bool) -> float:

@@ -63,9 +63,9 @@ class Curve(NamedTuple):
 
 def fit_choice(blocks: Blocks, span: tuple[float, float]) -> Curve:
     """Fit how often a level is chosen over the standard, by a cumulative Gaussian. span: of the study's levels."""
-    found = _fit(blocks, sigmoid="norm", experiment_type="equal asymptote", stimulus_range=span)
-    threshold, width = _estimate(found, "threshold"), float(found.parameter_estimate["width"])
-    curve = Curve(threshold, width_interval(blocks, threshold, width), found.parameter_estimate["lambda"], 0.0)
+    result = _fit(blocks, sigmoid="norm", experiment_type="equal asymptote", stimulus_range=span)
+    threshold, width = _estimate(result, "threshold"), float(result.parameter_estimate["width"])
+    curve = Curve(threshold, width_interval(blocks, threshold, width), result.parameter_estimate["lambda"], 0.0)
     return curve._replace(threshold=_threshold_interval(curve, blocks))
 
 
@@ -97,9 +97,9 @@ def fit_difference(blocks: Blocks, span: tuple[float, float], choices: int = 3) 
     """Fit how often a difference is found, by a Weibull function; its threshold is halfway up from chance."""
     logs = blocks._replace(levels=np.log(blocks.levels))
     within = (log(span[0]), log(span[1]))
-    found = _fit(logs, sigmoid="weibull", experiment_type=f"{choices}AFC", stimulus_range=within)
-    threshold, width = _estimate(found, "threshold").mapped(exp), _estimate(found, "width")
-    curve = Curve(threshold, width, found.parameter_estimate["lambda"], 1 / choices)
+    result = _fit(logs, sigmoid="weibull", experiment_type=f"{choices}AFC", stimulus_range=within)
+    threshold, width = _estimate(result, "threshold").map(exp), _estimate(result, "width")
+    curve = Curve(threshold, width, result.parameter_estimate["lambda"], 1 / choices)
     return curve._replace(threshold=_threshold_interval(curve, blocks, beyond=0.0))
 
 

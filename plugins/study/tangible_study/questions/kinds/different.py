@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from ...design import DIFFERENT, SAME, Comparison, Trial
-from ...measures.rows import ByParticipant, Result, Row, What, group_answers, of_each_and_all, told_apart
+from ...measures.rows import ByParticipant, Result, Row, What, discrimination_in_words, group_answers, of_each_and_all
 from ...measures.shares import DPRIME, analyse_right_answers
 from ...statistics import sensitivity
 from ...trials import Answer
@@ -31,7 +31,7 @@ class Different(Question):
         return trial.choices[int(key) - 1]
 
     def decide(self, trial: Trial, percept: Percept, generator: np.random.Generator) -> str:
-        return DIFFERENT if abs(percept.felt[0] - percept.felt[1]) > CRITERION else SAME
+        return DIFFERENT if abs(percept.strengths[0] - percept.strengths[1]) > CRITERION else SAME
 
     def analyse_conditions(self, comparison: Comparison, answers: ByParticipant) -> Result:
         result = analyse_right_answers(comparison, answers, 0.5)
@@ -39,15 +39,15 @@ class Different(Question):
         return replace(result, rows=[*result.rows, *dprimes])
 
     def describe(self, row: Row, who: str) -> str:
-        return told_apart(row, f"{who} answered rightly")
+        return discrimination_in_words(row, f"{who} answered rightly")
 
 
 def _dprimes(name: str, answers: list[Answer]) -> list[Row]:
     rows: list[Row] = []
-    for what, cell in group_answers(answers, lambda each: What(DPRIME, each.condition, each.other or "")).items():
-        different = [each for each in cell if each.target == DIFFERENT]
-        equal = [each for each in cell if each.target == SAME]
-        hits, alarms = ([each.response for each in some].count(DIFFERENT) for some in (different, equal))
+    for what, cell in group_answers(answers, lambda answer: What(DPRIME, answer.condition, answer.other or "")).items():
+        different = [answer for answer in cell if answer.target == DIFFERENT]
+        equal = [answer for answer in cell if answer.target == SAME]
+        hits, alarms = ([answer.response for answer in some].count(DIFFERENT) for some in (different, equal))
         estimate = sensitivity.same_different(hits, len(different), alarms, len(equal))
         rows.append(Row(what, name, estimate, "", len(cell), None, 0.0))
     return rows

@@ -36,8 +36,8 @@ class Equal(Question):
         return levels[min(max(levels.index(level) + (1 if key == MORE else -1), 0), len(levels) - 1)]
 
     def decide(self, trial: Trial, percept: Percept, generator: np.random.Generator) -> str:
-        wanted = float(percept.felt[0]) + float(generator.standard_normal())
-        return _nearest(wanted, trial, lambda level: percept.magnitude(Stimulus(trial.condition, level)))
+        percept_of_standard = float(percept.strengths[0]) + float(generator.standard_normal())
+        return _nearest(percept_of_standard, trial, lambda level: percept.magnitude(Stimulus(trial.condition, level)))
 
     def draw(self, trial: Trial, comparison: Comparison, truth: Threshold, generator: np.random.Generator) -> str:
         return _nearest(generator.normal(equal_level(comparison, truth), truth.width / GAUSSIAN), trial)
@@ -61,9 +61,9 @@ class Equal(Question):
         return f"With {one}, {went} ({interval(low, high)})."
 
 
-def _nearest(wanted: float, trial: Trial, scale: Callable[[float], float] = float) -> str:
+def _nearest(target: float, trial: Trial, scale: Callable[[float], float] = float) -> str:
     """Return the level that can be set that is nearest to what is wanted, on a scale of its own."""
-    return min(trial.choices, key=lambda each: abs(scale(float(each)) - wanted))
+    return min(trial.choices, key=lambda choice: abs(scale(float(choice)) - target))
 
 
 QUESTION = Equal()

@@ -36,7 +36,11 @@ class Name(Question):
     def analyse_conditions(self, comparison: Comparison, answers: ByParticipant) -> Result:
         count = len(comparison.names)
         return analyse_right_answers(
-            comparison, answers, 1 / count, lambda proportion: sensitivity.naming(proportion, count), compared=True
+            comparison,
+            answers,
+            1 / count,
+            lambda proportion: sensitivity.naming(proportion, count),
+            with_contrasts=True,
         )
 
     def describe(self, row: Row, who: str) -> str:

@@ -30,7 +30,7 @@ class Rating(Question):
 
     def decide(self, trial: Trial, percept: Percept, generator: np.random.Generator) -> str:
         middle = (len(trial.choices) - 1) / 2
-        return trial.choices[int(np.clip(round(middle + float(percept.felt[0])), 0, len(trial.choices) - 1))]
+        return trial.choices[int(np.clip(round(middle + float(percept.strengths[0])), 0, len(trial.choices) - 1))]
 
     def analyse_conditions(self, comparison: Comparison, answers: ByParticipant) -> Result:
         return analyse_quantities(comparison, answers, RATING)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...design import Comparison, Trial
 from ...measures.functions import DISTANCE, Function
-from ...measures.rows import ByParticipant, Result, Row, told_apart
+from ...measures.rows import ByParticipant, Result, Row, discrimination_in_words
 from ...measures.shares import analyse_right_answers
 from ...statistics import sensitivity
 from ..question import Percept, Question
@@ -26,15 +26,15 @@ class Same(Question):
         return str(trial.position)
 
     def decide(self, trial: Trial, percept: Percept, generator: np.random.Generator) -> str:
-        felt = percept.felt
-        others = (felt.sum() - felt) / (len(felt) - 1)
-        return str(int(np.argmax(np.abs(felt - others))) + 1)
+        strengths = percept.strengths
+        others = (strengths.sum() - strengths) / (len(strengths) - 1)
+        return str(int(np.argmax(np.abs(strengths - others))) + 1)
 
     def analyse_conditions(self, comparison: Comparison, answers: ByParticipant) -> Result:
         return analyse_right_answers(comparison, answers, 1 / 3, sensitivity.oddity)
 
     def describe(self, row: Row, who: str) -> str:
-        return told_apart(row, f"{who} found the odd one")
+        return discrimination_in_words(row, f"{who} found the odd one")
 
 
 QUESTION = Same()

@@ -102,8 +102,9 @@ def sentences(result: Result) -> list[str]:
 def counts(answers: CountedAnswers) -> str:
     """Return how many answers count, and which were left out."""
     return (
-        f"{answers.trials} answers of {people(len(answers.by_participant))} count; {answers.training} training trials and "
-        f"{answers.not_rendered} that the device did not render as requested are left out."
+        f"{answers.trials} answers of {people(len(answers.by_participant))} count; "
+        f"{answers.training} training trials and {answers.not_rendered} "
+        "that the device did not render as requested are left out."
     )
 
 

@@ -32,7 +32,7 @@ class Step(NamedTuple):
     of: int
     """The number of all measurements to do."""
     row: Row
-    done: bool
+    is_end: bool
 
 
 @dataclass(frozen=True)
@@ -66,14 +66,14 @@ def compare(
     outlook = look(measurements(comparison), path, retry)
     on_outlook(outlook)
 
-    def report(done: bool) -> Report:
-        return lambda number, row: progress(Step(number, len(outlook.waiting), row, done))
+    def report(is_end: bool) -> Report:
+        return lambda number, row: progress(Step(number, len(outlook.waiting), row, is_end))
 
     timeout_s = comparison.protocol.timeout_s
     if comparison.protocol.calls:
-        rows = run(outlook, path, timeout_s, report(done=False), report(done=True), stop)
+        rows = run(outlook, path, timeout_s, report(is_end=False), report(is_end=True), stop)
     else:
-        rows = run_side_by_side(outlook, path, workers, report(done=True), stop, timeout_s)
+        rows = run_side_by_side(outlook, path, workers, report(is_end=True), stop, timeout_s)
     return _sum_up(rows, path, earlier)
 
 

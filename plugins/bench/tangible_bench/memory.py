@@ -32,9 +32,9 @@ def held_bytes(make: Callable[[], object]) -> int:
     try:
         result = make()
         gc.collect()
-        held, _ = tracemalloc.get_traced_memory()
+        size, _ = tracemalloc.get_traced_memory()
         del result
-        return held
+        return size
     finally:
         tracemalloc.stop()
 

@@ -126,7 +126,7 @@ class KnownStroke(Record):
 class Analytic:
     """A surface given by a formula, its nearest point to any hand inside it, and the range of the hand's path."""
 
-    known: Callable[[tuple[int, int]], KnownSurface]
+    surface: Callable[[tuple[int, int]], KnownSurface]
     """(rows, columns) -> the surface of these cells, 80 mm wide."""
     nearest: Callable[[Points], Points]
     across_m: tuple[float, float] = (-0.03, 0.03)
@@ -157,16 +157,16 @@ def analytic_stroke(
 ) -> KnownStroke:
     """Return a path over one of SURFACES of cells x cells: `path_m`, or the scripted one. Raises: KeyError."""
     analytic = SURFACES[name]
-    known = analytic.known((cells, cells))
+    exact = analytic.surface((cells, cells))
     if path_m is None:
-        ride = _vectorise(analytic.ride_m or known.height_m)
-        path_m = scripted_path(known.surface.relief, ride, depth_m, analytic.across_m)
-    border_m = np.divide(known.surface.extent_m, 2)
+        ride = _vectorise(analytic.ride_m or exact.height_m)
+        path_m = scripted_path(exact.surface.relief, ride, depth_m, analytic.across_m)
+    border_m = np.divide(exact.surface.extent_m, 2)
     over = np.clip(path_m[:, :2], -border_m, border_m)
-    inside = path_m[:, 2] < _vectorise(known.height_m)(over[:, 0], over[:, 1])
+    inside = path_m[:, 2] < _vectorise(exact.height_m)(over[:, 0], over[:, 1])
     nearest_m = np.where(inside[:, None], analytic.nearest(path_m), path_m)
     nearest_m[(over != path_m[:, :2]).any(axis=1)] = np.nan
-    return KnownStroke(known.surface, path_m, nearest_m, period_s)
+    return KnownStroke(exact.surface, path_m, nearest_m, period_s)
 
 
 def relief_stroke(

@@ -36,7 +36,7 @@ def run_comparison(registry: Registry, out: Path, methods: str = "constant", **h
 def test_progress_reports_start_and_end_of_every_measurement(registry: Registry, tmp_path: Path):
     heard: list[Step] = []
     found = run_comparison(registry, tmp_path, "constant, half", progress=heard.append)
-    assert [(each.number, each.of, each.done) for each in heard] == [
+    assert [(each.number, each.of, each.is_end) for each in heard] == [
         (0, 2, False),
         (0, 2, True),
         (1, 2, False),
@@ -51,10 +51,12 @@ def test_progress_reports_start_and_end_of_every_measurement(registry: Registry,
 def test_stopped_comparison_continues_where_it_stopped(registry: Registry, tmp_path: Path):
     stop = threading.Event()
     with pytest.raises(Stopped):
-        run_comparison(registry, tmp_path, "constant, half", progress=lambda step: step.done and stop.set(), stop=stop)
+        run_comparison(
+            registry, tmp_path, "constant, half", progress=lambda step: step.is_end and stop.set(), stop=stop
+        )
     heard: list[Step] = []
     run_comparison(registry, tmp_path, "constant, half", progress=heard.append)
-    assert [each.row.method for each in heard if each.done] == ["half"]
+    assert [each.row.method for each in heard if each.is_end] == ["half"]
 
 
 def test_stop_ends_a_long_measurement(registry: Registry, tmp_path: Path):

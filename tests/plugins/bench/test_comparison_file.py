@@ -63,7 +63,7 @@ def test_sweep_gives_a_method_for_each_grid_point(registry: Registry):
         "c value_px=2 seconds=0",
         "c value_px=2 seconds=0.5",
     ]
-    assert [each.chosen.method.model_dump() for each in found.methods][3] == {"value_px": 2.0, "seconds": 0.5}
+    assert [each.choice.method.model_dump() for each in found.methods][3] == {"value_px": 2.0, "seconds": 0.5}
 
 
 def test_file_with_many_mistakes_reports_all_with_places(registry: Registry):

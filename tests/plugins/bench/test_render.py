@@ -146,7 +146,7 @@ def test_stiffness_limits_of_other_force_laws_are_unknown(strokes):
 
 @pytest.mark.parametrize(("kind", "value"), [("speed", 1.0), ("speed", 2.5), ("bits", 0.0), ("bits", 17.0)])
 def test_invalid_perturbation_is_not_allowed(kind: str, value: float):
-    assert not PERTURBATIONS[kind].allowed(value)
+    assert not PERTURBATIONS[kind].is_valid(value)
 
 
 def test_scene_names_give_their_options(registry: Registry, tmp_path: Path):

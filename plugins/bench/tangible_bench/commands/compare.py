@@ -19,7 +19,9 @@ def _complete_sets(incomplete: str) -> list[tuple[str, str]]:
     """Return the standard sets that start with a word; none for an empty one, so that a shell completes file names."""
     from ..datasets import SETS
 
-    return [(name, each.title) for name, each in SETS.items() if incomplete and name.startswith(incomplete)]
+    return [
+        (name, standard_set.title) for name, standard_set in SETS.items() if incomplete and name.startswith(incomplete)
+    ]
 
 
 def compare(
@@ -87,7 +89,7 @@ def compare(
         return
     earlier = None if against is None else list(read_rows(against).values())
     if config.suffix == ".jsonl":
-        found = read_comparison(config, earlier)
+        outcome = read_comparison(config, earlier)
     else:
         comparison = _read(configs, folder, sets or [])
         comparison = shorten(comparison) if quick else comparison
@@ -95,24 +97,24 @@ def compare(
         comparison = replace(comparison, out=out or comparison.out)
         progress = Progress(comparison.out / ROWS)
         try:
-            found = run_comparison(
+            outcome = run_comparison(
                 comparison, earlier, retry=retry, workers=workers,
                 progress=progress.report, on_outlook=progress.announce,
             )  # fmt: skip
         except KeyboardInterrupt:
-            kept = f"all finished measurements are kept in {progress.path}"
-            show.note(f"interrupted; {kept}, and the same command continues from there")
+            remark = f"all finished measurements are kept in {progress.path}"
+            show.note(f"interrupted; {remark}, and the same command continues from there")
             raise
     if as_json:
-        show.print_json(printing.as_document(found))
+        show.print_json(printing.as_document(outcome))
     elif table is not None:
-        printing.print_for_papers(found.results, table)
+        printing.print_for_papers(outcome.results, table)
     elif not is_quiet():
-        printing.print_outcome(found, detail)
-    if failed := found.results.methods_without_result:
+        printing.print_outcome(outcome, detail)
+    if without_result := outcome.results.methods_without_result:
         show.flush()
-        show.note(f"no result on any scene: {', '.join(failed)}")
-    if failed or (found.verdict is not None and found.verdict.worse):
+        show.note(f"no result on any scene: {', '.join(without_result)}")
+    if without_result or (outcome.verdict is not None and outcome.verdict.worse):
         raise typer.Exit(FAILED)
 
 

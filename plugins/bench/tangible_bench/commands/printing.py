@@ -67,23 +67,28 @@ def print_outcome(outcome: ComparisonOutcome, detail: bool) -> None:
 def summary(results: Results) -> str:
     """Return a sentence: which method is the most exact, and which the fastest."""
     task, means = results.task, results.means()
-    timed = [line for line in means if isfinite(line.seconds)]
-    best = (timed or [line for line in means if isfinite(line.measures.get(results.main_measure, nan))] or [None])[0]
+    with_time = [line for line in means if isfinite(line.seconds)]
+    best = (with_time or [line for line in means if isfinite(line.measures.get(results.main_measure, nan))] or [None])[
+        0
+    ]
     if best is None:
         return "No method has a result on every scene."
     scenes = f"{len(results.scenes)} scenes" if len(results.scenes) > 1 else results.scenes[0]
     value = best.measures.get(results.main_measure, nan)
-    heading = results.heading(results.main_measure) if timed else task.measures[results.main_measure].title
+    heading = results.heading(results.main_measure) if with_time else task.measures[results.main_measure].title
     exact = f"{best.method} is the most exact ({heading} {value:.{task.measures[results.main_measure].digits}f})"
-    if not timed:
+    if not with_time:
         return f"On {scenes}, {exact}; times were not measured."
-    fastest = min(timed, key=lambda line: line.seconds)
+    fastest = min(with_time, key=lambda line: line.seconds)
     fast = f"{fastest.method} is the fastest ({task.clock.per_second * fastest.seconds:.3g} {task.clock.unit})"
     return f"On {scenes}, {exact}, and {fast}." if isfinite(value) else f"On {scenes}, {fast}."
 
 
 def _print_verdict(verdict: Verdict) -> None:
-    rows = [(each.method, f"{each.scene}, {each.perturb}", each.what, *_change(each)) for each in verdict.worse]
+    rows = [
+        (regression.method, f"{regression.scene}, {regression.perturb}", regression.what, *_change(regression))
+        for regression in verdict.worse
+    ]
     if rows:
         _print_table(Table("worse than before", ("method", "where", "what", "before", "now", "allowed"), tuple(rows)))
     show.say(f"{verdict.compared} cells compared, {verdict.time}; {len(rows)} figures got worse beyond the noise")
@@ -91,29 +96,29 @@ def _print_verdict(verdict: Verdict) -> None:
         show.say(f"not in both: {len(verdict.missing)} cells, such as {verdict.missing[0]}")
 
 
-def _change(each: Regression) -> tuple[str, str, str]:
-    if each.why:
-        return "a result", each.why, ""
-    return f"{each.before:.5g}", f"{each.after:.5g}", f"+- {each.allowed:.2g}"
+def _change(regression: Regression) -> tuple[str, str, str]:
+    if regression.why:
+        return "a result", regression.why, ""
+    return f"{regression.before:.5g}", f"{regression.after:.5g}", f"+- {regression.allowed:.2g}"
 
 
 def _print_table(table: Table) -> None:
     """Print a table without cutting numbers: one with many columns is as wide as it must be, on any terminal."""
-    drawn = RichTable(title=table.title, title_justify="left", box=None, pad_edge=False, header_style="bold")
+    rich_table = RichTable(title=table.title, title_justify="left", box=None, pad_edge=False, header_style="bold")
     for heading in table.headings:
         if heading in WORDS:
-            drawn.add_column(heading, overflow="fold", vertical="bottom")
+            rich_table.add_column(heading, overflow="fold", vertical="bottom")
         else:
-            drawn.add_column(heading.replace(" ", "\n"), justify="right", vertical="bottom")
+            rich_table.add_column(heading.replace(" ", "\n"), justify="right", vertical="bottom")
     rows = [[Text(cell) for cell in row] for row in table.rows]
     for row in rows:
-        drawn.add_row(*row)
+        rich_table.add_row(*row)
     console = show.console()
-    if (console.is_terminal or "COLUMNS" in environ) and show.is_narrow(console, drawn):
+    if (console.is_terminal or "COLUMNS" in environ) and show.is_narrow(console, rich_table):
         console.print(table.title, "")
         show.entries(console, table.headings, rows)
         return
     if sum(heading not in WORDS for heading in table.headings) > 1:
-        wanted = Measurement.get(console, console.options.update(max_width=show.WIDEST), drawn)
-        console.width = max(console.width, wanted.maximum)
-    console.print(drawn, "")
+        width = Measurement.get(console, console.options.update(max_width=show.WIDEST), rich_table)
+        console.width = max(console.width, width.maximum)
+    console.print(rich_table, "")

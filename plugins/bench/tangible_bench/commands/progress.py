@@ -49,15 +49,15 @@ class Forecast:
 
 def forecast(waiting: Sequence[Measurement]) -> Forecast:
     """Return the forecast for these measurements."""
-    has_times = all(each.job.calls for each in waiting)
-    return Forecast(tuple(_expected_s(each) for each in waiting), has_times)
+    has_times = all(measurement.job.calls for measurement in waiting)
+    return Forecast(tuple(_expected_s(measurement) for measurement in waiting), has_times)
 
 
-def _expected_s(each: Measurement) -> float:
-    figures = load_measured().get(each.job.kind)
-    known = {} if figures is None else figures.process_s
-    usual_s = known.get(each.job.use, median(known.values()) if known else UNKNOWN_S)
-    calls_s = max(0.0, usual_s - START_S) * (each.job.warmups + each.job.calls) / CALLS
+def _expected_s(measurement: Measurement) -> float:
+    figures = load_measured().get(measurement.job.kind)
+    process_s = {} if figures is None else figures.process_s
+    usual_s = process_s.get(measurement.job.use, median(process_s.values()) if process_s else UNKNOWN_S)
+    calls_s = max(0.0, usual_s - START_S) * (measurement.job.warmups + measurement.job.calls) / CALLS
     return min(usual_s, START_S) + calls_s
 
 
@@ -75,11 +75,11 @@ class Progress:
         if is_quiet():
             return
         count = len(outlook.waiting)
-        if outlook.kept:
-            failed = sum(row.error is not None for row in outlook.kept.values())
-            again = f", {failed} of them failed: --retry measures these once more" if failed else ""
-            wanted = len(outlook.kept) + count
-            show.note(f"{len(outlook.kept)} of {wanted} measurements are in {self.path} already and are kept{again}")
+        if outlook.current:
+            failures = sum(row.error is not None for row in outlook.current.values())
+            again = f", {failures} of them failed: --retry measures these once more" if failures else ""
+            whole = len(outlook.current) + count
+            show.note(f"{len(outlook.current)} of {whole} measurements are in {self.path} already and are kept{again}")
         if count:
             takes = f", which will take {approximately(self._forecast.whole_s)}"
             how = takes if self._forecast.has_times else ", side by side and without times"
@@ -89,10 +89,10 @@ class Progress:
         """Report a measurement to all observers of stages, as if it were a stage: so --quiet hides it."""
         plugins, row = default_registry().plugins, step.row
         name = f"{row.scene}, {row.perturb}, round {row.repeat + 1} ({step.number + 1} of {step.of}"
-        if not step.done:
+        if not step.is_end:
             assert self._forecast is not None
-            left = approximately(self._forecast.left_s(step.number, monotonic() - self._start_s))
-            hooks.tell(plugins, "tangible_stage_started", product=f"{name}, {left} left)", method=row.method)
+            remaining = approximately(self._forecast.left_s(step.number, monotonic() - self._start_s))
+            hooks.tell(plugins, "tangible_stage_started", product=f"{name}, {remaining} left)", method=row.method)
             return
         kind, why = ("failed", row.error) if row.error else ("ran", "measured")
         outcome = Outcome(f"{name})", kind, why or "", row.method, row.seconds or 0.0)

@@ -35,7 +35,7 @@ class Submitted:
 
 
 def submit(
-    comparison: Comparison, folder: Path, started: Callable[[str, str], None] = lambda method, scene: None
+    comparison: Comparison, folder: Path, on_start: Callable[[str, str], None] = lambda method, scene: None
 ) -> Iterator[Submitted]:
     """Run every method on every pair of a set that takes submissions. Raises: ConfigError, OutputError."""
     scenes = {
@@ -49,7 +49,7 @@ def submit(
     for name, spec in scenes.items():
         pair = spec.open()
         for entry in comparison.methods:
-            started(entry.label, name)
+            on_start(entry.label, name)
             try:
                 yield _submit_pair(comparison, folder, entry, name, spec, pair, warm)
             except (OutputError, ConfigError):
@@ -64,7 +64,7 @@ def _submit_pair(
 ) -> Submitted:
     assert spec.set is not None
     (standard_pair,) = spec.list_pairs()
-    method = entry.method_for({key: fact_of(pair) for key, fact_of in comparison.task.given.items()})
+    method = entry.method_for({key: fact_of(pair) for key, fact_of in comparison.task.facts.items()})
     if entry.label not in warm:  # so that imports and compilation are not in its time
         estimate(method, pair)  # pyright: ignore[reportArgumentType] - of the kind that is compared
         warm.add(entry.label)
@@ -90,21 +90,21 @@ def write_submissions(comparison: Comparison, folder: Path, as_json: bool) -> No
     def report_start(method: str, scene: str) -> None:
         hooks.tell(plugins, "tangible_stage_started", product=scene, method=method)
 
-    submitted: list[Submitted] = []
-    for each in submit(comparison, folder, report_start):
-        submitted.append(each)
-        kind, why = ("failed", each.error) if each.error else ("ran", "written")
-        outcome = Outcome(each.scene, kind, why, each.method, each.seconds)
+    results: list[Submitted] = []
+    for result in submit(comparison, folder, report_start):
+        results.append(result)
+        kind, why = ("failed", result.error) if result.error else ("ran", "written")
+        outcome = Outcome(result.scene, kind, why, result.method, result.seconds)
         hooks.tell(plugins, "tangible_stage_finished", outcome=outcome)
-    failed = [each for each in submitted if each.error]
+    failures = [result for result in results if result.error]
     if as_json:
-        show.print_json([{**asdict(each), "files": [str(path) for path in each.files]} for each in submitted])
+        show.print_json([{**asdict(result), "files": [str(path) for path in result.files]} for result in results])
     elif not is_quiet():
-        for method in dict.fromkeys(each.method for each in submitted):
-            count = sum(len(each.files) for each in submitted if each.method == method)
+        for method in dict.fromkeys(result.method for result in results):
+            count = sum(len(result.files) for result in results if result.method == method)
             show.plain(f"{method}: {count} files in {folder}")
-    for each in failed:
+    for result in failures:
         show.flush()
-        show.note(f"no result of {each.method} on {each.scene}: {each.error}")
-    if failed:
+        show.note(f"no result of {result.method} on {result.scene}: {result.error}")
+    if failures:
         raise typer.Exit(FAILED)

@@ -21,14 +21,14 @@ class Entry:
     """A method with its options, and its label in tables."""
 
     label: str
-    chosen: NamedMethod[Method]
-    given: tuple[str, ...] = ()
+    choice: NamedMethod[Method]
+    fact_names: tuple[str, ...] = ()
     """Options that are set for each scene, from known facts of the scene."""
 
     def method_for(self, facts: Mapping[str, Any]) -> Method:
         """Return the method with the options that the facts of a scene give. Raises: ConfigError for a bad value."""
-        method = self.chosen.method
-        options = {name: facts[name] for name in self.given}
+        method = self.choice.method
+        options = {name: facts[name] for name in self.fact_names}
         try:
             return type(method).model_validate({**method.model_dump(), **options}) if options else method
         except ValidationError as error:
@@ -50,7 +50,7 @@ def read_methods(source: Source, task: Task, registry: Registry) -> tuple[Entry,
 def _entries(source: Source, place: Location, block: Any, task: Task, registry: Registry) -> Iterable[Entry]:
     """Yield one method, or one for each point of the grid that `sweep:` spans."""
     options: dict[str, Any] = dict(cast("dict[str, Any]", block)) if isinstance(block, dict) else {"use": block}
-    label, given, sweep = options.pop("label", None), options.pop("given", []), options.pop("sweep", None)
+    label, fact_names, sweep = options.pop("label", None), options.pop("given", []), options.pop("sweep", None)
     if label is not None and not isinstance(label, str):
         source.complain((*place, "label"), f"a label is a word, not {quoted(label)}")
     grid = {} if sweep is None else _grid(source, (*place, "sweep"), sweep)
@@ -58,11 +58,11 @@ def _entries(source: Source, place: Location, block: Any, task: Task, registry: 
         return
     where = (*place, "sweep") if grid else place
     for point in product(*([(name, value) for value in values] for name, values in grid.items())):
-        chosen = choose(source, where, task.kind, {**options, **dict(point)}, registry)
-        if chosen is None or not _can_be_given(source, (*place, "given"), given, task, chosen.method):
+        choice = choose(source, where, task.kind, {**options, **dict(point)}, registry)
+        if choice is None or not _can_be_given(source, (*place, "given"), fact_names, task, choice.method):
             return  # the same mistake at every point of the grid is one complaint
-        name = " ".join((str(label or chosen.name), *(f"{name}={value}" for name, value in point)))
-        yield Entry(name, chosen, tuple(given))
+        name = " ".join((str(label or choice.name), *(f"{name}={value}" for name, value in point)))
+        yield Entry(name, choice, tuple(fact_names))
 
 
 def _grid(source: Source, place: Location, block: Any) -> dict[str, list[Any]]:
@@ -73,9 +73,9 @@ def _grid(source: Source, place: Location, block: Any) -> dict[str, list[Any]]:
     return {}
 
 
-def _can_be_given(source: Source, place: Location, given: Any, task: Task, method: Method) -> bool:
-    names = cast("list[Any]", given) if isinstance(given, list) else [given]
-    options = sorted(set(task.given) & set(type(method).model_fields))  # a list, as a name in the file may be any value
+def _can_be_given(source: Source, place: Location, fact_names: Any, task: Task, method: Method) -> bool:
+    names = cast("list[Any]", fact_names) if isinstance(fact_names, list) else [fact_names]
+    options = sorted(set(task.facts) & set(type(method).model_fields))  # a list, as a name in the file may be any value
     for name in names:
         if name not in options:
             hint = did_you_mean(str(name), options)
@@ -84,4 +84,4 @@ def _can_be_given(source: Source, place: Location, given: Any, task: Task, metho
                 f"given: no scene gives {quoted(name)} to this method{hint}; known: "
                 + (", ".join(options) or "nothing"),
             )
-    return isinstance(given, list) and all(name in options for name in names)
+    return isinstance(fact_names, list) and all(name in options for name in names)

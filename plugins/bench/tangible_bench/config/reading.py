@@ -113,14 +113,14 @@ def preset(name: str) -> Path | None:
 def comparison_of_methods(names: Sequence[str], registry: Registry) -> str:
     """Return the text of a comparison of these methods on the scenes of the shipped file. Raises: ConfigError."""
     kinds = {kind: registry.names(kind) for kind in TASKS}
-    kind = next((kind for kind, known in kinds.items() if set(names) <= set(known)), None)
+    kind = next((kind for kind, all_names in kinds.items() if set(names) <= set(all_names)), None)
     file = kind and preset(f"compare-{kind}")
     if not file:
-        known = [name for some in kinds.values() for name in some]
-        wrong = next((name for name in names if name not in known), "")
+        all_names = [name for some in kinds.values() for name in some]
+        wrong = next((name for name in names if name not in all_names), "")
         if not wrong:
             raise ConfigError(f"{' and '.join(names)}: are methods of several kinds; compare those of one")
-        hint = did_you_mean(wrong, known) or "; `tangible plugins` lists these"
+        hint = did_you_mean(wrong, all_names) or "; `tangible plugins` lists these"
         raise ConfigError(f"{wrong}: is neither a file, nor a standard set, nor the name of a method{hint}")
     scenes = plain_tree(read_text(file), file)["scenes"]
     return json.dumps({"compare": kind, "methods": list(names), "scenes": scenes})
@@ -138,8 +138,8 @@ def parse_comparison(text: str, path: Path, registry: Registry, overrides: Itera
     source.check_keys(
         ("compare", "methods", "scenes", "perturb", *Protocol.model_fields, *task.finishes, "baseline", "out")
     )
-    given = {key: source.tree[key] for key in Protocol.model_fields if key in source.tree}
-    protocol = source.model((), Protocol, given)
+    of_protocol = {key: source.tree[key] for key in Protocol.model_fields if key in source.tree}
+    protocol = source.model((), Protocol, of_protocol)
     methods = read_methods(source, task, registry)
     labels = [method.label for method in methods]
     scenes = _scenes(source, task)
@@ -180,10 +180,10 @@ def _scenes(source: Source, task: Task) -> dict[str, SceneSpec]:
         except (TangibleError, ValueError) as error:
             source.complain(place, str(error))
             continue
-        for name, each in several.items():
+        for name, scene in several.items():
             if name in scenes:
                 source.complain(place, f"two scenes are called {quoted(name)}; name other folders")
-            scenes[name] = each
+            scenes[name] = scene
     return scenes
 
 
@@ -205,12 +205,12 @@ def _damages(source: Source, task: Task) -> tuple[Damage, ...]:
 def _strengths(source: Source, place: Place, task: Task, kind: Any, values: Any) -> Iterable[Damage]:
     if kind not in task.perturbations:
         hint = did_you_mean(str(kind), task.perturbations)
-        known = ", ".join(task.perturbations)
-        source.complain(place, f"no perturbation is called {quoted(kind)}{hint}; known: none, {known}")
+        names = ", ".join(task.perturbations)
+        source.complain(place, f"no perturbation is called {quoted(kind)}{hint}; known: none, {names}")
         return
     perturbation = task.perturbations[kind]
     for value in cast("list[Any]", values if isinstance(values, list) else [values]):
-        if isinstance(value, bool) or not isinstance(value, int | float) or not perturbation.allowed(float(value)):
+        if isinstance(value, bool) or not isinstance(value, int | float) or not perturbation.is_valid(float(value)):
             source.complain(place, f"{kind}: {perturbation.meaning}, not {quoted(value)}")
         else:
             yield Damage(kind, float(value))

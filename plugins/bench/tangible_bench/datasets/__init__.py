@@ -2,7 +2,7 @@
 
 from .choosing import SetScene as SetScene
 from .choosing import pairs as pairs
-from .folders import matched as matched
+from .folders import match_files as match_files
 from .sets import SETS as SETS
 from .sets import StandardSet as StandardSet
 from .standard_pair import FULL_PX as FULL_PX

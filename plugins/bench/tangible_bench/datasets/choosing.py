@@ -39,28 +39,28 @@ def pairs(
     """
     if name not in SETS:
         raise ConfigError(f"no set is named {quoted(name)}{did_you_mean(str(name), SETS)}; known: {', '.join(SETS)}")
-    known, root = SETS[name], as_path(folder, "folder")
-    sizes: dict[str, Resolution] = {each: each for each in known.sizes}
+    standard_set, root = SETS[name], as_path(folder, "folder")
+    sizes: dict[str, Resolution] = {size_name: size_name for size_name in standard_set.sizes}
     size = sizes.get(resolution or "")
     if resolution is not None and size is None:
-        cure = f"one of {', '.join(known.sizes)}" if known.sizes else "left out, for it has one size"
+        cure = f"one of {', '.join(standard_set.sizes)}" if standard_set.sizes else "left out, for it has one size"
         raise ConfigError(f"resolution: {name} has none called {quoted(resolution)}; it is {cure}")
-    if (variant is not None and variant not in known.read) or variant == "":
-        variants = " and ".join(each for each in known.read if each)
+    if (variant is not None and variant not in standard_set.read) or variant == "":
+        variants = " and ".join(size_name for size_name in standard_set.read if size_name)
         cure = f"there are {variants}" if variants else "leave `variant:` out"
         raise ConfigError(f"variant: {name} has none called {quoted(variant)}; {cure}")
     if split not in (None, *get_args(Split)):
         raise ConfigError(f"split: there is none called {quoted(split)}; it is {' or '.join(get_args(Split))}")
     if not root.is_dir():
-        raise PictureError(f"{root}: there is no such folder; {known.fetch}")
-    read = known.read[next(iter(known.read)) if variant is None else variant]
+        raise PictureError(f"{root}: there is no such folder; {standard_set.fetch}")
+    read = standard_set.read[next(iter(standard_set.read)) if variant is None else variant]
     by_name = dict[str, list[StandardPair]]()
     for pairs_of_word in _pairs_of_split(read(root), split):
         by_name.setdefault(pairs_of_word.name, []).append(pairs_of_word)
     if not by_name:
         part = f" for {split}" if split else ""
-        raise PictureError(f"{root}: holds no pair of {known.title}{part}; {known.fetch}")
-    return _pick({name: _at_size(same, size, known, root) for name, same in sorted(by_name.items())}, only, root)
+        raise PictureError(f"{root}: holds no pair of {standard_set.title}{part}; {standard_set.fetch}")
+    return _pick({name: _at_size(same, size, standard_set, root) for name, same in sorted(by_name.items())}, only, root)
 
 
 def _pairs_of_split(all_pairs: Iterable[StandardPair], split: str | None) -> list[StandardPair]:
@@ -70,31 +70,31 @@ def _pairs_of_split(all_pairs: Iterable[StandardPair], split: str | None) -> lis
     return pairs_of[split == "test"] if split else pairs_of[False] or pairs_of[True]
 
 
-def _at_size(same: list[StandardPair], size: Resolution | None, known: StandardSet, root: Path) -> StandardPair:
+def _at_size(same: list[StandardPair], size: Resolution | None, standard_set: StandardSet, root: Path) -> StandardPair:
     """Return, of the sizes of one pair, the requested one; if it is not in the folder, a larger one to be shrunk."""
-    largest = min(same, key=lambda each: FULL_PX[each.resolution])
+    largest = min(same, key=lambda pair: FULL_PX[pair.resolution])
     if size is None:
         return largest
-    if exact := next((each for each in same if each.resolution == size), None):
+    if exact := next((pair for pair in same if pair.resolution == size), None):
         return exact
-    larger = [each for each in same if FULL_PX[size] % FULL_PX[each.resolution] == 0]
+    larger = [pair for pair in same if FULL_PX[size] % FULL_PX[pair.resolution] == 0]
     if not larger:
         raise PictureError(
             f"{root}: holds {largest.name} at {largest.resolution}, from which {size} cannot be made; "
-            f"{known.fetch}, at {size}"
+            f"{standard_set.fetch}, at {size}"
         )
-    best = min(larger, key=lambda each: FULL_PX[each.resolution])
+    best = min(larger, key=lambda pair: FULL_PX[pair.resolution])
     return replace(best, resolution=size, shrink=FULL_PX[size] // FULL_PX[best.resolution])
 
 
 def _pick(by_name: dict[str, StandardPair], only: Sequence[str | int], root: Path) -> tuple[StandardPair, ...]:
     numbers = {int(plain): name for name in by_name if (plain := name.replace("_", "")).isdecimal()}
-    wanted = [numbers.get(name, str(name)) if isinstance(name, int) else name for name in only]
-    if missing := next((name for name in wanted if name not in by_name), None):
+    requests = [numbers.get(name, str(name)) if isinstance(name, int) else name for name in only]
+    if missing := next((name for name in requests if name not in by_name), None):
         names = ", ".join(list(by_name)[:8]) + (f" and {len(by_name) - 8} more" if len(by_name) > 8 else "")
         hint = did_you_mean(missing, by_name)
         raise ConfigError(f"{root}: no pair in it is named {quoted(missing)}{hint}; there are: {shown(names, 400)}")
-    return tuple(by_name[name] for name in wanted or by_name)
+    return tuple(by_name[name] for name in requests or by_name)
 
 
 class SetScene(SceneReader):
@@ -128,25 +128,25 @@ class SetScene(SceneReader):
             self.set, self.folder, resolution=self.resolution, split=self.split, variant=self.variant, only=(self.name,)
         )
         more = {"segments": self.segments, "crop": self.crop}
-        files = pair.files().model_dump(exclude_defaults=True) | {key: each for key, each in more.items() if each}
+        files = pair.files().model_dump(exclude_defaults=True) | {key: value for key, value in more.items() if value}
         return SceneFiles.model_validate(files)
 
     @classmethod
     def suggest(cls, key: str, block: Mapping[str, Any]) -> Iterable[str]:
         try:
-            return list(_values_of(key, block))
+            return list(_suggestions(key, block))
         except (TangibleError, TypeError):  # the earlier keys are not finished
             return ()
 
 
-def _values_of(key: str, block: Mapping[str, Any]) -> Iterable[str]:
+def _suggestions(key: str, block: Mapping[str, Any]) -> Iterable[str]:
     if key == "set":
         return SETS
     scene = with_folder_of_set(dict(block))
     if key != "name" or scene.get("set") not in SETS:
         return ()
-    chosen = {key: scene[key] for key in ("resolution", "split", "variant") if key in scene}
-    return (pair.name for pair in pairs(scene["set"], scene["folder"], **chosen))
+    options = {key: scene[key] for key in ("resolution", "split", "variant") if key in scene}
+    return (pair.name for pair in pairs(scene["set"], scene["folder"], **options))
 
 
 def with_folder_of_set(block: Any) -> Any:

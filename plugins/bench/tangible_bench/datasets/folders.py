@@ -31,16 +31,16 @@ class Folder(NamedTuple):
 
 def folders(root: Path) -> Iterator[Folder]:
     """Yield the folder and all folders in it, by name; links are followed, each once. Raises: PictureError."""
-    seen = set[tuple[int, int]]()
+    visited_inodes = set[tuple[int, int]]()
     waiting, count = [(str(root), (root.absolute().name,))], 0
     while waiting:
         path, within = waiting.pop()
         below, files = list[str](), list[str]()
         try:
             state = os.stat(path)  # noqa: PTH116 - pathlib would take most of the time
-            if (state.st_dev, state.st_ino) in seen:
+            if (state.st_dev, state.st_ino) in visited_inodes:
                 continue
-            seen.add((state.st_dev, state.st_ino))
+            visited_inodes.add((state.st_dev, state.st_ino))
             with os.scandir(path) as entries:
                 for entry in entries:
                     if entry.is_dir():
@@ -61,18 +61,18 @@ def folders(root: Path) -> Iterator[Folder]:
 _WILD = re.compile(r"\*\*/?|\*|\?|\[[^\]]+\]")
 
 
-def matched(folder: Path, patterns: Mapping[str, str], needed: tuple[str, str]) -> dict[str, dict[str, Path]]:
+def match_files(folder: Path, patterns: Mapping[str, str], required: tuple[str, str]) -> dict[str, dict[str, Path]]:
     """Return name -> part -> file, in the order of names; a name is the text that the stars match.
 
     patterns: part -> pattern relative to the folder, with `*`, `?` and `**/`. needed: the two parts that each name has.
     Raises: ConfigError for different numbers of stars; PictureError without a match or a partner.
     """
-    first, second = needed
-    wanted = len(_WILD.findall(patterns[first]))
+    first, second = required
+    star_count = len(_WILD.findall(patterns[first]))
     for part, pattern in patterns.items():
-        if (stars := len(_WILD.findall(pattern))) != wanted or not stars:
+        if (stars := len(_WILD.findall(pattern))) != star_count or not stars:
             raise ConfigError(
-                f"{part}: {quoted(pattern)} has {stars} stars and {first}: {quoted(patterns[first])} has {wanted}; "
+                f"{part}: {quoted(pattern)} has {stars} stars and {first}: {quoted(patterns[first])} has {star_count}; "
                 "files belong together if their stars match the same, so each pattern needs as many, at least one"
             )
     files_of = {part: dict(_files(folder, pattern)) for part, pattern in patterns.items()}
@@ -91,14 +91,14 @@ def _files(folder: Path, pattern: str) -> Iterator[tuple[str, Path]]:
     base, rest = _start(folder, pattern)
     if not base.is_dir():
         raise PictureError(f"{base}: there is no such folder for {quoted(pattern)}; check the path")
-    wanted = re.compile(_regex(rest))
+    expression = re.compile(_regex(rest))
     deep = "/" in rest or "**" in rest
-    for each in folders(base):
-        within = each.path.relative_to(base).as_posix()
-        for name in sorted(each.files):
-            hit = wanted.fullmatch(name if within == "." else f"{within}/{name}")
+    for place in folders(base):
+        within = place.path.relative_to(base).as_posix()
+        for name in sorted(place.files):
+            hit = expression.fullmatch(name if within == "." else f"{within}/{name}")
             if hit is not None:
-                yield "/".join(part.strip("/") for part in hit.groups() if part.strip("/")), each.path / name
+                yield "/".join(part.strip("/") for part in hit.groups() if part.strip("/")), place.path / name
         if not deep:
             break
 
@@ -119,7 +119,7 @@ def _regex(pattern: str) -> str:
     text, at = "", 0
     for star in _WILD.finditer(pattern):
         text += re.escape(pattern[at : star.start()]) + _STARS.get(star[0], "")
-        text += "" if star[0] in _STARS else f"({_one_of(star[0])})"
+        text += "" if star[0] in _STARS else f"({_bracket_expression(star[0])})"
         at = star.end()
     return text + re.escape(pattern[at:])
 
@@ -127,6 +127,6 @@ def _regex(pattern: str) -> str:
 _STARS = {"**/": "((?:[^/]+/)*)", "**": "(.*)", "*": "([^/]*)", "?": "([^/])"}
 
 
-def _one_of(brackets: str) -> str:
+def _bracket_expression(brackets: str) -> str:
     """Return brackets such as `[0-9]` as a regular expression."""
     return translate(brackets).removeprefix("(?s:").removesuffix(r")\Z").removesuffix(r")\z")

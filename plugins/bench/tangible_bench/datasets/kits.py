@@ -50,7 +50,7 @@ def of_2005_and_2006(root: Path) -> Iterator[StandardPair]:
         lit = any(name.startswith("Illum") for name in folder.within)
         if lit or not (own or ("disp1.png" in folder.files and (views / "view1.png").exists())):
             continue
-        size = _size_of(folder)
+        size = _folder_size(folder)
         by = FULL_PX[size]
         yield StandardPair(
             name=folder.path.name,
@@ -64,7 +64,7 @@ def of_2005_and_2006(root: Path) -> Iterator[StandardPair]:
         )
 
 
-def _size_of(folder: Folder) -> Resolution:
+def _folder_size(folder: Folder) -> Resolution:
     for name in reversed(folder.within):
         if size := _SIZES.get(name.lower()):
             return size
@@ -84,8 +84,8 @@ def of_2001(root: Path) -> Iterator[StandardPair]:
     for folder in folders(root):
         tsukuba = ("scene1.row3.col3", "scene1.row3.col4", "truedisp.row3.col3")
         for names, scale in ((("im2", "im6", "disp2"), 8.0), (tsukuba, 16.0), (("im0", "im1", "disp0"), 8.0)):
-            if named := list(_grey_level_pairs(folder, folder.path.name, names, scale, None)):
-                yield named[0]
+            if first_pair := list(_grey_level_pairs(folder, folder.path.name, names, scale, None)):
+                yield first_pair[0]
                 break
 
 
@@ -137,14 +137,23 @@ def _kitti_pairs(root: Path, layouts: tuple[_Layout, ...]) -> Iterator[StandardP
     files_in = {folder.path: folder.files for folder in folders(root)}
     for part in dict.fromkeys(path.parent for path in files_in):
         layout = next(
-            (each for each in layouts if part / each.left in files_in and part / each.right in files_in), None
+            (
+                candidate
+                for candidate in layouts
+                if part / candidate.left in files_in and part / candidate.right in files_in
+            ),
+            None,
         )
         if layout is None:
             continue
         names = files_in[part / layout.left] & files_in[part / layout.right]
-        for name in sorted(each for each in names if each.endswith(KITTI_END)):
+        for name in sorted(name_there for name_there in names if name_there.endswith(KITTI_END)):
             maps = (layout.occ, layout.noc, "obj_map")
-            paths = {each: part / each / name for each in maps if name in files_in.get(part / each, ())}
+            paths = {
+                name_there: part / name_there / name
+                for name_there in maps
+                if name in files_in.get(part / name_there, ())
+            }
             text = name.removesuffix(KITTI_END) + ".txt"
             truth = paths.get(layout.occ)
             yield StandardPair(
@@ -170,22 +179,22 @@ ETH3D_TRUTH, ETH3D_NOC = "disp0GT.pfm", "mask0nocc.png"
 
 def eth3d(root: Path) -> Iterator[StandardPair]:
     """Yield the pairs of NAME/im0.png, im1.png, with the truth disp0GT.pfm, next to them or in a folder of its own."""
-    listed = list(folders(root))
-    truths = {each.path.name: each for each in reversed(listed) if ETH3D_TRUTH in each.files}
-    for each in listed:
-        if not each.has("im0.png", "im1.png"):
+    all_folders = list(folders(root))
+    truths = {place.path.name: place for place in reversed(all_folders) if ETH3D_TRUTH in place.files}
+    for place in all_folders:
+        if not place.has("im0.png", "im1.png"):
             continue
-        truth = truths.get(each.path.name)
-        masked = truth is not None and ETH3D_NOC in truth.files
+        truth = truths.get(place.path.name)
+        has_mask = truth is not None and ETH3D_NOC in truth.files
         yield StandardPair(
-            name=each.path.name,
-            left=each.path / "im0.png",
-            right=each.path / "im1.png",
+            name=place.path.name,
+            left=place.path / "im0.png",
+            right=place.path / "im1.png",
             truth=truth and truth.path / ETH3D_TRUTH,
-            noc=Mask((truth.path / ETH3D_NOC,), "at 255") if truth is not None and masked else None,
+            noc=Mask((truth.path / ETH3D_NOC,), "at 255") if truth is not None and has_mask else None,
             sparse=True,
-            cameras=partial(if_there, middlebury_cameras, each.path / "calib.txt"),
-            test=truth is None and not {"two_view_test", "test"}.isdisjoint(each.within),
+            cameras=partial(if_there, middlebury_cameras, place.path / "calib.txt"),
+            test=truth is None and not {"two_view_test", "test"}.isdisjoint(place.within),
         )
 
 
@@ -194,13 +203,13 @@ BOOSTER_LEFT, BOOSTER_RIGHT, BOOSTER_TRUTH, BOOSTER_NOC = "camera_00", "camera_0
 
 def booster(root: Path) -> Iterator[StandardPair]:
     """Yield the pairs of SCENE/camera_00/im0.png (an image for each lamp) and camera_02, with the truth disp_00.npy."""
-    listed = list(folders(root))
-    files_in = {each.path: each.files for each in listed}
-    for scene, within, files in listed:
+    all_folders = list(folders(root))
+    files_in = {place.path: place.files for place in all_folders}
+    for scene, within, files in all_folders:
         if "unbalanced" in within or scene / BOOSTER_LEFT not in files_in:
             continue
         lit = files_in[scene / BOOSTER_LEFT] & files_in.get(scene / BOOSTER_RIGHT, frozenset[str]())
-        for name in sorted(each for each in lit if each.endswith(".png")):
+        for name in sorted(picture for picture in lit if picture.endswith(".png")):
             yield StandardPair(
                 name=f"{scene.name}/{Path(name).stem}",
                 left=scene / BOOSTER_LEFT / name,
@@ -226,13 +235,13 @@ def sintel(root: Path, variant: Literal["final", "clean"]) -> Iterator[StandardP
         }
         for name in sorted(part for part in files_in[path] & parts[f"{variant}_right"] if part.endswith(".png")):
             truth = top / "disparities" / scene / name if name in parts["disparities"] else None
-            hidden = [top / each / scene / name for each in ("occlusions", "outofframe") if name in parts[each]]
+            masks = [top / mask / scene / name for mask in ("occlusions", "outofframe") if name in parts[mask]]
             yield StandardPair(
                 name=f"{scene}/{Path(name).stem}",
                 left=path / name,
                 right=top / f"{variant}_right" / scene / name,
                 truth=truth,
                 truth_scale="sintel" if truth else None,
-                noc=Mask(tuple(hidden), "at 0") if truth and hidden else None,
+                noc=Mask(tuple(masks), "at 0") if truth and masks else None,
                 test=top.name == "test",
             )

@@ -31,10 +31,10 @@ def shrink_truth(truth_px: Float32[np.ndarray, "h w"], by: int) -> Float32[np.nd
     if by == 1:
         return truth_px
     blocks = np.sort(_blocks(truth_px, by), axis=-1)  # NaN last
-    known = np.isfinite(blocks).sum(axis=-1)
+    count_valid = np.isfinite(blocks).sum(axis=-1)
     # A mean would lie between the two surfaces at an edge, where there is nothing.
-    middle = np.take_along_axis(blocks, np.minimum(known // 2, by * by - 1)[..., None], axis=-1)[..., 0]
-    return np.where(2 * known >= by * by, middle / np.float32(by), np.float32(np.nan))
+    middle = np.take_along_axis(blocks, np.minimum(count_valid // 2, by * by - 1)[..., None], axis=-1)[..., 0]
+    return np.where(2 * count_valid >= by * by, middle / np.float32(by), np.float32(np.nan))
 
 
 def shrink_mask(mask: Bool[np.ndarray, "h w"], by: int) -> Bool[np.ndarray, "r c"]:
@@ -128,7 +128,7 @@ class StandardPair:
         scene = Scene.read(self._files(cameras), Path())
         assert scene.views is not None
         shape = scene.views.shape
-        noc, foreground = (each and _read_mask(each, shape, self.left) for each in (self.noc, self.foreground))
+        noc, foreground = (mask and _read_mask(mask, shape, self.left) for mask in (self.noc, self.foreground))
         truth_px = scene.truth
         if truth_px is not None and noc is None and not self.sparse:
             noc = visible_pixels(truth_px)
@@ -144,19 +144,19 @@ class StandardPair:
 
     def _files(self, cameras: Cameras) -> SceneFiles:
         rig = cameras.calibration
-        known = {} if rig is None else {"focal_px": rig.focal_px, "baseline_m": rig.baseline_m}
-        known |= {"offset_px": rig.offset_px} if rig is not None and rig.offset_px else {}
+        rig_keys = {} if rig is None else {"focal_px": rig.focal_px, "baseline_m": rig.baseline_m}
+        rig_keys |= {"offset_px": rig.offset_px} if rig is not None and rig.offset_px else {}
         truth = {} if self.truth is None else {"truth": self.truth, "truth_scale": self.truth_scale}
         views = {"left": self.left, "right": self.right, "order": "as-named"}
-        return SceneFiles.model_validate({**views, **known, **truth})
+        return SceneFiles.model_validate({**views, **rig_keys, **truth})
 
 
-def _read_mask(mask: Mask, shape: tuple[int, int], left: Path) -> Bool[np.ndarray, "h w"]:
-    marked = np.ones(shape, np.bool_)
+def _read_mask(mask: Mask, shape: tuple[int, int], picture: Path) -> Bool[np.ndarray, "h w"]:
+    is_marked = np.ones(shape, np.bool_)
     for path in mask.files:
         values = read_map(path)
         if values.shape != shape:
-            sizes = f"{path} is {size_in_words(values)} and {left} {shape[1]} x {shape[0]}"
+            sizes = f"{path} is {size_in_words(values)} and {picture} {shape[1]} x {shape[0]}"
             raise PictureError(f"{sizes}; a mask has the size of its picture; unpack it again")
-        marked &= {"at 255": values == 255, "above 0": values > 0, "at 0": values == 0}[mask.marks]
-    return marked
+        is_marked &= {"at 255": values == 255, "above 0": values > 0, "at 0": values == 0}[mask.marks]
+    return is_marked

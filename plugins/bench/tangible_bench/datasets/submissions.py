@@ -28,19 +28,21 @@ def write_submission(
 
 def write_pfm(path: Path, values: Disparity) -> None:
     """Write a portable float map: from the bottom up, little-endian, infinite where unknown. Raises: OutputError."""
-    known = np.where(np.isfinite(values), values, np.float32(np.inf))
+    with_infinity = np.where(np.isfinite(values), values, np.float32(np.inf))
     with atomic_write(path) as file:
-        file.write(f"Pf\n{values.shape[1]} {values.shape[0]}\n-1.0\n".encode() + known[::-1].astype("<f4").tobytes())
+        file.write(
+            f"Pf\n{values.shape[1]} {values.shape[0]}\n-1.0\n".encode() + with_infinity[::-1].astype("<f4").tobytes()
+        )
 
 
 def write_png16(path: Path, values: Disparity) -> None:
     """Write KITTI's format: 256 a pixel in 16 bits, 0 if unknown; known values are clipped to 1 to 65535."""
     from PIL import Image
 
-    known = np.isfinite(values)
-    stored = np.clip(np.rint(256 * np.where(known, values, 0)), 1, 65535) * known
+    valid_mask = np.isfinite(values)
+    levels = np.clip(np.rint(256 * np.where(valid_mask, values, 0)), 1, 65535) * valid_mask
     png = BytesIO()
-    Image.fromarray(stored.astype(np.uint16)).save(png, format="PNG")
+    Image.fromarray(levels.astype(np.uint16)).save(png, format="PNG")
     with atomic_write(path) as file:
         file.write(png.getvalue())
 

@@ -34,7 +34,7 @@ class Measurement:
 def measurements(comparison: Comparison) -> list[Measurement]:
     """Return every measurement of a comparison, in order. Raises: ConfigError naming every unreadable scene."""
     scenes = _known_scenes(comparison)
-    planned: list[Measurement] = []
+    plan: list[Measurement] = []
     # A round runs every method on a scene before the next scene, so that a drift of the machine affects all alike and
     # times can be compared within the round; each round starts with another method.
     for repeat in range(comparison.protocol.repeats):
@@ -42,8 +42,8 @@ def measurements(comparison: Comparison) -> list[Measurement]:
         methods = (*comparison.methods[turn:], *comparison.methods[:turn])
         for scene in comparison.scenes:
             for damage in comparison.damages:
-                planned += _side_by_side(comparison, methods, scene, scenes[scene], damage, repeat)
-    return planned
+                plan += _side_by_side(comparison, methods, scene, scenes[scene], damage, repeat)
+    return plan
 
 
 KnownScene = tuple[str, Mapping[str, Any]]
@@ -51,7 +51,7 @@ KnownScene = tuple[str, Mapping[str, Any]]
 
 
 def _known_scenes(comparison: Comparison) -> dict[str, KnownScene]:
-    known: dict[str, KnownScene] = {}
+    scenes: dict[str, KnownScene] = {}
     complaints: list[str] = []
     for name, spec in comparison.scenes.items():
         try:
@@ -59,37 +59,37 @@ def _known_scenes(comparison: Comparison) -> dict[str, KnownScene]:
         except TangibleError as error:
             complaints.append(f"{comparison.path}: scene {name}: {error}")
         else:
-            facts = {key: fact_of(scene) for key, fact_of in comparison.task.given.items()}
-            known[name] = scene.digest(), facts
+            facts = {key: fact_of(scene) for key, fact_of in comparison.task.facts.items()}
+            scenes[name] = scene.digest(), facts
     if complaints:
         raise ConfigError(*complaints)
-    return known
+    return scenes
 
 
 def _side_by_side(
-    comparison: Comparison, methods: Sequence[Entry], scene: str, known: KnownScene, damage: Damage, repeat: int
+    comparison: Comparison, methods: Sequence[Entry], scene: str, scene_facts: KnownScene, damage: Damage, repeat: int
 ) -> Iterator[Measurement]:
-    task, protocol, (digest, facts) = comparison.task, comparison.protocol, known
+    task, protocol, (digest, facts) = comparison.task, comparison.protocol, scene_facts
     for entry in methods:
         options = entry.method_for(facts).model_dump(mode="json")
         finishes = tuple(name for name, labels in comparison.finishes.items() if entry.label in labels)
         job = Job(
-            task.kind, entry.chosen.name, options, comparison.scenes[scene].model_dump(mode="json"),
+            task.kind, entry.choice.name, options, comparison.scenes[scene].model_dump(mode="json"),
             damage.kind, damage.value, finishes, protocol.warmups, protocol.calls,
         )  # fmt: skip
-        installed = versions(entry.chosen.origin.partition(" ")[0])
-        code = f"v{task.version} {_code(entry.chosen)} {installed} {machine()}"
+        package_versions = versions(entry.choice.origin.partition(" ")[0])
+        code = f"v{task.version} {_code(entry.choice)} {package_versions} {machine()}"
         plain = repr((asdict(replace(job, scene={})), entry.label, digest, damage.name, repeat, code))
         row = Row(
-            digest_of(plain), task.kind, entry.label, job.use, options, entry.chosen.origin, scene, digest,
-            damage.name, finishes, repeat, installed, machine(), comparison.baseline,
+            digest_of(plain), task.kind, entry.label, job.use, options, entry.choice.origin, scene, digest,
+            damage.name, finishes, repeat, package_versions, machine(), comparison.baseline,
         )  # fmt: skip
-        cls = type(entry.chosen.method)
+        cls = type(entry.choice.method)
         yield Measurement(job, row, place(cls.__module__, cls.__qualname__))
 
 
-def _code(chosen: NamedMethod[Method]) -> str:
-    cls = type(chosen.method)
+def _code(choice: NamedMethod[Method]) -> str:
+    cls = type(choice.method)
     return f"{cls.__module__}:{cls.__qualname__} v{cls.version} {closure(cls.__module__).digest}"
 
 

@@ -33,46 +33,46 @@ POLL_S = 0.1
 class Outlook:
     """The known rows of a comparison, and the measurements to do."""
 
-    kept: dict[str, Row]
+    current: dict[str, Row]
     """The rows that need not be measured again, by key."""
     waiting: tuple[Measurement, ...]
 
 
-def look(wanted: Sequence[Measurement], path: Path, retry: bool = False) -> Outlook:
+def look(requests: Sequence[Measurement], path: Path, retry: bool = False) -> Outlook:
     """Return which measurements are in the file and which are to do; retry: failed ones too. Raises: ResultsError."""
-    keys = {each.row.key for each in wanted}
+    keys = {measurement.row.key for measurement in requests}
     in_file = read_rows(path) if path.exists() else {}
-    kept = {key: row for key, row in in_file.items() if key in keys and not (retry and row.error)}
-    return Outlook(kept, tuple(each for each in wanted if each.row.key not in kept))
+    current = {key: row for key, row in in_file.items() if key in keys and not (retry and row.error)}
+    return Outlook(current, tuple(measurement for measurement in requests if measurement.row.key not in current))
 
 
 def run(
-    outlook: Outlook, path: Path, timeout_s: float, started: Report, finished: Report, stop: Event | None = None
+    outlook: Outlook, path: Path, timeout_s: float, on_start: Report, on_finish: Report, stop: Event | None = None
 ) -> dict[str, Row]:
     """Do the waiting measurements, add their rows to the file, return all rows by key. Raises: OutputError, Stopped."""
     with stoppable(stop):
         mend(path)
-        rows = dict(outlook.kept)
-        failed = {row.cell for row in rows.values() if row.error}
-        for number, each in enumerate(outlook.waiting):
-            if each.row.cell in failed:
+        rows = dict(outlook.current)
+        failed_cells = {row.cell for row in rows.values() if row.error}
+        for number, measurement in enumerate(outlook.waiting):
+            if measurement.row.cell in failed_cells:
                 continue
             check_stopped()
-            started(number, each.row)
-            row = replace(each.row, **_outcome(each, timeout_s))
+            on_start(number, measurement.row)
+            row = replace(measurement.row, **_outcome(measurement, timeout_s))
             append(path, row)
             rows[row.key] = row
             if row.error:
-                failed.add(row.cell)
-            finished(number, row)
+                failed_cells.add(row.cell)
+            on_finish(number, row)
         return rows
 
 
-def _outcome(wanted: Measurement, timeout_s: float) -> dict[str, Any]:
+def _outcome(measurement: Measurement, timeout_s: float) -> dict[str, Any]:
     """Run a new worker and return the fields that it measured, or the error with which it ended."""
     with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
         try:
-            code = _run_worker(wanted, timeout_s, output, errors)
+            code = _run_worker(measurement, timeout_s, output, errors)
         except subprocess.TimeoutExpired:
             return {"error": f"took longer than {timeout_s:g} s and was ended; raise timeout_s or drop the method"}
         with suppress(ValueError):
@@ -80,14 +80,16 @@ def _outcome(wanted: Measurement, timeout_s: float) -> dict[str, Any]:
         return {"error": _crash_message(code, _text(errors))}
 
 
-def _run_worker(wanted: Measurement, timeout_s: float, output: IO[bytes], errors: IO[bytes]) -> int:
+def _run_worker(measurement: Measurement, timeout_s: float, output: IO[bytes], errors: IO[bytes]) -> int:
     """Give a job to a new worker, and return its exit code; on an exception, the worker is killed too."""
     words = command(f"{__package__}.worker")
     with subprocess.Popen(words, bufsize=0, stdin=subprocess.PIPE, stdout=output, stderr=errors) as process:
         try:
             assert process.stdin is not None
             with suppress(BrokenPipeError):  # the worker died before it could read: its exit code is reported
-                process.stdin.write((json.dumps([os.getpid(), wanted.place, asdict(wanted.job)]) + "\n").encode())
+                process.stdin.write(
+                    (json.dumps([os.getpid(), measurement.place, asdict(measurement.job)]) + "\n").encode()
+                )
             return _wait(process, timeout_s)  # its input stays open, else the worker ends
         finally:
             process.kill()
@@ -121,12 +123,12 @@ def run_side_by_side(
     outlook: Outlook,
     path: Path,
     workers: int | None,
-    finished: Callable[[int, Row], None],
+    on_finish: Callable[[int, Row], None],
     stop: Event | None = None,
     timeout_s: float = LONGEST_S,
 ) -> dict[str, Row]:
     """Do as `run` on all cores, or n workers. Raises: BatchError without the extra, OutputError, Stopped."""
-    rows, workforce = dict(outlook.kept), Workforce(workers)
+    rows, workforce = dict(outlook.current), Workforce(workers)
     if not outlook.waiting:
         return rows
     with (
@@ -134,14 +136,14 @@ def run_side_by_side(
         JsonLines(path) as file,
         Farm(min(workforce.workers_here, len(outlook.waiting)), workforce.threads_each or 1) as farm,
     ):
-        for number, done in enumerate(farm.map(_measure, outlook.waiting, timeout_s=timeout_s)):
+        for number, ended_job in enumerate(farm.map(_measure, outlook.waiting, timeout_s=timeout_s)):
             check_stopped()
-            row = replace(done.job.row, **(done.result or {"error": done.death}))
+            row = replace(ended_job.job.row, **(ended_job.result or {"error": ended_job.death}))
             file.add_row(asdict(row))
             rows[row.key] = row
-            finished(number, row)
+            on_finish(number, row)
     return rows
 
 
-def _measure(wanted: Measurement) -> dict[str, Any]:
-    return answer(wanted.place, wanted.job)
+def _measure(measurement: Measurement) -> dict[str, Any]:
+    return answer(measurement.place, measurement.job)

@@ -86,9 +86,9 @@ class _Timing(NamedTuple):
 def _time(task: Task, method: Any, scene: Any) -> _Timing:
     gc.collect()
     start_s = perf_counter()
-    prepared = task.prepare(method, scene)
+    work_input = task.prepare(method, scene)
     ready_s = perf_counter()
-    result = task.work(prepared, scene)
+    result = task.work(work_input, scene)
     end_s = perf_counter()
     return _Timing((end_s - ready_s) / task.clock.pieces(scene), end_s - start_s, result)
 

@@ -31,7 +31,7 @@ def segment_errors(labels: Labels, truth: Labels) -> dict[str, float]:
 
 def contingency(labels: Labels, truth: Labels) -> Counts:
     """Count the pixels of each label with each true label: int64, (labels, true labels) that are present, in order."""
-    (rows, row), (columns, column) = (np.unique(each, return_inverse=True) for each in (labels, truth))
+    (rows, row), (columns, column) = (np.unique(map_, return_inverse=True) for map_ in (labels, truth))
     cells = row.ravel() * columns.size + column.ravel()
     return np.bincount(cells, minlength=rows.size * columns.size).reshape(rows.size, columns.size)
 

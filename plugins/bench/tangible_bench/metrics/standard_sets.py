@@ -30,9 +30,9 @@ def benchmark_errors(
     error_px = absolute_error(disparity_px, truth_px)
     at = np.isfinite(truth_px)
     error, truth = error_px[at], np.abs(truth_px[at])
-    known = error[np.isfinite(error)]
+    finite = error[np.isfinite(error)]
     outlier = ~((error <= KITTI_PX) | (error <= KITTI_SHARE * truth))
-    quantiles = np.percentile(known, QUANTILES) if known.size else np.full(len(QUANTILES), np.nan)
+    quantiles = np.percentile(finite, QUANTILES) if finite.size else np.full(len(QUANTILES), np.nan)
     errors = {f"a{share}_px": float(value) for share, value in zip(QUANTILES, quantiles, strict=True)}
     errors |= {
         "invalid": _percent(~np.isfinite(error)),
@@ -56,15 +56,15 @@ def visible_pixels(truth_px: Float[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"
     shift_px = truth_px[rows, columns].astype(np.float64)
     target_px = columns - shift_px
     inside = np.rint(target_px).astype(np.int64)
-    seen = (inside >= 0) & (inside < truth_px.shape[1])
+    in_view = (inside >= 0) & (inside < truth_px.shape[1])
     nearest_px = np.full(truth_px.shape, -np.inf)
     # Both columns that a pixel lies between, so that a surface that the right view stretches has no gaps.
     for column in (np.floor(target_px + 0.25), np.floor(target_px + 0.75)):
         hit = (column >= 0) & (column < truth_px.shape[1])
         np.maximum.at(nearest_px, (rows[hit], column[hit].astype(np.int64)), shift_px[hit])
-    seen[seen] = nearest_px[rows[seen], inside[seen]] <= shift_px[seen] + HIDING_STEP_PX
+    in_view[in_view] = nearest_px[rows[in_view], inside[in_view]] <= shift_px[in_view] + HIDING_STEP_PX
     visible = np.zeros(truth_px.shape, np.bool_)
-    visible[rows, columns] = seen
+    visible[rows, columns] = in_view
     return visible
 
 
@@ -86,9 +86,9 @@ def sparsification_curve(confidence: Float[np.ndarray, " n"], wrong: Bool[np.nda
     sure = confidence[order]
     # Pixels of equal confidence have no order: the value is the expected one over all orders.
     last = np.flatnonzero(np.append(sure[1:] != sure[:-1], sure.size > 0))
-    kept = np.arange(1, sure.size + 1)
+    counts = np.arange(1, sure.size + 1)
     wrong_kept = np.cumsum(wrong[order])[last]
-    return np.interp(kept, np.append(0, kept[last]), np.append(0, wrong_kept)) / kept
+    return np.interp(counts, np.append(0, counts[last]), np.append(0, wrong_kept)) / counts
 
 
 def sparsification_errors(
@@ -100,10 +100,10 @@ def sparsification_errors(
     `ausc`, the mean of the whole curve; both by an oracle, which removes every wrong pixel first. NaN without truth.
     Source: Hu & Mordohai, A Quantitative Evaluation of Confidence Measures for Stereo Vision, PAMI 34(11), 2012.
     """
-    measured = np.isfinite(truth_px)
-    error_px = absolute_error(disparity_px, truth_px)[measured]
+    has_truth = np.isfinite(truth_px)
+    error_px = absolute_error(disparity_px, truth_px)[has_truth]
     wrong = ~(error_px <= WRONG_PX)
-    sure = np.where(np.isfinite(error_px), confidence[measured], -1.0)
+    sure = np.where(np.isfinite(error_px), confidence[has_truth], -1.0)
     own = 100 * sparsification_curve(sure, wrong)
     oracle = 100 * sparsification_curve(-wrong.astype(np.float64), wrong)
     area, least = (float(curve.mean()) if curve.size else float("nan") for curve in (own, oracle))
@@ -116,5 +116,5 @@ def sparsification_errors(
 
 def _points(curve: Float[np.ndarray, " n"], names: Mapping[int, str]) -> dict[str, float]:
     """Return the named points of a curve, at one pixel where less than one would be left."""
-    kept = {name: max(1, round(curve.size * (100 - removed) / 100)) for removed, name in names.items()}
-    return {name: float(curve[count - 1]) if curve.size else float("nan") for name, count in kept.items()}
+    ends = {name: max(1, round(curve.size * (100 - percent) / 100)) for percent, name in names.items()}
+    return {name: float(curve[count - 1]) if curve.size else float("nan") for name, count in ends.items()}

@@ -35,20 +35,20 @@ def draw_plot(path: Path, results: Results) -> bool:
 
     from tangible_report.style import STYLE
 
-    timed = [line for line in results.means() if math.isfinite(line.seconds)]
-    measures = [measure for measure in results.task.plotted if results.on_front(timed, measure)]
+    with_time = [line for line in results.means() if math.isfinite(line.seconds)]
+    measures = [measure for measure in results.task.plot_measures if results.on_front(with_time, measure)]
     if not measures:
         return False
     curve = results.task.curve
-    curved = [line for line in timed if curve and all(map(math.isfinite, _values(line, curve.points)))]
-    count = len(measures) + bool(curved)
+    with_curve = [line for line in with_time if curve and all(map(math.isfinite, _values(line, curve.points)))]
+    count = len(measures) + bool(with_curve)
     with style.context(STYLE):
         figure = Figure(figsize=(PANEL_IN[0] * count, PANEL_IN[1]), dpi=DPI, layout="constrained")
         panels: list[Any] = list(figure.subplots(1, count, squeeze=False)[0])
         for axes, measure in zip(panels, measures, strict=False):
-            _draw_panel(axes, results, timed, measure)
-        if curve and curved:
-            _draw_curve(panels[-1], timed, curved, curve)
+            _draw_panel(axes, results, with_time, measure)
+        if curve and with_curve:
+            _draw_curve(panels[-1], with_time, with_curve, curve)
         figure.suptitle(_title(results), fontsize=10)
         figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right upper")
         with atomic_write(path) as file:
@@ -56,15 +56,15 @@ def draw_plot(path: Path, results: Results) -> bool:
     return True
 
 
-def _draw_panel(axes: Axes, results: Results, timed: list[Line], measure: str) -> None:
+def _draw_panel(axes: Axes, results: Results, with_time: list[Line], measure: str) -> None:
     from matplotlib.ticker import LogLocator, NullFormatter
 
     from tangible_report.style import INK
 
-    for index, line in _by_name(timed):
+    for index, line in _by_name(with_time):
         x, y = _point(results, line, measure)
         axes.plot(x, y, markersize=7, zorder=3, linestyle="", label=line.method, **_look(index))
-    best = _front(results, timed, measure)
+    best = _front(results, with_time, measure)
     axes.step(*zip(*best, strict=True), where="post", color=INK, linewidth=1, linestyle=(0, (4, 2)), zorder=2)
     axes.set_xscale("log")
     axes.margins(0.14)
@@ -75,10 +75,10 @@ def _draw_panel(axes: Axes, results: Results, timed: list[Line], measure: str) -
     _draw_grid(axes)
 
 
-def _draw_curve(axes: Axes, timed: list[Line], curved: list[Line], curve: Curve) -> None:
+def _draw_curve(axes: Axes, with_time: list[Line], with_curve: list[Line], curve: Curve) -> None:
     """Draw each method's curve, and dotted its ideal one; with the colours and shapes of the other panels."""
-    for index, line in _by_name(timed):
-        if line in curved:
+    for index, line in _by_name(with_time):
+        if line in with_curve:
             look = _look(index)
             ideal = list(curve.ideal), _values(line, curve.ideal)
             axes.plot(*ideal, color=look["color"], linewidth=1, linestyle=":")
@@ -94,17 +94,17 @@ def _draw_grid(axes: Axes) -> None:
     axes.set_axisbelow(True)
 
 
-def _by_name(timed: list[Line]) -> Iterator[tuple[int, Line]]:
+def _by_name(lines: list[Line]) -> Iterator[tuple[int, Line]]:
     """Return numbered lines in the order of names, so that a method has the same colour and shape in every panel."""
-    return enumerate(sorted(timed, key=lambda line: line.method))
+    return enumerate(sorted(lines, key=lambda line: line.method))
 
 
 def _values(line: Line, points: Mapping[int, str]) -> list[float]:
     return [line.measures.get(name, math.nan) for name in points.values()]
 
 
-def _front(results: Results, timed: list[Line], measure: str) -> list[tuple[float, float]]:
-    return [_point(results, timed[index], measure) for index in results.on_front(timed, measure)]
+def _front(results: Results, with_time: list[Line], measure: str) -> list[tuple[float, float]]:
+    return [_point(results, with_time[index], measure) for index in results.on_front(with_time, measure)]
 
 
 def _point(results: Results, line: Line, measure: str) -> tuple[float, float]:

@@ -58,16 +58,18 @@ def find_regressions(before: Sequence[Row], after: Sequence[Row]) -> Verdict:
         raise ResultsError(f"one file compares {before[-1].compare}, the other {after[-1].compare}")
     baseline = _common_baseline(before, after)
     old, new = cells(before, baseline), cells(after, baseline)
-    shared = [key for key in old if key in new and old[key].scene_digest == new[key].scene_digest]
-    if not shared:
+    in_common = [key for key in old if key in new and old[key].scene_digest == new[key].scene_digest]
+    if not in_common:
         raise ResultsError("the files have no method on a scene in common: labels, scenes or pictures all differ")
     measures = load_task(kinds.pop()).measures
     worse = [
-        regression for key in shared for regression in _regressions(old[key], new[key], measures, baseline is not None)
+        regression
+        for key in in_common
+        for regression in _regressions(old[key], new[key], measures, baseline is not None)
     ]
-    missing = [" | ".join(key) for key in {**old, **new} if key not in shared]
+    missing = [" | ".join(key) for key in {**old, **new} if key not in in_common]
     time = f"times as ratios to {baseline}" if baseline else "times in seconds, on the same machine"
-    return Verdict(len(shared), tuple(missing), time, tuple(worse))
+    return Verdict(len(in_common), tuple(missing), time, tuple(worse))
 
 
 def _common_baseline(before: Sequence[Row], after: Sequence[Row]) -> str | None:
@@ -100,15 +102,15 @@ def _noisy(
 ) -> Iterable[Regression]:
     # s is the root of the sum of both squared standard deviations: medians within 3 s of each other are the same.
     before, after = median(old), median(new)
-    allowed = max(SPREADS * math.hypot(spread(old), spread(new)), share * before, least)
-    return [Regression(*cell.key, what, before, after, allowed)] if after - before > allowed else []
+    tolerance = max(SPREADS * math.hypot(spread(old), spread(new)), share * before, least)
+    return [Regression(*cell.key, what, before, after, tolerance)] if after - before > tolerance else []
 
 
 def _exact(cell: Cell, measure: Measure, before: float, after: float) -> Iterable[Regression]:
     rise = after - before if measure.best == "low" else before - after
-    lost = math.isnan(after) and not math.isnan(before)
+    is_gone = math.isnan(after) and not math.isnan(before)
     return (
         [Regression(*cell.key, measure.title, before, after, measure.tolerance)]
-        if lost or rise > measure.tolerance
+        if is_gone or rise > measure.tolerance
         else []
     )

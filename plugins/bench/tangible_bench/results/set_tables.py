@@ -31,7 +31,7 @@ _FULL = (
     *(Column(f"A{share} noc", f"a{share}_px_full_noc") for share in (50, 90, 95, 99)),
     Column("invalid noc", "invalid_noc"), Column("bad 2 all", "bad2_full"), Column("avgerr all", "average_px_full"),
 )  # fmt: skip
-_OWN = tuple(each._replace(measure=each.measure.replace("_full", "")) for each in _FULL)
+_OWN = tuple(column._replace(measure=column.measure.replace("_full", "")) for column in _FULL)
 _2015 = tuple(
     Column(f"D1-{part} {over}", f"d1{name}{end}", weight=f"pixels{name}{end}")
     for over, end in (("noc", "_noc"), ("all", ""))
@@ -69,14 +69,14 @@ class SetTable:
     @property
     def title(self) -> str:
         """The name of the set, its size and the number of pairs."""
-        known, *marks = self.label.split("@")
-        return " ".join((SETS[known].title, *marks)) + f", {self.scenes} pair{'s' if self.scenes > 1 else ''}"
+        name, *marks = self.label.split("@")
+        return " ".join((SETS[name].title, *marks)) + f", {self.scenes} pair{'s' if self.scenes > 1 else ''}"
 
     @property
     def best(self) -> tuple[float, ...]:
         """The best value of each column."""
         values = zip(*self.rows.values(), strict=True)
-        best = (max if each.measure == "density" else min for each in self.columns)
+        best = (max if column.measure == "density" else min for column in self.columns)
         return tuple(
             pick((value for value in column if not math.isnan(value)), default=math.nan)
             for pick, column in zip(best, values, strict=True)
@@ -99,12 +99,12 @@ def _table(results: Results, label: str, scenes: Sequence[str]) -> SetTable:
     name = label.partition("@")[0]
     methods = dict.fromkeys(cell.method for cell in results.cells.values())
     cells = {method: [results.cells.get((method, scene, NONE)) for scene in scenes] for method in methods}
-    rows = {method: tuple(_mean(each, column) for column in COLUMNS[name]) for method, each in cells.items()}
+    rows = {method: tuple(_mean(own_cells, column) for column in COLUMNS[name]) for method, own_cells in cells.items()}
     rows = {method: values for method, values in rows.items() if not all(map(math.isnan, values))}
     first = RANKED.get(name, "bad2_full_noc" if COLUMNS[name] is _FULL else "bad2_noc")
-    order = next(index for index, each in enumerate(COLUMNS[name]) if each.measure == first)
-    ranked = sorted(rows, key=lambda method: (math.isnan(rows[method][order]), rows[method][order]))
-    return SetTable(label, len(scenes), tuple(COLUMNS[name]), {method: rows[method] for method in ranked})
+    order = next(index for index, column in enumerate(COLUMNS[name]) if column.measure == first)
+    order_of_methods = sorted(rows, key=lambda method: (math.isnan(rows[method][order]), rows[method][order]))
+    return SetTable(label, len(scenes), tuple(COLUMNS[name]), {method: rows[method] for method in order_of_methods})
 
 
 def _mean(cells: Sequence[Cell | None], column: Column) -> float:
@@ -113,9 +113,9 @@ def _mean(cells: Sequence[Cell | None], column: Column) -> float:
         return math.nan
     measures = [cell.measures for cell in cells if cell is not None]
     pairs = [(measure.get(column.measure, math.nan), measure.get(column.weight, 1.0)) for measure in measures]
-    known = [(value, weight) for value, weight in pairs if not math.isnan(value)]
-    whole = sum(weight for _, weight in known)
-    return sum(value * weight for value, weight in known) / whole if whole else math.nan
+    weights = [(value, weight) for value, weight in pairs if not math.isnan(value)]
+    whole = sum(weight for _, weight in weights)
+    return sum(value * weight for value, weight in weights) / whole if whole else math.nan
 
 
 def as_table(table: SetTable) -> Table:

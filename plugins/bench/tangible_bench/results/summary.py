@@ -63,33 +63,34 @@ class Line:
 
 def cells(rows: Iterable[Row], baseline: str | None) -> dict[Key, Cell]:
     """Group rows by method, scene and perturbation, in the order of their first appearance."""
-    grouped: dict[Key, list[Row]] = defaultdict(list)
+    rows_by_cell: dict[Key, list[Row]] = defaultdict(list)
     for row in rows:
-        grouped[row.cell].append(row)
+        rows_by_cell[row.cell].append(row)
     return {
-        key: _cell(of_cell, _times(grouped.get((baseline or "", *key[1:]), ()))) for key, of_cell in grouped.items()
+        key: _cell(of_cell, _times(rows_by_cell.get((baseline or "", *key[1:]), ())))
+        for key, of_cell in rows_by_cell.items()
     }
 
 
 def lines(all_cells: Mapping[Key, Cell], perturb: str, scenes: Sequence[str]) -> list[Line]:
     """Return a line for each method, over these scenes under one perturbation."""
     methods = dict.fromkeys(cell.method for cell in all_cells.values())
-    known = {
+    with_value = {
         (cell.scene, name)
         for cell in all_cells.values()
         for name, value in cell.measures.items()
         if not math.isnan(value)
     }
     return [
-        _line(method, perturb, [all_cells.get((method, scene, perturb)) for scene in scenes], known)
+        _line(method, perturb, [all_cells.get((method, scene, perturb)) for scene in scenes], with_value)
         for method in methods
     ]
 
 
 def median(values: Iterable[float]) -> float:
     """Return the median; NaN of an empty list."""
-    known = list(values)
-    return statistics.median(known) if known else NAN
+    numbers = list(values)
+    return statistics.median(numbers) if numbers else NAN
 
 
 def spread(values: Sequence[float]) -> float:
@@ -119,9 +120,9 @@ def _cell(rows: Sequence[Row], baseline: Mapping[int, float]) -> Cell:
     )
 
 
-def _line(method: str, perturb: str, of_scenes: Sequence[Cell | None], known: Set[tuple[str, str]]) -> Line:
-    done = [cell for cell in of_scenes if cell is not None and cell.error is None and cell.is_measured]
-    whole = done if len(done) == len(of_scenes) else []
+def _line(method: str, perturb: str, of_scenes: Sequence[Cell | None], with_value: Set[tuple[str, str]]) -> Line:
+    with_result = [cell for cell in of_scenes if cell is not None and cell.error is None and cell.is_measured]
+    whole = with_result if len(with_result) == len(of_scenes) else []
     names = dict.fromkeys(name for cell in whole for name in cell.measures)
     return Line(
         method,
@@ -131,13 +132,14 @@ def _line(method: str, perturb: str, of_scenes: Sequence[Cell | None], known: Se
         ratio=math.exp(_mean(math.log(median(cell.ratios)) for cell in whole)),
         memory_bytes=max((median(cell.memory_bytes) for cell in whole), default=NAN),
         measures={
-            name: _mean(cell.measures.get(name, NAN) for cell in whole if (cell.scene, name) in known) for name in names
+            name: _mean(cell.measures.get(name, NAN) for cell in whole if (cell.scene, name) in with_value)
+            for name in names
         },
-        done=len(done),
+        done=len(with_result),
         scenes=len(of_scenes),
     )
 
 
 def _mean(values: Iterable[float]) -> float:
-    known = list(values)
-    return statistics.fmean(known) if known else NAN
+    numbers = list(values)
+    return statistics.fmean(numbers) if numbers else NAN

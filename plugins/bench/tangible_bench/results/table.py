@@ -19,8 +19,8 @@ def front(points: Sequence[tuple[float, ...]]) -> list[int]:
     >>> front([(1, 9), (2, 5), (3, 6), (4, 1)])
     [0, 1, 3]
     """
-    known = [index for index, point in enumerate(points) if not any(map(math.isnan, point))]
-    unbeaten = [index for index in known if not any(_beats(points[other], points[index]) for other in known)]
+    candidates = [index for index, point in enumerate(points) if not any(map(math.isnan, point))]
+    unbeaten = [index for index in candidates if not any(_beats(points[other], points[index]) for other in candidates)]
     return sorted(unbeaten, key=lambda index: points[index])
 
 
@@ -51,9 +51,9 @@ class Results:
         """Return a line for each method over all scenes, by default undamaged; the best first, the unknown last."""
         return self.rank(lines(self.cells, perturb or self.perturbs[0], self.scenes))
 
-    def rank(self, unranked: Iterable[Line]) -> list[Line]:
+    def rank(self, some_lines: Iterable[Line]) -> list[Line]:
         """Return the lines in the order of the judged measure."""
-        losses = {line: self.loss(line, self.main_measure) for line in unranked}
+        losses = {line: self.loss(line, self.main_measure) for line in some_lines}
         return sorted(losses, key=lambda line: (math.isnan(losses[line]), losses[line]))
 
     def loss(self, line: Line, measure: str) -> float:
@@ -61,24 +61,24 @@ class Results:
         value = line.measures.get(measure, math.nan)
         return value if self.task.measures[measure].best == "low" else -value
 
-    def measures_of(self, scene: str) -> tuple[str, ...]:
+    def scene_measures(self, scene: str) -> tuple[str, ...]:
         """Return the measures of a scene, in order; those of standard sets only if a method has them there."""
-        known = {name for cell in self.cells.values() if cell.scene == scene for name in cell.measures}
-        return tuple(name for name, measure in self.task.measures.items() if not measure.of_sets or name in known)
+        with_value = {name for cell in self.cells.values() if cell.scene == scene for name in cell.measures}
+        return tuple(name for name, measure in self.task.measures.items() if not measure.of_sets or name in with_value)
 
     def heading(self, measure: str, scenes: Sequence[str] | None = None) -> str:
         """Return the heading of a column, such as `bad2@Q` where its scenes are at a quarter of their size."""
         title, at_size = self.task.measures[measure].title, self.task.measures[measure].at_size
         name, _, unit = title.partition(" ")
-        sizes = {self.task.size_of(scene) for scene in scenes or self.scenes}
+        sizes = {self.task.scene_size(scene) for scene in scenes or self.scenes}
         size = sizes.pop() if len(sizes) == 1 else ""
         return f"{name}@{size} {unit}" if at_size and size else title
 
     @property
     def methods_without_result(self) -> list[str]:
         """The methods without a result on any scene, in order."""
-        measured = {cell.method for cell in self.cells.values() if cell.is_measured}
-        return [name for name in dict.fromkeys(cell.method for cell in self.cells.values()) if name not in measured]
+        with_result = {cell.method for cell in self.cells.values() if cell.is_measured}
+        return [name for name in dict.fromkeys(cell.method for cell in self.cells.values()) if name not in with_result]
 
     @property
     def main_measure(self) -> str:
@@ -109,7 +109,7 @@ def tables(results: Results, detail: bool = False) -> list[Table]:
     for scene, perturb in product(results.scenes, results.perturbs) if detail else ():
         of_scene = results.rank(lines(results.cells, perturb, [scene]))
         title = scene + _suffix(perturb)
-        all_tables.append(_figures(results, of_scene, title, results.measures_of(scene), [scene]))
+        all_tables.append(_figures(results, of_scene, title, results.scene_measures(scene), [scene]))
     failures = _failures(results)
     return [*all_tables, failures] if failures.rows else all_tables
 
@@ -121,7 +121,7 @@ def _suffix(perturb: str) -> str:
 def _figures(
     results: Results, means: Sequence[Line], title: str, measures: Sequence[str], scenes: Sequence[str]
 ) -> Table:
-    known, clock = results.task.measures, results.task.clock
+    all_measures, clock = results.task.measures, results.task.clock
     best = results.on_front(means, results.main_measure)
     ratio = ("time / baseline",) if results.baseline else ()
     rows = [
@@ -131,7 +131,7 @@ def _figures(
             _number(clock.per_second * line.seconds, 1),
             *((_number(line.ratio, 2),) if ratio else ()),
             _number(line.memory_bytes / 1e6, 1),
-            *(_number(line.measures.get(name, math.nan), known[name].digits) for name in measures),
+            *(_number(line.measures.get(name, math.nan), all_measures[name].digits) for name in measures),
         )
         for index, line in enumerate(means)
     ]
@@ -140,27 +140,27 @@ def _figures(
 
 
 def _perturbations(results: Results) -> Table:
-    judged, digits = results.main_measure, results.task.measures[results.main_measure].digits
+    main, digits = results.main_measure, results.task.measures[results.main_measure].digits
     by_name = {
-        name: {line.method: line.measures.get(judged, math.nan) for line in results.means(name)}
+        name: {line.method: line.measures.get(main, math.nan) for line in results.means(name)}
         for name in results.perturbs
     }
     rows = tuple(
         (line.method, *(_number(values[line.method], digits) for values in by_name.values()))
         for line in results.means()
     )
-    title = f"{results.heading(judged)} under perturbations, mean of {len(results.scenes)} scenes"
+    title = f"{results.heading(main)} under perturbations, mean of {len(results.scenes)} scenes"
     return Table(title, ("method", *by_name), rows)
 
 
 def _failures(results: Results) -> Table:
-    failed: dict[tuple[str, str], list[str]] = {}
+    places_of_error: dict[tuple[str, str], list[str]] = {}
     for cell in results.cells.values():
         if cell.error:
-            failed.setdefault((cell.method, cell.error), []).append(cell.scene + _suffix(cell.perturb))
+            places_of_error.setdefault((cell.method, cell.error), []).append(cell.scene + _suffix(cell.perturb))
     rows = tuple(
         (method, places[0] + (f" and {len(places) - 1} more" if len(places) > 1 else ""), why)
-        for (method, why), places in failed.items()
+        for (method, why), places in places_of_error.items()
     )
     return Table("no result", ("method", "where", "why"), rows)
 

@@ -16,7 +16,7 @@ from tangible_core.testing.synthetic import KnownPair
 from ..datasets import MarkedPair
 from ..metrics.standard_sets import LEFT, LEFT_BY_ORACLE, benchmark_errors, sparsification_errors
 from . import damage
-from .depth_scenes import DepthScene, size_of
+from .depth_scenes import DepthScene, scene_size
 from .task import Curve, Measure, Perturbation, Task
 
 NOC, FULL = "_noc", "_full"
@@ -135,7 +135,7 @@ PERTURBATIONS: Mapping[str, Perturbation] = {
 
 def _measures() -> dict[str, Measure]:
     errors = {
-        **{f"bad{bound:g}": Measure(f"bad{bound:g} %", at_size=True) for bound in (0.5, 1, 2, 4)},
+        **{f"bad{limit_px:g}": Measure(f"bad{limit_px:g} %", at_size=True) for limit_px in (0.5, 1, 2, 4)},
         "average_px": Measure("average px", 3, tolerance=0.0005),
         "rms_px": Measure("rms px", 3, tolerance=0.0005),
         "density": Measure("density %", 1, "high"),
@@ -150,17 +150,19 @@ def _measures() -> dict[str, Measure]:
     return _with_noc(errors) | sorted_out | _with_noc(of_sets | _at_full_size(errors | of_sets))
 
 
-def _at_full_size(known: Mapping[str, Measure]) -> dict[str, Measure]:
+def _at_full_size(all_measures: Mapping[str, Measure]) -> dict[str, Measure]:
     measures: dict[str, Measure] = {}
     for name in IN_PIXELS:
-        what, _, unit = known[name].title.partition(" ")
-        measures[f"{name}{FULL}"] = replace(known[name], title=f"{what}@F {unit}", at_size=False, of_sets=True)
+        what, _, unit = all_measures[name].title.partition(" ")
+        measures[f"{name}{FULL}"] = replace(all_measures[name], title=f"{what}@F {unit}", at_size=False, of_sets=True)
     return measures
 
 
 def _with_noc(measures: Mapping[str, Measure]) -> dict[str, Measure]:
-    hidden = {f"{name}{NOC}": replace(each, title=each.title.replace(" ", " noc ")) for name, each in measures.items()}
-    return {**measures, **hidden}
+    of_noc = {
+        f"{name}{NOC}": replace(figure, title=figure.title.replace(" ", " noc ")) for name, figure in measures.items()
+    }
+    return {**measures, **of_noc}
 
 
 TASK = Task(
@@ -171,10 +173,10 @@ TASK = Task(
     measure=measure,
     measures=_measures(),
     columns=("bad2", "bad2_noc", "bad1", "average_px", "density"),
-    plotted=("bad2", "bad2_noc", "ausc"),
+    plot_measures=("bad2", "bad2_noc", "ausc"),
     curve=Curve("wrong among those left (bad2), %", "least confident pixels removed, %", LEFT, LEFT_BY_ORACLE),
     perturbations=PERTURBATIONS,
-    given={"max_disparity_px": range_px},
+    facts={"max_disparity_px": range_px},
     finishes={"fill": fill},
-    size_of=size_of,
+    scene_size=scene_size,
 )

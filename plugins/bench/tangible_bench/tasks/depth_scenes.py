@@ -12,7 +12,7 @@ from tangible_core.scene import Scene, SceneFiles, Section
 from tangible_core.scene.formats import TruthScale
 from tangible_core.testing.synthetic import KnownPair, synthetic_pair
 
-from ..datasets import SETS, MarkedPair, StandardPair, matched, pairs
+from ..datasets import SETS, MarkedPair, StandardPair, match_files, pairs
 from ..datasets.choosing import SetName, Split, with_folder_of_set
 from ..datasets.standard_pair import Mask, Resolution
 from ..metrics.standard_sets import visible_pixels
@@ -74,9 +74,9 @@ class DepthScene(SceneSpec):
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
-        given = [name for name in ("builtin", "synthetic", "set", "pairs") if getattr(self, name) is not None]
-        given += ["folder"] if self.folder is not None and not {"set", "pairs"} & {*given} else []
-        check_one_kind(given, "builtin, synthetic, folder, set and pairs")
+        kinds = [name for name in ("builtin", "synthetic", "set", "pairs") if getattr(self, name) is not None]
+        kinds += ["folder"] if self.folder is not None and not {"set", "pairs"} & {*kinds} else []
+        check_one_kind(kinds, "builtin, synthetic, folder, set and pairs")
         if self.set is None and (idle := [name for name in _OF_SETS if getattr(self, name)]):
             raise ValueError(f"{' and '.join(idle)} needs a standard set; name it: `set: ...`")
         return self
@@ -125,7 +125,7 @@ class DepthScene(SceneSpec):
         return scenes
 
     def list_pairs(self) -> tuple[StandardPair, ...]:
-        """Return the unread pairs of a set, or of patterns. Raises: as `datasets.pairs` and `matched`."""
+        """Return the unread pairs of a set, or of patterns. Raises: as `datasets.pairs` and `match_files`."""
         assert self.folder is not None  # by _complete_folder
         if self.set is not None:
             return pairs(
@@ -174,7 +174,7 @@ def _match(folder: Path, globs: PairGlobs) -> dict[str, StandardPair]:
             noc=Mask((files["noc"],), "at 255") if "noc" in files else None,
             sparse=globs.sparse,
         )
-        for name, files in matched(folder, patterns, ("left", "right")).items()
+        for name, files in match_files(folder, patterns, ("left", "right")).items()
     }
 
 
@@ -184,18 +184,18 @@ def named_set(name: str) -> Mapping[str, Any] | None:
     >>> named_set("middlebury-2014@Q"), named_set("synthetic/planes")
     ({'set': 'middlebury-2014', 'resolution': 'Q'}, None)
     """
-    known, *marks = name.split("@")
+    set_name, *marks = name.split("@")
     options = {"test": "split", "training": "split", "final": "variant", "clean": "variant"}
-    return {"set": known, **{options.get(mark, "resolution"): mark for mark in marks}} if known in SETS else None
+    return {"set": set_name, **{options.get(mark, "resolution"): mark for mark in marks}} if set_name in SETS else None
 
 
-def size_of(scene: str) -> str:
+def scene_size(scene: str) -> str:
     """Return the size in the name of a scene; an empty text for the full size.
 
-    >>> size_of("middlebury-2014@Q/Adirondack"), size_of("builtin/motorcycle"), size_of("kitti-2015/000000_10")
+    >>> scene_size("middlebury-2014@Q/Adirondack"), scene_size("builtin/motorcycle"), scene_size("kitti-2015/000000_10")
     ('Q', 'Q', '')
     """
-    known, *marks = scene.partition("/")[0].split("@")
+    set_name, *marks = scene.partition("/")[0].split("@")
     if scene == "builtin/motorcycle":
         return "Q"
-    return next((mark for mark in marks if mark in ("H", "T", "Q")), "") if known in SETS else ""
+    return next((mark for mark in marks if mark in ("H", "T", "Q")), "") if set_name in SETS else ""

@@ -47,8 +47,8 @@ class RenderScene(SceneSpec):
 
     @model_validator(mode="after")
     def _one_surface(self) -> Self:
-        given = [name for name in ("analytic", "builtin", "height") if getattr(self, name) is not None]
-        check_one_kind(given, "analytic, builtin and height")
+        kinds = [name for name in ("analytic", "builtin", "height") if getattr(self, name) is not None]
+        check_one_kind(kinds, "analytic, builtin and height")
         idle = ("width_m", "relief_m") if self.analytic else ("cells",)
         idle += ("depth_m",) if self.recording else ()
         if set_idle := [name for name in idle if getattr(self, name) != type(self).model_fields[name].default]:
@@ -121,9 +121,9 @@ def prepare(method: ForceRenderer, scene: KnownStroke) -> tuple[ForceRenderer, T
     return method, method.touch(scene.surface)
 
 
-def feel(prepared: tuple[ForceRenderer, Touch], scene: KnownStroke) -> PathForces:
+def feel(method_and_touch: tuple[ForceRenderer, Touch], scene: KnownStroke) -> PathForces:
     """Run the timed call: all ticks at once."""
-    method, touch = prepared
+    method, touch = method_and_touch
     return PathForces(method, touch.path(scene.position_m, scene.period_s))
 
 
@@ -156,7 +156,7 @@ def limits(method: ForceRenderer, surface: HapticSurface) -> dict[str, float]:
         return type(method).model_validate(options).touch(surface).force
 
     try:
-        return {f"limit{each}": stiffness_limit(law, float(surface.height_m[0, 0]), each) for each in DELAYS}
+        return {f"limit{ticks}": stiffness_limit(law, float(surface.height_m[0, 0]), ticks) for ticks in DELAYS}
     except ValidationError:  # the option ends before the limit
         return unknown
 
@@ -171,8 +171,8 @@ def quantize(scene: KnownStroke, bits: float) -> KnownStroke:
     """Round heights to n bits, the highest to white; the truth stays as it is."""
     heights = scene.surface.height_m
     step_m = float(heights.max()) / (2 ** int(bits) - 1)
-    rounded = np.rint(heights / step_m) * step_m if step_m else heights
-    relief = replace(scene.surface.relief, height_m=rounded.astype(np.float32))
+    levels = np.rint(heights / step_m) * step_m if step_m else heights
+    relief = replace(scene.surface.relief, height_m=levels.astype(np.float32))
     return replace(scene, surface=replace(scene.surface, relief=relief))
 
 
@@ -207,7 +207,7 @@ TASK = Task(
     measure=measure,
     measures=MEASURES,
     columns=tuple(name for name in MEASURES if name not in ("limit1", "limit2")),
-    plotted=("error_percent", "jnd", "step_n"),
+    plot_measures=("error_percent", "jnd", "step_n"),
     prepare=prepare,
     clock=Clock("ns a tick", 1e9, lambda scene: len(scene.position_m)),
     perturbations=PERTURBATIONS,

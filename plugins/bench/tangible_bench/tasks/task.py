@@ -34,10 +34,10 @@ Spec = TypeVar("Spec", bound=SceneSpec)
 Item = TypeVar("Item")
 
 
-def check_one_kind(given: list[str], kinds: str) -> None:
+def check_one_kind(names: list[str], kinds: str) -> None:
     """Check the kinds of scene that are given. Raises: ValueError unless there is exactly one."""
-    if len(given) != 1:
-        raise ValueError(f"a scene is one of {kinds}; this one is {' and '.join(given) or 'none'}")
+    if len(names) != 1:
+        raise ValueError(f"a scene is one of {kinds}; this one is {' and '.join(names) or 'none'}")
 
 
 def expand_folder(spec: Spec, folder: Path, first: str, contents: str) -> dict[str, Spec]:
@@ -45,7 +45,7 @@ def expand_folder(spec: Spec, folder: Path, first: str, contents: str) -> dict[s
     folders = sorted(path.parent for path in folder.glob(f"*/{first}"))
     if not folders:
         raise PictureError(f"{folder}: neither it nor a folder in it holds {contents}")
-    return {each.name: spec.model_copy(update={"folder": each}) for each in folders}
+    return {sub_folder.name: spec.model_copy(update={"folder": sub_folder}) for sub_folder in folders}
 
 
 def with_folder_of_file(block: Any) -> Any:
@@ -54,11 +54,11 @@ def with_folder_of_file(block: Any) -> Any:
     return {"folder": Path(), **cast("dict[str, Any]", block)} if has_pairs else cast(Any, block)
 
 
-def pick_pairs(matched: dict[str, Item], only: tuple[str | int, ...], folder: Path) -> dict[str, Item]:
+def pick_pairs(all_pairs: dict[str, Item], only: tuple[str | int, ...], folder: Path) -> dict[str, Item]:
     """Return the named pairs, in the order of `only`; all pairs if that is empty. Raises: PictureError."""
-    if missing := next((name for name in only if str(name) not in matched), None):
-        raise PictureError(f"{folder}: no pair in it is named {quoted(missing)}; there are {', '.join(matched)}")
-    return {str(name): matched[str(name)] for name in only} if only else matched
+    if missing := next((name for name in only if str(name) not in all_pairs), None):
+        raise PictureError(f"{folder}: no pair in it is named {quoted(missing)}; there are {', '.join(all_pairs)}")
+    return {str(name): all_pairs[str(name)] for name in only} if only else all_pairs
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class Perturbation:
     """A controlled damage to a scene, the same for every method."""
 
     meaning: str
-    allowed: Callable[[float], bool]
+    is_valid: Callable[[float], bool]
     apply: Apply
 
 
@@ -126,7 +126,7 @@ class Task:
     measures: Mapping[str, Measure]
     columns: tuple[str, ...]
     """The measures that the table shows; the first one ranks the methods."""
-    plotted: tuple[str, ...]
+    plot_measures: tuple[str, ...]
     """The measures that are drawn over time, one panel each."""
     curve: Curve | None = None
     prepare: Callable[[Any, Any], Any] = lambda method, scene: method
@@ -134,11 +134,11 @@ class Task:
     very first call."""
     clock: Clock = Clock()
     perturbations: Mapping[str, Perturbation] = field(default_factory=dict[str, Perturbation])
-    given: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict[str, Callable[[Any], Any]])
+    facts: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict[str, Callable[[Any], Any]])
     """Options of methods whose values follow from a scene: name -> (scene) -> value."""
     finishes: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict[str, Callable[[Any], Any]])
     """Untimed steps that a comparison may apply to the results of chosen methods, by their keys in its file."""
-    size_of: Callable[[str], str] = lambda scene: ""
+    scene_size: Callable[[str], str] = lambda scene: ""
     """(name of a scene) -> its size, such as Q; empty for the full size."""
 
 

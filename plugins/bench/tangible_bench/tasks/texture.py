@@ -15,7 +15,7 @@ from tangible_core.scene import Section
 from tangible_core.scene.formats import read_labels, read_picture
 from tangible_core.testing.synthetic import KnownSegments, folder_textures, smooth_scene, texture_mosaic
 
-from ..datasets import matched
+from ..datasets import match_files
 from ..metrics.segments import segment_errors
 from . import damage
 from .task import Measure, Perturbation, SceneSpec, Task, check_one_kind, expand_folder, pick_pairs, with_folder_of_file
@@ -62,11 +62,11 @@ class TextureScene(SceneSpec):
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
-        given = [name for name in ("mosaic", "smooth", "pairs") if getattr(self, name) is not None]
-        given += ["folder"] if self.folder is not None and "pairs" not in given else []
-        check_one_kind(given, "mosaic, smooth, folder and pairs")
+        kinds = [name for name in ("mosaic", "smooth", "pairs") if getattr(self, name) is not None]
+        kinds += ["folder"] if self.folder is not None and "pairs" not in kinds else []
+        check_one_kind(kinds, "mosaic, smooth, folder and pairs")
         if self.textures is not None and self.mosaic is None:
-            raise ValueError(f"textures: only a mosaic is made of them; leave them out of {given[0]}")
+            raise ValueError(f"textures: only a mosaic is made of them; leave them out of {kinds[0]}")
         return self
 
     @classmethod
@@ -99,7 +99,7 @@ class TextureScene(SceneSpec):
     def _matching_pairs(self) -> dict[str, dict[str, Path]]:
         assert self.folder is not None and self.pairs is not None  # by _complete_folder
         patterns = {"picture": self.pairs.picture, "labels": self.pairs.labels}
-        return pick_pairs(matched(self.folder, patterns, ("picture", "labels")), self.only, self.folder)
+        return pick_pairs(match_files(self.folder, patterns, ("picture", "labels")), self.only, self.folder)
 
     def _name(self) -> str:
         if self.folder is not None:
@@ -173,7 +173,7 @@ TASK = Task(
     measure=measure,
     measures=MEASURES,
     columns=tuple(MEASURES),
-    plotted=("ari", "boundary_px"),
+    plot_measures=("ari", "boundary_px"),
     perturbations=PERTURBATIONS,
-    given={"segments": lambda scene: scene.count},
+    facts={"segments": lambda scene: scene.count},
 )

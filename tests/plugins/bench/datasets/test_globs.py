@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tangible_bench.datasets import matched
+from tangible_bench.datasets import match_files
 from tangible_core.errors import ConfigError, PictureError
 
 NEEDED = ("left", "right")
@@ -30,7 +30,7 @@ def touch(folder: Path, *names: str) -> None:
 )
 def test_files_with_the_same_stars_are_matched(files, patterns, names, tmp_path: Path):
     touch(tmp_path, *files)
-    found = matched(tmp_path, dict(zip(NEEDED, patterns, strict=True)), NEEDED)
+    found = match_files(tmp_path, dict(zip(NEEDED, patterns, strict=True)), NEEDED)
     assert list(found) == names
     for parts in found.values():
         assert parts["left"] != parts["right"] and all(path.is_file() for path in parts.values())
@@ -38,7 +38,7 @@ def test_files_with_the_same_stars_are_matched(files, patterns, names, tmp_path:
 
 def test_optional_part_may_be_missing(tmp_path: Path):
     touch(tmp_path, "L1.png", "R1.png", "D1.pfm", "L2.png", "R2.png")
-    found = matched(tmp_path, {"left": "L*.png", "right": "R*.png", "truth": "D*.pfm"}, NEEDED)
+    found = match_files(tmp_path, {"left": "L*.png", "right": "R*.png", "truth": "D*.pfm"}, NEEDED)
     assert found["1"]["truth"] == tmp_path / "D1.pfm" and "truth" not in found["2"]
 
 
@@ -59,5 +59,5 @@ def test_optional_part_may_be_missing(tmp_path: Path):
 def test_wrong_patterns_are_refused_in_one_line(patterns, error, why, tmp_path: Path):
     touch(tmp_path, "L1.png", "R1.png", "L2.png")
     with pytest.raises(error) as said:
-        matched(tmp_path, patterns, NEEDED)
+        match_files(tmp_path, patterns, NEEDED)
     assert why in str(said.value) and "\n" not in str(said.value)

@@ -29,13 +29,13 @@ class PagePanel:
 @cache
 def installed_panels() -> Mapping[str, PagePanel]:
     """Return the installed panels by name; one that cannot be loaded is logged and left out."""
-    found: dict[str, PagePanel] = {}
+    panels: dict[str, PagePanel] = {}
     for point in entry_points(group=GROUP):
         try:
             panel = point.load()
             if not isinstance(panel, PagePanel) or not panel.module.is_file():
                 raise TypeError(f"{point.value} is not a PagePanel with a module that exists")
-            found[point.name] = panel
+            panels[point.name] = panel
         except (Exception, SystemExit) as error:  # noqa: BLE001 - whatever an import of a plugin raises
             log.warning("the page's panel %s (%s) cannot be loaded and is left out: %r", point.name, point.value, error)
-    return found
+    return panels

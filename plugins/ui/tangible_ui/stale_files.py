@@ -21,8 +21,8 @@ NUMBER = re.compile(r"(?:.*-)?([0-9]{1,9})(?:-[\w.]+|\.\w+)")
 def folder_of_this_process() -> Generator[Path]:
     """Make an empty folder for what pages fetch; remove those of servers that were killed. Raises: OutputError."""
     try:
-        for each in left_in(Path(tempfile.gettempdir()), f"{PREFIX}*"):
-            shutil.rmtree(each, ignore_errors=True)
+        for path in left_in(Path(tempfile.gettempdir()), f"{PREFIX}*"):
+            shutil.rmtree(path, ignore_errors=True)
         folder = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{os.getpid()}-"))
     except OSError as error:
         raise OutputError(f"no temporary folder can be made: {error.strerror or error}; name one in TMPDIR") from error
@@ -37,19 +37,19 @@ def channel_of_this_process() -> Generator[str]:
     """Yield the channel of the page's pointer; remove its files at the end, now those of killed servers."""
     name = f"{CHANNEL}{os.getpid()}"
     folder = channel_path(name).parent
-    for each in left_in(folder, f"{CHANNEL}*"):
-        each.unlink(missing_ok=True)
+    for path in left_in(folder, f"{CHANNEL}*"):
+        path.unlink(missing_ok=True)
     try:
         yield name
     finally:
-        for each in [*folder.glob(f"{name}.*"), *folder.glob(f"{name}-*")]:
-            each.unlink(missing_ok=True)
+        for path in [*folder.glob(f"{name}.*"), *folder.glob(f"{name}-*")]:
+            path.unlink(missing_ok=True)
 
 
 def left_in(folder: Path, pattern: str) -> Iterator[Path]:
     """Yield this user's files and folders of that pattern whose process is dead."""
     for path in sorted(folder.glob(pattern)):
         with suppress(OSError):
-            named = NUMBER.fullmatch(path.name)
-            if named and is_mine(path) and not is_alive(int(named[1])):
+            number = NUMBER.fullmatch(path.name)
+            if number and is_mine(path) and not is_alive(int(number[1])):
                 yield path

@@ -10,8 +10,8 @@ RECORDINGS = "recordings"
 
 def user_folder(name: str) -> Path:
     """Return the folder of this user's data of one kind: below $TANGIBLE_DATA_DIR, or the system's folder."""
-    if named := os.environ.get("TANGIBLE_DATA_DIR"):
-        return as_path(named, "TANGIBLE_DATA_DIR") / name
+    if folder := os.environ.get("TANGIBLE_DATA_DIR"):
+        return as_path(folder, "TANGIBLE_DATA_DIR") / name
     from platformdirs import user_data_path
 
     return user_data_path("tangible-images") / name

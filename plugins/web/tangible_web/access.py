@@ -37,8 +37,8 @@ class Guarded:
                 message = {**message, "headers": _strict(message["headers"])}
             await send(message)
 
-        said = HTTPConnection(scope).headers
-        why = refusal_text(self._hosts, scope.get("method", ""), said.get("host"), said.get("origin"))
+        headers = HTTPConnection(scope).headers
+        why = refusal_text(self._hosts, scope.get("method", ""), headers.get("host"), headers.get("origin"))
         if not why:
             await self._app(scope, receive, with_headers)
         elif scope["type"] == "websocket":
@@ -51,12 +51,12 @@ def refusal_text(hosts: frozenset[str], method: str, host: str | None, origin: s
     """Return why a request is refused, "" if it is not. hosts: names of the server. method: "" for a websocket."""
     if (host or "").lower() not in hosts:
         return "this address is not served"
-    if method not in READING and (origin or "").lower() not in {f"http://{each}" for each in hosts}:
+    if method not in READING and (origin or "").lower() not in {f"http://{name}" for name in hosts}:
         return "another page may not do that"
     return ""
 
 
 def _strict(headers: list[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
-    cached = any(name.lower() == b"cache-control" for name, _ in headers)
-    extra = HEADERS if cached else {**HEADERS, "cache-control": NEVER}
+    has_rule = any(name.lower() == b"cache-control" for name, _ in headers)
+    extra = HEADERS if has_rule else {**HEADERS, "cache-control": NEVER}
     return [*headers, *((name.encode(), value.encode()) for name, value in extra.items())]

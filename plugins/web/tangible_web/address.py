@@ -50,7 +50,7 @@ class Address:
     @contextmanager
     def again(cls, memory: Path) -> Generator[Self]:
         """Listen on the address of a killed program, so that its pages return; else on a free port."""
-        port, key = _remembered(memory)
+        port, key = _recall(memory)
         with ExitStack() as stack:
             try:
                 new = stack.enter_context(cls.of(port))
@@ -83,7 +83,7 @@ class Address:
             threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
 
 
-def _remembered(memory: Path) -> tuple[int, str]:
+def _recall(memory: Path) -> tuple[int, str]:
     """Return port and key; 0 and nothing without a file that holds both."""
     try:
         port, key = memory.read_text("utf-8").split()

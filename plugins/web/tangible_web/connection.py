@@ -45,8 +45,8 @@ class Strangers:
 class Exchange(H11Protocol):
     """A connection for requests; it is a stranger's until one of them shows the key."""
 
-    def __init__(self, strangers: Strangers, **told: Any) -> None:
-        super().__init__(**told)
+    def __init__(self, strangers: Strangers, **options: Any) -> None:
+        super().__init__(**options)
         self._strangers = strangers
         self._limit: TimerHandle | None = None
 
@@ -93,15 +93,15 @@ class Exchange(H11Protocol):
 class Connection(WebSocketsSansIOProtocol):
     """A websocket that reads little at once and can be cut off."""
 
-    def __init__(self, strangers: Strangers, **told: Any) -> None:
-        super().__init__(**told)
+    def __init__(self, strangers: Strangers, **options: Any) -> None:
+        super().__init__(**options)
         self._strangers = strangers
 
     def connection_made(self, transport: BaseTransport) -> None:
         """Bound the reads: by default one read takes a quarter of a megabyte, thousands of messages."""
         super().connection_made(transport)
-        bounded: Any = transport
-        bounded.max_size = AT_ONCE_BYTES
+        limits: Any = transport
+        limits.max_size = AT_ONCE_BYTES
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Forget the connection."""
@@ -133,8 +133,8 @@ class Connection(WebSocketsSansIOProtocol):
 
 def show_key(connection: HTTPConnection) -> None:
     """Note that a connection belongs to the holder of the key."""
-    shown: Callable[[], None] = connection.scope["state"]["show_key"]
-    shown()
+    note_key: Callable[[], None] = connection.scope["state"]["show_key"]
+    note_key()
 
 
 def cut_off(socket: WebSocket) -> None:

@@ -23,7 +23,7 @@ CLEAR_M = 0.5
 """Minimum height of a released pointer in the picture, m; a lower one is held up from here."""
 
 
-class Held(NamedTuple):
+class HandPosition(NamedTuple):
     """A position of the hand; by default high above, which is a released hand."""
 
     at: Vector = HIGH_M
@@ -31,7 +31,7 @@ class Held(NamedTuple):
     heard_s: float = -math.inf
 
 
-NOBODY = Held()
+NOBODY = HandPosition()
 
 
 @final
@@ -42,7 +42,7 @@ class Hand:
         self.channel = channel
         self._to = Placement()
         self._client: PointerClient | None = None
-        self._held = NOBODY
+        self._position = NOBODY
 
     @property
     def device(self) -> dict[str, Any]:
@@ -57,7 +57,7 @@ class Hand:
     @property
     def holding(self) -> bool:
         """True while a page moves the hand."""
-        return time.monotonic() - self._held.heard_s < PAGE_SILENCE_S
+        return time.monotonic() - self._position.heard_s < PAGE_SILENCE_S
 
     def open(self, to: Placement) -> None:
         """Connect to the device, which must be open. to: the picture's place under it. Raises: DeviceError."""
@@ -69,17 +69,17 @@ class Hand:
     def point(self, at: Vector, buttons: int, tag: int) -> None:
         """Move the hand to where a page has it; ignored if not finite, or farther than a metre."""
         if all(abs(part) < FARTHEST_M for part in at):
-            self._held = Held(at, (tag & TAGS) << BUTTON_BITS | buttons & 0xFF, time.monotonic())
+            self._position = HandPosition(at, (tag & TAGS) << BUTTON_BITS | buttons & 0xFF, time.monotonic())
             self._send()
 
     def release(self) -> None:
         """Release the hand: no force from the next tick on."""
-        self._held = NOBODY
+        self._position = NOBODY
         self._send()
 
     def keep(self) -> None:
         """Tell the loop that the server lives; release the hand of a page that fell silent. Meant to be polled."""
-        if self._held is not NOBODY and not self.holding:
+        if self._position is not NOBODY and not self.holding:
             self.release()
         else:
             self._send()
@@ -94,12 +94,12 @@ class Hand:
         """Send the position; another thread may disconnect meanwhile, and the loop may end."""
         if (client := self._client) is None:
             return
-        held = self._held
+        position = self._position
         try:
-            if held is NOBODY and high_without_client(self._to):
+            if position is NOBODY and high_without_client(self._to):
                 client.release()
             else:
-                client.send(self._to.under_hand(held.at), held.buttons)
+                client.send(self._to.under_hand(position.at), position.buttons)
         except DeviceError:
             if self._client is client:
                 self.close()

@@ -94,9 +94,9 @@ class LiveTab:
         self._language = socket.query_params.get("language", "")
         self._events: asyncio.Queue[str] = asyncio.Queue()
         self._waiting = self._asks = 0
-        self._seq = self._drawn = 0
-        self._acked = asyncio.Event()
-        self._gone = False
+        self._seq = self._last_drawn = 0
+        self._new_ack = asyncio.Event()
+        self._is_gone = False
 
     @property
     def unread(self) -> bool:
@@ -105,12 +105,12 @@ class LiveTab:
 
     def say(self, event: dict[str, Any]) -> None:
         """Send an event; a tab that does not read is cut off."""
-        if self._gone:
+        if self._is_gone:
             return
         text = _as_json(self._program.translate(event, self._language))
         self._waiting += len(text)
         if self._events.qsize() >= MAX_WAITING or self._waiting > MAX_WAITING_CHARACTERS:
-            self._gone = True
+            self._is_gone = True
             cut_off(self._socket)
         else:
             self._events.put_nowait(text)
@@ -128,7 +128,7 @@ class LiveTab:
                     for sender in senders:
                         sender.cancel()
         finally:
-            self._gone = True
+            self._is_gone = True
             self._program.leave(self)
 
     async def _hear(self) -> None:
@@ -142,8 +142,8 @@ class LiveTab:
         """Handle a binary frame; one that is incomplete or of an unknown kind is ignored."""
         kind, hand = body[0], self._program.hand
         if kind == framing.ACK and len(body) == framing.ACK_FRAME.size:
-            self._drawn = max(self._drawn, min(framing.ACK_FRAME.unpack(body)[1], self._seq))
-            self._acked.set()
+            self._last_drawn = max(self._last_drawn, min(framing.ACK_FRAME.unpack(body)[1], self._seq))
+            self._new_ack.set()
         elif kind == framing.POINTER and len(body) == framing.POINTER_FRAME.size and self._program.holds(self):
             _, buttons, tag, _, x, y, z = framing.POINTER_FRAME.unpack(body)
             hand.point((x, y, z), buttons, tag)
@@ -153,23 +153,23 @@ class LiveTab:
     def _begin_request(self, text: str) -> None:
         """Begin a request, or refuse it with a sentence."""
         try:
-            asked = parse(text, self._program.find_request)
+            request = parse(text, self._program.find_request)
         except BadRequest as error:
             self._refuse(error.number, str(error))
             return
-        if self._asks < MAX_ASKS or asked.name == "stop":
+        if self._asks < MAX_ASKS or request.name == "stop":
             self._asks += 1
-            self._program.begin(self._answer(asked))
+            self._program.begin(self._answer(request))
         else:
-            self._refuse(asked.number, f"{MAX_ASKS} requests are not done yet; wait for them")
+            self._refuse(request.number, f"{MAX_ASKS} requests are not done yet; wait for them")
 
-    async def _answer(self, asked: ParsedRequest) -> None:
+    async def _answer(self, request: ParsedRequest) -> None:
         try:
-            found = await asked.ask(self._program.state, self, **asked.told)
+            value = await request.ask(self._program.state, self, **request.arguments)
         except Exception as error:  # noqa: BLE001 - whatever a plugin raises is for the page to say
-            self._refuse(asked.number, await describe_error(error))
+            self._refuse(request.number, await describe_error(error))
         else:
-            self.say({"event": "answer", "number": asked.number, "value": found})
+            self.say({"event": "answer", "number": request.number, "value": value})
         finally:
             self._asks -= 1
 
@@ -192,16 +192,16 @@ class LiveTab:
         loop, sent_s, idle = asyncio.get_running_loop(), 0.0, False
         with suppress(WebSocketDisconnect, RuntimeError):
             while True:
-                while self._seq - self._drawn >= IN_FLIGHT:
-                    self._acked.clear()
-                    await self._acked.wait()
+                while self._seq - self._last_drawn >= IN_FLIGHT:
+                    self._new_ack.clear()
+                    await self._new_ack.wait()
                     await asyncio.sleep(PAUSE_S)
                 await asyncio.sleep(sent_s + SPACING_S - loop.time())
                 while idle and not self._program.running and loop.time() < sent_s + IDLE_SPACING_S:
                     await asyncio.sleep(SPACING_S)
                 sent_s, idle = loop.time(), not self._program.running
-                held = framing.HOLDING * self._program.holds(self)
-                if frame := self._program.frame(self._seq + 1, framing.RUNNING * self._program.running | held):
+                holding = framing.HOLDING * self._program.holds(self)
+                if frame := self._program.frame(self._seq + 1, framing.RUNNING * self._program.running | holding):
                     self._seq += 1
                     await self._socket.send_bytes(frame)
 
@@ -223,7 +223,7 @@ def _without_nan(value: Any) -> Any:
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, dict):
-        return {key: _without_nan(each) for key, each in value.items()}
+        return {key: _without_nan(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_without_nan(each) for each in value]
+        return [_without_nan(item) for item in value]
     return value

@@ -31,23 +31,23 @@ class ParsedRequest(NamedTuple):
     number: int
     name: str
     ask: Request
-    told: dict[str, Any]
+    arguments: dict[str, Any]
 
 
 def parse(text: str, find: FindRequest) -> ParsedRequest:
     """Parse a message. Raises: BadRequest."""
     try:
-        said = json.loads(text, parse_constant=_refuse)
+        message = json.loads(text, parse_constant=_refuse)
     except (ValueError, RecursionError) as error:
         raise BadRequest(None, "the message is not JSON") from error
-    number = said.pop("number", None) if isinstance(said, dict) else None
+    number = message.pop("number", None) if isinstance(message, dict) else None
     if type(number) is not int:
         raise BadRequest(None, 'the message is not a JSON object with a "number"')
-    name = said.pop("ask", None)
+    name = message.pop("ask", None)
     if not isinstance(name, str) or (ask := find(name)) is None:
         raise BadRequest(number, f"there is no request {quoted(name)}")
     try:
-        return ParsedRequest(number, name, ask, checked_arguments(name, ask, 2, said))
+        return ParsedRequest(number, name, ask, checked_arguments(name, ask, 2, message))
     except ConfigError as error:
         raise BadRequest(number, str(error)) from error
 
@@ -59,19 +59,19 @@ def _refuse(constant: str) -> NoReturn:
 MAX_SHOWN = 200
 
 
-def checked_arguments(name: str, answer: Callable[..., Any], own: int, said: dict[str, Any]) -> dict[str, Any]:
+def checked_arguments(name: str, answer: Callable[..., Any], own: int, arguments: dict[str, Any]) -> dict[str, Any]:
     """Return a page's arguments of a function, without its `own` first, checked by type. Raises: ConfigError."""
     if any(parameter.kind is parameter.VAR_KEYWORD for parameter in inspect.signature(answer).parameters.values()):
-        return said  # it checks them itself
+        return arguments  # it checks them itself
     try:
-        found = _model(answer, own).model_validate_json(json.dumps(said))
+        values = _model(answer, own).model_validate_json(json.dumps(arguments))
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(map(str, first["loc"])) or "arguments"
         raise ConfigError(shown(f"{name}: {where}: {first['msg']}", MAX_SHOWN)) from error
     except RecursionError as error:
         raise ConfigError(f"{name}: the arguments are nested too deeply") from error
-    return {key: getattr(found, key) for key in found.model_fields_set}
+    return {key: getattr(values, key) for key in values.model_fields_set}
 
 
 @cache
@@ -80,6 +80,7 @@ def _model(answer: Callable[..., Any], own: int) -> type[BaseModel]:
     types = get_type_hints(answer)
     rest = list(inspect.signature(answer).parameters.values())[own:]
     fields: dict[str, Any] = {
-        each.name: (types[each.name], ... if each.default is each.empty else each.default) for each in rest
+        parameter.name: (types[parameter.name], ... if parameter.default is parameter.empty else parameter.default)
+        for parameter in rest
     }
     return create_model(answer.__name__, __config__=ConfigDict(extra="forbid", strict=True), **fields)

@@ -33,7 +33,7 @@ def frame_without_loop(seq: int, status: int) -> bytes:
     return STATE_FRAME.pack(STATE, status, 0, seq & 0xFFFFFFFF, 0, 0, 1e3 * time.time(), *nowhere, 0.0)
 
 
-def frame_of(servo: Servo, seq: int, status: int, other_law: OtherLaw = ALONE) -> bytes | None:
+def newest_frame(servo: Servo, seq: int, status: int, other_law: OtherLaw = ALONE) -> bytes | None:
     """Return the newest tick of a loop as a STATE frame; None if it was overwritten meanwhile."""
     if (row := servo.ring.latest()) is None:
         return None

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tangible_web import framing, state_frame
-from tangible_web.state_frame import OtherLaw, frame_of, frame_without_loop
+from tangible_web.state_frame import OtherLaw, frame_without_loop, newest_frame
 
 pytestmark = pytest.mark.usefixtures("unchecked_shapes")
 
@@ -36,7 +36,7 @@ def clocks(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_frame_has_every_number_of_the_tick_in_its_place() -> None:
-    frame = frame_of(servo(tick(flags=3)), 41, framing.RUNNING, OtherLaw(OTHER))
+    frame = newest_frame(servo(tick(flags=3)), 41, framing.RUNNING, OtherLaw(OTHER))
     assert frame is not None
     kind, status, flags, seq, tag, overruns, sample_ms, *numbers, late_us = framing.STATE_FRAME.unpack(frame)
     assert (kind, status, flags, seq, tag, overruns) == (framing.STATE, framing.RUNNING, 3, 41, TAG, 9)
@@ -46,7 +46,7 @@ def test_frame_has_every_number_of_the_tick_in_its_place() -> None:
 
 
 def test_frame_of_a_blind_comparison_hides_the_proxy_alone() -> None:
-    frame = frame_of(servo(tick()), 0, 0, OtherLaw(OTHER, blind=True))
+    frame = newest_frame(servo(tick()), 0, 0, OtherLaw(OTHER, blind=True))
     assert frame is not None
     numbers = framing.STATE_FRAME.unpack(frame)[7:-1]
     assert all(map(math.isnan, numbers[3:6]))
@@ -54,7 +54,7 @@ def test_frame_of_a_blind_comparison_hides_the_proxy_alone() -> None:
 
 
 def test_bits_of_a_beacon_are_not_sent_and_the_number_of_a_frame_begins_anew() -> None:
-    frame = frame_of(servo(tick(flags=framing.FLAG_BITS + 1 + 5)), 2**32 + 6, 0)
+    frame = newest_frame(servo(tick(flags=framing.FLAG_BITS + 1 + 5)), 2**32 + 6, 0)
     assert frame is not None
     _, _, flags, seq, *_ = framing.STATE_FRAME.unpack(frame)
     assert (flags, seq) == (5, 6)

@@ -57,7 +57,7 @@ class TestDrafts:
         assert draft is not None
         assert draft.text == Text("edited\n", Path("/a/mine.yaml"))
         found.drop()
-        assert found.left is None
+        assert found.earlier is None
         assert not list(tmp_path.iterdir())
 
     def test_damaged_draft_is_not_offered(self, tmp_path: Path, gone: int) -> None:
@@ -147,7 +147,7 @@ def test_full_disk_is_reported_in_one_sentence_and_a_folder_that_is_gone_is_made
     assert (said.number, str(said.error)) == (7, f"/tmp/height.f32: {os.strerror(number)}; free some space")
     assert process.full(FileNotFoundError(errno.ENOENT, "no such file")) is None
     assert state.folder.is_dir()
-    assert state.shown == "", "what pages fetch has to be written again"
+    assert state.shown_digest == "", "what pages fetch has to be written again"
 
 
 AT = Path("/a/mine.yaml")

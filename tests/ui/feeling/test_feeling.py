@@ -206,7 +206,7 @@ class TestWhatEndsByItself:
         until(lambda: found.append(feeling.loop_end()) or found[-1] is not None)
         assert why in found[-1].why
         assert found[-1].why
-        assert found[-1].lost == lost
+        assert found[-1].is_lost == lost
         assert feeling.loop_end() is None
         assert state(feeling)[13:16] == (0, 0, 0)
         assert feeling.feel(loop_input(feeling)) is not None

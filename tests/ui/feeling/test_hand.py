@@ -121,8 +121,8 @@ class TestDevices:
         FakeWorker.device = Motor()  # the document was edited
         with pytest.raises(TangibleError, match="Motor has a motor"):
             await REQUESTS["make"](session, page)
-        assert session.feeling.felt is not None
-        assert isinstance(session.feeling.felt.unmapped_device, Failing)
+        assert session.feeling.loop_input is not None
+        assert isinstance(session.feeling.loop_input.unmapped_device, Failing)
         assert session.feeling.running
 
     async def test_unplugged_device_is_reported_and_can_be_waited_for(

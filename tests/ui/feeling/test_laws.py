@@ -154,7 +154,7 @@ async def test_invalid_law_is_refused_and_the_law_before_stays(session: Session)
 
 
 async def test_comparison_opens_no_motor_without_consent(session: Session) -> None:
-    session.choice = Choice("document", sure=True, agreed=type(load_method("device", "mock")()))
+    session.choice = Choice("document", sure=True, agreed_device=type(load_method("device", "mock")()))
     session.document.text = TEXT.replace("{use: pointer}", "{use: falcon}")
     with pytest.raises(NotConfirmed):
         await asks.compare_laws(session, None, "penalty", "")

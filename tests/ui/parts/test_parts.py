@@ -391,7 +391,7 @@ class TestSaving:
         text = TEXT.replace("photo: mine.png", "photo: mine.png, crop: [3, 2, 20, 15], rotate: 270")
         path.write_text(text)
         worker_state = WorkerState(tmp_path, lambda event, **told: None)
-        rows, columns = worker_state.pipeline_of(text, path, []).scene.shape
+        rows, columns = worker_state.make_pipeline(text, path, []).scene.shape
         labels = np.zeros((rows, columns), np.uint16)
         labels[2:9, 3:8] = 1
         labels[rows - 3 :, columns - 2 :] = 2
@@ -453,7 +453,7 @@ class TestHeights:
                      {**SAVED[2], "height_m": 0.0011, "material": "ice"}]  # fmt: skip
             await saved(small, ask, parts=parts, heights={**GIVEN, "round_m": 0.004})
             pipeline = load_pipeline(tmp_path / "mine.yaml", small.session.felt_sets())
-            made = making.loop_input_of(pipeline)
+            made = making.make_loop_input(pipeline)
             assert Path(made["parcel"]).read_bytes() == felt
             Path(made["parcel"]).unlink()
 
@@ -469,7 +469,7 @@ class TestHeights:
         parts = [{"label": 7, "height_m": 0.0007}]
         await saved(small, ask, parts=parts, heights={**GIVEN, "by": by})
         await ask("parts_heights", heights_m=[None, 0.0007, None])
-        seen = await happened(lambda: small.worker.state.preview.seen)
+        seen = await happened(lambda: small.worker.state.preview.view)
         wanted = load_pipeline(tmp_path / "mine.yaml").relief.height_m
         np.testing.assert_array_equal(seen.relief.height_m, wanted)
 
@@ -510,7 +510,7 @@ class TestHeights:
         assert found == [{}, *[None] * 18, {}]
         assert small.worker.asked.count("parts_heights") == 2
         await happened(lambda: small.tab.last("scene")["height_m"][1] >= 19 / 1e4)
-        assert small.worker.state.preview.seen.relief.height_m.max() > 19 / 1e4
+        assert small.worker.state.preview.view.relief.height_m.max() > 19 / 1e4
         assert small.session.document.text == text, "nothing is written before it is saved"
         monkeypatch.setattr("tangible_core.pipeline.engine.preview.MAX_CELLS", 200)
         await ask("parts_heights", heights_m=[0.0, 0.002, 0.001])

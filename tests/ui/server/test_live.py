@@ -79,7 +79,7 @@ def ask(**said: Any) -> str:
 class TestAsks:
     def test_request_that_is_valid_is_parsed(self) -> None:
         asked = parse(ask(ask="edit", text="scene: x", apply=True), find_request)
-        assert (asked.number, asked.ask, asked.told) == (1, REQUESTS["edit"], {"text": "scene: x", "apply": True})
+        assert (asked.number, asked.ask, asked.arguments) == (1, REQUESTS["edit"], {"text": "scene: x", "apply": True})
 
     def test_request_that_is_invalid_is_refused_with_a_sentence(self) -> None:
         for text, number, says in (

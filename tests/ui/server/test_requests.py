@@ -98,7 +98,7 @@ class TestDevices:
 
         async def make(session: Session, tab: Any) -> None:
             if len(pauses) >= len(whys):
-                session.feeling.stopped = True
+                session.feeling.is_stopped = True
                 return
             raise DeviceError(whys[len(pauses)])
 
@@ -147,7 +147,7 @@ class TestDocument:
         file = tmp_path / "1.json"
         file.touch()
         draft: Any = SimpleNamespace(file=file, text=Text("mine", tmp_path / "b.yaml"), at_s=3.0)
-        session.document.drafts.left = draft
+        session.document.drafts.earlier = draft
         monkeypatch.setattr(session.document.drafts, "look", lambda: draft)
         await asks_document.offer(session)
         told = tab.last("restored")
@@ -155,7 +155,7 @@ class TestDocument:
         worker(session).answers["make"] = Stopped()
         await ask("restore")
         assert (session.document.text, session.document.path) == ("mine", tmp_path / "b.yaml")
-        assert (tab.last("restored")["path"], session.document.drafts.left, file.exists()) == ("", None, False)
+        assert (tab.last("restored")["path"], session.document.drafts.earlier, file.exists()) == ("", None, False)
         assert tab.last("restored")["edited_s"] == 0.0
 
 

@@ -17,7 +17,7 @@ from tangible_ui.feeling.recorder import BY_HAND
 from tangible_ui.requests import REQUESTS
 from tangible_ui.requests.table import request
 from tangible_ui.serving.routes import WRONG_KEY
-from tangible_ui.serving.translating import in_language, language_of
+from tangible_ui.serving.translating import in_language, tab_language
 from tangible_ui.worker import jobs
 from tangible_ui.worker.jobs import JOBS
 from tangible_ui.worker.jobs.table import job
@@ -164,7 +164,7 @@ def test_english_message_is_sent_as_it_is():
 
 @pytest.mark.parametrize(("tag", "language"), [("de", "de"), ("en", "en"), ("xx", "en"), ("", "en"), ("DE", "en")])
 def test_language_that_is_not_spoken_is_english(tag: str, language: str):
-    assert language_of(tag) == language
+    assert tab_language(tag) == language
 
 
 @pytest.mark.parametrize("event", ["refused", "error", "log"])

@@ -121,7 +121,7 @@ async def test_end_of_a_session_closes_everything_whatever_fails(
             await session.close()
     else:
         await session.close()
-    assert session.feeling.stopped
+    assert session.feeling.is_stopped
     assert ended == ["force", "other law", "recording"]
 
 

@@ -40,10 +40,10 @@ def test_picture_that_was_changed_is_read_again_and_others_are_not(worker_state:
     for number, grey in enumerate((10, 200)):
         Image.fromarray(np.full((24, 32), grey, np.uint8)).save(tmp_path / "mine.bmp")  # always of the same size
         text = TEXT.replace("mine.png", "mine.bmp")
-        worker_state.pipeline = worker_state.pipeline_of(text, path, [])
+        worker_state.pipeline = worker_state.make_pipeline(text, path, [])
         scene = worker_state.pipeline.scene
         assert scene.views is not None and scene.views.left[0, 0] == grey, number
-        assert worker_state.pipeline_of(text.replace("400", "500"), path, []).scene is scene
+        assert worker_state.make_pipeline(text.replace("400", "500"), path, []).scene is scene
 
 
 def test_document_is_parsed_again_with_other_changes_of_the_command_line(
@@ -51,9 +51,9 @@ def test_document_is_parsed_again_with_other_changes_of_the_command_line(
 ) -> None:
     path = small_scene(tmp_path)
     for relief_m in (0.001, 0.002):
-        config = worker_state.config_of(TEXT, path, [f"workspace.relief_m={relief_m}"])
+        config = worker_state.read_config(TEXT, path, [f"workspace.relief_m={relief_m}"])
         assert config.size.relief_m == relief_m
-        assert worker_state.config_of(TEXT, path, [f"workspace.relief_m={relief_m}"]) is config
+        assert worker_state.read_config(TEXT, path, [f"workspace.relief_m={relief_m}"]) is config
 
 
 @pytest.mark.parametrize(("limit_n", "most_n"), [(None, 8.0), (2.0, 2.0), (100.0, 8.0)])
@@ -172,7 +172,7 @@ async def test_stopped_job_ends_at_once_and_the_loop_goes_on(tmp_path: Path):
         await asyncio.to_thread(session.feeling.start)
         await ask("edit", text=SLOW)
         await ask("make")
-        felt, servo = session.feeling.felt, session.feeling.servo
+        felt, servo = session.feeling.loop_input, session.feeling.servo
         assert felt is not None
         assert servo is not None
         await ask("set", changes={"depth.use": "ssd", "depth.window_px": 19})
@@ -185,7 +185,7 @@ async def test_stopped_job_ends_at_once_and_the_loop_goes_on(tmp_path: Path):
         assert tab.last("made")["outcome"] == "stopped"
         said = await ask("set", changes={"render.stiffness_n_per_m": 300})  # quick work waits for the new one
         assert said["complaints"] == []
-        assert session.feeling.felt is felt
+        assert session.feeling.loop_input is felt
         assert session.feeling.running
         await happened(lambda: servo.ring.count - ticks > 100)
         assert tab.names().count("touch") == swapped
@@ -193,7 +193,7 @@ async def test_stopped_job_ends_at_once_and_the_loop_goes_on(tmp_path: Path):
         await ask("undo")
         await ask("make")
         assert tab.last("made")["outcome"] == "made"
-        assert session.feeling.felt is not felt
+        assert session.feeling.loop_input is not felt
     finally:
         await session.close()
 

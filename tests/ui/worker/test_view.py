@@ -22,7 +22,7 @@ from tangible_ui.worker.jobs import surface as textures
 from tangible_ui.worker.state import WorkerState
 from tangible_ui.worker.view import files
 from tangible_ui.worker.view.files import KEPT, show
-from tangible_ui.worker.view.surface_view import Layer, SurfaceView, view_of
+from tangible_ui.worker.view.surface_view import Layer, SurfaceView, make_view
 
 RANDOM = np.random.default_rng(3)
 WOOD = Material("wood", 800.0, 1.0, 0.4, 0.3, roughness_m=3e-5, grain_m=6e-4, texture="stochastic", seed=4)
@@ -183,7 +183,7 @@ def pair() -> Scene:
 class TestSee:
     def test_layer_has_its_unit_and_span(self, pair: Scene):
         pipeline = Pipeline(pair, render=made("render", "proxy"), cached=False)
-        found = view_of(pipeline, "surface")
+        found = make_view(pipeline, "surface")
         assert found.shows == "surface"
         assert set(found.layers) == {"disparity", "confidence", "error"}
         np.testing.assert_array_equal(found.layers["disparity"].values, pair.disparity.disparity_px)
@@ -202,7 +202,7 @@ class TestSee:
         picture[:, 30:] = np.random.default_rng(1).integers(0, 255, (40, 30))
         pipeline = of_photo(picture)
         pipeline.make("segments")
-        found = view_of(pipeline, "segments")
+        found = make_view(pipeline, "segments")
         assert found.shows == "segments"
         assert found.relief.height_m.max() == 0
         assert not is_at_hand(pipeline.engine, "relief")
@@ -212,25 +212,25 @@ class TestSee:
         picture = np.random.default_rng(1).integers(0, 255, (40, 60)).astype(np.uint8)
         pipeline = of_photo(picture)
         pipeline.make("segments")
-        layer = view_of(pipeline, "segments").layers["certainty"]
+        layer = make_view(pipeline, "segments").layers["certainty"]
         assert (layer.unit, layer.low, layer.high) == ("", 0.0, 1.0)
         np.testing.assert_array_equal(layer.values, pipeline.segments.confidence)
         given = Pipeline(Scene.photo(picture, segments=np.zeros((40, 60), np.int32)), cached=False)
-        assert view_of(given, "segments").layers == {}
+        assert make_view(given, "segments").layers == {}
 
     def test_error_is_shown_only_against_a_truth_of_the_same_size(self, pair: Scene):
         for truth, span in ((np.full((48, 64), np.nan), (0.0, 0.0)), (np.ones((24, 32)), None), (None, None)):
             there = replace(pair, truth=None if truth is None else truth.astype(np.float32))
-            found = view_of(Pipeline(there, cached=False), "disparity").layers.get("error")
+            found = make_view(Pipeline(there, cached=False), "disparity").layers.get("error")
             assert (None if found is None else (found.low, found.high)) == span
 
     def test_materials_of_a_view_are_limited_to_the_device(self):
         segments = np.repeat([[0, 1]], 8, 0).repeat(8, 1).astype(np.int32)
         scene = Scene.heights(np.zeros((8, 16)), segments=segments)
         by, law = {"by": {1: "brick", 2: "ice"}}, made("render", "proxy")
-        bare = view_of(Pipeline(scene, materials=by, render=law, cached=False), "surface").materials
+        bare = make_view(Pipeline(scene, materials=by, render=law, cached=False), "surface").materials
         device = made("device", "mock")
-        held = view_of(Pipeline(scene, materials=by, render=law, device=device, cached=False), "surface").materials
+        held = make_view(Pipeline(scene, materials=by, render=law, device=device, cached=False), "surface").materials
         assert [each.name for each in held] == [each.name for each in bare]
         assert held[0].roughness_m < bare[0].roughness_m
 
@@ -306,6 +306,6 @@ def test_parts_that_were_simplified_away_are_not_shown():
     for more, there in (({}, [0, 1, 2]), ({"simplify": {}}, [0, 1])):
         pipeline = Pipeline(scene, **said, **more)
         pipeline.make("surface")
-        found = view_of(pipeline, "relief")
+        found = make_view(pipeline, "relief")
         assert found.labels is not None and np.unique(found.labels).tolist() == there
         assert found.names == ("ground", "box", "")

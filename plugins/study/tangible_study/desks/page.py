@@ -30,7 +30,7 @@ from tangible_web.hand import Hand
 from tangible_web.live import LiveTab
 from tangible_web.parsing import FindRequest
 from tangible_web.server import BuiltPage, ServerThread
-from tangible_web.state_frame import OtherLaw, frame_of, frame_without_loop
+from tangible_web.state_frame import OtherLaw, frame_without_loop, newest_frame
 
 from .desk import LEAVE, Desk, ParticipantLeft
 
@@ -195,7 +195,7 @@ class Page(Desk):
         servo = self._servo
         if servo is None or not servo.running:
             return frame_without_loop(seq, status)
-        return frame_of(servo, seq, status, BLIND)
+        return newest_frame(servo, seq, status, BLIND)
 
     def begin(self, work: Coroutine[Any, Any, None]) -> None:
         """Run a coroutine in the background."""

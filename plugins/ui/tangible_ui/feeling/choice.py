@@ -20,7 +20,7 @@ class Choice:
     name: str = ""
     sure: bool = False
     """True if the person was warned of the motor and agreed."""
-    agreed: type[HapticDevice] | None = None
+    agreed_device: type[HapticDevice] | None = None
     """The device that the person agreed to: a document may come to name another one."""
 
     def sets(self, own_device: Mapping[str, Any]) -> list[str]:
@@ -33,12 +33,12 @@ class Choice:
         """Check that a device may be opened. Raises: NotConfirmed for a motor that nobody agreed to."""
         if device.spec().simulated:
             return
-        if not self.sure or self.agreed not in (None, type(device)):
+        if not self.sure or self.agreed_device not in (None, type(device)):
             raise NotConfirmed(
                 f"the device {type(device).__name__} has a motor; choose it in the panel Devices to open it. The "
                 "device before stays in use"
             )
-        self.agreed = type(device)
+        self.agreed_device = type(device)
 
 
 class NotConfirmed(ConfigError):

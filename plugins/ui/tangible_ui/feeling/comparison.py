@@ -29,7 +29,7 @@ class ComparisonLoop:
         self._channel = channel
         self._servo: Servo | None = None
         self._client: PointerClient | None = None
-        self._told: Servo | None = None
+        self._reported_loop: Servo | None = None
         self._lock = Lock()
 
     @property
@@ -68,9 +68,9 @@ class ComparisonLoop:
     def loop_end(self) -> str:
         """Return once why the loop ended by itself; else "". Meant to be polled."""
         servo = self._servo
-        if servo is None or servo.running or servo is self._told:
+        if servo is None or servo.running or servo is self._reported_loop:
             return ""
-        self._told = servo
+        self._reported_loop = servo
         return end_loop(servo)
 
     def close(self) -> None:

@@ -15,7 +15,7 @@ from tangible_core.plugins.failures import sentence
 from tangible_core.servo import STOP, Beacon, Packed, Safety, Servo, null_touch
 from tangible_web.framing import BUTTON_BITS
 from tangible_web.hand import Hand
-from tangible_web.state_frame import ALONE, OtherLaw, frame_of, frame_without_loop
+from tangible_web.state_frame import ALONE, OtherLaw, frame_without_loop, newest_frame
 
 BUTTONS, PRESSED = (1 << BUTTON_BITS) - 1, 1
 """Bits of a device's buttons; and the button by which the page's own hand is pressed down, which ends no beacon."""
@@ -47,12 +47,12 @@ class LoopInput(NamedTuple):
     """Names of the materials by label, as recordings store them."""
 
     @classmethod
-    def of(cls, made: dict[str, Any], channel: str) -> "LoopInput":
+    def of(cls, answer: dict[str, Any], channel: str) -> "LoopInput":
         """Build it from the worker's answer. channel: of the page's own pointer."""
-        touch = Packed(Path(made["parcel"]), made["stiffness_n_per_m"])
-        device, mapping, safety = (pickle.loads(made[name]) for name in ("device", "mapping", "safety"))
-        names = made["law"], made["device_name"]
-        return cls(touch, *names, device, device.follows(channel), mapping, safety, made.get("materials", ""))
+        touch = Packed(Path(answer["parcel"]), answer["stiffness_n_per_m"])
+        device, mapping, safety = (pickle.loads(answer[name]) for name in ("device", "mapping", "safety"))
+        names = answer["law"], answer["device_name"]
+        return cls(touch, *names, device, device.follows(channel), mapping, safety, answer.get("materials", ""))
 
     @property
     def unmapped_device(self) -> HapticDevice:
@@ -64,7 +64,7 @@ class LoopEnd(NamedTuple):
     """The end of a loop that nobody stopped."""
 
     why: str
-    lost: bool
+    is_lost: bool
     """True if the device was lost; it may come back."""
 
 
@@ -76,14 +76,14 @@ class Feeling:
         """channel: of the page's own pointer device."""
         self.channel = channel
         self.hand: Hand = Hand(channel)
-        self.felt: LoopInput | None = None
-        self.stopped: bool = False
+        self.loop_input: LoopInput | None = None
+        self.is_stopped: bool = False
         """True after a stop: no loop starts until `allow`."""
         self._stops = 0
         self._servo: Servo | None = None
         self._starting: Servo | None = None
         self._device: HapticDevice | None = None
-        self._told: Servo | None = None
+        self._reported_loop: Servo | None = None
         """The loop whose end is known."""
         self._pulling: Servo | None = None
         """The loop with a beacon that is not known to have ended."""
@@ -117,27 +117,27 @@ class Feeling:
         options = {name: value for name, value in self.own_device.items() if name != "use"}
         begun_s = time.monotonic()
         with self._lock:
-            if self.stopped or self.running:
+            if self.is_stopped or self.running:
                 return None
             with self._unless_stopped() as is_stopped:
                 self._restart(load_method("device", "pointer")(**options), own_hand=True)
         return None if is_stopped() else time.monotonic() - begun_s
 
-    def feel(self, felt: LoopInput) -> float | None:
+    def feel(self, touch: LoopInput) -> float | None:
         """Put a scene under the hand; return the seconds, None after a stop. Raises: DeviceError; no loop runs then."""
         begun_s = time.monotonic()
         with self._lock:
             try:
-                if self.stopped:
+                if self.is_stopped:
                     return None
                 with self._unless_stopped() as is_stopped:
-                    if not self.running or felt.device != self._device:
-                        self._restart(felt.device, felt.own_hand)
+                    if not self.running or touch.device != self._device:
+                        self._restart(touch.device, touch.own_hand)
                     assert self._servo is not None
-                    self._servo.swap(felt.touch, felt.safety)
+                    self._servo.swap(touch.touch, touch.safety)
             finally:
-                self.felt = felt
-                felt.touch.discard()
+                self.loop_input = touch
+                touch.touch.discard()
         return None if is_stopped() else time.monotonic() - begun_s
 
     def pull_to(self, beacon: Beacon | None) -> None:
@@ -151,7 +151,7 @@ class Feeling:
             servo = self._servo
             if servo is None or not self.running:
                 raise DeviceError("nothing is felt, so nothing can be pulled; make and feel a surface first")
-            own_hand = self.felt is not None and self.felt.own_hand
+            own_hand = self.loop_input is not None and self.loop_input.own_hand
             servo.pull_to(beacon, BUTTONS & ~PRESSED if own_hand else BUTTONS)
             self._pulling = servo
 
@@ -165,8 +165,8 @@ class Feeling:
 
     def cut(self) -> Callable[[], None]:
         """Take all force away until `allow`; return at once a function that waits for the end of the current loops."""
-        self.stopped, self._stops = True, self._stops + 1
-        self._told = self._servo
+        self.is_stopped, self._stops = True, self._stops + 1
+        self._reported_loop = self._servo
         self.hand.release()
         cut = [servo for servo in (self._starting, self._servo) if servo is not None]
         for servo in cut:
@@ -187,22 +187,22 @@ class Feeling:
 
     def allow(self) -> None:
         """Allow loops to start again."""
-        self.stopped = False
+        self.is_stopped = False
 
     def loop_end(self) -> LoopEnd | None:
         """Return once why the loop ended by itself; else None. Meant to be polled."""
         servo = self._servo
-        if servo is None or servo.running or servo is self._told:
+        if servo is None or servo.running or servo is self._reported_loop:
             return None
-        self._told = servo
-        return None if self.stopped else LoopEnd(end_loop(servo), servo.device_lost)
+        self._reported_loop = servo
+        return None if self.is_stopped else LoopEnd(end_loop(servo), servo.device_lost)
 
     def frame(self, seq: int, status: int, other_law: OtherLaw = ALONE) -> bytes | None:
         """Return the newest tick as a STATE frame, without a loop a hand that is nowhere; None if overwritten."""
         servo = self._servo
         if servo is None or not self.running:
             return frame_without_loop(seq, status)
-        return frame_of(servo, seq, status, other_law)
+        return newest_frame(servo, seq, status, other_law)
 
     @contextmanager
     def _unless_stopped(self) -> Iterator[Callable[[], bool]]:

@@ -21,7 +21,7 @@ class Recorder:
     def __init__(self, servo: Servo, path: Path, about: About, ended: Callable[[Path, int, str], None]) -> None:
         """Begin. ended: called in a thread with the file, number of ticks and reason. Raises: OutputError."""
         self.path = path
-        self._servo, self._ended = servo, ended
+        self._servo, self._on_end = servo, ended
         self._writer = Writer(path, about, private=True)
         self._drain = RingDrain(servo, self._writer.append, servo.ring.count)
         self._stop = threading.Event()
@@ -42,11 +42,11 @@ class Recorder:
         why = ""
         try:
             while not why:
-                stopped = self._stop.wait(LOOK_EVERY_S)
+                is_stopped = self._stop.wait(LOOK_EVERY_S)
                 running = self._servo.running  # asked before the look, so that the last ticks are kept
                 self._drain.look()
-                why = BY_HAND if stopped else "" if running else self._servo.report().stopped
+                why = BY_HAND if is_stopped else "" if running else self._servo.report().stopped
         except TangibleError as error:
             why = str(error)
         self._writer.close("" if why == BY_HAND else why)
-        self._ended(self.path, self._writer.ticks, why)
+        self._on_end(self.path, self._writer.ticks, why)

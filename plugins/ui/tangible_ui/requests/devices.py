@@ -65,14 +65,14 @@ async def _about(session: Session, choice: Choice) -> dict[str, Any]:
 
 
 async def _wait(session: Session) -> None:
-    choice, pause_s, told = session.choice, FIRST_PAUSE_S, None
-    while session.choice is choice and not session.feeling.stopped and not session.feeling.running:
+    choice, pause_s, last_error = session.choice, FIRST_PAUSE_S, None
+    while session.choice is choice and not session.feeling.is_stopped and not session.feeling.running:
         try:
             await make(session, None)
         except DeviceError as error:
-            if str(error) != told:
-                told = str(error)
-                session.tabs.tell("loop", running=False, why=told, lost=True, waiting=True)
+            if str(error) != last_error:
+                last_error = str(error)
+                session.tabs.tell("loop", running=False, why=last_error, lost=True, waiting=True)
             await asyncio.sleep(pause_s)
             pause_s = min(2 * pause_s, LONGEST_PAUSE_S)
 

@@ -25,20 +25,20 @@ async def begin(session: Session, tab: Tab | None, files: list[str], make_it: bo
     picture = as_path(files[0]) if files else Path()
     session.opening = picture if picture.suffix.lower() in SHOWN_BY_BROWSERS else None
     session.tabs.tell("opening", name=picture.name, picture=session.opening is not None)
-    found = await session.worker.quick("begin", files=[as_path(file) for file in files])
-    if "text" not in found:
-        return found
-    text, path = found["text"], found["path"]
+    opening = await session.worker.quick("begin", files=[as_path(file) for file in files])
+    if "text" not in opening:
+        return opening
+    text, path = opening["text"], opening["path"]
     if session.document.sets:  # changes of the command line become part of the text
         text = await session.worker.quick("overridden", text=text, path=path, sets=session.document.sets)
         session.document.sets = []
     session.document.drafts.remember_opened(text)
     async with session.document.texts.lock:
-        said = await take(session, Text(text, path))
-    for complaint in said["complaints"]:  # at the terminal too: whoever started it there looks at it first
+        document = await take(session, Text(text, path))
+    for complaint in document["complaints"]:  # at the terminal too: whoever started it there looks at it first
         place = ":".join(str(part) for part in (path, complaint["line"], complaint["column"]) if part is not None)
         log.warning("%s: %s", place, complaint["text"])
-    if make_it and not said["complaints"]:
+    if make_it and not document["complaints"]:
         session.begin(make(session, tab))
     return {}
 
@@ -63,9 +63,9 @@ async def change(
 ) -> dict[str, Any]:
     """Change keys of the document and nothing else: values, values in YAML, keys to remove. Raises: ConfigError."""
     async with session.document.texts.lock:
-        told = {"changes": changes or {}, "written": written or {}, "removed": removed or []}
-        found = await session.worker.quick("change", **session.document.arguments(), **told)
-        return _follow_up(session, _put(session, Text(found["text"], session.document.path), found), apply)
+        arguments = {"changes": changes or {}, "written": written or {}, "removed": removed or []}
+        result = await session.worker.quick("change", **session.document.arguments(), **arguments)
+        return _follow_up(session, _put(session, Text(result["text"], session.document.path), result), apply)
 
 
 @request()
@@ -90,36 +90,36 @@ async def _step(session: Session, *, back: bool, apply: bool) -> dict[str, Any] 
         text = session.document.texts.before() if back else session.document.texts.after()
         if text is None:
             return None
-        found = await _check(session, text)
+        result = await _check(session, text)
         session.document.texts.step(session.document.now, back=back)
-        return _follow_up(session, _publish(session, text, found), apply)
+        return _follow_up(session, _publish(session, text, result), apply)
 
 
 async def _check(session: Session, text: Text) -> dict[str, Any]:
     return await session.worker.quick("check", text=text.text, path=text.path, sets=session.document.sets)
 
 
-def _put(session: Session, text: Text, found: dict[str, Any]) -> dict[str, Any]:
+def _put(session: Session, text: Text, document: dict[str, Any]) -> dict[str, Any]:
     """Replace the document's text, and add the one before to the history."""
     now = session.document.now
     if text != now:
         session.document.texts.leave(now)
-    return _publish(session, text, found)
+    return _publish(session, text, document)
 
 
-def _publish(session: Session, text: Text, found: dict[str, Any]) -> dict[str, Any]:
+def _publish(session: Session, text: Text, document: dict[str, Any]) -> dict[str, Any]:
     session.document.text, session.document.path = text
-    session.document.digest = found["digest"]
+    session.document.digest = document["digest"]
     session.begin(session.document.drafts.keep(text))
-    found |= {"can_undo": session.document.texts.can_undo, "can_redo": session.document.texts.can_redo}
-    session.tabs.tell("document", **found)
-    return found
+    document |= {"can_undo": session.document.texts.can_undo, "can_redo": session.document.texts.can_redo}
+    session.tabs.tell("document", **document)
+    return document
 
 
-def _follow_up(session: Session, found: dict[str, Any], apply: bool) -> dict[str, Any]:
-    if not found["complaints"]:
+def _follow_up(session: Session, document: dict[str, Any], apply: bool) -> dict[str, Any]:
+    if not document["complaints"]:
         session.begin(foresee(session, apply))
-    return found
+    return document
 
 
 @request()
@@ -166,13 +166,13 @@ async def offer(session: Session) -> None:
 @request()
 async def restore(session: Session, tab: Tab | None) -> None:
     """Replace the document by the earlier program's draft, as an edit. Raises: ConfigError if there is none."""
-    draft = session.document.drafts.left
+    draft = session.document.drafts.earlier
     if draft is None:
         raise ConfigError("there is no unsaved draft")
     async with session.document.texts.lock:
-        said = await take(session, draft.text)
+        document = await take(session, draft.text)
     await forget(session, tab)
-    if not said["complaints"]:
+    if not document["complaints"]:
         session.begin(make(session, tab))
 
 

@@ -44,10 +44,10 @@ async def beacon(session: Session, tab: Tab | None, part: int | None) -> dict[st
         return _tell(session, None, "")
     if not session.feeling.running:
         raise DeviceError("nothing is felt, so nothing can be pulled; make and feel a surface first")
-    made = await session.worker.quick("beacon", **session.document.arguments(session.felt_sets()), part=part)
-    found: Beacon = await asyncio.to_thread(parcel.unpack, Path(made["parcel"]))
-    await asyncio.to_thread(session.feeling.pull_to, found)
-    return _tell(session, found.part, part_label(found.part, found.name))
+    packed_beacon = await session.worker.quick("beacon", **session.document.arguments(session.felt_sets()), part=part)
+    beacon_there: Beacon = await asyncio.to_thread(parcel.unpack, Path(packed_beacon["parcel"]))
+    await asyncio.to_thread(session.feeling.pull_to, beacon_there)
+    return _tell(session, beacon_there.part, part_label(beacon_there.part, beacon_there.name))
 
 
 def _tell(session: Session, part: int | None, name: str) -> dict[str, Any]:
@@ -79,7 +79,7 @@ async def switch_law(session: Session, tab: Tab | None, to: str) -> None:
 @request()
 async def end_laws(session: Session, tab: Tab | None) -> None:
     """End the comparison, and use the document's law."""
-    if session.laws.other is not None and session.laws.felt != 0:
+    if session.laws.other is not None and session.laws.acting != 0:
         await _feel(session, 0)
     session.laws.alone()
     await asyncio.to_thread(session.laws.comparison.close)
@@ -93,8 +93,8 @@ async def study_laws(
     """Write a blind study of both laws; return paths and command lines. Raises: ConfigError without a second law."""
     if session.laws.other is None:
         raise ConfigError(NO_OTHER)
-    told = {"other": session.laws.other, "names": session.laws.named, "question": question, "language": language}
-    return await session.worker.quick("write_law_study", **session.document.arguments(), **told)
+    arguments = {"other": session.laws.other, "names": session.laws.names, "question": question, "language": language}
+    return await session.worker.quick("write_law_study", **session.document.arguments(), **arguments)
 
 
 async def _feel(session: Session, which: int, other: dict[str, Any] | None = None) -> None:
@@ -103,18 +103,22 @@ async def _feel(session: Session, which: int, other: dict[str, Any] | None = Non
     if not feeling.running:
         raise DeviceError("nothing is felt; make and feel a surface first")
     blocks = [other or laws.other]
-    made = await session.worker.ask("laws", **session.document.arguments(session.felt_sets()), others=blocks)
-    felt, shown = (LoopInput.of(made[i], feeling.channel) for i in (which, 1 - which))
+    inputs = await session.worker.ask("laws", **session.document.arguments(session.felt_sets()), others=blocks)
+    acting, beside = (LoopInput.of(inputs[i], feeling.channel) for i in (which, 1 - which))
     try:
-        if await session.put(felt) is None:
+        if await session.put(acting) is None:
             raise DeviceError("nothing is felt: force was stopped, or another device was chosen meanwhile")
-        laws.other, laws.felt, laws.named = other or laws.other, which, _told_apart(made[0]["law"], made[1]["law"])
-        await asyncio.to_thread(laws.comparison.feel, shown.touch, shown.safety)
+        laws.other, laws.acting, laws.names = (
+            other or laws.other,
+            which,
+            _distinct_names(inputs[0]["law"], inputs[1]["law"]),
+        )
+        await asyncio.to_thread(laws.comparison.feel, beside.touch, beside.safety)
     finally:
-        shown.touch.discard()
+        beside.touch.discard()
     session.tabs.tell("laws", **laws.message())
 
 
-def _told_apart(one: str, two: str) -> tuple[str, str]:
+def _distinct_names(one: str, two: str) -> tuple[str, str]:
     """Return names of both laws that differ, also if they are one law with different options."""
     return (one, two) if one != two else (f"{one} (a)", f"{two} (b)")

@@ -17,9 +17,9 @@ PATIENCE_S = 1.5
 @request()
 async def make(session: Session, tab: Tab | None, want: str = "touch") -> None:
     """Make a product of the document, and feel it if it is a touch. Earlier jobs give way."""
-    made = await long_job(session, "make", want, sets=session.felt_sets(), want=want)
-    if made is not None:
-        await session.feel(made)
+    loop_input = await long_job(session, "make", want, sets=session.felt_sets(), want=want)
+    if loop_input is not None:
+        await session.feel(loop_input)
 
 
 @request()
@@ -49,18 +49,18 @@ async def foresee(session: Session, apply: bool = False) -> None:
         await make(session, None)
 
 
-async def long_job(session: Session, job: str, needs: str, sets: list[str], **told: Any) -> Any:
+async def long_job(session: Session, job: str, needs: str, sets: list[str], **arguments: Any) -> Any:
     """Do a long job of the current document, made from the product `needs`; None if stopped. Raises: as the job."""
     document = session.document.arguments(sets)
     digest, earlier, number = session.document.digest, set(session.long_jobs.running), session.long_jobs.begin()
     try:
         if earlier and await session.worker.quick("give_way", number=number, **document, want=needs):
-            session.begin(_insist(session, earlier))
-        return await _request_job(session, job, number, {**document, **told})
+            session.begin(_kill_if_still_running(session, earlier))
+        return await _request_job(session, job, number, {**document, **arguments})
     except Exception as error:
         outcome = "failed" if _is_wanted(session, number, error) else "stopped"
-        made = {"want": told.get("want", job), "outcome": outcome, "why": str(error), "seconds": 0.0}
-        session.tabs.tell("made", digest=digest, **made)
+        message = {"want": arguments.get("want", job), "outcome": outcome, "why": str(error), "seconds": 0.0}
+        session.tabs.tell("made", digest=digest, **message)
         if outcome == "stopped":
             return None
         raise
@@ -71,15 +71,15 @@ async def long_job(session: Session, job: str, needs: str, sets: list[str], **to
             session.begin(foresee(session, apply=True))
 
 
-async def _request_job(session: Session, job: str, number: int, told: dict[str, Any]) -> Any:
+async def _request_job(session: Session, job: str, number: int, arguments: dict[str, Any]) -> Any:
     """Request a long job, and again if the worker was killed for its sake."""
     while True:
         try:
-            return await session.worker.ask(job, number=number, **told)
+            return await session.worker.ask(job, number=number, **arguments)
         except WorkerKilled:
-            if not session.long_jobs.killed or number != session.long_jobs.newest:
+            if not session.long_jobs.was_killed or number != session.long_jobs.newest:
                 raise
-            session.long_jobs.killed = False
+            session.long_jobs.was_killed = False
 
 
 def _is_wanted(session: Session, number: int, error: Exception) -> bool:
@@ -87,11 +87,11 @@ def _is_wanted(session: Session, number: int, error: Exception) -> bool:
     return number == session.long_jobs.newest or not isinstance(error, Stopped | WorkerKilled)
 
 
-async def _insist(session: Session, numbers: set[int]) -> None:
+async def _kill_if_still_running(session: Session, numbers: set[int]) -> None:
     """Kill the worker if these jobs do not end by themselves."""
     await asyncio.sleep(PATIENCE_S)
     if numbers & session.long_jobs.running:
-        session.long_jobs.killed = True
+        session.long_jobs.was_killed = True
         session.worker.kill()
 
 

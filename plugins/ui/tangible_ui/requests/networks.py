@@ -33,18 +33,18 @@ async def stop_networks(session: Session, tab: Tab | None) -> None:
         pipe.close()
 
 
-async def _fetch(session: Session, start: "asyncio.Future[asyncio.subprocess.Process]", told: str, batch: str) -> None:
+async def _fetch(session: Session, start: "asyncio.Future[asyncio.subprocess.Process]", order: str, batch: str) -> None:
     """Send all tabs what the process reports, until it ends; it stops if this is cancelled."""
     why = ""
     try:
         process = await start
         assert process.stdin is not None and process.stdout is not None
-        process.stdin.write(f"{told}\n".encode())
+        process.stdin.write(f"{order}\n".encode())
         async for line in process.stdout:
-            said = json.loads(line)
-            why = said["why"]
-            if said["name"]:
-                session.tabs.tell("fetching", **said)
+            progress = json.loads(line)
+            why = progress["why"]
+            if progress["name"]:
+                session.tabs.tell("fetching", **progress)
         if (code := await process.wait()) and not why:
             why = f"the process that fetches networks ended by itself ({code}); try again"
         process.stdin.close()

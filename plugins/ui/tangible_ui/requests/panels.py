@@ -11,7 +11,7 @@ from .table import request
 @request()
 async def panels(session: Session, tab: Tab | None) -> list[dict[str, Any]]:
     """List the panels of plugins: name, titles by language, address of the ES module, task."""
-    found = await session.worker.quick("panels")
-    modules = {each["name"]: Path(each["module"]) for each in found}
+    all_panels = await session.worker.quick("panels")
+    modules = {panel["name"]: Path(panel["module"]) for panel in all_panels}
     session.panel_folders = {name: module.parent for name, module in modules.items()}
-    return [{**each, "module": f"/panels/{each['name']}/{modules[each['name']].name}"} for each in found]
+    return [{**panel, "module": f"/panels/{panel['name']}/{modules[panel['name']].name}"} for panel in all_panels]

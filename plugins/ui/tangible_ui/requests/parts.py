@@ -15,8 +15,8 @@ from .table import request
 @request()
 async def parts_open(session: Session, tab: Tab | None) -> dict[str, Any]:
     """Return what the editor begins with: the document's picture and parts, its file, and where a new one may lie."""
-    told = {"opened": session.document.drafts.opened_text, "uploads": user_folder("")}
-    return await session.worker.quick("parts_open", **session.document.arguments(), **told)
+    arguments = {"opened": session.document.drafts.opened_text, "uploads": user_folder("")}
+    return await session.worker.quick("parts_open", **session.document.arguments(), **arguments)
 
 
 @request()
@@ -33,24 +33,24 @@ async def parts_save(
 ) -> dict[str, Any]:
     """Save labels (batch `upload`: a gzip of uint16), and the document with the entries of parts, or change nothing."""
     async with session.document.texts.lock:
-        sent = await asyncio.to_thread(session.uploads.single, upload)
+        labels_file = await asyncio.to_thread(session.uploads.single, upload)
         try:
-            found = await session.worker.quick(
-                "parts_save", **session.document.arguments(), sent=sent, parts=parts, heights=heights, of=of,
+            result = await session.worker.quick(
+                "parts_save", **session.document.arguments(), sent=labels_file, parts=parts, heights=heights, of=of,
                 words={"title": title, "language": language}, opened=session.document.drafts.opened_text,
                 store=user_folder("opened"), drawn=user_folder("drawn"), beside=beside,
                 earlier=session.document.texts.all,
             )  # fmt: skip
         finally:
             await asyncio.to_thread(session.uploads.drop, upload)
-        text, moved = found.pop("text"), found.pop("moved")
-        session.document.texts.rewrite(moved)
-        session.document.text = moved.get(session.document.text, session.document.text)
+        text, new_texts = result.pop("text"), result.pop("moved")
+        session.document.texts.rewrite(new_texts)
+        session.document.text = new_texts.get(session.document.text, session.document.text)
         session.document.drafts.remember_opened(text)
-        await take(session, Text(text, found["file"]))
-        found["file"] = str(found["file"])
+        await take(session, Text(text, result["file"]))
+        result["file"] = str(result["file"])
     session.begin(foresee(session, apply=True))
-    return found
+    return result
 
 
 @request()
@@ -64,9 +64,9 @@ async def parts_propose(
     level: float = 0.5,
 ) -> dict[str, Any] | None:
     """Propose the part under a stroke, in pixels of the picture; None if a newer stroke came before this began."""
-    told = {"points": points, "width_px": width_px, "kind": kind, "within": within, "level": level}
-    told |= session.document.arguments()
-    return await session.strokes.run(lambda: session.worker.quick("parts_propose", **told))
+    arguments = {"points": points, "width_px": width_px, "kind": kind, "within": within, "level": level}
+    arguments |= session.document.arguments()
+    return await session.strokes.run(lambda: session.worker.quick("parts_propose", **arguments))
 
 
 @request()
@@ -78,14 +78,16 @@ async def parts_heights(
     heights: dict[str, Any] | None = None,
 ) -> dict[str, Any] | None:
     """Feel and show the parts at other heights, by number; the document stays unchanged. None if newer ones came."""
-    told = {"heights_m": heights_m, "materials": materials, "heights": heights}
+    arguments = {"heights_m": heights_m, "materials": materials, "heights": heights}
 
     async def feel() -> dict[str, Any]:
-        made = await session.worker.quick("parts_heights", **session.document.arguments(session.felt_sets()), **told)
-        await session.feel_on(made)
+        loop_input = await session.worker.quick(
+            "parts_heights", **session.document.arguments(session.felt_sets()), **arguments
+        )
+        await session.feel_on(loop_input)
         return {}
 
-    done = await session.heights.run(feel)
-    if done is not None:
-        session.begin(session.drawn.run(lambda: session.worker.quick("parts_shown")))
-    return done
+    result = await session.heights.run(feel)
+    if result is not None:
+        session.begin(session.drawings.run(lambda: session.worker.quick("parts_shown")))
+    return result

@@ -27,13 +27,13 @@ async def preflight(session: Session, tab: Tab | None) -> dict[str, Any] | None:
 @request()
 async def fix(session: Session, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
     """Apply the changes that preflight proposes, and judge again; None if it was stopped."""
-    found = await long_job(session, "fix", "touch", sets=session.document.sets, **_loop(session))
-    if found is None:
+    result = await long_job(session, "fix", "touch", sets=session.document.sets, **_loop(session))
+    if result is None:
         return None
-    if found["changes"]:
-        await change(session, tab, changes=found["changes"], apply=apply)
+    if result["changes"]:
+        await change(session, tab, changes=result["changes"], apply=apply)
     await preflight(session, tab)
-    return found
+    return result
 
 
 @request()

@@ -19,22 +19,22 @@ from .table import request
 @request()
 async def record(session: Session, tab: Tab | None) -> str:
     """Record the loop from now on into a new file of the user's. Raises: DeviceError if no loop runs."""
-    servo, felt = session.feeling.servo, session.feeling.felt
-    if servo is None or not servo.running or felt is None:
+    servo, loop_input = session.feeling.servo, session.feeling.loop_input
+    if servo is None or not servo.running or loop_input is None:
         raise DeviceError("nothing is felt, so there is nothing to record; make and feel a surface first")
     if session.recorder is not None and session.recorder.recording:
         raise ConfigError(f"{session.recorder.path}: is being recorded already; stop that first")
     now = datetime.now()  # the user's own clock: people look for files by it
-    path = user_folder(RECORDINGS) / f"{now:%Y-%m-%d %H.%M.%S} {felt.law}.nc"
+    path = user_folder(RECORDINGS) / f"{now:%Y-%m-%d %H.%M.%S} {loop_input.law}.nc"
     loop = asyncio.get_running_loop()
 
     def notify_end(path: Path, ticks: int, why: str) -> None:
-        told = {"recording": False, "path": str(path), "ticks": ticks, "why": why}
-        loop.call_soon_threadsafe(lambda: session.tabs.tell("recorder", **told))
+        message = {"recording": False, "path": str(path), "ticks": ticks, "why": why}
+        loop.call_soon_threadsafe(lambda: session.tabs.tell("recorder", **message))
 
     text = session.document.text
     parts = await asyncio.to_thread(names_in, text)
-    about = About(felt.device_name, felt.law, text, parts=parts, materials=felt.materials)
+    about = About(loop_input.device_name, loop_input.law, text, parts=parts, materials=loop_input.materials)
     session.recorder = await asyncio.to_thread(Recorder, servo, path, about, notify_end)
     session.tabs.tell("recorder", recording=True, path=str(path), ticks=0, why="")
     return str(path)

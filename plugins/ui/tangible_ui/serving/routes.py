@@ -27,7 +27,7 @@ from tangible_web.server import ASK_AGAIN, BuiltPage
 
 from ..requests import feeling, find_request
 from ..state.session import Session
-from .translating import in_language, language_of
+from .translating import in_language, tab_language
 
 FOREVER = "private, max-age=31536000, immutable"
 WRONG_KEY = 4401
@@ -89,7 +89,7 @@ class SessionProgram:
 
     def translate(self, event: dict[str, Any], language: str) -> dict[str, Any]:
         """Return an event in the language of a tab."""
-        return in_language(event, language_of(language))
+        return in_language(event, tab_language(language))
 
 
 def application(session: Callable[[], Session], key: str, hosts: frozenset[str], lifespan: Any) -> ASGIApp:
@@ -118,7 +118,7 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
         if path is None:
             return refusal(request, "this file is gone", 404)
         if request.query_params.keys() & WINDOW:
-            return await window_of(path, request)
+            return await send_window(path, request)
         return FileResponse(path, headers={"cache-control": FOREVER})
 
     async def opening(request: Request) -> Response:
@@ -144,17 +144,19 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
             return refusal(request, "no plugin brings this file", 404)
         return FileResponse(path, headers={"cache-control": ASK_AGAIN})
 
-    async def window_of(path: Path, request: Request) -> Response:
+    async def send_window(path: Path, request: Request) -> Response:
         try:
-            found = await asyncio.to_thread(read_window, path, {key: int(request.query_params[key]) for key in WINDOW})
+            content = await asyncio.to_thread(
+                read_window, path, {key: int(request.query_params[key]) for key in WINDOW}
+            )
         except (KeyError, ValueError):
             return refusal(request, "there is no such window", 400)
-        return Response(found, media_type="application/octet-stream", headers={"cache-control": FOREVER})
+        return Response(content, media_type="application/octet-stream", headers={"cache-control": FOREVER})
 
     async def upload(request: Request) -> Response:
         name = request.path_params["name"]
-        said = request.headers.get("content-length", "0")
-        if int(said) > MAX_BYTES:  # before the first byte is read
+        length = request.headers.get("content-length", "0")
+        if int(length) > MAX_BYTES:  # before the first byte is read
             return refusal(request, f"{name}: holds more than {in_words(MAX_BYTES)}; open a smaller one", 413)
         try:
             await session().uploads.put(request.path_params["batch"], name, request.stream())
@@ -190,7 +192,7 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
 
 def refusal(request: Request, text: str, status: int) -> Response:
     """Return a sentence in the language of the tab that asked."""
-    return PlainTextResponse(translate(text, language_of(request.query_params.get("language", ""))), status)
+    return PlainTextResponse(translate(text, tab_language(request.query_params.get("language", ""))), status)
 
 
 def _lying(folder: Path, digest: str, name: str) -> Path | None:
@@ -202,15 +204,15 @@ def _lying(folder: Path, digest: str, name: str) -> Path | None:
         return None
 
 
-def read_window(path: Path, asked: dict[str, int]) -> bytes:
+def read_window(path: Path, query: dict[str, int]) -> bytes:
     """Return the rectangle, row by row. asked: a number for each of WINDOW. Raises: ValueError if it is not there."""
-    row, rows, column, columns, of, size = (asked[key] for key in ("row", "rows", "column", "columns", "of", "bytes"))
+    row, rows, column, columns, of, size = (query[key] for key in ("row", "rows", "column", "columns", "of", "bytes"))
     inside = min(row, column) >= 0 and min(rows, columns, size) > 0 and column + columns <= of
     if not inside or rows * columns > MAX_ITEMS or (row + rows) * of * size > path.stat().st_size:
         raise ValueError("no such window")
     with path.open("rb") as file:
         parts: list[bytes] = []
-        for each in range(row, row + rows):
-            file.seek((each * of + column) * size)
+        for line in range(row, row + rows):
+            file.seek((line * of + column) * size)
             parts.append(file.read(columns * size))
     return b"".join(parts)

@@ -39,12 +39,12 @@ LATEST_START_S = 2.0
 def serve(files: list[Path], sets: list[str], address: Address) -> None:
     """Serve until Ctrl-C. Raises: OutputError if no temporary folder can be made."""
     with folder_of_this_process() as folder, channel_of_this_process() as channel:
-        served = Served(folder, channel, files, sets)
-        app = application(lambda: served.session, address.key, address.hosts, served.lifespan)
-        server = Server(settings(app), served.asked_to_end)
+        lifetime = Served(folder, channel, files, sets)
+        app = application(lambda: lifetime.session, address.key, address.hosts, lifetime.lifespan)
+        server = Server(settings(app), lifetime.asked_to_end)
         server.run(sockets=[address.listening])
-    served.raise_if_failed()
-    for number in server.heard[:1]:
+    lifetime.raise_if_failed()
+    for number in server.signals[:1]:
         signal.raise_signal(number)
 
 
@@ -54,26 +54,26 @@ class Server(uvicorn.Server):
 
     def __init__(self, config: uvicorn.Config, asked_to_end: Callable[[], None]) -> None:
         super().__init__(config)
-        self.heard: list[int] = []
+        self.signals: list[int] = []
         self._asked_to_end = asked_to_end
 
     @contextmanager
     def capture_signals(self) -> Generator[None]:
         """Handle the signals that were not ignored before, as by nohup."""
         here = threading.current_thread() is threading.main_thread()
-        before = {each: signal.getsignal(each) for each in (signal.SIGINT, *ENDING) if here}
-        mine = {each: handler for each, handler in before.items() if handler != signal.SIG_IGN}
-        for each in mine:
-            signal.signal(each, self.handle_exit)
+        before = {number: signal.getsignal(number) for number in (signal.SIGINT, *ENDING) if here}
+        mine = {number: handler for number, handler in before.items() if handler != signal.SIG_IGN}
+        for number in mine:
+            signal.signal(number, self.handle_exit)
         try:
             yield
         finally:
-            for each, handler in mine.items():
-                signal.signal(each, handler)
+            for number, handler in mine.items():
+                signal.signal(number, handler)
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
         """Take the force away, and end; a second Ctrl-C does not wait."""
-        self.heard.append(sig)
+        self.signals.append(sig)
         self._asked_to_end()
         super().handle_exit(sig, frame)
 
@@ -114,8 +114,8 @@ class Served:
             self._failure = error
             raise
 
-        def tell(**told: str) -> None:
-            loop.call_soon_threadsafe(partial(session.tabs.tell, "log", **told))
+        def tell(**payload: str) -> None:
+            loop.call_soon_threadsafe(partial(session.tabs.tell, "log", **payload))
 
         telling = tell_pages(tell)
         loop.set_exception_handler(partial(_unforeseen, session))
@@ -154,7 +154,7 @@ async def watch(session: Session) -> None:
         if why := session.feeling.beacon_over():
             session.tabs.tell("beacon", part=None, name="", why=why)
         if (end := session.feeling.loop_end()) is not None:
-            session.tabs.tell("loop", running=False, why=end.why, lost=end.lost)
+            session.tabs.tell("loop", running=False, why=end.why, lost=end.is_lost)
         if why := session.laws.comparison.loop_end():
             log.warning("%s is no longer computed beside the law that is felt: %s", session.laws.shown_name, why)
         await asyncio.sleep(KEEP_S)

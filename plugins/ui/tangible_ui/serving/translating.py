@@ -23,7 +23,7 @@ KNOWN = frozenset({BY_HAND, "asked", "button", "scene", "ended"})
 """Reasons that the page knows by these words, and says in its own."""
 
 
-def language_of(tag: str) -> str:
+def tab_language(tag: str) -> str:
     """Return the language of a tab; English for any that the program does not speak."""
     return tag if tag in LANGUAGES else LANGUAGES[0]
 
@@ -36,17 +36,17 @@ def in_language(message: dict[str, Any], language: str) -> dict[str, Any]:
 def _translate(value: Any, language: str) -> Any:
     if isinstance(value, dict):
         texts = TEXTS | {"text"} if value.get("event") in SPOKEN or not NOTED.isdisjoint(value) else TEXTS
-        found: dict[str, Any] = {}
-        for key, each in value.items():
-            if isinstance(each, str):
-                found[key] = translate(each, language) if key in texts and each not in KNOWN else each
+        translation: dict[str, Any] = {}
+        for key, item in value.items():
+            if isinstance(item, str):
+                translation[key] = translate(item, language) if key in texts and item not in KNOWN else item
             else:
-                found[key] = each if key in VALUES else _translate(each, language)
+                translation[key] = item if key in VALUES else _translate(item, language)
         if value.get("notes") and isinstance(value.get("why"), str):
-            found["why"] = _with_notes(value["why"], value["notes"], found["notes"], language)
-        return found
+            translation["why"] = _with_notes(value["why"], value["notes"], translation["notes"], language)
+        return translation
     if isinstance(value, list | tuple) and value and not isinstance(value[0], int | float):
-        return [_translate(each, language) for each in value]
+        return [_translate(item, language) for item in value]
     return value
 
 

@@ -52,13 +52,13 @@ class Texts:
     @property
     def all(self) -> list[str]:
         """All texts of the history."""
-        return [each.text for each in (*self._before, *self._after)]
+        return [text.text for text in (*self._before, *self._after)]
 
     def rewrite(self, others: Mapping[str, str]) -> None:
         """Replace texts by equivalent ones, after a file that they name was moved."""
-        before = [each._replace(text=others.get(each.text, each.text)) for each in self._before]
+        before = [text._replace(text=others.get(text.text, text.text)) for text in self._before]
         self._before = deque(before, maxlen=MAX_STEPS)
-        self._after = [each._replace(text=others.get(each.text, each.text)) for each in self._after]
+        self._after = [text._replace(text=others.get(text.text, text.text)) for text in self._after]
 
     def leave(self, now: Text) -> None:
         """Add the text that is replaced to the history; what was undone is lost."""
@@ -100,61 +100,61 @@ class Drafts:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._file = folder / f"{os.getpid()}.json"
-        self._opened = ""
-        self._newest = self._kept = Text("", Path())
+        self._file_text = ""
+        self._newest = self._on_disk = Text("", Path())
         self._lock = asyncio.Lock()
-        self._failed = False
-        self.left: Draft | None = None
+        self._has_failed = False
+        self.earlier: Draft | None = None
         """The draft of an earlier program."""
 
     def remember_opened(self, text: str) -> None:
         """Remember the text that a file holds: it needs no draft."""
-        self._opened = text
+        self._file_text = text
 
     @property
     def opened_text(self) -> str:
         """The text of the document's file when it was opened or saved."""
-        return self._opened
+        return self._file_text
 
     async def keep(self, text: Text) -> None:
         """Write the document's text as a draft. A full disk is warned of once."""
         self._newest = text
         async with self._lock:  # one write at a time; of many edits the newest alone
-            if (text := self._newest) != self._kept:
+            if (text := self._newest) != self._on_disk:
                 await asyncio.to_thread(self._put, text)
-                self._kept = text
+                self._on_disk = text
 
     def look(self) -> Draft | None:
         """Return the newest draft of an earlier program, and remove old ones."""
-        found = sorted(filter(None, map(_read, left_in(self._folder, "*.json"))), key=lambda draft: draft.at_s)
-        for draft in found[:-MAX_LEFT]:
+        drafts = sorted(filter(None, map(_read, left_in(self._folder, "*.json"))), key=lambda draft: draft.at_s)
+        for draft in drafts[:-MAX_LEFT]:
             _remove(draft.file)
-        self.left = found[-1] if found else None
-        return self.left
+        self.earlier = drafts[-1] if drafts else None
+        return self.earlier
 
     def drop(self) -> None:
         """Remove the earlier program's draft: it was restored, or is not wanted."""
-        if self.left is not None:
-            _remove(self.left.file)
-            self.left = None
+        if self.earlier is not None:
+            _remove(self.earlier.file)
+            self.earlier = None
 
     def _put(self, text: Text) -> None:
-        if text.text == self._opened:
+        if text.text == self._file_text:
             _remove(self._file)
             return
         try:
             write_text(self._file, json.dumps({"text": text.text, "path": str(text.path)}), private=True)
-            self._failed = False
+            self._has_failed = False
         except OutputError as error:
-            if not self._failed:
+            if not self._has_failed:
                 log.warning("unsaved edits are not kept for the next start: %s", error)
-            self._failed = True
+            self._has_failed = True
 
 
 def _read(file: Path) -> Draft | None:
     try:
-        said: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-        return Draft(file, Text(str(said["text"]), Path(str(said["path"]))), file.stat().st_mtime)
+        draft: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        return Draft(file, Text(str(draft["text"]), Path(str(draft["path"]))), file.stat().st_mtime)
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
 

@@ -36,13 +36,13 @@ class Laws:
     comparison: ComparisonLoop
     other: dict[str, Any] | None = None
     """The second law, as `render:` has it."""
-    named: tuple[str, str] = ("", "")
-    felt: int = 0
+    names: tuple[str, str] = ("", "")
+    acting: int = 0
     """Index of the law that acts."""
 
     def alone(self) -> None:
         """End the comparison."""
-        self.other, self.felt = None, 0
+        self.other, self.acting = None, 0
 
     def follow(self, feeling: Feeling) -> None:
         """Move the hand of the second law's loop to that of the first. Meant to be polled; returns at once."""
@@ -59,13 +59,13 @@ class Laws:
     @property
     def shown_name(self) -> str:
         """The name of the law that does not act."""
-        return self.named[1 - self.felt]
+        return self.names[1 - self.acting]
 
     def message(self) -> dict[str, Any]:
         """Return the message `laws`: what pages may know."""
         if self.other is None:
             return {"state": "one"}
-        return {"state": "two", "named": list(self.named), "felt": self.felt}
+        return {"state": "two", "named": list(self.names), "felt": self.acting}
 
 
 @final
@@ -78,7 +78,7 @@ class LongJobs:
         """Numbers of the jobs that somebody waits for."""
         self.apply_after: bool = False
         """True if edits came during the running job: when it ends, apply them unless something slow has to run."""
-        self.killed: bool = False
+        self.was_killed: bool = False
         """True if the worker was killed for an earlier job: if the newest job died with it, it is requested again."""
 
     def begin(self) -> int:
@@ -90,7 +90,7 @@ class LongJobs:
     def stop(self) -> None:
         """Mark all running jobs as unwanted."""
         self.newest += 1
-        self.killed, self.apply_after = True, False
+        self.was_killed, self.apply_after = True, False
 
 
 @final
@@ -147,7 +147,7 @@ class Session:
         self.strokes: LatestWins = LatestWins()
         """Requests for a part under a stroke."""
         self.heights: LatestWins = LatestWins()
-        self.drawn: LatestWins = LatestWins(DRAWN_PAUSE_S)
+        self.drawings: LatestWins = LatestWins(DRAWN_PAUSE_S)
         """Requests for other heights of parts: to feel them, and to draw them."""
         self.choice: Choice = Choice()
         self.uploads: UploadStore = UploadStore(user_folder("opened"), folder / "incoming")
@@ -165,36 +165,36 @@ class Session:
         """Return the changes to the document for the loop: the page's own hand, unless a device was chosen."""
         return [*self.document.sets, *self.choice.sets(self.feeling.own_device)]
 
-    async def feel(self, made: dict[str, Any]) -> None:
+    async def feel(self, loop_input: dict[str, Any]) -> None:
         """Put a made touch under the hand, and end a comparison of laws. Raises: as `put`."""
-        felt = LoopInput.of(made, self.feeling.channel)
-        seconds = await self.put(felt)
+        touch = LoopInput.of(loop_input, self.feeling.channel)
+        seconds = await self.put(touch)
         if seconds is not None:
             self.laws.alone()
             self.tabs.tell("laws", **self.laws.message())
             await asyncio.to_thread(self.laws.comparison.close)
-            self.tabs.tell("touch", law=felt.law, seconds=seconds, how=self.feeling.how)
-            self.tabs.tell("loop", running=True, why="", device=felt.device_name, own_hand=felt.own_hand)
+            self.tabs.tell("touch", law=touch.law, seconds=seconds, how=self.feeling.how)
+            self.tabs.tell("loop", running=True, why="", device=touch.device_name, own_hand=touch.own_hand)
 
-    async def feel_on(self, made: dict[str, Any]) -> None:
+    async def feel_on(self, loop_input: dict[str, Any]) -> None:
         """Put a touch under the hand without an announcement: dragging makes many in a second. Raises: as `put`."""
         if self.laws.other is not None or not self.feeling.running:
-            await self.feel(made)
+            await self.feel(loop_input)
         else:
-            await self.put(LoopInput.of(made, self.feeling.channel))
+            await self.put(LoopInput.of(loop_input, self.feeling.channel))
 
-    async def put(self, felt: LoopInput) -> float | None:
+    async def put(self, touch: LoopInput) -> float | None:
         """Put a touch under the hand; return the seconds, None if too late. Raises: NotConfirmed, DeviceError."""
         try:
-            self.choice.check(felt.unmapped_device)
+            self.choice.check(touch.unmapped_device)
         except NotConfirmed:
-            felt.touch.discard()
+            touch.touch.discard()
             raise
-        if felt.own_hand != (self.choice.kind == "hand"):
-            felt.touch.discard()
+        if touch.own_hand != (self.choice.kind == "hand"):
+            touch.touch.discard()
             return None
         try:
-            return await asyncio.to_thread(self.feeling.feel, felt)
+            return await asyncio.to_thread(self.feeling.feel, touch)
         except Exception as error:
             if not self.feeling.running:
                 self.tabs.tell("loop", running=False, why=str(error), lost=isinstance(error, DeviceError))
@@ -219,7 +219,7 @@ class Session:
         self.tabs.tell("error", text=await describe_error(error))
 
     def _hear(self, event: Event) -> None:
-        self.tabs.tell(event.event, **event.told)
+        self.tabs.tell(event.event, **event.payload)
 
     async def close(self) -> None:
         """End force, worker and recording; a failure of one does not keep the others."""

@@ -35,24 +35,24 @@ class Tabs:
         self._latest: dict[str, dict[str, Any]] = {}
         """The latest event of each kind in `LATEST_ONLY`."""
         self._history: deque[dict[str, Any]] = deque(maxlen=MAX_HISTORY)
-        self._logged: deque[dict[str, Any]] = deque(maxlen=MAX_LOGGED)
+        self._log: deque[dict[str, Any]] = deque(maxlen=MAX_LOGGED)
 
-    def tell(self, event: str, **told: Any) -> None:
+    def tell(self, event: str, **payload: Any) -> None:
         """Send an event to all tabs, and to those opened later."""
-        said = {"event": event, "at_s": round(time.time(), 3), **told}
+        message = {"event": event, "at_s": round(time.time(), 3), **payload}
         if event == "scene":
-            self.scene = said
+            self.scene = message
         elif event in LATEST_ONLY:
-            self._latest[event] = said
+            self._latest[event] = message
         else:
-            (self._logged if event == "log" else self._history).append(said)
+            (self._log if event == "log" else self._history).append(message)
         for tab in list(self.open):
-            tab.say(said)
+            tab.say(message)
 
     @property
     def history(self) -> list[dict[str, Any]]:
         """The events that a tab opened now has missed, oldest first; however much is logged, the rest is there."""
-        return sorted([*self._latest.values(), *self._history, *self._logged], key=lambda said: said["at_s"])
+        return sorted([*self._latest.values(), *self._history, *self._log], key=lambda message: message["at_s"])
 
     def enter(self, tab: Tab) -> None:
         """Add a tab; it gets the hand if no other tab holds it."""
@@ -75,5 +75,5 @@ class Tabs:
         self._say_who_holds()
 
     def _say_who_holds(self) -> None:
-        for each in self.open:
-            each.say({"event": "holding", "holding": each is self.holder, "free": self.holder is None})
+        for tab in self.open:
+            tab.say({"event": "holding", "holding": tab is self.holder, "free": self.holder is None})

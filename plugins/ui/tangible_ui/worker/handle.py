@@ -40,51 +40,51 @@ class Worker:
         self._waiting: dict[int, asyncio.Future[Any]] = {}
         self._loop = asyncio.get_running_loop()
         self._process: subprocess.Popen[bytes] | None = None
-        self._closed = False
-        self._ready = self._killed = False
-        self._deaths, self._gone = 0, ""
+        self._is_closed = False
+        self._ready = self._was_killed = False
+        self._deaths, self._failure = 0, ""
         self._last_words: deque[str] = deque(maxlen=1)
         self._lock = threading.Lock()
         self._start()
 
-    async def ask(self, job: str, **told: Any) -> Any:
+    async def ask(self, job: str, **arguments: Any) -> Any:
         """Do a job, and return its result. Raises: WorkerKilled, WorkerAbsent, whatever the job raises."""
-        if self._gone:
-            raise WorkerAbsent(self._gone)
+        if self._failure:
+            raise WorkerAbsent(self._failure)
         number, future = next(self._numbers), self._loop.create_future()
         self._waiting[number] = future
         try:
-            await asyncio.to_thread(self._send, JobRequest(number, job, told))
+            await asyncio.to_thread(self._send, JobRequest(number, job, arguments))
             return await future
         finally:
             self._waiting.pop(number, None)
 
-    async def quick(self, job: str, **told: Any) -> Any:
+    async def quick(self, job: str, **arguments: Any) -> Any:
         """Do a quick job; once more if the worker was killed for the sake of a long one. Raises: as `ask`."""
         try:
-            return await self.ask(job, **told)
+            return await self.ask(job, **arguments)
         except WorkerKilled:
-            return await self.ask(job, **told)
+            return await self.ask(job, **arguments)
 
     def kill(self) -> None:
         """Kill the process; another one replaces it."""
-        self._killed = True
+        self._was_killed = True
         if self._process is not None:
             self._process.kill()
 
     def close(self) -> None:
         """Kill the process for good."""
-        self._closed = True
+        self._is_closed = True
         self.kill()
 
     def try_again(self) -> None:
         """Start the worker if it was given up."""
-        if self._gone:
-            self._gone, self._deaths = "", 0
+        if self._failure:
+            self._failure, self._deaths = "", 0
             self._start()
 
     def _start(self) -> None:
-        self._ready = self._killed = False
+        self._ready = self._was_killed = False
         self._process = process = take_worker_process()
         self._send(self._folder)
         reading = threading.Thread(target=self._read, args=(process,), daemon=True)
@@ -131,17 +131,17 @@ class Worker:
             future.set_result(message.value)
 
     def _handle_exit(self) -> None:
-        if self._closed:
+        if self._is_closed:
             return
-        self._deaths += not (self._ready or self._killed)
+        self._deaths += not (self._ready or self._was_killed)
         if self._deaths < MAX_DEATHS:
             self._start()
             error: TangibleError = WorkerKilled("computation was stopped; finished products are kept")
         else:
             why = self._last_words[-1] if self._last_words else "it printed nothing"
-            self._gone = f"the process that computes does not start: {shown(why, 300)}"
-            error = WorkerAbsent(self._gone)
-            self._hear(Event("maker_gone", {"why": self._gone}))
+            self._failure = f"the process that computes does not start: {shown(why, 300)}"
+            error = WorkerAbsent(self._failure)
+            self._hear(Event("maker_gone", {"why": self._failure}))
         for future in self._waiting.values():
             if not future.done():
                 future.set_exception(error)

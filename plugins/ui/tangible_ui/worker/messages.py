@@ -10,8 +10,7 @@ class JobRequest(NamedTuple):
 
     number: int
     job: str
-    told: dict[str, Any]
-    """Arguments by name."""
+    arguments: dict[str, Any]
 
 
 class JobResult(NamedTuple):
@@ -32,7 +31,7 @@ class Event(NamedTuple):
     """An event for pages."""
 
     event: str
-    told: dict[str, Any]
+    payload: dict[str, Any]
 
 
 class Late(NamedTuple):

@@ -21,16 +21,16 @@ Stamp = tuple[tuple[Path, int, int], ...]
 """Files with the time of their last change, and their size."""
 
 
-def stamp_of(config: PipelineConfig) -> Stamp:
+def scene_stamp(config: PipelineConfig) -> Stamp:
     """Return the stamp of a scene's existing files; empty for a built-in scene."""
-    named = config.scene if isinstance(config.scene, SceneFiles) else ()
-    paths = [config.folder / value for _, value in named if isinstance(value, Path)]
-    found: list[tuple[Path, int, int]] = []
+    fields = config.scene if isinstance(config.scene, SceneFiles) else ()
+    paths = [config.folder / value for _, value in fields if isinstance(value, Path)]
+    stamp: list[tuple[Path, int, int]] = []
     for path in paths:
         with suppress(OSError, ValueError):
-            told = path.stat()
-            found.append((path, told.st_mtime_ns, told.st_size))
-    return tuple(found)
+            status = path.stat()
+            stamp.append((path, status.st_mtime_ns, status.st_size))
+    return tuple(stamp)
 
 
 Tell = Callable[..., None]
@@ -57,8 +57,8 @@ class Work:
 
     def give_way(self, to: Pipeline, want: str) -> bool:
         """Stop for another pipeline: at once, or after a stage that it needs too. Returns: True if at once."""
-        product, needed = self._product, to.engine.inputs_of(want)
-        if product in needed and self.pipeline.engine.key(product) == to.engine.key(product):
+        product, inputs = self._product, to.engine.inputs_of(want)
+        if product in inputs and self.pipeline.engine.key(product) == to.engine.key(product):
             self._after = True
             return False
         self.stop.set()
@@ -75,11 +75,11 @@ class WorkerState:
         self.tell = tell
         self.registry: Registry = default_registry()
         self.pipeline: Pipeline | None = None
-        self.shown = ""
+        self.shown_digest = ""
         """Digest of the surface that pages got last."""
-        self.described: Any = None
+        self.description: Any = None
         """The pipeline and the view whose description pages got last."""
-        self.opened: Any = None
+        self.editor: Any = None
         """The scene in the parts editor; used by quick jobs alone."""
         self.tree: Any = None
         """The picture in the parts editor, and its tree of regions; used by quick jobs alone."""
@@ -88,34 +88,34 @@ class WorkerState:
         self._cache = cache or Cache()
         self._stamps: WeakKeyDictionary[Pipeline, Stamp] = WeakKeyDictionary()
         self._newest, self._work = NEVER, None
-        self._parsed: tuple[Any, PipelineConfig] | None = None
+        self._last_config: tuple[Any, PipelineConfig] | None = None
         self._lock = Lock()
 
-    def config_of(self, text: str, path: Path, sets: list[str]) -> PipelineConfig:
+    def read_config(self, text: str, path: Path, sets: list[str]) -> PipelineConfig:
         """Return the configuration of a text; the last one is cached for further jobs. Raises: ConfigError."""
-        asked = text, path, tuple(sets)
-        if (parsed := self._parsed) is not None and parsed[0] == asked:
-            return parsed[1]
+        key = text, path, tuple(sets)
+        if (last := self._last_config) is not None and last[0] == key:
+            return last[1]
         config = parse_config(text, path, self.registry, sets)
-        self._parsed = asked, config
+        self._last_config = key, config
         return config
 
-    def pipeline_of(self, text: str, path: Path, sets: list[str]) -> Pipeline:
+    def make_pipeline(self, text: str, path: Path, sets: list[str]) -> Pipeline:
         """Return the pipeline of a text, with the results shared with the last good one. Raises: ConfigError."""
-        config, before = self.config_of(text, path, sets), self.pipeline
-        made = self.after(before, config) if before is not None else None
-        if made is None:
-            made = Pipeline.from_config(config, self.registry, self._cache)
-            self._stamps[made] = stamp_of(config)
-        return made
+        config, before = self.read_config(text, path, sets), self.pipeline
+        pipeline = self.after(before, config) if before is not None else None
+        if pipeline is None:
+            pipeline = Pipeline.from_config(config, self.registry, self._cache)
+            self._stamps[pipeline] = scene_stamp(config)
+        return pipeline
 
     def after(self, before: Pipeline, config: PipelineConfig) -> Pipeline | None:
         """Return a pipeline derived from another; None if files of its scene have changed since."""
-        if (stamp := stamp_of(config)) != self._stamps.get(before):
+        if (stamp := scene_stamp(config)) != self._stamps.get(before):
             return None
-        made = Pipeline.from_config(config, like=before)
-        self._stamps[made] = stamp
-        return made
+        pipeline = Pipeline.from_config(config, like=before)
+        self._stamps[pipeline] = stamp
+        return pipeline
 
     @contextmanager
     def work(self, pipeline: Pipeline, number: int) -> Generator[Work]:

@@ -20,7 +20,7 @@ def devices(state: WorkerState) -> list[dict[str, Any]]:
 @job(page=True)
 def examine(state: WorkerState, name: str) -> list[dict[str, Any]]:
     """Return what keeps a device from working, and the cure."""
-    return [asdict(each) for each in examine_device(state.registry, name)]
+    return [asdict(finding) for finding in examine_device(state.registry, name)]
 
 
 @job(quick=True)

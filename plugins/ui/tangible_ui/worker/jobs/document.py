@@ -35,14 +35,14 @@ def check(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[st
     """Return what a pipeline file says, alone and with every default filled in, or its errors."""
     values, kinds, complaints = None, (None, None), list[Complaint]()
     try:
-        config = state.config_of(text, path, sets)
+        config = state.read_config(text, path, sets)
         values, kinds = config.as_data(), (kind_of(config.scene), config.relief_kind)
     except ConfigError as error:
         complaints = list(error.complaints)
     return {
         "text": text,
         "path": str(path),
-        "digest": digest_of(text),
+        "digest": text_digest(text),
         "said": _parse(text, path),
         "values": values,
         "scene_kind": kinds[0],
@@ -62,9 +62,9 @@ def change(
     removed: list[str],
 ) -> dict[str, Any]:
     """Change keys: values, values in YAML, keys to remove; return `check` of the result. Raises: ConfigError."""
-    loaded = {key: _value(key, value) for key, value in written.items()}
-    gone = dict.fromkeys(removed, REMOVE)
-    return check(state, edit_text(text, path, {**gone, **changes, **loaded}), path, sets)
+    values = {key: _value(key, value) for key, value in written.items()}
+    deletions = dict.fromkeys(removed, REMOVE)
+    return check(state, edit_text(text, path, {**deletions, **changes, **values}), path, sets)
 
 
 @job(quick=True)
@@ -82,10 +82,12 @@ def schema(state: WorkerState) -> dict[str, Any]:
 @job(page=True)
 def library(state: WorkerState, text: str, path: Path, sets: list[str]) -> list[dict[str, Any]]:
     """List the materials that a document can name, with figures and sources. Raises: ConfigError."""
-    return [asdict(each) for each in load_library(state.config_of(text, path, sets).materials.library).values()]
+    return [
+        asdict(material) for material in load_library(state.read_config(text, path, sets).materials.library).values()
+    ]
 
 
-def digest_of(text: str) -> str:
+def text_digest(text: str) -> str:
     """Return the digest by which events name a text."""
     return sha256(text.encode()).hexdigest()[:16]
 
@@ -97,12 +99,12 @@ def _parse(text: str, path: Path) -> dict[str, Any] | None:
         return None
 
 
-def _value(key: str, written: str) -> Any:
+def _value(key: str, text: str) -> Any:
     """Parse a value. Raises: ConfigError if it is not YAML."""
     try:
-        return plain(parse_value(written))
+        return plain(parse_value(text))
     except YAMLError as error:
-        sentence = f"{quoted(written)} is not a YAML value: {getattr(error, 'problem', None) or error}"
+        sentence = f"{quoted(text)} is not a YAML value: {getattr(error, 'problem', None) or error}"
         location = cast("tuple[str | int, ...]", tuple(key.split(".")))
         raise ConfigError(f"{key}: {sentence}", complaints=[Complaint(location, sentence)]) from error
 
@@ -125,15 +127,18 @@ def folder(state: WorkerState, path: str = "") -> dict[str, Any]:
     """List the folders, and files that can be opened, of a folder (by default the current one). Raises: ConfigError."""
     place = as_path(path).absolute()
     try:
-        found = [(each.name, "folder" if each.is_dir() else KINDS.get(each.suffix.lower())) for each in place.iterdir()]
+        entries = [
+            (path_there.name, "folder" if path_there.is_dir() else KINDS.get(path_there.suffix.lower()))
+            for path_there in place.iterdir()
+        ]
     except OSError as error:
         raise ConfigError(f"{place}: {error.strerror or error}; name a folder of this machine") from error
-    shown = sorted((name, kind) for name, kind in found if kind and not name.startswith("."))
+    listing = sorted((name, kind) for name, kind in entries if kind and not name.startswith("."))
     return {
         "folder": str(place),
         "parent": str(place.parent),
-        "entries": [{"name": name, "kind": kind} for name, kind in shown[:MOST]],
-        "more": max(0, len(shown) - MOST),
+        "entries": [{"name": name, "kind": kind} for name, kind in listing[:MOST]],
+        "more": max(0, len(listing) - MOST),
     }
 
 
@@ -165,8 +170,8 @@ def _is_recording(path: Path) -> bool:
     import zipfile
 
     try:
-        with zipfile.ZipFile(path) as found:
-            return "time_s.npy" in found.namelist()
+        with zipfile.ZipFile(path) as archive:
+            return "time_s.npy" in archive.namelist()
     except (OSError, zipfile.BadZipFile):
         return False
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 from zipfile import ZIP_DEFLATED, ZipFile
 
-from tangible_core.data import digest_of as digest_of_records
+from tangible_core.data import digest_of
 from tangible_core.errors import ConfigError
 from tangible_core.files.yaml import json_in_yaml
 from tangible_core.pipeline.output import Exported, drawn_width_m, read_list, with_width, work_for
@@ -16,8 +16,8 @@ from tangible_core.plugins import Previewing, silently
 
 from ..state import WorkerState
 from ..view.files import leave, sweep, write_whole
-from .document import digest_of
-from .making import announced, plan_data
+from .document import text_digest
+from .making import announce, plan_data
 from .table import job
 
 FOLDER = "export-"
@@ -34,18 +34,18 @@ def export(
     state: WorkerState, number: int, text: str, path: Path, sets: list[str], exports: list[Any]
 ) -> dict[str, Any]:
     """Run exporters into a folder that pages fetch from; return their outcomes. Raises: as `Pipeline.export`."""
-    pipeline = state.pipeline_of(text, path, [*sets, f"export={json_in_yaml(exports)}"])
+    pipeline = state.make_pipeline(text, path, [*sets, f"export={json_in_yaml(exports)}"])
     at = state.folder / f"{FOLDER}{secrets.token_hex(8)}"
     try:
-        with announced(state, number, pipeline, text, "export") as (work, report):
+        with announce(state, number, pipeline, text, "export") as (work, report):
             sweep(state.folder, f"{FOLDER}*", KEPT - 1)
-            outcomes = [_outcome_data(each) for each in pipeline.export(at, None, report, work.stop).exports]
-            found = {"digest": digest_of(text), "folder": at.name, "exports": outcomes}
-            state.tell("exported", **found)
+            outcomes = [_outcome_data(exported) for exported in pipeline.export(at, None, report, work.stop).exports]
+            message = {"digest": text_digest(text), "folder": at.name, "exports": outcomes}
+            state.tell("exported", **message)
     except BaseException:
         shutil.rmtree(at, ignore_errors=True)
         raise
-    return found
+    return message
 
 
 @job(page=True)
@@ -53,17 +53,17 @@ def export_preview(
     state: WorkerState, text: str, path: Path, sets: list[str], block: dict[str, Any] | str
 ) -> dict[str, Any]:
     """Draw what an exporter would write, into a file; no file without a picture, or where something slow `waits`."""
-    pipeline = state.pipeline_of(text, path, [*sets, f"export={json_in_yaml([block])}"])
-    (chosen,) = pipeline.config.export
+    pipeline = state.make_pipeline(text, path, [*sets, f"export={json_in_yaml([block])}"])
+    (exporter,) = pipeline.config.export
     none = {"file": "", "waits": False, "columns": 0, "rows": 0, "width_m": 0.0}
-    if not isinstance(chosen.method, Previewing):
+    if not isinstance(exporter.method, Previewing):
         return none
-    if any(plan_data(pipeline, text, product)["slow"] for product in chosen.method.needs):
+    if any(plan_data(pipeline, text, product)["slow"] for product in exporter.method.needs):
         return {**none, "waits": True}
-    width_m = drawn_width_m(pipeline.engine, chosen)
+    width_m = drawn_width_m(pipeline.engine, exporter)
     with silently():
-        picture = chosen.method.preview(work_for(with_width(pipeline.engine, width_m), chosen.method))
-    at = f"{PREVIEW}{digest_of_records((picture,))}"
+        picture = exporter.method.preview(work_for(with_width(pipeline.engine, width_m), exporter.method))
+    at = f"{PREVIEW}{digest_of((picture,))}"
     leave(state.folder / at, "the preview", lambda part: write_whole(picture, part / "picture.png"))
     sweep(state.folder, f"{PREVIEW}*", KEPT_PREVIEWS)
     rows, columns = picture.shape
@@ -81,21 +81,21 @@ def export_zip(state: WorkerState, folder: str) -> str:
     if not whole.exists():
         part = at / f".{secrets.token_hex(8)}"
         try:
-            with ZipFile(part, "w", ZIP_DEFLATED) as packed:
+            with ZipFile(part, "w", ZIP_DEFLATED) as archive:
                 for name in names:
-                    packed.write(at / name, name)
+                    archive.write(at / name, name)
             part.replace(whole)
         finally:
             part.unlink(missing_ok=True)
     return whole.name
 
 
-def _outcome_data(each: Exported) -> dict[str, Any]:
-    said = asdict(each.outcome)
+def _outcome_data(exported: Exported) -> dict[str, Any]:
+    figures = asdict(exported.outcome)
     return {
-        "name": each.name,
-        **{key: said[key] for key in ("outcome", "why", "seconds", "notes")},
-        "method": each.outcome.method,
-        "files": [{"name": file.name, "bytes": file.stat().st_size} for file in each.files],
-        "legible": None if each.legible is None else each.legible.as_data(),
+        "name": exported.name,
+        **{key: figures[key] for key in ("outcome", "why", "seconds", "notes")},
+        "method": exported.outcome.method,
+        "files": [{"name": file.name, "bytes": file.stat().st_size} for file in exported.files],
+        "legible": None if exported.legible is None else exported.legible.as_data(),
     }

@@ -23,27 +23,27 @@ from tangible_core.session import materials_text
 
 from ..state import Work, WorkerState
 from ..view.files import show
-from ..view.surface_view import SurfaceView, view_of
-from .document import digest_of
+from ..view.surface_view import SurfaceView, make_view
+from .document import text_digest
 from .surface import description_data
 from .table import job
 
 
-def loop_input_of(pipeline: Pipeline, report: Progress | None = None, stop: Event | None = None) -> dict[str, Any]:
+def make_loop_input(pipeline: Pipeline, report: Progress | None = None, stop: Event | None = None) -> dict[str, Any]:
     """Make the touch, and return the loop's input. Raises: ConfigError without a device; as `Pipeline.make`."""
     touch, config = pipeline.make("touch", report, stop), pipeline.config
-    return parcel_of(touch, pipeline.make("surface"), config)
+    return pack_loop_input(touch, pipeline.make("surface"), config)
 
 
-def parcel_of(touch: Touch, surface: HapticSurface, config: PipelineConfig) -> dict[str, Any]:
+def pack_loop_input(touch: Touch, surface: HapticSurface, config: PipelineConfig) -> dict[str, Any]:
     """Pack a touch into the loop's input. Raises: ConfigError without a device; DeviceError if there is no room."""
     if config.device is None or config.felt_device is None:
         raise config.missing("device")
     device = over(config.felt_device, surface.extent_m)
-    sent = pack_touch(touch, device.spec())
+    packed_touch = pack_touch(touch, device.spec())
     return {
-        "parcel": str(sent.parcel),
-        "stiffness_n_per_m": sent.stiffness_n_per_m,
+        "parcel": str(packed_touch.parcel),
+        "stiffness_n_per_m": packed_touch.stiffness_n_per_m,
         "law": config.render.name if config.render else "",
         "device_name": config.device.name,
         "device": dumps(device),
@@ -61,54 +61,56 @@ SLOW = ("disparity", "segments")
 def plan(state: WorkerState, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any]:
     """Return the plan of making a product with its reasons; the refusal if it cannot be made."""
     try:
-        return plan_data(state.pipeline_of(text, path, sets), text, want)
+        return plan_data(state.make_pipeline(text, path, sets), text, want)
     except TangibleError as error:
-        return {"digest": digest_of(text), "want": want, "steps": [], "slow": [], "refusal": str(error)}
+        return {"digest": text_digest(text), "want": want, "steps": [], "slow": [], "refusal": str(error)}
 
 
 def plan_data(pipeline: Pipeline, text: str, want: str) -> dict[str, Any]:
     """Return the plan as pages have it. Raises: as `Pipeline.plan`."""
-    found = pipeline.plan(cast(Any, want))
-    slow = [step.product for step in found.steps if step.outcome == "ran" and step.product in SLOW]
-    steps = [asdict(step) for step in _all_steps(pipeline, found)]
-    return {"digest": digest_of(text), "want": want, "steps": steps, "slow": slow, "refusal": found.refusal}
+    plan = pipeline.plan(cast(Any, want))
+    slow = [step.product for step in plan.steps if step.outcome == "ran" and step.product in SLOW]
+    steps = [asdict(step) for step in _all_steps(pipeline, plan)]
+    return {"digest": text_digest(text), "want": want, "steps": steps, "slow": slow, "refusal": plan.refusal}
 
 
-def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
+def _all_steps(pipeline: Pipeline, plan: Plan) -> list[Outcome]:
     """Return the plan's steps, and the products inside a cached one, in the order of making."""
-    steps = {step.product: step for step in found.steps}
-    if not found.refusal:
-        needed = pipeline.engine.inputs_of(found.want)
-        for each in pipeline.outcomes:
-            if each.product in needed and each.product not in steps:
-                steps[each.product] = each if each.outcome == "given" else replace(each, outcome="cached", why="")
+    steps = {step.product: step for step in plan.steps}
+    if not plan.refusal:
+        inputs = pipeline.engine.inputs_of(plan.want)
+        for outcome in pipeline.outcomes:
+            if outcome.product in inputs and outcome.product not in steps:
+                steps[outcome.product] = (
+                    outcome if outcome.outcome == "given" else replace(outcome, outcome="cached", why="")
+                )
     order = ["views", *PRODUCTS]
-    return sorted(steps.values(), key=lambda each: order.index(each.product))
+    return sorted(steps.values(), key=lambda outcome: order.index(outcome.product))
 
 
 @job()
 def make(state: WorkerState, number: int, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any] | None:
     """Make a product, and show it on the way; return the loop's input, if a touch was wanted."""
-    pipeline = state.pipeline_of(text, path, sets)
-    with announced(state, number, pipeline, text, want) as (work, report):
+    pipeline = state.make_pipeline(text, path, sets)
+    with announce(state, number, pipeline, text, want) as (work, report):
         state.tell("plan", **plan_data(pipeline, text, want))
         product = TO_SEE.get(want, want)
         pipeline.make(product, report, work.stop)
         _show(state, pipeline, product)
         work.worth = True
-        return loop_input_of(pipeline, report, work.stop) if want == "touch" else None
+        return make_loop_input(pipeline, report, work.stop) if want == "touch" else None
 
 
 @contextmanager
-def announced(
+def announce(
     state: WorkerState, number: int, pipeline: Pipeline, text: str, want: str
 ) -> Generator[tuple[Work, Progress]]:
     """Send pages begin, stages and end of a long job. Yields: the job's progress, and who reports a stage to pages."""
-    begun_s, digest = perf_counter(), digest_of(text)
+    begun_s, digest = perf_counter(), text_digest(text)
 
     def report(stage: StageEvent) -> None:
-        done = {} if stage.outcome is None else asdict(stage.outcome)
-        state.tell("stage", product=stage.product, method=stage.method, done=done)
+        outcome = {} if stage.outcome is None else asdict(stage.outcome)
+        state.tell("stage", product=stage.product, method=stage.method, done=outcome)
         work.follow(stage)
 
     with state.work(pipeline, number) as work:
@@ -120,7 +122,7 @@ def announced(
 @job(quick=True)
 def give_way(state: WorkerState, number: int, text: str, path: Path, sets: list[str], want: str) -> bool:
     """End the running job for this newer document; return True if that was at once. Raises: ConfigError."""
-    return state.give_way(number, state.pipeline_of(text, path, sets), want)
+    return state.give_way(number, state.make_pipeline(text, path, sets), want)
 
 
 TO_SEE = {"touch": "surface", "disparity": "relief", "segments": "materials"}
@@ -129,24 +131,24 @@ TO_SEE = {"touch": "surface", "disparity": "relief", "segments": "materials"}
 
 def _show(state: WorkerState, pipeline: Pipeline, product: str) -> None:
     """Send pages the surface, which they draw while the touch is made."""
-    if (seen := view_of(pipeline, product)).digest != state.shown:
-        state.tell("scene", **show(seen, state.folder))
-        state.shown = seen.digest
-        state.described = pipeline, seen
-        state.tell("described", **description_data(pipeline, seen))
-    state.tell("materials", segments=_segments(pipeline, seen))
+    if (view := make_view(pipeline, product)).digest != state.shown_digest:
+        state.tell("scene", **show(view, state.folder))
+        state.shown_digest = view.digest
+        state.description = pipeline, view
+        state.tell("described", **description_data(pipeline, view))
+    state.tell("materials", segments=_segments(pipeline, view))
 
 
-def _segments(pipeline: Pipeline, seen: SurfaceView) -> list[dict[str, Any]]:
+def _segments(pipeline: Pipeline, view: SurfaceView) -> list[dict[str, Any]]:
     """Return for each segment its material, the reason, its share of the area, and its name if it is a part."""
-    if seen.labels is None or not seen.materials:
+    if view.labels is None or not view.materials:
         return []
-    chosen = pipeline.make("materials")
-    reasons = chosen.reasons if chosen is not None else ("",) * len(seen.materials)
-    names = seen.names or ("",) * len(seen.materials)
-    shares = np.bincount(seen.labels.ravel(), minlength=len(seen.materials)) / max(1, seen.labels.size)
-    named = enumerate(zip(seen.materials, reasons, shares.tolist(), strict=False))
+    materials = pipeline.make("materials")
+    reasons = materials.reasons if materials is not None else ("",) * len(view.materials)
+    names = view.names or ("",) * len(view.materials)
+    shares = np.bincount(view.labels.ravel(), minlength=len(view.materials)) / max(1, view.labels.size)
+    numbered = enumerate(zip(view.materials, reasons, shares.tolist(), strict=False))
     return [
         {"label": label, "material": material.name, "why": why, "share": share, "name": names[label]}
-        for label, (material, why, share) in named
+        for label, (material, why, share) in numbered
     ]

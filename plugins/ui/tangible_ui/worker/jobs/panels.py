@@ -30,10 +30,10 @@ def ask_panel(
     arguments: dict[str, Any] | None = None,
 ) -> Any:
     """Have a plugin answer a request of its panel. Raises: ConfigError if there is none; whatever the plugin raises."""
-    found = installed_panels().get(panel)
-    if found is None:
+    page_panel = installed_panels().get(panel)
+    if page_panel is None:
         raise ConfigError(f"{quoted(panel)} is not a panel of a plugin{did_you_mean(panel, installed_panels())}")
-    if request not in found.requests:
-        hint = did_you_mean(request, found.requests)
+    if request not in page_panel.requests:
+        hint = did_you_mean(request, page_panel.requests)
         raise ConfigError(f"the panel {panel} answers no request {quoted(request)}{hint}")
-    return found.requests[request](state.pipeline_of(text, path, sets), **(arguments or {}))
+    return page_panel.requests[request](state.make_pipeline(text, path, sets), **(arguments or {}))

@@ -27,7 +27,7 @@ from ..parts.saving import as_png, unpack
 from ..state import WorkerState
 from ..view.files import show
 from ..view.surface_view import SurfaceView, view_parts
-from .making import parcel_of
+from .making import pack_loop_input
 from .table import job
 
 
@@ -37,7 +37,7 @@ class DrawnPreview:
 
     preview: PartHeightPreview
     pipeline: Pipeline
-    seen: SurfaceView | None = None
+    view: SurfaceView | None = None
     """The last view; `surface` is the current surface if that is a newer one."""
     surface: HapticSurface | None = None
 
@@ -47,21 +47,21 @@ def parts_open(
     state: WorkerState, text: str, path: Path, sets: list[str], opened: str = "", uploads: Path = Path()
 ) -> dict[str, Any]:
     """Return what an editor begins with; write the picture, and the part of each pixel, into files."""
-    pipeline = opening.edited_of(state, text, path, sets)
-    edited, config = opening.opened_of(state, pipeline), pipeline.config
-    at = f"{opening.FOLDER}{digest_of((edited.picture, edited.parts))}"
-    opening.leave_files(edited, state.folder / at)
+    pipeline = opening.edited_pipeline(state, text, path, sets)
+    input_, config = opening.editor_input(state, pipeline), pipeline.config
+    at = f"{opening.FOLDER}{digest_of((input_.picture, input_.parts))}"
+    opening.leave_files(input_, state.folder / at)
     in_file, beside = saving.is_in_file(path, opened), saving.folder_of_photograph(config, uploads)
     by_parts = config.with_values(heights=config_heights(config))
-    rows, columns = edited.parts.labels.shape
+    rows, columns = input_.parts.labels.shape
     return {
         "columns": columns,
         "rows": rows,
         "picture": f"{at}/picture.jpg",
         "labels": f"{at}/labels.u16",
-        "digest": opening.digest(edited.parts, config),
-        "parts": opening.part_entries(edited.parts, config.choices),
-        "divided": edited.scene.segments is not None or edited.parts.count > 1,
+        "digest": opening.digest(input_.parts, config),
+        "parts": opening.part_entries(input_.parts, config.choices),
+        "divided": input_.scene.segments is not None or input_.parts.count > 1,
         "heights": config_heights(config).model_dump(mode="json"),
         "top_m": max(0.0, by_parts.top_m),
         "widthM": by_parts.size.width_m,
@@ -77,17 +77,17 @@ def parts_first(state: WorkerState, text: str, path: Path, sets: list[str]) -> d
     """Propose all parts of an undivided picture: the file of each pixel's part, and the height of each part, m."""
     from tangible_authoring.first_parts import proposed_heights, proposed_parts, segments_for
 
-    opened = opening.opened_of(state, opening.edited_of(state, text, path, sets))
-    if opened.scene.views is None:
+    input_ = opening.editor_input(state, opening.edited_pipeline(state, text, path, sets))
+    if input_.scene.views is None:
         return {"labels": "", "heights_m": []}
-    method = opening.TREES if opened.scene.kind.likely == "photograph" else "flat"  # as a starter file has it
-    joined = f"texture={{use: {method}, segments: {segments_for()}}}"
-    divided = state.pipeline_of(text, path, [*sets, joined])
-    found, config = proposed_parts(divided), divided.config
+    method = opening.TREES if input_.scene.kind.likely == "photograph" else "flat"  # as a starter file has it
+    texture = f"texture={{use: {method}, segments: {segments_for()}}}"
+    pipeline = state.make_pipeline(text, path, [*sets, texture])
+    parts, config = proposed_parts(pipeline), pipeline.config
     by_parts = config.with_values(heights=config_heights(config))
-    heights = proposed_heights(divided, found, max(0.0, by_parts.top_m))
-    at = f"{opening.FOLDER}{digest_of((opened.picture, found))}"
-    opening.leave_files(opened._replace(parts=found), state.folder / at)
+    heights = proposed_heights(pipeline, parts, max(0.0, by_parts.top_m))
+    at = f"{opening.FOLDER}{digest_of((input_.picture, parts))}"
+    opening.leave_files(input_._replace(parts=parts), state.folder / at)
     return {"labels": f"{at}/labels.u16", "heights_m": list(heights.heights_m)}
 
 
@@ -104,12 +104,12 @@ def parts_propose(
     level: float,
 ) -> dict[str, Any]:
     """Propose the part under a stroke: its box, and run lengths of pixels outside and inside, row by row."""
-    opened = opening.opened_of(state, opening.edited_of(state, text, path, sets))
-    stroke = as_points(points, opened.picture.shape)
+    input_ = opening.editor_input(state, opening.edited_pipeline(state, text, path, sets))
+    stroke = as_points(points, input_.picture.shape)
     if kind == "regions":
-        box, mask = propose_region(opening.tree_of(state, opened), stroke, width_px, level, within)
+        box, mask = propose_region(opening.region_tree(state, input_), stroke, width_px, level, within)
     else:
-        box, mask = propose(opened.picture, stroke, width_px, kind, within)
+        box, mask = propose(input_.picture, stroke, width_px, kind, within)
     return {"box": list(box), "runs": runs(mask)}
 
 
@@ -118,7 +118,7 @@ def parts_snap(
     state: WorkerState, text: str, path: Path, sets: list[str], points: list[list[float]], reach_px: float
 ) -> dict[str, Any]:
     """Move a closed outline to the strongest edges within reach. Raises: as `parts_propose`."""
-    picture = opening.opened_of(state, opening.edited_of(state, text, path, sets)).picture
+    picture = opening.editor_input(state, opening.edited_pipeline(state, text, path, sets)).picture
     outline = as_points(points, picture.shape)
     return {"points": np.round(snap(picture, outline, reach_px), 2).tolist()}
 
@@ -141,27 +141,29 @@ def parts_save(
     earlier: Sequence[str] = (),
 ) -> dict[str, Any]:
     """Save labels that a page has uploaded, and the document with the entries of their parts, or change nothing."""
-    pipeline = opening.edited_of(state, text, path, sets)
-    if of and of != opening.digest(opening.opened_of(state, pipeline).parts, pipeline.config):
+    pipeline = opening.edited_pipeline(state, text, path, sets)
+    if of and of != opening.digest(opening.editor_input(state, pipeline).parts, pipeline.config):
         raise ConfigError("the parts were changed elsewhere meanwhile, as in another tab; open the editor again")
     labels = unpack(sent, pipeline.scene.shape)
-    known, segments = saving.compact(labels)
-    found = find_parts(SegmentMap(segments))
-    choices, numbers = saving.number_parts(parts, [int(known[segment]) for segment in found.segments], found.labels)
+    label_values, segments = saving.compact(labels)
+    part_map = find_parts(SegmentMap(segments))
+    choices, numbers = saving.number_parts(
+        parts, [int(label_values[segment]) for segment in part_map.segments], part_map.labels
+    )
     file = path if saving.is_in_file(path, opened) else saving.new_file(pipeline.config, path, drawn, beside)
-    picture = as_png(saving.undo_framing(found.labels, pipeline.config), file.name)
+    picture = as_png(saving.undo_framing(part_map.labels, pipeline.config), file.name)
     place = saving.place_next_to(file)
     text_there = relocate_text(text, path, parse_config(text, path, state.registry), file)
-    changed = saving.document_with_parts(text_there, file, place, choices, heights, words)
+    new_text = saving.document_with_parts(text_there, file, place, choices, heights, words)
     if pipeline.config.materials.by == "roughness":
-        changed = edit_text(changed, file, {("materials", "by"): "rules"})  # parts are of what they are said to be of
-    config = parse_config(changed, file, state.registry, sets)
-    check_parts(config, found, labels.shape[1])
-    moved = saving.keep_replaced(place, picture, store, [*earlier, text], path)
-    saving.write(place, picture, file, changed)
-    saving.warn_of_numbers(config, opening.opened_of(state, pipeline), found)
-    of = opening.digest(found, config)
-    return {"text": changed, "path": str(place), "file": file, "numbers": numbers, "digest": of, "moved": moved}
+        new_text = edit_text(new_text, file, {("materials", "by"): "rules"})  # parts are of what they are said to be of
+    config = parse_config(new_text, file, state.registry, sets)
+    check_parts(config, part_map, labels.shape[1])
+    new_texts = saving.keep_replaced(place, picture, store, [*earlier, text], path)
+    saving.write(place, picture, file, new_text)
+    saving.warn_of_numbers(config, opening.editor_input(state, pipeline), part_map)
+    of = opening.digest(part_map, config)
+    return {"text": new_text, "path": str(place), "file": file, "numbers": numbers, "digest": of, "moved": new_texts}
 
 
 @job(quick=True)
@@ -175,8 +177,8 @@ def parts_heights(
     heights: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Return the loop's input with other heights of parts, by number; None for what the recipe finds."""
-    pipeline = opening.edited_of(state, text, path, sets)
-    opening.opened_of(state, pipeline)
+    pipeline = opening.edited_pipeline(state, text, path, sets)
+    opening.editor_input(state, pipeline)
     config = preview_config(pipeline.config, heights, pipeline.scene.shape)
     if pipeline.scene.segments is None and not pipeline.config.by_parts:
         raise ConfigError("no parts are saved yet; save what was drawn, and its heights can be felt")
@@ -184,19 +186,19 @@ def parts_heights(
     if before is None or not before.preview.holds_for(bare.engine):
         state.preview = DrawnPreview(PartHeightPreview(bare.engine, before and before.preview), bare)
     by = (heights or {}).get("by", config_heights(pipeline.config).by)
-    tried = state.preview.preview.try_heights(config, heights_m, by, materials)
-    state.preview.surface = tried.surface
-    return parcel_of(tried.touch, tried.felt, config)
+    trial = state.preview.preview.try_heights(config, heights_m, by, materials)
+    state.preview.surface = trial.surface
+    return pack_loop_input(trial.touch, trial.felt, config)
 
 
 @job(quick=True)
 def parts_shown(state: WorkerState) -> None:
     """Send pages the surface that `parts_heights` made last."""
-    drawn: DrawnPreview | None = state.preview
-    if drawn is None or drawn.surface is None:
+    current: DrawnPreview | None = state.preview
+    if current is None or current.surface is None:
         return
-    surface, drawn.surface = drawn.surface, None
-    drawn.seen = view_parts(drawn.pipeline, surface, drawn.seen)
-    if drawn.seen.digest != state.shown:
-        state.tell("scene", **show(drawn.seen, state.folder))
-        state.shown = drawn.seen.digest
+    surface, current.surface = current.surface, None
+    current.view = view_parts(current.pipeline, surface, current.view)
+    if current.view.digest != state.shown_digest:
+        state.tell("scene", **show(current.view, state.folder))
+        state.shown_digest = current.view.digest

@@ -12,8 +12,8 @@ from tangible_core.runtime import stoppable
 
 from ..messages import Late
 from ..state import WorkerState
-from .document import digest_of
-from .making import announced
+from .document import text_digest
+from .making import announce
 from .table import job
 
 
@@ -23,15 +23,15 @@ def preflight(
 ) -> dict[str, Any]:
     """Judge on the document's device, or on the page's hand `own`; late: of the loop, by default of a sample."""
     pipeline, is_own = _pipeline_to_judge(state, text, path, sets, own)
-    with announced(state, number, pipeline, text, "preflight") as (work, report):
+    with announce(state, number, pipeline, text, "preflight") as (work, report):
         pipeline.make("touch", report, work.stop)
         with stoppable(work.stop):
             flight = Feeling(pipeline).flight(loop=_loop(late))
         if late is not None:
             flight = replace(flight, lateness=Lateness(*late))
-        found = _verdict_data(judge(flight), text, pipeline, is_own, late)
-        state.tell("preflight", **found)
-    return found
+        verdicts = _verdict_data(judge(flight), text, pipeline, is_own, late)
+        state.tell("preflight", **verdicts)
+    return verdicts
 
 
 @job()
@@ -40,21 +40,21 @@ def fix(
 ) -> dict[str, Any]:
     """Return the changes with which the document passes, by key, and the verdicts then. Raises: as `preflight`."""
     pipeline, is_own = _pipeline_to_judge(state, text, path, sets, own)
-    with announced(state, number, pipeline, text, "preflight") as (work, report):
+    with announce(state, number, pipeline, text, "preflight") as (work, report):
         pipeline.make("touch", report, work.stop)
         lateness = None if late is None else Lateness(*late)
         with stoppable(work.stop):
-            found = cure(text, path, pipeline, Hand(), _loop(late), [*sets, own] if is_own else sets, lateness)
-    settings = {key: change.setting for key, change in found.changes.items()}
-    return {"changes": settings, "safe": found.verdicts.safe, "sentence": found.verdicts.sentence}
+            cure_result = cure(text, path, pipeline, Hand(), _loop(late), [*sets, own] if is_own else sets, lateness)
+    settings = {key: change.setting for key, change in cure_result.changes.items()}
+    return {"changes": settings, "safe": cure_result.verdicts.safe, "sentence": cure_result.verdicts.sentence}
 
 
 def _pipeline_to_judge(state: WorkerState, text: str, path: Path, sets: list[str], own: str) -> tuple[Pipeline, bool]:
     """Return the pipeline, and True if it uses the page's own hand."""
-    pipeline = state.pipeline_of(text, path, sets)
+    pipeline = state.make_pipeline(text, path, sets)
     if pipeline.config.device is not None:
         return pipeline, False
-    return state.pipeline_of(text, path, [*sets, own]), True
+    return state.make_pipeline(text, path, [*sets, own]), True
 
 
 def _loop(late: Late | None) -> Loop:
@@ -66,7 +66,7 @@ def _verdict_data(
 ) -> dict[str, Any]:
     device, law = pipeline.config.device, pipeline.config.render
     return {
-        "digest": digest_of(text),
+        "digest": text_digest(text),
         **verdicts.as_data(),
         "device": "" if is_own or device is None else device.name,
         "law": law.name if law else "",
@@ -79,14 +79,14 @@ def legible(
     state: WorkerState, number: int, text: str, path: Path, sets: list[str], medium: Medium, width_m: float | None
 ) -> dict[str, Any]:
     """Judge by the rules of one medium. width_m: of the whole picture there; by default as export draws it."""
-    pipeline = state.pipeline_of(text, path, sets)
-    with announced(state, number, pipeline, text, "legible") as (work, report):
+    pipeline = state.make_pipeline(text, path, sets)
+    with announce(state, number, pipeline, text, "legible") as (work, report):
         pipeline.make("parts", report, work.stop)
         with stoppable(work.stop):
             feeling = Feeling(pipeline)
             width_m = feeling.width_on(medium) if width_m is None else width_m
-            judged, simplified = feeling.legible(medium, width_m), feeling.is_simplified_on(medium)
-        told = {"medium": medium, "width_m": width_m, "simplified": simplified}
-        found = {"digest": digest_of(text), **told, **judged.as_data()}
-        state.tell("legible", **found)
-    return found
+            verdicts, is_simplified = feeling.legible(medium, width_m), feeling.is_simplified_on(medium)
+        arguments = {"medium": medium, "width_m": width_m, "simplified": is_simplified}
+        message = {"digest": text_digest(text), **arguments, **verdicts.as_data()}
+        state.tell("legible", **message)
+    return message

@@ -26,14 +26,14 @@ AT_FLAGS = TICK_COLUMNS.index("flags")
 def records(state: WorkerState) -> list[dict[str, Any]]:
     """List the user's recordings, newest first; for an unreadable one, the reason."""
     try:
-        found = sorted(
-            (each for each in user_folder(RECORDINGS).iterdir() if each.suffix in SUFFIXES),
+        files = sorted(
+            (file for file in user_folder(RECORDINGS).iterdir() if file.suffix in SUFFIXES),
             key=_modification_time,
             reverse=True,
         )
     except OSError:
         return []
-    return [_entry(path) for path in found[:MAX_LISTED]]
+    return [_entry(path) for path in files[:MAX_LISTED]]
 
 
 def _modification_time(path: Path) -> float:
@@ -45,19 +45,19 @@ def _modification_time(path: Path) -> float:
 
 def _entry(path: Path) -> dict[str, Any]:
     try:
-        found = Recording.load(path)
+        recording = Recording.load(path)
     except OutputError as error:
         return {"name": path.name, "path": str(path), "trouble": str(error)}
-    return {"name": path.name, "path": str(path), "trouble": "", **_about(found)}
+    return {"name": path.name, "path": str(path), "trouble": "", **_about(recording)}
 
 
-def _about(found: Recording) -> dict[str, Any]:
+def _about(recording: Recording) -> dict[str, Any]:
     return {
-        "law": found.about.renderer,
-        "device": found.about.device,
-        "started": found.about.started,
-        "stopped": found.stopped,
-        "figures": found.figures(),
+        "law": recording.about.renderer,
+        "device": recording.about.device,
+        "started": recording.about.started,
+        "stopped": recording.stopped,
+        "figures": recording.figures(),
     }
 
 
@@ -67,18 +67,18 @@ def show_record(state: WorkerState, path: str) -> dict[str, Any]:
     return _lay_out(state, Recording.load(as_path(path)), path)
 
 
-def _lay_out(state: WorkerState, found: Recording, path: str) -> dict[str, Any]:
-    every = -(-len(found.rows) // MAX_ROWS) or 1
-    rows = found.rows[::every].copy()
-    start_s = float(found.time_s[0]) if len(rows) else 0.0
-    rows[:, AT_FLAGS] = found.flags[::every] & FLAG_BITS
+def _lay_out(state: WorkerState, recording: Recording, path: str) -> dict[str, Any]:
+    every = -(-len(recording.rows) // MAX_ROWS) or 1
+    rows = recording.rows[::every].copy()
+    start_s = float(recording.time_s[0]) if len(rows) else 0.0
+    rows[:, AT_FLAGS] = recording.flags[::every] & FLAG_BITS
     rows[:, 0] -= start_s  # float32 cannot hold the time of a clock that has run for days
-    digest = digest_of(found.rows)
+    digest = digest_of(recording.rows)
     at = state.folder / digest
     at.mkdir(exist_ok=True)
     (at / "ticks.f32").write_bytes(np.ascontiguousarray(rows, "<f4").tobytes())
     shape = {"rows": len(rows), "columns": len(TICK_COLUMNS), "every": every}
-    return {"digest": digest, "path": path, "name": Path(path).name, **shape, **_about(found)}
+    return {"digest": digest, "path": path, "name": Path(path).name, **shape, **_about(recording)}
 
 
 @job(page=True)
@@ -91,12 +91,12 @@ def compare_records(state: WorkerState, path: str, other: str) -> dict[str, Any]
 def try_law(state: WorkerState, text: str, path: Path, sets: list[str], record: Path) -> dict[str, Any]:
     """Replay a recording with the document's law, keep the result with the user's recordings, and compare both."""
     before = Recording.load(record)
-    after = Feeling(state.pipeline_of(text, path, sets)).replay(before)
+    after = Feeling(state.make_pipeline(text, path, sets)).replay(before)
     out = _free(user_folder(RECORDINGS), f"{record.stem} with {after.about.renderer}")
     after.save(out)
     return {**_lay_out(state, after, str(out)), "compared": compare_replay(before, after)}
 
 
 def _free(folder: Path, name: str) -> Path:
-    numbered = (folder / f"{name}{f' {number}' if number else ''}.nc" for number in range(10_000))
-    return next(path for path in numbered if not path.exists())
+    names = (folder / f"{name}{f' {number}' if number else ''}.nc" for number in range(10_000))
+    return next(path for path in names if not path.exists())

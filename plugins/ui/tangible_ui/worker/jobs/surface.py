@@ -55,16 +55,16 @@ def patch(at: Path, centre_m: tuple[float, float], side_m: float, pixels: int) -
     about = json.loads((at / ABOUT).read_text())
     steps_m = ((np.arange(pixels) + 0.5) / pixels - 0.5) * side_m
     x, y = np.meshgrid(centre_m[0] + steps_m, centre_m[1] - steps_m)
-    found = np.zeros((pixels, pixels))
+    heights = np.zeros((pixels, pixels))
     if not about["labels"] or not about["materials"]:
-        return found.astype(np.float32)
+        return heights.astype(np.float32)
     width_m, length_m = about["extent_m"]
     inside = (np.abs(x) <= width_m / 2) & (np.abs(y) <= length_m / 2)
     kinds = np.fromfile(at / "materials.u16", "<u2")[_labels(at, about, x, y)]
     for kind in np.unique(kinds[inside]):
         here = inside & (kinds == kind)
-        found[here] = _heights(Material(**about["materials"][kind]), x[here], y[here])
-    return found.astype(np.float32)
+        heights[here] = _heights(Material(**about["materials"][kind]), x[here], y[here])
+    return heights.astype(np.float32)
 
 
 def _labels(at: Path, about: dict[str, Any], x: np.ndarray, y: np.ndarray) -> Shaped[np.ndarray, "n n"]:
@@ -79,45 +79,45 @@ def _labels(at: Path, about: dict[str, Any], x: np.ndarray, y: np.ndarray) -> Sh
 def _heights(
     material: Material, x: Float64[np.ndarray, " n"], y: Float64[np.ndarray, " n"]
 ) -> Float64[np.ndarray, " n"]:
-    found = np.zeros(x.shape)
+    total = np.zeros(x.shape)
     for fx, fy, amplitude_m, phase in zip(*waves(material), strict=True):
-        found += amplitude_m * np.cos(2 * np.pi * (fx * x + fy * y + phase))
-    return found
+        total += amplitude_m * np.cos(2 * np.pi * (fx * x + fy * y + phase))
+    return total
 
 
 @job(page=True)
 def description(state: WorkerState, language: Language) -> dict[str, Any] | None:
     """Describe the surface at length, as text and as an HTML page; None without a surface."""
-    if state.described is None:
+    if state.description is None:
         return None
-    pipeline, seen = state.described
+    pipeline, view = state.description
     config, kind = pipeline.config, kind_of(pipeline.scene)
-    title, parts = title_of(config, pipeline.scene), facts(seen.surface)
+    title, parts = title_of(config, pipeline.scene), facts(view.surface)
     people = _people(pipeline)
-    told = tell(seen.surface, title, language, parts, kind, people)
+    texts = tell(view.surface, title, language, parts, kind, people)
     return {
-        "digest": seen.digest,
-        "title": told.title,
-        "overview": " ".join(told.overview),
-        "heading": told.heading,
-        "parts": [{"label": part.label, "says": " ".join(part.sentences)} for part in told.parts],
-        "left_out": told.left_out,
-        "text": "\n".join(describe_at_length(seen.surface, title, language, parts, kind, people)),
-        "html": page_of(seen.surface, title, language, parts, kind, people, named_in=config.language),
+        "digest": view.digest,
+        "title": texts.title,
+        "overview": " ".join(texts.overview),
+        "heading": texts.heading,
+        "parts": [{"label": part.label, "says": " ".join(part.sentences)} for part in texts.parts],
+        "left_out": texts.left_out,
+        "text": "\n".join(describe_at_length(view.surface, title, language, parts, kind, people)),
+        "html": page_of(view.surface, title, language, parts, kind, people, named_in=config.language),
     }
 
 
-def description_data(pipeline: Pipeline, seen: SurfaceView) -> dict[str, Any]:
+def description_data(pipeline: Pipeline, view: SurfaceView) -> dict[str, Any]:
     """Return descriptions by language."""
     scene = pipeline.scene
     kind, people = kind_of(scene), _people(pipeline)
     return {
-        "digest": seen.digest,
-        "says": {each: describe(seen.surface, scene.name, each, kind, people) for each in LANGUAGES},
+        "digest": view.digest,
+        "says": {language: describe(view.surface, scene.name, language, kind, people) for language in LANGUAGES},
     }
 
 
 def _people(pipeline: Pipeline) -> int:
     """Return the number of people known to be in front; 0 where the relief is not made of what networks see."""
-    seen = product_at_hand(pipeline.engine, "figure") if pipeline.config.relief_kind == "figure" else None
-    return 0 if seen is None else seen.people
+    figure = product_at_hand(pipeline.engine, "figure") if pipeline.config.relief_kind == "figure" else None
+    return 0 if figure is None else figure.people

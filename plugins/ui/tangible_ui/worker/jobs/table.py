@@ -39,7 +39,7 @@ def job(*, quick: bool = False, page: bool = False) -> Callable[[F], F]:
 @job(quick=True)
 def answer_page(state: Any, text: str, path: Path, sets: list[str], request: str, arguments: dict[str, Any]) -> Any:
     """Answer a request of a page. Raises: ConfigError for an unknown one or wrong arguments; as the job."""
-    answers = {name: each.do for name, each in JOBS.items() if each.page}
+    answers = {name: entry.do for name, entry in JOBS.items() if entry.page}
     if request not in answers:
         raise ConfigError(f"there is no request {quoted(request)}{did_you_mean(request, answers)}")
     do = answers[request]

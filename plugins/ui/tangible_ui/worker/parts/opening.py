@@ -37,47 +37,47 @@ class Opened(NamedTuple):
     parts: PartMap
 
 
-def edited_of(state: WorkerState, text: str, path: Path, sets: list[str]) -> Pipeline:
+def edited_pipeline(state: WorkerState, text: str, path: Path, sets: list[str]) -> Pipeline:
     """Return the pipeline of a text, derived from that of the last quick job here. Raises: ConfigError."""
-    config, before = state.config_of(text, path, sets), state.opened
-    made = state.after(before.pipeline, config) if before and before.pipeline.config.scene == config.scene else None
-    return made or state.pipeline_of(text, path, sets)
+    config, before = state.read_config(text, path, sets), state.editor
+    derived = state.after(before.pipeline, config) if before and before.pipeline.config.scene == config.scene else None
+    return derived or state.make_pipeline(text, path, sets)
 
 
-def opened_of(state: WorkerState, pipeline: Pipeline) -> Opened:
+def editor_input(state: WorkerState, pipeline: Pipeline) -> Opened:
     """Return a scene's picture and parts; those of the last scene are kept. Raises: as `parts_open`."""
-    before, scene = state.opened, pipeline.scene
+    before, scene = state.editor, pipeline.scene
     if before is None or before.scene is not scene:
         before = Opened(pipeline, scene, to_rgb8(_picture(scene)), _parts(pipeline))
-    state.opened = before._replace(pipeline=pipeline)
+    state.editor = before._replace(pipeline=pipeline)
     return before
 
 
-def tree_of(state: WorkerState, opened: Opened) -> SegmentTree:
+def region_tree(state: WorkerState, input_: Opened) -> SegmentTree:
     """Return the tree of the picture's regions, by the document's texture method if that makes one; it is kept."""
-    if state.tree is None or state.tree[0] is not opened.picture:
-        chosen = opened.pipeline.config.texture
-        method = chosen.method if chosen else None
+    if state.tree is None or state.tree[0] is not input_.picture:
+        texture = input_.pipeline.config.texture
+        method = texture.method if texture else None
         if not isinstance(method, Hierarchical):
             method = state.registry.load("texture", TREES)()
         assert isinstance(method, Hierarchical)
-        state.tree = opened.picture, method.tree(opened.picture)
+        state.tree = input_.picture, method.tree(input_.picture)
     return state.tree[1]
 
 
 def digest(parts: PartMap, config: PipelineConfig) -> str:
     """Return the digest of the parts and of the document's entries for them."""
-    choices = tuple((number, repr(each)) for number, each in sorted((config.parts or {}).items()))
+    choices = tuple((number, repr(entry)) for number, entry in sorted((config.parts or {}).items()))
     return digest_of((parts.labels, choices, repr(config_heights(config))))
 
 
 def part_entries(parts: PartMap, choices: Mapping[int, PartChoice]) -> list[dict[str, Any]]:
     """Return every part with its entry, by label, its number of pixels, and a pixel well inside it."""
     places = _places(parts)
-    said = [choices.get(number, PartChoice()).model_dump(mode="json") for number in range(parts.count)]
+    entries = [choices.get(number, PartChoice()).model_dump(mode="json") for number in range(parts.count)]
     sizes = part_sizes(parts).tolist()
     return [
-        {"number": number, **said[number], "pixels": sizes[number], "at": places[number]}
+        {"number": number, **entries[number], "pixels": sizes[number], "at": places[number]}
         for number in range(parts.count)
     ]
 
@@ -88,11 +88,11 @@ def _picture(scene: Scene) -> np.ndarray:
         return scene.views.left
     height = scene.height
     assert height is not None
-    known = np.isfinite(height)
-    if not known.any():
+    valid_mask = np.isfinite(height)
+    if not valid_mask.any():
         return np.zeros(height.shape, np.uint8)
-    low, high = (float(each) for each in (height[known].min(), height[known].max()))
-    return np.where(known, np.round(255 * ((height - low) / ((high - low) or 1))), 0).astype(np.uint8)
+    low, high = (float(limit) for limit in (height[valid_mask].min(), height[valid_mask].max()))
+    return np.where(valid_mask, np.round(255 * ((height - low) / ((high - low) or 1))), 0).astype(np.uint8)
 
 
 def _parts(pipeline: Pipeline) -> PartMap:
@@ -101,8 +101,8 @@ def _parts(pipeline: Pipeline) -> PartMap:
     if scene.segments is not None:
         return parts_of(scene.segments)
     is_made = pipeline.config.by_parts and is_at_hand(pipeline.engine, "parts")
-    if is_made and (found := pipeline.make("parts")) is not None:
-        return found
+    if is_made and (parts := pipeline.make("parts")) is not None:
+        return parts
     return find_parts(SegmentMap(np.zeros(scene.shape, np.int32)))
 
 
@@ -118,24 +118,24 @@ def _places(parts: PartMap) -> list[tuple[int, int]]:
     best = np.full(parts.count + 1, -1, np.int64)
     best[labels.ravel()[order]] = order  # the last assignment stays: the farthest
     rows, columns = np.divmod(best[: parts.count], labels.shape[1])
-    found = [(int(column), int(row)) for row, column in zip((rows - 1) * step, (columns - 1) * step, strict=True)]
-    lost = np.flatnonzero(best[: parts.count] < 0)  # parts between the sampled pixels
-    if lost.size:
+    places = [(int(column), int(row)) for row, column in zip((rows - 1) * step, (columns - 1) * step, strict=True)]
+    without_place = np.flatnonzero(best[: parts.count] < 0)  # parts between the sampled pixels
+    if without_place.size:
         flat = parts.labels.ravel()
         first = np.empty(parts.count, np.int64)
         first[flat[::-1]] = np.arange(flat.size - 1, -1, -1)
-        for number in lost.tolist():
+        for number in without_place.tolist():
             row, column = divmod(int(first[number]), parts.labels.shape[1])
-            found[number] = column, row
-    return found
+            places[number] = column, row
+    return places
 
 
-def leave_files(opened: Opened, at: Path) -> None:
+def leave_files(input_: Opened, at: Path) -> None:
     """Write the files that an editor fetches, atomically."""
 
     def write(part: Path) -> None:
-        (part / "labels.u16").write_bytes(opened.parts.labels.astype("<u2").data)
-        write_whole(opened.picture, part / "picture.jpg")
+        (part / "labels.u16").write_bytes(input_.parts.labels.astype("<u2").data)
+        write_whole(input_.picture, part / "picture.jpg")
 
     leave(at, "the parts", write)
     (at / "labels.u16").touch()

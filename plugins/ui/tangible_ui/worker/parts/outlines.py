@@ -26,18 +26,18 @@ def snap(
     away = np.linspace(-1, 1, 2 * steps + 1) * min(reach_px, MAX_REACH_PX)
     normals = _normals(places)
     cost = 1 - _edges(picture, places, normals, away) + FAR * np.abs(np.linspace(-1, 1, away.size, dtype=np.float32))
-    moved = places + normals * away[_cheapest(cost)][:, None]
-    return np.clip(moved, 0, [picture.shape[1] - 1, picture.shape[0] - 1])
+    new_places = places + normals * away[_cheapest(cost)][:, None]
+    return np.clip(new_places, 0, [picture.shape[1] - 1, picture.shape[0] - 1])
 
 
 def _resample(outline: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, "m 2"]:
     """Return places along the closed outline, a pixel or more apart."""
-    closed = np.concatenate([outline, outline[:1]])
-    lengths = np.hypot(*np.diff(closed, axis=0).T)
+    ring = np.concatenate([outline, outline[:1]])
+    lengths = np.hypot(*np.diff(ring, axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(lengths)])
     count = int(min(MAX_PLACES, along[-1]))
-    wanted = np.arange(count) * (along[-1] / max(1, count))
-    return np.stack([np.interp(wanted, along, closed[:, axis]) for axis in (0, 1)], axis=1)
+    targets = np.arange(count) * (along[-1] / max(1, count))
+    return np.stack([np.interp(targets, along, ring[:, axis]) for axis in (0, 1)], axis=1)
 
 
 def _normals(places: Float64[np.ndarray, "m 2"]) -> Float64[np.ndarray, "m 2"]:
@@ -72,10 +72,10 @@ def _cheapest(cost: Float32[np.ndarray, "m k"]) -> Int[np.ndarray, " m"]:
     price = (BEND * np.abs(turns)).astype(np.float32)[:, None]
     came = np.empty((2 * rows, columns), np.int8)
     total = np.zeros(columns, np.float32)
-    padded = np.full(columns + 2 * TURN, np.inf, np.float32)
-    windows = np.lib.stride_tricks.sliding_window_view(padded, columns)
+    with_margin = np.full(columns + 2 * TURN, np.inf, np.float32)
+    windows = np.lib.stride_tricks.sliding_window_view(with_margin, columns)
     for row in range(2 * rows):
-        padded[TURN : TURN + columns] = total
+        with_margin[TURN : TURN + columns] = total
         sums = windows + price
         came[row] = best = np.argmin(sums, axis=0)
         total = sums[best, np.arange(columns)] + cost[row % rows]

@@ -90,12 +90,12 @@ def propose_region(
 
 def as_points(points: Sequence[Sequence[float]], shape: tuple[int, ...]) -> Float64[np.ndarray, "n 2"]:
     """Return points in the picture, columns and rows, at most MAX_POINTS. Raises: ConfigError for anything else."""
-    found = np.array([list(point) for point in points if len(point) == 2], np.float64).reshape(-1, 2)
-    if not 0 < len(found) == len(points) or not np.isfinite(found).all():
+    array = np.array([list(point) for point in points if len(point) == 2], np.float64).reshape(-1, 2)
+    if not 0 < len(array) == len(points) or not np.isfinite(array).all():
         raise ConfigError("points: are [[column, row], ...] in pixels of the picture, at least one")
-    if len(found) > MAX_POINTS:
-        found = found[np.linspace(0, len(found) - 1, MAX_POINTS).round().astype(int)]
-    return np.clip(found, 0, [shape[1] - 1, shape[0] - 1])
+    if len(array) > MAX_POINTS:
+        array = array[np.linspace(0, len(array) - 1, MAX_POINTS).round().astype(int)]
+    return np.clip(array, 0, [shape[1] - 1, shape[0] - 1])
 
 
 def runs(mask: Bool[np.ndarray, "r c"]) -> list[int]:
@@ -106,8 +106,8 @@ def runs(mask: Bool[np.ndarray, "r c"]) -> list[int]:
     """
     flat = mask.ravel()
     ends = np.flatnonzero(flat[1:] != flat[:-1]) + 1
-    found = np.diff(ends, prepend=0, append=flat.size).tolist()
-    return [0, *found] if flat[0] else found
+    lengths = np.diff(ends, prepend=0, append=flat.size).tolist()
+    return [0, *lengths] if flat[0] else lengths
 
 
 def _window(shape: tuple[int, ...], points: np.ndarray, width_px: float, within: Sequence[float] | None) -> Window:
@@ -129,19 +129,19 @@ def _draw_stroke(points: np.ndarray, width_px: float, window: Window, size: tupl
 
     scale = np.array(size) / [window.columns, window.rows]
     places = np.floor((points - [window.x, window.y] + 0.5) * scale).astype(np.int32)
-    drawn = np.zeros(size[::-1], np.uint8)
-    cv2.polylines(drawn, [np.concatenate([places, places[-1:]])], False, 1, max(1, round(width_px * float(scale[0]))))
-    return drawn.astype(np.bool_)
+    canvas = np.zeros(size[::-1], np.uint8)
+    cv2.polylines(canvas, [np.concatenate([places, places[-1:]])], False, 1, max(1, round(width_px * float(scale[0]))))
+    return canvas.astype(np.bool_)
 
 
 def _rim(window: Window, stroke: np.ndarray, shape: tuple[int, ...]) -> Bool[np.ndarray, "r c"]:
     """Return the rim of the window where the picture goes on: it is outside the part."""
-    found = np.zeros(stroke.shape, np.bool_)
-    found[:RIM] |= window.y > 0
-    found[:, :RIM] |= window.x > 0
-    found[-RIM:] |= window.y + window.rows < shape[0]
-    found[:, -RIM:] |= window.x + window.columns < shape[1]
-    return found & ~stroke
+    rim = np.zeros(stroke.shape, np.bool_)
+    rim[:RIM] |= window.y > 0
+    rim[:, :RIM] |= window.x > 0
+    rim[-RIM:] |= window.y + window.rows < shape[0]
+    rim[:, -RIM:] |= window.x + window.columns < shape[1]
+    return rim & ~stroke
 
 
 def _segment(small: np.ndarray, stroke: np.ndarray, rim: np.ndarray, width: float, kind: Kind) -> np.ndarray:
@@ -169,7 +169,7 @@ def _watershed(picture: np.ndarray, inside: np.ndarray, outside: np.ndarray) -> 
 
     markers = np.zeros(inside.shape, np.int32)
     markers[outside], markers[inside] = OUTSIDE, PART
-    wider = (cv2.copyMakeBorder(each, 1, 1, 1, 1, cv2.BORDER_REPLICATE) for each in (picture, markers))
+    wider = (cv2.copyMakeBorder(array, 1, 1, 1, 1, cv2.BORDER_REPLICATE) for array in (picture, markers))
     return np.asarray(cv2.watershed(*wider))[1:-1, 1:-1] == PART  # OpenCV takes the outermost pixels for a border
 
 
@@ -179,10 +179,10 @@ def _keep_connected(mask: Bool[np.ndarray, "r c"], stroke: Bool[np.ndarray, "r c
 
     smooth = np.asarray(cv2.medianBlur(mask.astype(np.uint8), 3)).astype(np.bool_) | stroke
     _, pieces = cv2.connectedComponents(smooth.astype(np.uint8), connectivity=4)
-    found = np.isin(pieces, np.unique(pieces[stroke]))
-    _, holes, told, _ = cv2.connectedComponentsWithStats((~found).astype(np.uint8), connectivity=4)
-    small = told[:, cv2.CC_STAT_AREA] < SMALL_HOLE * found.sum()
-    return found | small[holes]
+    part = np.isin(pieces, np.unique(pieces[stroke]))
+    _, holes, stats, _ = cv2.connectedComponentsWithStats((~part).astype(np.uint8), connectivity=4)
+    small = stats[:, cv2.CC_STAT_AREA] < SMALL_HOLE * part.sum()
+    return part | small[holes]
 
 
 def _refine_border(whole: np.ndarray, mask: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "h w"]:
@@ -193,21 +193,21 @@ def _refine_border(whole: np.ndarray, mask: Bool[np.ndarray, "r c"]) -> Bool[np.
     cells = mask.astype(np.uint8)
     sure, ring = cv2.erode(cells, np.ones((3, 3), np.uint8)), cv2.dilate(cells, np.ones((3, 3), np.uint8))
     state = np.where(sure == 1, PART, np.where(ring == 0, OUTSIDE, 0)).astype(np.uint8)
-    found = np.asarray(cv2.resize(cells, (columns, rows), interpolation=cv2.INTER_NEAREST)).astype(np.bool_)
+    fine = np.asarray(cv2.resize(cells, (columns, rows), interpolation=cv2.INTER_NEAREST)).astype(np.bool_)
     row_ends, column_ends = (
         np.round(np.arange(n + 1) * (full / n)).astype(int) for n, full in zip(mask.shape, (rows, columns), strict=True)
     )
     for top in range(0, mask.shape[0], BLOCK):
         for left in range(0, mask.shape[1], BLOCK):
             if (state[top : top + BLOCK, left : left + BLOCK] == 0).any():
-                _refine_block(whole, state, found, (row_ends, column_ends), (top, left))
-    return found
+                _refine_block(whole, state, fine, (row_ends, column_ends), (top, left))
+    return fine
 
 
 def _refine_block(
     whole: np.ndarray,
     state: np.ndarray,
-    found: np.ndarray,
+    fine: np.ndarray,
     ends: tuple[np.ndarray, np.ndarray],
     block: tuple[int, int],
 ) -> None:
@@ -222,7 +222,7 @@ def _refine_block(
     markers = np.asarray(cv2.resize(near, (x1 - x0, y1 - y0), interpolation=cv2.INTER_NEAREST))
     if (markers == PART).any() and (markers == OUTSIDE).any():
         part = _watershed(cv2.GaussianBlur(whole[y0:y1, x0:x1], (0, 0), 1.0), markers == PART, markers == OUTSIDE)
-        found[v0:v1, u0:u1] = part[v0 - y0 : v1 - y0, u0 - x0 : u1 - x0]
+        fine[v0:v1, u0:u1] = part[v0 - y0 : v1 - y0, u0 - x0 : u1 - x0]
 
 
 def _crop_to_box(mask: Bool[np.ndarray, "r c"], window: Window) -> tuple[Window, Bool[np.ndarray, "R C"]]:

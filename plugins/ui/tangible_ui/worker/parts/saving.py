@@ -42,12 +42,12 @@ def unpack(path: Path, shape: tuple[int, int]) -> UInt16[np.ndarray, "h w"]:
     try:
         unpacking = zlib.decompressobj(GZIP)
         with path.open("rb") as file:
-            found = unpacking.decompress(file.read(size + size // 1000 + 1024), size + 1)
+            content = unpacking.decompress(file.read(size + size // 1000 + 1024), size + 1)
     except (zlib.error, OSError) as error:
         raise ConfigError(wrong) from error
-    if len(found) != size or not unpacking.eof:
+    if len(content) != size or not unpacking.eof:
         raise ConfigError(wrong)
-    return np.frombuffer(found, "<u2").reshape(shape).astype(np.uint16, copy=False)
+    return np.frombuffer(content, "<u2").reshape(shape).astype(np.uint16, copy=False)
 
 
 def as_png(labels: Int32[np.ndarray, "h w"], document: str) -> bytes:
@@ -96,25 +96,25 @@ MAX_EDITED = 200
 SAID = ("name", "height_m", "material")
 
 
-def warn_of_numbers(config: PipelineConfig, before: Opened, found: PartMap) -> None:
+def warn_of_numbers(config: PipelineConfig, before: Opened, parts: PartMap) -> None:
     """Warn of materials that are chosen by the number of a segment or part that has moved."""
     rules, by = config.materials.rules, config.materials.by
     segments = {rule.segment for rule in rules if rule.segment is not None} | set(by if isinstance(by, dict) else ())
-    named = {rule.part for rule in rules if isinstance(rule.part, int)}
+    part_numbers = {rule.part for rule in rules if isinstance(rule.part, int)}
     labels = np.array(before.parts.segments)[before.parts.labels]
     there = before.scene.segments is not None  # otherwise a method computes the segments
 
     def is_elsewhere(number: int, before: Int32[np.ndarray, "h w"]) -> bool:
-        now = found.labels[before == label_of_number(number)]  # a slightly moved border does not make it another part
+        now = parts.labels[before == label_of_number(number)]  # a slightly moved border does not make it another part
         return not now.size or shown_number(int(np.bincount(now).argmax())) != number
 
-    moved = {segment for segment in segments if not there or is_elsewhere(segment, labels)}
-    moved |= {each for each in named if is_elsewhere(each, before.parts.labels)}
-    if moved:
+    elsewhere = {segment for segment in segments if not there or is_elsewhere(segment, labels)}
+    elsewhere |= {part for part in part_numbers if is_elsewhere(part, before.parts.labels)}
+    if elsewhere:
         log.warning(
             "materials: are chosen by the numbers %s, which is now another part or none; name the parts, and choose by "
             "name ({part: NAME, material: ...})",
-            ", ".join(map(str, sorted(moved))),
+            ", ".join(map(str, sorted(elsewhere))),
         )
 
 
@@ -124,24 +124,24 @@ def number_parts(
     """Return the entries by number of the part, and the numbers that each label became. Raises: ConfigError."""
     if not all(type(part.get("label")) is int for part in parts):
         raise ConfigError("parts: each entry needs the number of its label")
-    told = {part["label"]: part for part in parts}
-    if len(told) < len(parts):
+    by_label = {part["label"]: part for part in parts}
+    if len(by_label) < len(parts):
         raise ConfigError("a label has two entries; give each label one")
     of_label: dict[int, list[int]] = {}
     for number, label in enumerate(labels):
         of_label.setdefault(label, []).append(number)
-    if gone := sorted(told.keys() - of_label.keys()):
-        raise ConfigError(f"label {gone[0]}: has a name or a height, and no pixel; leave it out, or paint it")
+    if missing := sorted(by_label.keys() - of_label.keys()):
+        raise ConfigError(f"label {missing[0]}: has a name or a height, and no pixel; leave it out, or paint it")
     sizes = np.bincount(numbers.ravel(), minlength=len(labels))
-    taken = {str(part.get("name") or "").strip().casefold() for part in parts}
+    names = {str(part.get("name") or "").strip().casefold() for part in parts}
     choices: dict[int, dict[str, Any]] = {}
-    for label, each in told.items():
+    for label, entry in by_label.items():
         largest_first = sorted(of_label[label], key=lambda number: (-sizes[number], number))
         for place, number in enumerate(largest_first):
-            choices[number] = {key: each[key] for key in SAID if each.get(key) not in (None, "")}
+            choices[number] = {key: entry[key] for key in SAID if entry.get(key) not in (None, "")}
             if place and (name := choices[number].get("name")):
-                choices[number]["name"] = _another(name, taken)
-    return choices, {str(label): found for label, found in of_label.items()}
+                choices[number]["name"] = _another(name, names)
+    return choices, {str(label): own_numbers for label, own_numbers in of_label.items()}
 
 
 def document_with_parts(
@@ -157,8 +157,10 @@ def document_with_parts(
     changes: dict[Any, Any] = dict(_scene(now, path, place))
     changes |= {("heights", key): value for key, value in (heights or {}).items()}
     changes |= {(key,): value or REMOVE for key, value in words.items() if value is not None}
-    entries = ((number, each) for number, each in sorted(choices.items()) if each)
-    short = {shown_number(number): each["name"] if set(each) == {"name"} else dict(each) for number, each in entries}
+    entries = ((number, entry) for number, entry in sorted(choices.items()) if entry)
+    short = {
+        shown_number(number): entry["name"] if set(entry) == {"name"} else dict(entry) for number, entry in entries
+    }
     before = now.get("parts")
     before = before if isinstance(before, dict) else {}
     if not before or len(short.keys() | before.keys()) > MAX_EDITED:
@@ -179,32 +181,32 @@ def _with_block(text: str, path: Path, parts: Mapping[int, Any]) -> str:
         return edit_text(bare, path, {("parts", str(number)): value for number, value in parts.items()})
 
 
-def _another(name: str, taken: set[str]) -> str:
+def _another(name: str, names: set[str]) -> str:
     """Return the name with a number, so that no other part has it."""
     others = (f"{name.strip()} {number}" for number in itertools.count(2))
-    found = next(other for other in others if other.casefold() not in taken)
-    taken.add(found.casefold())
-    return found
+    new_name = next(other for other in others if other.casefold() not in names)
+    names.add(new_name.casefold())
+    return new_name
 
 
 def compact(labels: UInt16[np.ndarray, "h w"]) -> tuple[np.ndarray, Int32[np.ndarray, "h w"]]:
     """Return the distinct labels, and the index of each pixel's label among them."""
-    known = np.flatnonzero(np.bincount(labels.ravel(), minlength=1))
-    places = np.zeros(int(known[-1]) + 1, np.int32)
-    places[known] = np.arange(known.size, dtype=np.int32)
-    return known, places[labels]
+    values = np.flatnonzero(np.bincount(labels.ravel(), minlength=1))
+    places = np.zeros(int(values[-1]) + 1, np.int32)
+    places[values] = np.arange(values.size, dtype=np.int32)
+    return values, places[labels]
 
 
 def _scene(now: Mapping[str, Any], path: Path, place: Path) -> dict[tuple[str, ...], Any]:
     """Return the changes of the scene's keys: a built-in scene becomes its files."""
-    named = place.name if place.parent == path.parent else str(place)
+    segments = place.name if place.parent == path.parent else str(place)
     scene = now.get("scene")
     if isinstance(scene, dict):
-        return {("scene", "segments"): named}
+        return {("scene", "segments"): segments}
     if not isinstance(scene, str) or scene not in BUILTINS:
         raise ConfigError(f"scene: {quoted(scene)}: parts can be drawn in files and in built-in scenes alone")
     files = builtin_files(scene).model_dump(mode="json", exclude_defaults=True)
-    return {("scene",): {**files, "segments": named}}
+    return {("scene",): {**files, "segments": segments}}
 
 
 def undo_framing(labels: Int32[np.ndarray, "h w"], config: PipelineConfig) -> Shaped[np.ndarray, "H W"]:
@@ -236,8 +238,8 @@ def folder_of_photograph(config: PipelineConfig, uploads: Path) -> Path | None:
     if picture is None:
         return None
     folder = (config.folder / picture).absolute().parent
-    hidden = folder.resolve().is_relative_to(uploads.resolve())
-    return None if hidden or not os.access(folder, os.W_OK) else folder
+    is_upload = folder.resolve().is_relative_to(uploads.resolve())
+    return None if is_upload or not os.access(folder, os.W_OK) else folder
 
 
 def new_file(config: PipelineConfig, path: Path, drawn: Path, beside: bool) -> Path:
@@ -261,16 +263,16 @@ def keep_replaced(place: Path, picture: bytes, store: Path, texts: Sequence[str]
     before = place.read_bytes() if place.is_file() else picture
     if before == picture:
         return {}
-    kept = store / hashlib.sha256(before).hexdigest()[:16] / NAME
-    moved: dict[str, str] = {}
+    stored = store / hashlib.sha256(before).hexdigest()[:16] / NAME
+    new_texts: dict[str, str] = {}
     for text in dict.fromkeys(texts):
         scene = read_values(text, path).get("scene") if place.name in text else None
         if isinstance(scene, dict) and path.parent / str(cast("dict[str, Any]", scene).get("segments")) == place:
-            moved[text] = edit_text(text, path, {("scene", "segments"): str(kept)})
-    if moved:
-        with atomic_write(kept) as file:
+            new_texts[text] = edit_text(text, path, {("scene", "segments"): str(stored)})
+    if new_texts:
+        with atomic_write(stored) as file:
             file.write(before)
-    return moved
+    return new_texts
 
 
 def write(place: Path, picture: bytes, document: Path, text: str) -> None:

@@ -34,11 +34,11 @@ MAX_SIDE = 4096
 """Greatest side of a level: every WebGL 2 has textures of this size."""
 
 
-def show(seen: SurfaceView, folder: Path) -> dict[str, Any]:
+def show(view: SurfaceView, folder: Path) -> dict[str, Any]:
     """Write a view's files atomically, level 0 the finest, and return the message `scene`. Raises: OutputError."""
-    at = folder / seen.digest
-    about = _about(seen)
-    leave(at, "what is to be drawn", partial(_write, seen, about))
+    at = folder / view.digest
+    about = _about(view)
+    leave(at, "what is to be drawn", partial(_write, view, about))
     (at / ABOUT).touch()
     sweep(folder, f"*/{ABOUT}", KEPT)
     return about
@@ -61,14 +61,14 @@ def leave(at: Path, what: str, write: Callable[[Path], None]) -> None:
             shutil.rmtree(part, ignore_errors=True)
 
 
-def sweep(folder: Path, pattern: str, kept: int) -> None:
+def sweep(folder: Path, pattern: str, count: int) -> None:
     """Remove all but the newest folders that match, or have a file that does; also those of a killed process."""
-    found: list[tuple[int, Path]] = []
+    folders: list[tuple[int, Path]] = []
     for path in folder.glob(pattern):
         with suppress(OSError):  # another thread swept it
-            found.append((path.stat().st_mtime_ns, path))
-    for _, each in sorted(found)[:-kept]:
-        shutil.rmtree(each if each.is_dir() else each.parent, ignore_errors=True)
+            folders.append((path.stat().st_mtime_ns, path))
+    for _, old in sorted(folders)[:-count]:
+        shutil.rmtree(old if old.is_dir() else old.parent, ignore_errors=True)
 
 
 def label_type(labels: np.ndarray) -> str:
@@ -76,24 +76,24 @@ def label_type(labels: np.ndarray) -> str:
     return "<u2" if int(labels.max(initial=0)) < 2**16 else "<u4"
 
 
-def _about(seen: SurfaceView) -> dict[str, Any]:
-    rows, columns = seen.relief.height_m.shape
+def _about(view: SurfaceView) -> dict[str, Any]:
+    rows, columns = view.relief.height_m.shape
     steps = [2**level for level in range(count_levels((rows, columns)))]
     return {
-        "digest": seen.digest,
-        "name": seen.name,
-        "shows": seen.shows,
+        "digest": view.digest,
+        "name": view.name,
+        "shows": view.shows,
         "rows": rows,
         "columns": columns,
-        "extent_m": list(seen.relief.extent_m),
-        "height_m": [float(seen.relief.height_m.min()), float(seen.relief.height_m.max())],
+        "extent_m": list(view.relief.extent_m),
+        "height_m": [float(view.relief.height_m.min()), float(view.relief.height_m.max())],
         "levels": [{"step": step, "rows": -(-rows // step), "columns": -(-columns // step)} for step in steps],
-        "labels": 0 if seen.labels is None else int(seen.labels.max()) + 1,
-        "label_bytes": 2 if seen.labels is None else np.dtype(label_type(seen.labels)).itemsize,
-        "materials": [asdict(distinct_material) for distinct_material in distinct_materials(seen.materials)[0]],
-        "parts": None if seen.names is None else list(seen.names),
-        "photo": seen.picture is not None,
-        "fine_photo": None if seen.picture is None else _fine_size(seen.picture),
+        "labels": 0 if view.labels is None else int(view.labels.max()) + 1,
+        "label_bytes": 2 if view.labels is None else np.dtype(label_type(view.labels)).itemsize,
+        "materials": [asdict(distinct_material) for distinct_material in distinct_materials(view.materials)[0]],
+        "parts": None if view.names is None else list(view.names),
+        "photo": view.picture is not None,
+        "fine_photo": None if view.picture is None else _fine_size(view.picture),
         "layers": {
             name: {
                 "unit": layer.unit,
@@ -102,15 +102,15 @@ def _about(seen: SurfaceView) -> dict[str, Any]:
                 "rows": layer.values.shape[0],
                 "columns": layer.values.shape[1],
             }
-            for name, layer in seen.layers.items()
+            for name, layer in view.layers.items()
         },
     }
 
 
-def _write(seen: SurfaceView, about: dict[str, Any], part: Path) -> None:
-    _write_arrays(seen, len(about["levels"]), part)
-    if seen.picture is not None:
-        _write_picture(seen.picture, part)
+def _write(view: SurfaceView, about: dict[str, Any], part: Path) -> None:
+    _write_arrays(view, len(about["levels"]), part)
+    if view.picture is not None:
+        _write_picture(view.picture, part)
     (part / ABOUT).write_text(json.dumps(about))
 
 
@@ -123,15 +123,15 @@ def _put(part: Path, at: Path) -> None:
             raise
 
 
-def _write_arrays(seen: SurfaceView, count: int, part: Path) -> None:
-    for level, height_m in enumerate(means(seen.relief.height_m, count)):
+def _write_arrays(view: SurfaceView, count: int, part: Path) -> None:
+    for level, height_m in enumerate(means(view.relief.height_m, count)):
         _raw(part / f"height-{level}.f32", height_m, "<f4")
-    if seen.labels is not None:
-        kind = label_type(seen.labels)
-        for level, labels in enumerate(middles(seen.labels, count)):
+    if view.labels is not None:
+        kind = label_type(view.labels)
+        for level, labels in enumerate(middles(view.labels, count)):
             _raw(part / f"labels-{level}.u", labels, kind)
-    _raw(part / "materials.u16", distinct_materials(seen.materials)[1], "<u2")
-    for name, layer in seen.layers.items():
+    _raw(part / "materials.u16", distinct_materials(view.materials)[1], "<u2")
+    for name, layer in view.layers.items():
         _raw(part / f"{name}.f32", layer.values, "<f4")
 
 
@@ -155,20 +155,20 @@ def _size(size: tuple[int, int], most_pixels: int, most_side: int) -> tuple[int,
 
 def _write_picture(picture: np.ndarray, part: Path) -> None:
     """Write the preview, and the fine picture if that is larger."""
-    whole = image_of(picture)
+    whole = as_image(picture)
     if (fine := _fine_size(picture)) is not None:
         _save(whole, fine, part / "photo-fine.jpg")
     _save(whole, _size(whole.size, MAX_PREVIEW, MAX_SIDE), part / "photo.jpg")
 
 
-def image_of(picture: np.ndarray) -> Image.Image:
+def as_image(picture: np.ndarray) -> Image.Image:
     """Return a picture as a browser shows it."""
     return Image.fromarray(picture if picture.dtype == np.uint8 else to_rgb8(picture)).convert("RGB")
 
 
 def write_whole(picture: np.ndarray, path: Path) -> None:
     """Write a picture at full size, up to what browsers decode."""
-    whole = image_of(picture)
+    whole = as_image(picture)
     _save(whole, _size(whole.size, whole.width * whole.height, MAX_FINE_SIDE), path)
 
 
@@ -187,32 +187,32 @@ def count_levels(shape: tuple[int, int]) -> int:
 
 def means(values: Float32[np.ndarray, "h w"], levels: int) -> list[Float32[np.ndarray, "..."]]:
     """Return the levels of values: level k is the mean over blocks of 2^k x 2^k cells, smaller at the end."""
-    found = [values]
+    levels_ = [values]
     rows, columns = (np.ones(side) for side in values.shape)
     for _ in range(levels - 1):
-        half = _halve_rows(_halve_rows(found[-1], rows).T, columns).T
-        found.append(np.ascontiguousarray(half))
+        half = _halve_rows(_halve_rows(levels_[-1], rows).T, columns).T
+        levels_.append(np.ascontiguousarray(half))
         rows, columns = _pair_weights(rows), _pair_weights(columns)
-    return found
+    return levels_
 
 
 def middles(labels: Shaped[np.ndarray, "h w"], levels: int) -> list[Shaped[np.ndarray, "..."]]:
     """Return the levels of labels: level k has the label at the middle of each block of 2^k x 2^k cells."""
-    found = [labels]
+    levels_ = [labels]
     for level in range(1, levels):
         step = 2**level
         places = (np.minimum(np.arange(0, side, step) + step // 2, side - 1) for side in labels.shape)
-        found.append(labels[np.ix_(*places)])
-    return found
+        levels_.append(labels[np.ix_(*places)])
+    return levels_
 
 
 def _halve_rows(values: Float32[np.ndarray, "h w"], weights: np.ndarray) -> Float32[np.ndarray, "n w"]:
     """Return weighted means of rows in pairs; a last row without a partner stays."""
     pairs = len(values) // 2
-    found = values[0::2].copy()
+    half = values[0::2].copy()
     share = weights[1::2] / (weights[0::2][:pairs] + weights[1::2])
-    found[:pairs] += (values[1::2] - values[0::2][:pairs]) * share[:, None].astype(np.float32)
-    return found
+    half[:pairs] += (values[1::2] - values[0::2][:pairs]) * share[:, None].astype(np.float32)
+    return half
 
 
 def _pair_weights(weights: np.ndarray) -> np.ndarray:

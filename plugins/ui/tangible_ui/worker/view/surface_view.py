@@ -42,12 +42,12 @@ class Layer(NamedTuple):
     def of(cls, values: np.ndarray, unit: str, span: tuple[float, float] | None = None) -> "Layer":
         """Build a layer, reduced if it is large. span: low and high; by default percentiles of the values."""
         factor = max(1.0, (values.size / MAX_LAYER_CELLS) ** 0.5)
-        seen = reduced_map(np.ascontiguousarray(values, np.float32), reduced_shape(values.shape, factor))
-        known = seen[np.isfinite(seen)]
+        small = reduced_map(np.ascontiguousarray(values, np.float32), reduced_shape(values.shape, factor))
+        finite = small[np.isfinite(small)]
         if span is None:
-            low, high = np.percentile(known, RANGE_PERCENT) if known.size else (0.0, 0.0)
+            low, high = np.percentile(finite, RANGE_PERCENT) if finite.size else (0.0, 0.0)
             span = float(low), float(high)
-        return cls(seen, unit, *span)
+        return cls(small, unit, *span)
 
 
 @dataclass(frozen=True)
@@ -81,10 +81,10 @@ class SurfaceView:
         return digest_of(parts)
 
 
-def view_of(pipeline: Pipeline, product: str) -> SurfaceView:
+def make_view(pipeline: Pipeline, product: str) -> SurfaceView:
     """Return the view once this product is made. Raises: as `make`, if no relief can be made of a depth."""
     if product in ("surface", "touch"):
-        return _of(_view(pipeline, "surface", pipeline.surface.relief), pipeline.surface, pipeline.config)
+        return _on_device(_view(pipeline, "surface", pipeline.surface.relief), pipeline.surface, pipeline.config)
     if product in ("disparity", "relief"):
         return _view(pipeline, "relief", pipeline.relief)
     return _view_segments(pipeline)
@@ -92,16 +92,16 @@ def view_of(pipeline: Pipeline, product: str) -> SurfaceView:
 
 def view_parts(pipeline: Pipeline, surface: HapticSurface, before: SurfaceView | None) -> SurfaceView:
     """Return the view of a surface whose parts have other heights or materials. before: the last view."""
-    seen = before or _view(pipeline, "surface", surface.relief)
-    return _of(replace(seen, relief=surface.relief), surface, pipeline.config)
+    view = before or _view(pipeline, "surface", surface.relief)
+    return _on_device(replace(view, relief=surface.relief), surface, pipeline.config)
 
 
-def _of(seen: SurfaceView, surface: HapticSurface, config: PipelineConfig) -> SurfaceView:
+def _on_device(view: SurfaceView, surface: HapticSurface, config: PipelineConfig) -> SurfaceView:
     if config.felt_device is not None:
         surface, _ = fit_to_device(surface, config, config.felt_device)
     if surface.labels is None:
-        return seen
-    return replace(seen, labels=surface.labels, materials=surface.materials or (), names=surface.names)
+        return view
+    return replace(view, labels=surface.labels, materials=surface.materials or (), names=surface.names)
 
 
 def _view_segments(pipeline: Pipeline) -> SurfaceView:
@@ -109,16 +109,16 @@ def _view_segments(pipeline: Pipeline) -> SurfaceView:
     if is_at_hand(pipeline.engine, "relief"):
         relief = pipeline.relief
     else:
-        felt = pipeline.engine.make_on_grid("segments")
-        shape = pipeline.scene.shape if felt is None else felt.labels.shape
+        segments = pipeline.engine.make_on_grid("segments")
+        shape = pipeline.scene.shape if segments is None else segments.labels.shape
         relief = flat_relief(shape, pipeline.config.size.width_m)
     return _view(pipeline, "segments", relief)
 
 
 def _view(pipeline: Pipeline, shows: Shows, relief: Relief) -> SurfaceView:
     labels = _labels(pipeline, relief.height_m.shape)
-    chosen = product_at_hand(pipeline.engine, "materials")
-    materials = chosen.materials if chosen is not None and labels is not None else ()
+    choice = product_at_hand(pipeline.engine, "materials")
+    materials = choice.materials if choice is not None and labels is not None else ()
     picture = None if pipeline.scene.views is None else pipeline.scene.views.left
     if picture is not None and (opaque := pipeline.scene.shown) is not None:  # transparent ground is white paper
         picture = np.where(opaque[..., None], to_rgb8(picture), np.uint8(255))
@@ -138,24 +138,26 @@ def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h 
     """Return labels of the parts if anything is by parts, else of the segments; None if they are not made."""
     parts = pipeline.config.felt_parts
     product: Product = parts if pipeline.config.by_parts else "segments"
-    found = product_at_hand(pipeline.engine, product)
-    if found is None:
+    segments = product_at_hand(pipeline.engine, product)
+    if segments is None:
         return None
-    return (reduced_segments(found, shape) if product == "segments" else parts_on_grid(found, shape, parts)).labels
+    return (
+        reduced_segments(segments, shape) if product == "segments" else parts_on_grid(segments, shape, parts)
+    ).labels
 
 
 def _layers(pipeline: Pipeline) -> dict[str, Layer]:
-    found: dict[str, Layer] = {}
+    layers: dict[str, Layer] = {}
     disparity: DisparityMap | None = product_at_hand(pipeline.engine, "disparity")
     if disparity is not None:
         unit = "px" if disparity.unit == "px" else ""
-        found["disparity"] = Layer.of(disparity.disparity_px, unit)
-        found["confidence"] = Layer.of(disparity.confidence, "", (0.0, 1.0))
-        found |= _error(pipeline, disparity)
+        layers["disparity"] = Layer.of(disparity.disparity_px, unit)
+        layers["confidence"] = Layer.of(disparity.confidence, "", (0.0, 1.0))
+        layers |= _error(pipeline, disparity)
     segments: SegmentMap | None = product_at_hand(pipeline.engine, "segments")
     if segments is not None and float(segments.confidence.min()) < 1:
-        found["certainty"] = Layer.of(segments.confidence, "", (0.0, 1.0))
-    return found
+        layers["certainty"] = Layer.of(segments.confidence, "", (0.0, 1.0))
+    return layers
 
 
 def _error(pipeline: Pipeline, disparity: DisparityMap) -> dict[str, Layer]:
@@ -164,5 +166,5 @@ def _error(pipeline: Pipeline, disparity: DisparityMap) -> dict[str, Layer]:
     if truth is None or whole is None or disparity.unit != "px" or truth.shape != whole.disparity_px.shape:
         return {}
     error_px = absolute_error(whole.disparity_px, truth)
-    known = error_px[np.isfinite(error_px)]
-    return {"error": Layer.of(error_px, "px", (0.0, float(np.percentile(known, 98)) if known.size else 0.0))}
+    finite = error_px[np.isfinite(error_px)]
+    return {"error": Layer.of(error_px, "px", (0.0, float(np.percentile(finite, 98)) if finite.size else 0.0))}

@@ -15,8 +15,8 @@ M = TypeVar("M", bound=BaseModel)
 
 def calibration_path(device: str, serial: str) -> Path:
     """Return the path of a unit's calibration; units of a kind without serial numbers share one."""
-    if named := os.environ.get("TANGIBLE_CONFIG_DIR"):
-        folder = as_path(named, "TANGIBLE_CONFIG_DIR")
+    if variable := os.environ.get("TANGIBLE_CONFIG_DIR"):
+        folder = as_path(variable, "TANGIBLE_CONFIG_DIR")
     else:
         from platformdirs import user_config_path
 

@@ -40,8 +40,8 @@ class MovingHand:
         """Move by one period under the device's force, towards the target."""
         down = max(target_m[2], self.position_m[2] - self._reach_down_m)
         rests = [target + push / self._stiffness for target, push in zip((*target_m[:2], down), force, strict=True)]
-        moved = [self._along_axis(*axis) for axis in zip(self.position_m, self.velocity_m_per_s, rests, strict=True)]
-        (x, vx), (y, vy), (z, vz) = moved
+        states = [self._along_axis(*axis) for axis in zip(self.position_m, self.velocity_m_per_s, rests, strict=True)]
+        (x, vx), (y, vy), (z, vz) = states
         self.position_m, self.velocity_m_per_s = (x, y, z), (vx, vy, vz)
 
     def _along_axis(self, position: float, velocity: float, rest: float) -> tuple[float, float]:

@@ -98,15 +98,15 @@ def stress_device(device: HapticDevice, seconds: float) -> dict[str, Any]:
 
 
 def _look_for(listing: Listing, registry: Registry) -> InstalledDevice:
-    known = listing.name, listing.origin, listing.summary
-    simulated = None
+    facts = listing.name, listing.origin, listing.summary
+    is_simulated = None
     try:
         device = make_device(registry, listing.name)
-        simulated = device.spec().simulated
+        is_simulated = device.spec().simulated
         units = device.connected() if isinstance(device, Serviceable) else ()
-        return InstalledDevice(*known, simulated, tuple(units))
+        return InstalledDevice(*facts, is_simulated, tuple(units))
     except Exception as error:  # noqa: BLE001 - the other devices are listed all the same
-        return InstalledDevice(*known, simulated, problem=_message(error))
+        return InstalledDevice(*facts, is_simulated, problem=_message(error))
 
 
 def _message(error: Exception) -> str:

@@ -96,7 +96,7 @@ class Motion:
         x, y, z = self.target(0)
         self._hand = options.hand and MovingHand(options.hand, (x, y, max(z, options.lift_m)), options.period_s)
 
-    def step(self, held: Force) -> HapticState:
+    def step(self, force: Force) -> HapticState:
         """Return the next state, a period later, under the force held until then; the first state is at time 0."""
         self._tick += 1
         position = self.target(self._tick)
@@ -105,7 +105,7 @@ class Motion:
             velocity = (x - px) / period, (y - py) / period, (z - pz) / period
             return HapticState(position, velocity, self._tick * period)
         if self._tick:
-            self._hand.step(position, held)
+            self._hand.step(position, force)
         return HapticState(self._hand.position_m, self._hand.velocity_m_per_s, self._tick * self._period_s)
 
     def target(self, tick: int) -> Vector:

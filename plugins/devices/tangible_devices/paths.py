@@ -47,12 +47,12 @@ class Stroke:
 
 def walk(points_m: Points, speed_m_per_s: float, period_s: float) -> Stroke:
     """Return a closed stroke at constant speed, reduced so that a lap takes a whole number of periods."""
-    closed = np.vstack([points_m, points_m[:1]])
-    lengths = np.linalg.norm(np.diff(closed, axis=0), axis=1)
-    gone = np.concatenate([[0.0], np.cumsum(lengths)])
-    ticks = max(1, math.ceil(float(gone[-1]) / (speed_m_per_s * period_s) - 1e-9))
-    times = gone * (ticks * period_s / gone[-1])
-    return Stroke(tuple(times.tolist()), _vectors(closed), period_s, ticks)
+    ring = np.vstack([points_m, points_m[:1]])
+    lengths = np.linalg.norm(np.diff(ring, axis=0), axis=1)
+    way = np.concatenate([[0.0], np.cumsum(lengths)])
+    ticks = max(1, math.ceil(float(way[-1]) / (speed_m_per_s * period_s) - 1e-9))
+    times = way * (ticks * period_s / way[-1])
+    return Stroke(tuple(times.tolist()), _vectors(ring), period_s, ticks)
 
 
 def raster(size_m: tuple[float, float], lines: int, low_m: float, high_m: float) -> Points:

@@ -42,7 +42,7 @@ class Playback:
         self._period_s = float(np.median(np.diff(recording.time_s))) if len(recording.rows) > 1 else 0.001
         self._tick = -1
 
-    def step(self, held: Force) -> HapticState:
+    def step(self, force: Force) -> HapticState:
         """Return the next state, whatever the force; after the last one the tip rests, and time advances regularly."""
         self._tick += 1
         rests = max(0, self._tick - len(self._rows) + 1)

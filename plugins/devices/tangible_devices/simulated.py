@@ -25,18 +25,18 @@ class SimulatedLink(Link):
         """move: returns the next state, given the force that was held since the last one."""
         super().__init__(f"the {name} device", LIKE_A_FALCON.max_force_n)
         self._move = move
-        self._applied = NO_FORCE
+        self._force = NO_FORCE
 
     def _read(self) -> HapticState:
-        return self._move(self._applied)
+        return self._move(self._force)
 
     def _send(self, force: Force) -> None:
-        self._applied = force
+        self._force = force
 
     @property
     def applied(self) -> Force:
         """The force on the hand now."""
-        return self._applied
+        return self._force
 
     def _release(self) -> None:
         """Do nothing, as there is no device."""

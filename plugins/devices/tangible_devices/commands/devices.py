@@ -73,11 +73,11 @@ def doctor(
 
     if name is None and sets:
         raise ConfigError("--set: name the device that has this option")
-    names = [name] if name else [each.name for each in default_registry().listings if each.kind == "device"]
-    results = {each: _findings(each, sets or [], named=name is not None) for each in names}
-    verdicts = [each.verdict for findings in results.values() for each in findings]
+    names = [name] if name else [entry.name for entry in default_registry().listings if entry.kind == "device"]
+    results = {device: _findings(device, sets or [], is_request=name is not None) for device in names}
+    verdicts = [finding.verdict for findings in results.values() for finding in findings]
     if as_json:
-        show.print_json({each: [asdict(finding) for finding in findings] for each, findings in results.items()})
+        show.print_json({device: [asdict(finding) for finding in findings] for device, findings in results.items()})
     else:
         show.sentence(_doctor_summary(name, verdicts))
         _print_findings(results)
@@ -160,7 +160,7 @@ def _cells(row: dict[str, Any]) -> list[tuple[str, str, str, str]]:
     return [("simulated" if row["simulated"] else "-", "", "", row["problem"])]
 
 
-def _findings(name: str, sets: Sequence[str], named: bool) -> Sequence[Finding]:
+def _findings(name: str, sets: Sequence[str], is_request: bool) -> Sequence[Finding]:
     from tangible_core.data import Finding
     from tangible_core.plugins.registry import default_registry
 
@@ -169,7 +169,7 @@ def _findings(name: str, sets: Sequence[str], named: bool) -> Sequence[Finding]:
     try:
         return examine_device(default_registry(), name, sets)
     except TangibleError as error:
-        if named:
+        if is_request:
             raise
         return [Finding("plugin", "failed", str(error))]
 
@@ -205,18 +205,18 @@ def _ask(text: str) -> str:
 def _devices_summary(rows: Sequence[Mapping[str, Any]]) -> str:
     """Return which devices can be felt now."""
     real = [row["name"] for row in rows if row["units"]]
-    simulated = [row["name"] for row in rows if row["simulated"]]
+    simulators = [row["name"] for row in rows if row["simulated"]]
     text = f"{listing(real)} {'is' if len(real) == 1 else 'are'} connected" if real else "No real device is connected"
-    return f"{text}; {listing(simulated)} need none." if simulated else f"{text}."
+    return f"{text}; {listing(simulators)} need none." if simulators else f"{text}."
 
 
 def _doctor_summary(name: str | None, verdicts: Sequence[str]) -> str:
     """Return the number of problems that keep a device, or any device, from working."""
-    failed, unasked = verdicts.count("failed"), verdicts.count("not asked")
-    if failed:
-        return f"{_number(failed, 'check')} failed; each has its cure below."
+    failures, omissions = verdicts.count("failed"), verdicts.count("not asked")
+    if failures:
+        return f"{_number(failures, 'check')} failed; each has its cure below."
     text = f"Nothing was found that keeps {name or 'a device'} from working"
-    return f"{text}, but {_number(unasked, 'check')} could not be made." if unasked else f"{text}."
+    return f"{text}, but {_number(omissions, 'check')} could not be made." if omissions else f"{text}."
 
 
 def _number(count: int, noun: str) -> str:

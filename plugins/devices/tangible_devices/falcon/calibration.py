@@ -53,7 +53,7 @@ class Calibration(BaseModel):
     def frame(self) -> Float64[np.ndarray, "3 4"]:
         """Return the transform of positions in metres: workspace = frame[:, :3] @ device + frame[:, 3]."""
         turn = np.array(
-            [[(axis[-1] == each) * (-1.0 if axis[0] == "-" else 1.0) for each in "xyz"] for axis in self.axes]
+            [[(axis[-1] == letter) * (-1.0 if axis[0] == "-" else 1.0) for letter in "xyz"] for axis in self.axes]
         )
         return np.column_stack([turn, -turn @ (0.0, 0.0, CENTRE_M)])
 
@@ -84,6 +84,6 @@ class Settings:
     in_flight: int
     event_character: bool
 
-    def calibration_of(self, serial: str) -> Calibration:
+    def find_calibration(self, serial: str) -> Calibration:
         """Return the option, else the calibration saved for this serial number, else the defaults."""
         return self.calibration or load_calibration("falcon", serial, Calibration) or Calibration()

@@ -45,7 +45,7 @@ class Falcon(HapticDevice, Serviceable, Adjustable):
 
     def spec(self) -> DeviceSpec:
         """Return a Falcon's limits, as in CHAI3D's table; the force is what its motors can give in every direction."""
-        return self.settings().calibration_of(self.serial or "").spec()
+        return self.settings().find_calibration(self.serial or "").spec()
 
     def open(self) -> Link:
         """Find the Falcon, load its firmware if it has none, and wait until it is homed. Raises: DeviceError."""

@@ -63,21 +63,21 @@ class FalconLink(CompiledLink):
         self._port = port
         self._clock = clock
         self._in_flight = in_flight
-        self._sent, self._received = array("B", NULL), array("B", bytes(READ_BYTES))
-        self._chunk, self._begun = np.frombuffer(self._received, np.uint8), np.zeros(SIZE, np.uint8)
+        self._packet, self._reply = array("B", NULL), array("B", bytes(READ_BYTES))
+        self._chunk, self._rest = np.frombuffer(self._reply, np.uint8), np.zeros(SIZE, np.uint8)
         self._buffers = tick.Buffers(
             answer=np.zeros(SIZE, np.uint8),
-            packet=np.frombuffer(self._sent, np.uint8),
+            packet=np.frombuffer(self._packet, np.uint8),
             counts=np.zeros(tick.COUNTS, np.int64),
             held=np.zeros(tick.HELD),
             history=np.zeros((samples, 4)),
             arms=arms,
             frame=frame,
         )
-        self._counts, self._held = self._buffers.counts, self._buffers.held
+        self._counts, self._memory = self._buffers.counts, self._buffers.held
         self._counts[tick.SEEKING], self._counts[tick.RUNNING] = HOMING | leds * RED, HOMING | leds * GREEN
         self._state = np.zeros(7)
-        self._pending = self._lost = self._silences = 0
+        self._pending = self._losses = self._silences = 0
         self._started_s = clock()
         self._sent_s = self._started_s - 1.0
         tick.write(*self._buffers, 0.0, 0.0, 0.0)
@@ -99,7 +99,7 @@ class FalconLink(CompiledLink):
     @property
     def is_homed(self) -> bool:
         """True if all arms have found their zero, by the newest answer, and force has faded in since."""
-        counts, held = self._counts, self._held
+        counts, held = self._counts, self._memory
         return bool(counts[tick.KNOWN] and held[tick.NOW] - held[tick.SINCE] >= tick.RAMP_S)
 
     @property
@@ -112,7 +112,7 @@ class FalconLink(CompiledLink):
         counts, seconds = self._counts, self._clock() - self._started_s
         answers = int(counts[ANSWERS])
         rate_hz = answers / seconds if seconds > 0 else 0.0
-        return Health(rate_hz, answers, self._lost, int(counts[DROPPED]), int(counts[tick.REFUSED]))
+        return Health(rate_hz, answers, self._losses, int(counts[DROPPED]), int(counts[tick.REFUSED]))
 
     def look(self) -> bool:
         """Read the newest answer; tell whether it is new and gives a position."""
@@ -123,7 +123,7 @@ class FalconLink(CompiledLink):
         for _ in range(PATIENCE):
             if self.look():
                 x, y, z, vx, vy, vz, buttons = self._state.tolist()
-                return HapticState((x, y, z), (vx, vy, vz), float(self._held[tick.NOW]), int(buttons))
+                return HapticState((x, y, z), (vx, vy, vz), float(self._memory[tick.NOW]), int(buttons))
             self._exchange()
         raise self._give_up(
             DeviceError(f"{self._port.place}: lost its homing or sends invalid data; open it again, and home it")
@@ -136,14 +136,14 @@ class FalconLink(CompiledLink):
     @property
     def applied(self) -> Force:
         """The force that the device holds: the force written, as far as its motors can give it."""
-        x, y, z = self._held[tick.APPLIED : tick.APPLIED + 3].tolist()
+        x, y, z = self._memory[tick.APPLIED : tick.APPLIED + 3].tolist()
         return Force(x, y, z)
 
     def _exchange(self) -> None:
         try:
             while self._clock() - self._sent_s < FRAME_S:
                 self._fetch()
-            self._port.write(self._sent)
+            self._port.write(self._packet)
             self._sent_s = self._clock()
             self._pending += 1
             self._receive()
@@ -170,7 +170,7 @@ class FalconLink(CompiledLink):
             if self._fetch():
                 self._silences = quiet = 0
             elif (quiet := quiet + 1) == QUIET:
-                self._lost += self._pending
+                self._losses += self._pending
                 self._pending = 0
                 self._silences += 1
         if self._silences == SILENCES:
@@ -178,10 +178,10 @@ class FalconLink(CompiledLink):
 
     def _fetch(self) -> int:
         """Make one IN transfer, of a millisecond if the chip has nothing; return the number of answers."""
-        size = self._port.read(self._received)
-        answers = receive(self._chunk, size, self._begun, self._counts, self._buffers.answer)
+        size = self._port.read(self._reply)
+        answers = receive(self._chunk, size, self._rest, self._counts, self._buffers.answer)
         if answers:
-            self._held[tick.NOW] = self._clock()
+            self._memory[tick.NOW] = self._clock()
             self._pending = max(self._pending - answers, 0)
         return answers
 
@@ -194,6 +194,6 @@ class FalconLink(CompiledLink):
         return error
 
     def _let_go(self) -> None:
-        self._held[tick.APPLIED : tick.APPLIED + 3] = NO_FORCE
+        self._memory[tick.APPLIED : tick.APPLIED + 3] = NO_FORCE
         self._counts[tick.KNOWN] = 0
         self._port.close()

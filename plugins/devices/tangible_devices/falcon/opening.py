@@ -25,7 +25,7 @@ def open_falcon(settings: Settings, image: bytes | None, backend: Any, clock: Ca
     opener = partial(open_port, settings.serial, settings.index, backend)
     port = open_running(opener, image, settings.event_character)
     try:
-        calibration = settings.calibration_of(port.serial() if any_calibration("falcon") else "")
+        calibration = settings.find_calibration(port.serial() if any_calibration("falcon") else "")
     except BaseException:
         port.close()
         raise
@@ -49,13 +49,13 @@ def open_falcon(settings: Settings, image: bytes | None, backend: Any, clock: Ca
 
 def home(link: FalconLink, seconds: float, clock: Callable[[], float]) -> None:
     """Exchange packets without force until the device is homed and force has faded in. Raises: DeviceError."""
-    start, guided = clock(), False
+    start, has_guide = clock(), False
     while not link.is_homed:
         link.write(NO_FORCE)
         link.look()
-        waited = clock() - start
-        if waited > seconds:
+        seconds_so_far = clock() - start
+        if seconds_so_far > seconds:
             raise DeviceError(f"{link.place}: {link.arms_homed} of 3 arms are homed after {seconds:g} s; {GUIDE}")
-        if waited > AT_ONCE_S and not guided and link.arms_homed < 3:
-            guided = True
+        if seconds_so_far > AT_ONCE_S and not has_guide and link.arms_homed < 3:
+            has_guide = True
             log.warning("%s: %s", link.place, GUIDE)

@@ -15,7 +15,7 @@ from .measuring import measure
 from .opening import open_falcon
 from .usb.firmware import firmware_answers
 from .usb.image import WHENCE, read_image
-from .usb.port import INTERFACE, Port, choose_device, connected_devices, place_of, run_time, serial_of
+from .usb.port import INTERFACE, Port, choose_device, connected_devices, device_place, read_serial, run_time
 
 ENOUGH_HZ = 900.0
 """Lowest rate that is reported as fine."""
@@ -51,12 +51,12 @@ def calibrate(
     settings: Settings, image: bytes | None, ask: Callable[[str], str], backend: Any, clock: Callable[[], float]
 ) -> tuple[str, Calibration]:
     """Calibrate the Falcon that the settings select; return its serial number and the calibration."""
-    serial = serial_of(choose_device(connected_devices(backend), settings.serial, settings.index)[0]) or ""
+    serial = read_serial(choose_device(connected_devices(backend), settings.serial, settings.index)[0]) or ""
 
     def opener(calibration: Calibration) -> FalconLink:
         return open_falcon(replace(settings, calibration=calibration), image, backend, clock)
 
-    return serial, measure(opener, ask, settings.calibration_of(serial))
+    return serial, measure(opener, ask, settings.find_calibration(serial))
 
 
 def _device_findings(
@@ -64,10 +64,10 @@ def _device_findings(
 ) -> Iterator[Finding]:
     place = f"bus {device.bus}, address {device.address}"
     try:
-        serial = serial_of(device)
+        serial = read_serial(device)
         yield Finding(f"{place}: permission", "fine", f"may be used; serial number {serial or 'none'}")
         yield Finding(f"{place}: driver", "fine", _driver(device))
-        with closing(Port(device, place_of(device))) as port:
+        with closing(Port(device, device_place(device))) as port:
             port.claim()
             run_time(port, settings.event_character)
             yield Finding(f"{place}: in use", "fine", "by nobody else")
@@ -88,7 +88,7 @@ def _device_findings(
 def _unit(device: Any) -> Unit:
     place = f"USB bus {device.bus}, address {device.address}"
     try:
-        return Unit("Novint Falcon", serial_of(device) or "", place)
+        return Unit("Novint Falcon", read_serial(device) or "", place)
     except DeviceError as error:
         return Unit("Novint Falcon", "", place, f"{str(error).splitlines()[0]} (tangible devices doctor falcon)")
 

@@ -137,7 +137,7 @@ class ForceDimensionLink(Link):
         super().__init__("this Force Dimension device", max_force_n)
         self._dhd = dhd
         self._number = number
-        self._applied = NO_FORCE
+        self._force = NO_FORCE
         try:
             check_result(dhd, dhd.enableForce(True, number), "enabling its force", REPLUG)
             self._send(NO_FORCE)
@@ -157,15 +157,15 @@ class ForceDimensionLink(Link):
         return HapticState((y, -x, z), (vy, -vx, vz), time.perf_counter(), buttons)
 
     def _send(self, force: Force) -> None:
-        self._applied = NO_FORCE
+        self._force = NO_FORCE
         result = self._dhd.setForce([-force.y, force.x, force.z], self._number)
         check_result(self._dhd, result, "setting its force", REPLUG)
-        self._applied = force
+        self._force = force
 
     @property
     def applied(self) -> Force:
         """The force that was set last."""
-        return self._applied
+        return self._force
 
     def _release(self) -> None:
         self._dhd.close(self._number)

@@ -109,7 +109,7 @@ class Session:
         self._timeout_s = timeout_s
         self._open = ExitStack()
         self._connection = _connect(self._open, uri, timeout_s)
-        self._owed = 1  # the snapshot comes without a message
+        self._answers_due = 1  # the snapshot comes without a message
         try:
             self.arms: tuple[Unit, ...] = tuple(_arm(device) for device in _devices(self._receive(), "inverse3"))
         except BaseException:
@@ -118,14 +118,14 @@ class Session:
 
     def choose(self, device_id: str | None) -> str:
         """Return the id of the arm to use. Raises: DeviceAbsent if there is none, DeviceError if not this one."""
-        connected = [arm.serial for arm in self.arms]
-        if not connected:
+        serials = [arm.serial for arm in self.arms]
+        if not serials:
             self.close()
             raise DeviceAbsent(f"{self.uri}: no Inverse3 is connected; plug in its USB cable and its power supply")
-        if device_id is not None and device_id not in connected:
+        if device_id is not None and device_id not in serials:
             self.close()
-            raise DeviceError(f"{self.uri}: there is no Inverse3 {device_id!r}; there are {', '.join(connected)}")
-        return connected[0] if device_id is None else device_id
+            raise DeviceError(f"{self.uri}: there is no Inverse3 {device_id!r}; there are {', '.join(serials)}")
+        return serials[0] if device_id is None else device_id
 
     def send(self, device_id: str, force_n: tuple[float, float, float]) -> None:
         """Set a force, to which the service owes an answer. Raises: DeviceError if the service is gone."""
@@ -133,17 +133,17 @@ class Session:
         command = {"device_id": device_id, "commands": {"set_cursor_force": {"vector": vector}}}
         with _service_errors(self.uri):
             self._connection.send(json.dumps({"inverse3": [command]}))
-        self._owed += 1
+        self._answers_due += 1
 
     @property
     def waits(self) -> bool:
         """True while an answer is still owed."""
-        return self._owed > 0
+        return self._answers_due > 0
 
     def newest(self, device_id: str) -> Answer:
         """Return the last of the owed answers. Raises: DeviceError if it does not come, or lacks this arm."""
         message: Mapping[str, Any] = {}
-        while self._owed:
+        while self._answers_due:
             message = self._receive()
         with _service_errors(self.uri):
             states = {str(device["device_id"]): device["state"] for device in _devices(message, "inverse3")}
@@ -151,8 +151,8 @@ class Session:
                 raise DeviceError(f"{self.uri}: Inverse3 {device_id} was unplugged; check its plug, then open it again")
             state = states[device_id]
             velocity = state.get("cursor_velocity")
-            pressed = any(device["state"].get("button") is True for device in _devices(message, "verse_grip"))
-            return Answer(_vector(state["cursor_position"]), velocity and _vector(velocity), int(pressed))
+            is_down = any(device["state"].get("button") is True for device in _devices(message, "verse_grip"))
+            return Answer(_vector(state["cursor_position"]), velocity and _vector(velocity), int(is_down))
 
     def close(self) -> None:
         """Disconnect; never fails."""
@@ -161,7 +161,7 @@ class Session:
     def _receive(self) -> Mapping[str, Any]:
         with _service_errors(self.uri):
             message = json.loads(self._connection.recv(self._timeout_s))
-        self._owed -= 1
+        self._answers_due -= 1
         if not isinstance(message, dict):
             raise DeviceError(f"{self.uri}: answers {str(message)[:60]!r}; is this the Haply Inverse Service 3.5?")
         return message
@@ -176,7 +176,7 @@ class HaplyLink(Link):
         self._session = session
         self._device_id = device_id
         self._centre_m = centre_m
-        self._applied = NO_FORCE
+        self._force = NO_FORCE
         self._before: tuple[float, Vector] | None = None
         self._answers = True
 
@@ -184,10 +184,10 @@ class HaplyLink(Link):
         """Return the answer to the last force, or to the same force sent again. Raises: DeviceError."""
         try:
             if not self._session.waits:
-                self._session.send(self._device_id, self._applied)
+                self._session.send(self._device_id, self._force)
             answer = self._session.newest(self._device_id)
         except DeviceError:
-            self._applied, self._answers = NO_FORCE, False  # commands lapse when none are sent
+            self._force, self._answers = NO_FORCE, False  # commands lapse when none are sent
             raise
         return self._state(time.perf_counter(), answer)
 
@@ -197,14 +197,14 @@ class HaplyLink(Link):
                 self._session.newest(self._device_id)
             self._session.send(self._device_id, force)
         except DeviceError:
-            self._applied, self._answers = NO_FORCE, False
+            self._force, self._answers = NO_FORCE, False
             raise
-        self._applied, self._answers = force, True
+        self._force, self._answers = force, True
 
     @property
     def applied(self) -> Force:
         """The force sent last; zero after the service is gone, as its commands lapse."""
-        return self._applied
+        return self._force
 
     def _release(self) -> None:
         if self._answers:

@@ -82,8 +82,8 @@ def checksum(words: tuple[int, ...]) -> int:
 
 def unpack_block(block: bytes) -> tuple[int, tuple[float, ...]] | None:
     """Return the number and the values of a block; None if it is torn."""
-    *words, claimed = struct.unpack(f"={len(block) // 8}Q", block)
-    if checksum(tuple(words)) != claimed:
+    *words, expected_sum = struct.unpack(f"={len(block) // 8}Q", block)
+    if checksum(tuple(words)) != expected_sum:
         return None
     return words[0], struct.unpack(f"={len(words) - 1}d", block[8:-8])
 
@@ -161,8 +161,8 @@ def _lives(path: Path, side: str) -> bool:
 
 def _runtime_folder() -> Path:
     """Return $TANGIBLE_RUNTIME_DIR or the user's runtime folder. Raises: DeviceError if another user owns it."""
-    if named := os.environ.get("TANGIBLE_RUNTIME_DIR"):
-        folder = Path(named)
+    if variable := os.environ.get("TANGIBLE_RUNTIME_DIR"):
+        folder = Path(variable)
     else:
         from platformdirs import user_runtime_path
 

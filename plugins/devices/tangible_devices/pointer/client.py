@@ -46,8 +46,8 @@ class PointerClient:
         before = self._channel.take(SAMPLE, SAMPLE_WORDS)
         self._numbers = count(1 + (before[0] if before else time.monotonic_ns()))
         self._last: tuple[float, Vector] | None = None
-        self._heard = (-1, time.monotonic())
-        self._open, self._released = True, False
+        self._last_force = (-1, time.monotonic())
+        self._open, self._is_free = True, False
 
     def send(self, position_m: Vector, buttons: int = 0, velocity_m_per_s: Vector | None = None) -> None:
         """Send the position of the tip; by default with the mean velocity since the last call. Raises: DeviceError."""
@@ -62,22 +62,22 @@ class PointerClient:
         self._last = now, position_m
         self._channel.put(SAMPLE, next(self._numbers), values)
         self._channel.set_flag(CLIENT_OPEN, True)
-        self._released = False
+        self._is_free = False
 
     def release(self) -> None:
         """Let go of the pointer until the next `send`, which starts anew, unfiltered; no force acts meanwhile."""
         if self._open:
             self._channel.set_flag(CLIENT_OPEN, False)
-            self._last, self._released = None, True
+            self._last, self._is_free = None, True
 
     def force(self) -> Force:
         """Return the force on the hand; zero if the device is silent, or after `release`. Raises: DeviceError."""
         self._check_open()
         now = time.monotonic()
         block = self._channel.take(FORCE, FORCE_WORDS)
-        if block is not None and block[0] != self._heard[0]:
-            self._heard = block[0], now
-        if block is None or self._released or now - self._heard[1] > POINTER_DEVICE_SILENCE_S:
+        if block is not None and block[0] != self._last_force[0]:
+            self._last_force = block[0], now
+        if block is None or self._is_free or now - self._last_force[1] > POINTER_DEVICE_SILENCE_S:
             return NO_FORCE
         return Force(*block[1])
 

@@ -64,33 +64,33 @@ def _path_steps(path: str, seconds: float, height_m: float, speed_m_per_s: float
     stroke = walk(DRAWN[path]((0.06, 0.04), 8, height_m, height_m + 0.03), speed_m_per_s, PERIOD_S)
     start = time.monotonic()
     for number in count(1):
-        passed = time.monotonic() - start
-        if passed >= seconds:
+        seconds_so_far = time.monotonic() - start
+        if seconds_so_far >= seconds:
             return
-        yield (stroke.at(round(passed / PERIOD_S)), 0), number % SHOWN_EVERY == 0
+        yield (stroke.at(round(seconds_so_far / PERIOD_S)), 0), number % SHOWN_EVERY == 0
 
 
 def _typed_steps(lines: Iterable[str], complain: Callable[[str], None]) -> Iterator[tuple[Step, bool]]:
     """Yield each typed position for a while, the last one continually, so that the client does not fall silent."""
     if isinstance(lines, io.TextIOWrapper):
         lines.reconfigure(errors="replace")  # bytes that are not text are an invalid position, not an end
-    typed: Queue[str | None] = Queue()
+    queue: Queue[str | None] = Queue()
 
     def enqueue() -> None:
         for line in lines:
-            typed.put(line.strip())
-        typed.put(None)
+            queue.put(line.strip())
+        queue.put(None)
 
     Thread(target=enqueue, daemon=True).start()
     step: Step = ((0.0, 0.0, 1.0), 0)
-    while (line := _next(typed)) is not None:
+    while (line := _next(queue)) is not None:
         try:
             step = parse(line) if line else step
         except DeviceError as error:
             complain(str(error))
             line = ""
-        for sent in range(1, SHOWN_EVERY + 1):
-            yield step, bool(line) and sent == SHOWN_EVERY
+        for number in range(1, SHOWN_EVERY + 1):
+            yield step, bool(line) and number == SHOWN_EVERY
 
 
 def parse(line: str) -> Step:
@@ -110,9 +110,9 @@ def parse(line: str) -> Step:
         raise DeviceError(f"{quoted(line)} is not a position; type x y z in millimetres, such as 10 -5 2.5") from error
 
 
-def _next(typed: "Queue[str | None]") -> str | None:
+def _next(queue: "Queue[str | None]") -> str | None:
     """Return the next line, None after the last, empty while there is none yet."""
     try:
-        return typed.get_nowait()
+        return queue.get_nowait()
     except Empty:
         return ""

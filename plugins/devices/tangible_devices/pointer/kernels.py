@@ -50,13 +50,13 @@ def fetch(words, kept):
 @njit(int64(WORDS, WORDS, NUMBERS, NUMBERS), **KERNEL)
 def read(words, kept, numbers, state):
     """Write the newest sample, or the filtered tip, to state; return 0 if the client has been silent too long."""
-    found = fetch(words, kept)
-    if found == NOBODY:
+    status = fetch(words, kept)
+    if status == NOBODY:
         kept[AGE] = kept[OLDEST]
         for i in range(7):
             state[i] = HIGH_M if i == 2 else 0.0
         return 1
-    if found == WHOLE and kept[0] != kept[LAST]:
+    if status == WHOLE and kept[0] != kept[LAST]:
         # The first sample after a silence is not filtered.
         if kept[AGE] >= kept[OLDEST]:
             for i in range(6):
@@ -64,7 +64,7 @@ def read(words, kept, numbers, state):
         kept[LAST], kept[AGE] = kept[0], 0
     elif kept[AGE] < kept[OLDEST]:
         kept[AGE] += np.uint64(1)
-    if found == BROKEN or kept[AGE] >= kept[OLDEST]:
+    if status == BROKEN or kept[AGE] >= kept[OLDEST]:
         return 0
     for i in range(7):
         state[i] = numbers[1 + i]

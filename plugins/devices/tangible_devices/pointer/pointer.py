@@ -76,14 +76,14 @@ class PointerLink(CompiledLink):
         self._code: Any = kernels
         self._channel = channel
         self._words = np.frombuffer(channel.memory, np.uint64)
-        self._held = self._words[FORCE + 1 : FORCE + FORCE_WORDS].view(np.float64)
-        self._kept = np.zeros(kernels.KEPT_WORDS, np.uint64)
-        self._numbers = self._kept.view(np.float64)
+        self._force_words = self._words[FORCE + 1 : FORCE + FORCE_WORDS].view(np.float64)
+        self._memory = np.zeros(kernels.KEPT_WORDS, np.uint64)
+        self._numbers = self._memory.view(np.float64)
         self._stale_after_s, self._follow_s = stale_after_s, follow_s
         self._numbers[kernels.SHARE] = -math.expm1(-PERIOD_S / follow_s) if follow_s else 1.0
         self._last = self._words[SAMPLE]  # what lies there from before is nobody's
-        self._kept[kernels.LAST] = self._last
-        self._kept[kernels.AGE] = self._kept[kernels.OLDEST] = round(stale_after_s * 1000)
+        self._memory[kernels.LAST] = self._last
+        self._memory[kernels.AGE] = self._memory[kernels.OLDEST] = round(stale_after_s * 1000)
         self._heard_s, self._read_s = -math.inf, 0.0
         self._sample = self._tip = HapticState(HIGH_M)
         self._send(NO_FORCE)
@@ -95,14 +95,14 @@ class PointerLink(CompiledLink):
         time.sleep(max(0.0, self._read_s + PACE_S - time.perf_counter()))
         now = time.perf_counter()
         passed_s, self._read_s = now - self._read_s, now
-        found = self._code.fetch(self._words, self._kept)
-        if found == self._code.WHOLE and self._kept[0] != self._last:
+        status = self._code.fetch(self._words, self._memory)
+        if status == self._code.WHOLE and self._memory[0] != self._last:
             x, y, z, vx, vy, vz, buttons = self._numbers[1:SAMPLE_WORDS].tolist()
             self._sample = HapticState((x, y, z), (vx, vy, vz), now, int(buttons))
             if now - self._heard_s > self._stale_after_s:
                 self._tip = self._sample
-            self._last, self._heard_s = self._kept[0], now
-        if found == self._code.NOBODY:
+            self._last, self._heard_s = self._memory[0], now
+        if status == self._code.NOBODY:
             self._heard_s = -math.inf
         if now - self._heard_s > self._stale_after_s:
             return HapticState(HIGH_M, time_s=now)
@@ -111,12 +111,12 @@ class PointerLink(CompiledLink):
         return self._tip._replace(time_s=now)
 
     def _send(self, force: Force) -> None:
-        self._code.write(self._words, self._kept, self._numbers, *force)
+        self._code.write(self._words, self._memory, self._numbers, *force)
 
     @property
     def applied(self) -> Force:
         """The force that the client reads."""
-        return Force(*self._held.tolist())
+        return Force(*self._force_words.tolist())
 
     def _release(self) -> None:
         self._words[DEVICE_OPEN] = 0
@@ -124,7 +124,7 @@ class PointerLink(CompiledLink):
 
     def kernels(self) -> LinkKernels:
         """Return the kernels on the shared memory."""
-        return LinkKernels(self._code.read, self._code.write, (self._words, self._kept, self._numbers))
+        return LinkKernels(self._code.read, self._code.write, (self._words, self._memory, self._numbers))
 
     @property
     def exchanges(self) -> bool:

@@ -113,8 +113,8 @@ def inverse(x, y, z):
 
 
 @njit(POINT(types.int64, *[float64] * 4), **KERNEL)
-def _row(i, turned, x, y, z):
-    _, by_x, by_y, by_z, by_angle = _leg(i, math.cos(turned), math.sin(turned), x, y, z)
+def _row(i, angle_rad, x, y, z):
+    _, by_x, by_y, by_z, by_angle = _leg(i, math.cos(angle_rad), math.sin(angle_rad), x, y, z)
     scale = -1.0 / by_angle
     return by_x * scale, by_y * scale, by_z * scale
 

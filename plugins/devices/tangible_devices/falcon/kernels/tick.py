@@ -95,7 +95,7 @@ def remember(counts, history, now, first, second, third):
 @njit(float64(float64[:, ::1], int64, int64, int64), **KERNEL)
 def _rate(history, head, samples, encoder):
     """Return the slope of one encoder over its window."""
-    low, high, found, at = -np.inf, np.inf, 0.0, head
+    low, high, rate, at = -np.inf, np.inf, 0.0, head
     for _ in range(samples - 1):
         at = at - 1 if at else history.shape[0] - 1
         since = history[head, 0] - history[at, 0]
@@ -105,8 +105,8 @@ def _rate(history, head, samples, encoder):
         slope, band = (history[head, encoder] - history[at, encoder]) * per_second, BAND_COUNTS * per_second
         if not low <= slope <= high:
             break
-        low, high, found = max(low, slope - band), min(high, slope + band), slope
-    return found
+        low, high, rate = max(low, slope - band), min(high, slope + band), slope
+    return rate
 
 
 @njit(types.UniTuple(float64, 3)(float64[:, ::1], int64, int64), **KERNEL)

@@ -37,10 +37,10 @@ def move(tip, torque, target, feel, steps, period_s):
             tip[3 + i] = (tip[3 + i] + step_s * push / mass_kg) * slow
             square += tip[3 + i] * tip[3 + i]
         speed = math.sqrt(square)
-        left = max(1.0 - step_s * coulomb / (mass_kg * speed), 0.0) if speed > 0.0 else 0.0
+        share = max(1.0 - step_s * coulomb / (mass_kg * speed), 0.0) if speed > 0.0 else 0.0
         away, outward = 0.0, 0.0
         for i in range(3):
-            tip[3 + i] *= left
+            tip[3 + i] *= share
             tip[i] += step_s * tip[3 + i]
             from_centre = tip[i] - (CENTRE_M if i == 2 else 0.0)
             away += from_centre * from_centre
@@ -75,37 +75,37 @@ class Body:
         self._hand = hand
         self._feel = feel
         self._newton_metres = -1.0 / counts_per_newton_metre
-        self._arms_out, self._homed = 0, 0
+        self._arms_out, self._home_bits = 0, 0
         self._moved_s = 0.0
 
     def let_go(self) -> None:
         """Reset torques, lights and homing."""
-        self.torque_counts, self.info, self._arms_out, self._homed = (0, 0, 0), 0, 0, 0
+        self.torque_counts, self.info, self._arms_out, self._home_bits = (0, 0, 0), 0, 0, 0
 
     def obey(self, torque_counts: tuple[int, ...], info: int, now_s: float) -> None:
         """Hold these torques from now on, and home or unhome the arms."""
         self.move_until(now_s)
         self.torque_counts, self.info = torque_counts, info
         if not info & 1:
-            self._arms_out = self._homed = 0
+            self._arms_out = self._home_bits = 0
 
     def move_until(self, now_s: float) -> None:
         """Simulate the motion under the held torques."""
         torque = self._newton_metres * np.array(self.torque_counts, np.float64)
         while self._moved_s + PERIOD_S <= now_s + 1e-9:
-            target = self._hand.wants(self.tip, bool(self.info & 1), self._homed == sum(HOMED))
+            target = self._hand.wants(self.tip, bool(self.info & 1), self._home_bits == sum(HOMED))
             move(self.tip, torque, target, self._feel, STEPS, PERIOD_S)
             self._moved_s += PERIOD_S
-            if self.info & 1 and self._homed != sum(HOMED):
+            if self.info & 1 and self._home_bits != sum(HOMED):
                 self._seek()
 
     def report(self) -> tuple[tuple[int, ...], int]:
         """Return the encoder counts, and the byte of buttons and homed arms."""
         counts = tuple(
-            round((angle - OFFSET_RAD) / RAD_PER_COUNT) - (0 if self._homed & bit else off)
+            round((angle - OFFSET_RAD) / RAD_PER_COUNT) - (0 if self._home_bits & bit else off)
             for angle, bit, off in zip(self._angles(), HOMED, UNHOMED, strict=True)
         )
-        return counts, self._homed | self._hand.buttons & 15
+        return counts, self._home_bits | self._hand.buttons & 15
 
     def _angles(self) -> tuple[float, ...]:
         return inverse(*self.tip[:3].tolist())
@@ -115,4 +115,4 @@ class Body:
             if angle > OUT_RAD:
                 self._arms_out |= bit
             elif angle < IN_RAD:
-                self._homed |= self._arms_out & bit
+                self._home_bits |= self._arms_out & bit

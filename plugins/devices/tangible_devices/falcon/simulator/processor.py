@@ -16,15 +16,15 @@ SLOW, LOADING, FAST = 0x4138, 0x0015, 0x0002
 class Processor:
     """A processor with the states of TI's boot ROM: after a reset it greets, locks the rate, loads and runs code."""
 
-    def __init__(self, body: Body, swallowed: int = 0) -> None:
+    def __init__(self, body: Body, silent_greetings: int = 0) -> None:
         self.body = body
         self.mode: Mode = "idle"
-        self._swallowed = swallowed
-        self._heard = b""
+        self._silent_greetings = silent_greetings
+        self._input = b""
 
     def reset(self) -> None:
         """Reset, after DTR went low and high: firmware and torques are lost."""
-        self.mode, self._heard = "monitor", b""
+        self.mode, self._input = "monitor", b""
         self.body.let_go()
 
     def unpower(self) -> None:
@@ -34,39 +34,39 @@ class Processor:
 
     def hear(self, data: bytes, divisor: int, dtr: bool, now_s: float) -> bytes:
         """Return the reply to these bytes at this rate."""
-        self._heard += data
+        self._input += data
         if self.mode == "monitor" and divisor == SLOW and dtr:
-            if HELLO not in self._heard:
+            if HELLO not in self._input:
                 return b""
-            self._heard = b""
-            if self._swallowed:
-                self._swallowed -= 1
+            self._input = b""
+            if self._silent_greetings:
+                self._silent_greetings -= 1
                 return b""
             self.mode = "autobaud"
             return READY
         if self.mode == "autobaud" and divisor == LOADING and not dtr:
-            heard, self._heard = self._heard, b""
-            if heard != b"A":
+            letters, self._input = self._input, b""
+            if letters != b"A":
                 return b""
             self.mode = "load"
             return b"A"
         if self.mode == "load" and divisor == LOADING:
-            if stream_ends(self._heard):
-                self.mode, self._heard = "run", b""
+            if stream_ends(self._input):
+                self.mode, self._input = "run", b""
             return data
         if self.mode == "run" and divisor == FAST:
             return self._answer(now_s)
-        self._heard = b""  # noise at the wrong rate
+        self._input = b""  # noise at the wrong rate
         return b""
 
     def _answer(self, now_s: float) -> bytes:
         reply = b""
-        while len(self._heard) >= 16:
-            if self._heard[0] == 0x3C and self._heard[15] == 0x3E:
-                reply += self._obey(self._heard[:16], now_s)
-                self._heard = self._heard[16:]
+        while len(self._input) >= 16:
+            if self._input[0] == 0x3C and self._input[15] == 0x3E:
+                reply += self._obey(self._input[:16], now_s)
+                self._input = self._input[16:]
             else:
-                self._heard = self._heard[1:]
+                self._input = self._input[1:]
         return reply
 
     def _obey(self, packet: bytes, now_s: float) -> bytes:
@@ -78,7 +78,7 @@ class Processor:
 
 def signed_number(four: bytes) -> int:
     """Return the number of four digits, the least significant first."""
-    value = sum((each - 0x41 & 15) << 4 * place for place, each in enumerate(four))
+    value = sum((digit - 0x41 & 15) << 4 * place for place, digit in enumerate(four))
     return value - 0x10000 if value & 0x8000 else value
 
 

@@ -103,20 +103,20 @@ def _boot_mode(port: Port) -> None:
 
 
 def _greet(port: Port) -> None:
-    heard = b""
+    reply = b""
     for _ in range(GREETINGS):
         port.write(array("B", HELLO))
-        heard = (heard + port.payload())[-USB_PACKET:]
-        if READY in heard:
+        reply = (reply + port.payload())[-USB_PACKET:]
+        if READY in reply:
             return
     raise LoadError("the boot loader does not answer")
 
 
-def _send_echoed(port: Port, sent: bytes) -> None:
-    port.write(array("B", sent))
-    heard, quiet = b"", 0
-    while len(heard) < len(sent) and quiet < QUIET:
+def _send_echoed(port: Port, data: bytes) -> None:
+    port.write(array("B", data))
+    echo, quiet = b"", 0
+    while len(echo) < len(data) and quiet < QUIET:
         more = port.payload()
-        heard, quiet = heard + more, 0 if more else quiet + 1
-    if heard != sent:
-        raise LoadError(f"{len(sent)} bytes came back as {len(heard)} others" if heard else "there was no echo")
+        echo, quiet = echo + more, 0 if more else quiet + 1
+    if echo != data:
+        raise LoadError(f"{len(data)} bytes came back as {len(echo)} others" if echo else "there was no echo")

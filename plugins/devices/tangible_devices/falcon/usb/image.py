@@ -29,12 +29,12 @@ def read_image(path: Path) -> bytes:
             image = file.read(MAX_BYTES + 1)
     except OSError as error:
         raise DeviceError(f"{path}: cannot be read: {error.strerror}; give the option firmware; {WHENCE}") from error
-    if fault := fault_of(image):
+    if fault := find_fault(image):
         raise DeviceError(f"{path}: is not a Falcon firmware: {fault}; {WHENCE}")
     return image
 
 
-def fault_of(image: bytes) -> str:
+def find_fault(image: bytes) -> str:
     """Return the fault of an image; empty if it has none."""
     if not image or len(image) % 2 or len(image) > MAX_BYTES:
         return f"it has {len(image)} bytes; an even number up to {MAX_BYTES} is needed"

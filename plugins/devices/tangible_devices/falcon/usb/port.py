@@ -70,7 +70,7 @@ class Port:
     def __init__(self, device: Any, place: str) -> None:
         self.place = place
         self._device = device
-        self._detached = False
+        self._has_driver_to_return = False
         self._chunk = array("B", bytes(READ_BYTES))
 
     def claim(self) -> None:
@@ -79,7 +79,7 @@ class Port:
             with suppress(NotImplementedError):  # only Linux has a driver to be detached
                 if self._device.is_kernel_driver_active(INTERFACE):
                     self._device.detach_kernel_driver(INTERFACE)
-                    self._detached = True
+                    self._has_driver_to_return = True
             if not _is_configured(self._device):
                 self._device.set_configuration(1)
             usb.util.claim_interface(self._device, INTERFACE)
@@ -105,11 +105,11 @@ class Port:
     def write(self, data: Octets) -> None:
         """Send bytes."""
         try:
-            sent = self._device.write(OUT, data, TIMEOUT_MS)
+            count = self._device.write(OUT, data, TIMEOUT_MS)
         except (usb.core.USBError, NotImplementedError) as error:
             raise device_error(error, self.place, "sending to it") from error
-        if sent != len(data):
-            raise DeviceError(f"{self.place}: it took {sent} of {len(data)} bytes; open it again")
+        if count != len(data):
+            raise DeviceError(f"{self.place}: it took {count} of {len(data)} bytes; open it again")
 
     def read(self, chunk: Octets) -> int:
         """Make one IN transfer, unchanged: packets of 64 bytes, 2 of them status, the last one perhaps shorter."""
@@ -128,10 +128,10 @@ class Port:
         failures = (usb.core.USBError, NotImplementedError)
         with suppress(*failures):
             usb.util.release_interface(self._device, INTERFACE)
-        if self._detached:
+        if self._has_driver_to_return:
             with suppress(*failures):
                 self._device.attach_kernel_driver(INTERFACE)
-            self._detached = False
+            self._has_driver_to_return = False
         with suppress(*failures):
             usb.util.dispose_resources(self._device)
 
@@ -154,9 +154,9 @@ def connected_devices(backend: Any) -> list[Any]:
         try:
             return _find(backend)
         except usb.core.NoBackendError as error:
-            if (shipped := _shipped_libusb()) is None:
+            if (own_libusb := _shipped_libusb()) is None:
                 raise DeviceAbsent(f"Novint Falcon: {NO_LIBUSB}") from error
-            return _find(shipped)
+            return _find(own_libusb)
 
 
 def _find(backend: Any) -> list[Any]:
@@ -172,18 +172,18 @@ def _shipped_libusb() -> Any:
     return package.get_libusb1_backend()
 
 
-def serial_of(device: Any) -> str | None:
+def read_serial(device: Any) -> str | None:
     """Open the device and return its serial number; None if the chip has none. Raises: DeviceError."""
-    with usb_errors(place_of(device), "reading its serial number"):
+    with usb_errors(device_place(device), "reading its serial number"):
         try:
             return device.serial_number
         except ValueError as error:  # pyusb's error if no string at all can be read
-            raise error_of_cause(place_of(device), "reading its serial number", NO_PERMISSION) from error
+            raise error_of_cause(device_place(device), "reading its serial number", NO_PERMISSION) from error
         finally:
             usb.util.dispose_resources(device)
 
 
-def place_of(device: Any) -> str:
+def device_place(device: Any) -> str:
     """Return a device's name and place, for messages."""
     return f"Novint Falcon (USB bus {device.bus}, address {device.address})"
 
@@ -196,7 +196,7 @@ def choose_device(devices: list[Any], serial: str | None, index: int) -> tuple[A
             "or use device falcon-simulated"
         )
     if serial is not None:
-        serials = [serial_of(device) for device in devices]
+        serials = [read_serial(device) for device in devices]
         if serial not in serials:
             raise DeviceError(
                 f"Novint Falcon: none has the serial number {serial}; connected are {', '.join(map(str, serials))}"
@@ -204,7 +204,7 @@ def choose_device(devices: list[Any], serial: str | None, index: int) -> tuple[A
         index = serials.index(serial)
     if index >= len(devices):
         raise DeviceError(f"Novint Falcon: index {index} does not exist, {len(devices)} are connected; count from 0")
-    return devices[index], place_of(devices[index])
+    return devices[index], device_place(devices[index])
 
 
 @contextmanager

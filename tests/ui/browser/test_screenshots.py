@@ -64,7 +64,7 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "-dark": {"viewport": {"width": 1240, "height": 780}, "color_scheme": "dark"},
     "-phone": {"viewport": {"width": 390, "height": 844}, "color_scheme": "light", "has_touch": True},
 }
-TASKS = {"parts": "parts-task", "feel": "feel", "hand-on": "hand-on"}
+TASKS = {"parts": "parts-task", "feel": "feel", "hand-on": "export-task"}
 
 
 def test_screenshots_of_start_and_tasks(

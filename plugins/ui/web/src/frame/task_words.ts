@@ -6,6 +6,6 @@ export const t = words({
   picture: ["Picture", "Bild", "Image"],
   parts: ["Parts", "Teile", "Parties"],
   feel: ["Feel", "Fühlen", "Toucher"],
-  "hand-on": ["Hand on", "Weitergeben", "Transmettre"],
+  "hand-on": ["Export", "Exportieren", "Exporter"],
   advanced: ["Advanced", "Erweitert", "Avancé"],
 });

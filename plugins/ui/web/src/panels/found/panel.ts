@@ -1,4 +1,4 @@
-/** What was found about the picture: what it was read as, what the relief is made of, sizes, parts, and what is doubtful. */
+/** Details of the picture: what it was read as, what the relief is made of, sizes, parts, and what is doubtful. */
 import { make } from "kit/elements";
 import type { Note } from "kit/server/messages";
 import type { Page } from "kit/page";

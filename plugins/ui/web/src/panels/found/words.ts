@@ -1,11 +1,11 @@
 import { words } from "kit/words/words";
 
-/** What was found about the picture. */
+/** Details of the picture. */
 export const t = words({
-  title: ["What was found", "Was gefunden wurde", "Ce qui a été trouvé"],
-  none: ["Open a picture; what was found about it is listed here.",
-    "Öffnen Sie ein Bild; hier steht dann, was darüber gefunden wurde.",
-    "Ouvrez une image ; ce qui a été trouvé est indiqué ici."],
+  title: ["Picture details", "Angaben zum Bild", "Détails de l'image"],
+  none: ["Open a picture; its details are listed here.",
+    "Öffnen Sie ein Bild; hier stehen dann die Angaben dazu.",
+    "Ouvrez une image ; ses détails sont indiqués ici."],
   readAs: ["Picture", "Bild", "Image"],
   is_photograph: ["one photograph", "ein Foto", "une photographie"],
   is_depth: ["a pair, or with depth", "ein Paar oder mit Tiefe", "une paire, ou avec profondeur"],

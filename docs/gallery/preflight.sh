@@ -1,0 +1,1 @@
+tangible preflight steep.yaml --fix fixed.yaml

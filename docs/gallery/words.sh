@@ -1,0 +1,1 @@
+tangible describe parts-printed.yaml

@@ -47,6 +47,7 @@ const probe = document.createElement("span");
 /** Return a token's present colour as rgb(...), for drawings. Ask again on the event `theme`. */
 export function colour(token: `--${string}`): string {
   probe.hidden = true;
+  probe.style.setProperty("forced-color-adjust", "none"); // else every token is the system's colour of text
   probe.style.setProperty("color", `var(${token})`);
   if (!probe.isConnected) document.body.append(probe);
   return getComputedStyle(probe).color;

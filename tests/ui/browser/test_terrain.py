@@ -83,6 +83,12 @@ def viridis(share: float) -> np.ndarray:
     return np.round(255 * np.array(colormaps["viridis"](float(share))[:3]))
 
 
+def test_ground_is_dark_where_the_system_forces_its_own_dark_colours(url: str, open_page):
+    page = open_page(f"{url}&measure", draws=True, color_scheme="dark", forced_colors="active")
+    from_above(page)
+    assert pixels(page)[4, 4].max() < 60
+
+
 def test_layers_have_the_colours_of_their_values(url: str, open_page):
     page = open_page(f"{url}&measure", draws=True, reduced_motion="reduce")
     settings(page)

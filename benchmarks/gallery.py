@@ -73,5 +73,5 @@ if __name__ == "__main__":
         for example in examples(Path(sys.argv[1]).absolute()):
             with tempfile.TemporaryDirectory() as made:
                 done = run(example, Path(made), lambda words: subprocess.check_output([tangible(), *words], text=True))
-                small = picture(chromium, *done).quantize(64, dither=Image.Dither.NONE)
+                small = picture(chromium, *done).quantize(64, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
             small.save(example.with_suffix(".png"), optimize=True)

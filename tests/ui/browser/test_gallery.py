@@ -13,7 +13,7 @@ from page_files import ROOT
 
 GALLERY = ROOT / "docs" / "gallery"
 LANGUAGES = {".sh": "sh", ".yaml": "yaml", ".py": "python"}
-DAILY = {"depth-method", "force-law", "landscape", "legible-in-ci", "materials-by-rules", "two-force-laws", "words"}
+DAILY = {"force-law", "landscape", "materials-by-rules", "words"}
 TIMED = {"kiosk", "pareto", "preflight", "replay"}
 """Examples whose results depend on how well the machine keeps time."""
 

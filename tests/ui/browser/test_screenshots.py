@@ -1,6 +1,6 @@
-"""The pictures of the page in the docs, in the nightly tests: otherwise the docs show another page.
+"""The pictures of the page in the docs are compared with the page: otherwise the docs show another one.
 
-TANGIBLE_UI_PICTURES=1 pytest tests/ui/browser/test_screenshots.py --nightly   # writes them there
+TANGIBLE_UI_PICTURES=1 pytest --whole --nightly tests/ui/browser/test_screenshots.py   # takes them anew
 """
 
 import io

@@ -12,7 +12,7 @@ version = release = version_of("tangible-images")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.viewcode", "docstrings", "generated"]
 exclude_patterns = ["_build", "_ext"]
-html_static_path = ["_static"]
+html_static_path = ["_ext/static"]
 myst_heading_anchors = 4
 myst_enable_extensions = ["deflist"]
 

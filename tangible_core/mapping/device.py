@@ -78,8 +78,8 @@ class _ThroughMapping:
     @property
     def applied(self) -> Force:
         """The force that the device holds, in the picture's directions."""
-        held = self._link.applied
-        return Force(*self._to.rotate_back(held.x, held.y), held.z)
+        force = self._link.applied
+        return Force(*self._to.rotate_back(force.x, force.y), force.z)
 
     def _release(self) -> None:
         """Close the device."""

@@ -1,9 +1,4 @@
-"""Conversion of points, motions and forces between the frames of hand and picture.
-
-The picture's point s lies under the hand at h = o + k R (s - c): k the scale, R the rotation about z, c the point of
-the picture that the hand finds at o. Forces are only rotated, F_h = R F_s: a newton of the force law is a newton on the
-hand.
-"""
+"""Conversion of points, motions and forces between the frames of hand and picture."""
 
 import math
 from typing import NamedTuple
@@ -36,6 +31,8 @@ class Placement(NamedTuple):
 
     def under_hand(self, picture_m: Vector) -> Vector:
         """Return the point of the hand at a point of the picture, if no clutch has moved the picture."""
+        # h = o + k R (s - c): k the scale, R the rotation about z, c the point of the picture that the hand finds at o.
+        # Forces are only rotated, F_h = R F_s: a newton of the force law is a newton on the hand.
         x, y, z = picture_m
         x, y = self.scale * (x - self.centre_x_m), self.scale * (y - self.centre_y_m)
         return (

@@ -1,9 +1,4 @@
-"""The library of materials, and the assignment of materials to segments.
-
-A photograph does not show how things feel (over 100 photographed surfaces, friction and vibration predicted from the
-picture explain next to nothing: R^2 is 0.07 and -0.06). So materials are assigned by name, by rules that a person
-writes, or by relative roughness, which is a convention: rougher to the eye becomes rougher to the hand.
-"""
+"""The library of materials, and the assignment of materials to segments."""
 
 from collections.abc import Collection, Mapping, Sequence
 from functools import cache
@@ -20,7 +15,7 @@ from ..data.pictures import to_grey
 from ..errors import MaterialError, did_you_mean, quoted
 from ..runtime.opencv import plain_opencv
 from .files import parse_materials, read_materials
-from .rules import Choice, MaterialRule, apply_rules, noun_of, parts_of
+from .rules import Choice, MaterialRule, apply_rules, map_noun, segment_parts
 
 NEUTRAL = "plain"
 """Material of segments for which none is named."""
@@ -30,11 +25,7 @@ LADDER = ("ice", "metal", "paper", "leather", "wood", "cloth", "sand", "stone", 
 
 
 def load_library(path: Path | None = None) -> Mapping[str, Material]:
-    """Load materials by name: the shipped ones, and those of a YAML file, which adds to them or changes them.
-
-    A shipped name needs only the values that change. Raises: ConfigError with every complaint, one a line, each with
-    file:line:column.
-    """
+    """Load materials by name: the shipped ones, and those of a YAML file, which changes some. Raises: ConfigError."""
     return library() if path is None else read_materials(path, library())
 
 
@@ -78,18 +69,18 @@ def assign(
     Raises: MaterialError for a name, a label or a point that does not exist, or for `roughness` or a colour without a
     picture of the segments' size; PictureError if the picture is not one.
     """
-    noun = noun_of(segments)
-    chosen = {label: (name, f"{name_part(label, noun=noun)}: its own -> {name}") for label, name in (own or {}).items()}
-    chosen = {**apply_rules(rules, segments, picture, shape), **chosen}
+    noun = map_noun(segments)
+    picks = {label: (name, f"{name_part(label, noun=noun)}: its own -> {name}") for label, name in (own or {}).items()}
+    picks = {**apply_rules(rules, segments, picture, shape), **picks}
     if isinstance(by, Mapping):
-        chosen = {**_by_name(segments, by, library), **chosen}
-    elif by == "roughness" and len(chosen) < segments.count:
-        roughness = {label: each for label, each in enumerate(_roughness(segments, picture)) if label not in ground}
-        chosen = {**_by_roughness(roughness, default, noun), **chosen}
+        picks = {**_by_name(segments, by, library), **picks}
+    elif by == "roughness" and len(picks) < segments.count:
+        roughness = {label: value for label, value in enumerate(_roughness(segments, picture)) if label not in ground}
+        picks = {**_by_roughness(roughness, default, noun), **picks}
     for label in ground:
-        chosen.setdefault(label, (default, f"{name_part(label, noun=noun)}: transparent in the picture -> {default}"))
+        picks.setdefault(label, (default, f"{name_part(label, noun=noun)}: transparent in the picture -> {default}"))
     rest = ((default, f"{name_part(label, noun=noun)}: not named -> {default}") for label in range(segments.count))
-    names, reasons = zip(*(chosen.get(label, each) for label, each in enumerate(rest)), strict=True)
+    names, reasons = zip(*(picks.get(label, choice) for label, choice in enumerate(rest)), strict=True)
     return MaterialMap(tuple(find(name, library) for name in names), reasons)
 
 
@@ -104,12 +95,7 @@ def _roughness(segments: SegmentMap | PartMap, picture: np.ndarray | None) -> Fl
 
 
 def relative_roughness(segments: SegmentMap | PartMap, picture: np.ndarray) -> Float64[np.ndarray, "n"]:
-    """Measure how rough each segment looks within this picture; independent of brightness and contrast.
-
-    The roughness is the median over the segment of the local standard deviation of grey, in a square window of 1/64 of
-    the picture's shorter side (at least 3 pixels), as a share of the standard deviation of the whole picture, to three
-    decimals.
-    """
+    """Measure how rough each segment looks within this picture; independent of brightness and contrast."""
     grey = to_grey(picture).astype(np.float64)
     spread = float(grey.std())
     if spread <= 1e-6 * float(np.abs(grey).max()):  # rounding errors of a single colour
@@ -117,6 +103,7 @@ def relative_roughness(segments: SegmentMap | PartMap, picture: np.ndarray) -> F
     grey = (grey - grey.mean()) / spread
     side = max(3, min(grey.shape) // 64 | 1)
     local = np.sqrt(np.maximum(_local_mean(grey * grey, side) - _local_mean(grey, side) ** 2, 0))
+    # The median of the local standard deviation of grey, as a share of that of the whole picture.
     order = np.argsort(segments.labels, axis=None, kind="stable")
     ends = np.cumsum(np.bincount(segments.labels.ravel(), minlength=segments.count))
     return np.round([np.median(part) if part.size else 0.0 for part in np.split(local.ravel()[order], ends[:-1])], 3)
@@ -149,7 +136,7 @@ def _by_name(
         return {
             part: (name, f"{name_part(part)}: {name_part(label, noun='segment')}, named {name}")
             for label, name in names.items()
-            for part in parts_of(label, segments)
+            for part in segment_parts(label, segments)
         }
     return {label: (name, f"{name_part(label, noun='segment')}: named {name}") for label, name in names.items()}
 
@@ -157,12 +144,12 @@ def _by_name(
 def _by_roughness(roughness: Mapping[int, float], default: str, noun: str) -> dict[int, Choice]:
     levels, ranks = np.unique(list(roughness.values()), return_inverse=True)
     last = len(levels) - 1
-    chosen: dict[int, Choice] = {}
+    choices: dict[int, Choice] = {}
     for (label, value), rank in zip(roughness.items(), ranks, strict=True):
         name = LADDER[round(int(rank) * (len(LADDER) - 1) / last)] if last else default
-        chosen[label] = (
+        choices[label] = (
             name,
             f"{name_part(label, noun=noun)}: number {rank + 1} of {last + 1} from smooth to rough "
             f"({value:.3f}) -> {name}",
         )
-    return chosen
+    return choices

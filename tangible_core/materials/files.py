@@ -68,18 +68,12 @@ class MaterialBlock(Quantities):
 
 
 def read_materials(path: Path, base: Mapping[str, Material]) -> Mapping[str, Material]:
-    """Read a file that adds materials to the base, or changes them.
-
-    Raises: ConfigError as `parse_materials`, or if the file is missing.
-    """
+    """Read a file that adds materials to the base, or changes them. Raises: ConfigError as `parse_materials`."""
     return parse_materials(read_text(path), path, base)
 
 
 def parse_materials(text: str, path: Path, base: Mapping[str, Material]) -> Mapping[str, Material]:
-    """Parse a text that adds materials to the base, or changes them; complaints name `path`.
-
-    Raises: ConfigError with every complaint, one a line.
-    """
+    """Parse a text that adds materials to the base, or changes them. Raises: ConfigError with every complaint."""
     source = parse_source(text, path, "a library is a mapping from names to materials, such as `ice: {...}`")
     materials = {name: _material(source, name, block, base) for name, block in source.tree.items()}
     source.settle()
@@ -94,30 +88,30 @@ def _material(source: Source, name: Any, block: Any, base: Mapping[str, Material
         return source.complain(
             (name,), f"{shown(name)}: a material is a mapping from keys to values, not {quoted(block)}"
         )
-    given = cast(Tree, block)
+    values = cast(Tree, block)
     whole = dict.fromkeys(REQUIRED, 1.0)  # so that values are checked even if others are missing
-    checked = source.model((name,), MaterialBlock, {**whole, **given})
-    if missing := [key for key in REQUIRED if key not in given and name not in base]:
+    model = source.model((name,), MaterialBlock, {**whole, **values})
+    if missing := [key for key in REQUIRED if key not in values and name not in base]:
         are = "is" if len(missing) == 1 else "are"
         return source.complain((name,), f"{shown(name)}: {', '.join(missing)} {are} missing{did_you_mean(name, base)}")
     try:
-        return checked and _merge(name, given, checked, base.get(name), source.path)
+        return model and _merge(name, values, model, base.get(name), source.path)
     except MaterialError as error:
         return source.complain((name,), str(error))
 
 
-def _merge(name: str, given: Tree, checked: MaterialBlock, base: Material | None, path: Path) -> Material:
+def _merge(name: str, block: Tree, model: MaterialBlock, base: Material | None, path: Path) -> Material:
     """Return a new material, or the base with the given values."""
-    values: dict[str, Any] = {key: getattr(checked, key) for key in VALUES if key in given}
-    stated = checked.source
-    source = "; ".join(f"{key}: {text}" for key, text in stated.items()) if isinstance(stated, dict) else stated
+    values: dict[str, Any] = {key: getattr(model, key) for key in VALUES if key in block}
+    origin = model.source
+    source = "; ".join(f"{key}: {text}" for key, text in origin.items()) if isinstance(origin, dict) else origin
     if base is None:
         return Material(name, **values, source=source)
-    changed = f"{', '.join(values)}: {path.name}; " if values else ""
-    return replace(base, **values, source=source if "source" in given else changed + base.source)
+    prefix = f"{', '.join(values)}: {path.name}; " if values else ""
+    return replace(base, **values, source=source if "source" in block else prefix + base.source)
 
 
-def sources_of(material: Material) -> dict[str, str]:
+def value_sources(material: Material) -> dict[str, str]:
     """Return the source of each value of a material."""
     sources: dict[str, str] = {}
     rest: list[str] = []

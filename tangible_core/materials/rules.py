@@ -1,7 +1,4 @@
-"""Rules that assign materials to segments or parts: a list, of which the first that fits wins.
-
-Colours of segments are the eleven basic colour names of English, by hue, chroma and lightness.
-"""
+"""Rules that assign materials to segments or parts: a list, of which the first that fits wins."""
 
 import logging
 from collections.abc import Mapping, Sequence
@@ -29,18 +26,14 @@ HUES: tuple[tuple[float, Colour], ...] = (
     (20, "pink"), (48, "red"), (85, "orange"), (118, "yellow"), (195, "green"), (308, "blue"), (335, "purple"),
     (360, "pink"),
 )  # fmt: skip
-"""The upper angle of each name, in degrees of CIELAB's hue. The borders lie between the answers of the XKCD colour
-survey (2010); every plain, light, pale, bright, dull, dusty and dark answer keeps its name."""
+"""Upper angle of each name, in degrees of CIELAB's hue, between the answers of the XKCD colour survey (2010)."""
 BROWN_CHROMA = 52.0
 """Chroma below which orange is called brown."""
 _BITS = 5  # of each channel, by which colours are looked up
 
 
 def segment_colours(segments: SegmentMap | PartMap, picture: np.ndarray) -> list[tuple[Colour, float]]:
-    """Return, for each segment or part, the most frequent name and its share; the first in COLOURS of two.
-
-    The picture has the segments' size. Raises: PictureError if it is not a picture.
-    """
+    """Return, for each segment or part, the most frequent of COLOURS and its share. Raises: PictureError."""
     red, green, blue = np.moveaxis(to_rgb8(picture) >> (8 - _BITS), -1, 0).astype(np.uint16)
     names = _names()[(red << 2 * _BITS) | (green << _BITS) | blue]
     pairs = segments.labels.astype(np.intp) * len(COLOURS) + names
@@ -104,15 +97,15 @@ class MaterialRule(BaseModel):
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
-        given = [name for name in ("segment", "part", "at", "colour") if getattr(self, name) is not None]
-        if len(given) != 1:
+        keys = [name for name in ("segment", "part", "at", "colour") if getattr(self, name) is not None]
+        if len(keys) != 1:
             raise ValueError(
-                f"a rule takes one of segment, part, at and colour; this one has {' and '.join(given) or 'none'}"
+                f"a rule takes one of segment, part, at and colour; this one has {' and '.join(keys) or 'none'}"
             )
         return self
 
 
-def noun_of(segments: SegmentMap | PartMap) -> str:
+def map_noun(segments: SegmentMap | PartMap) -> str:
     """Return the noun for one of them."""
     return "part" if isinstance(segments, PartMap) else "segment"
 
@@ -132,7 +125,7 @@ def apply_rules(
     """
     choices: dict[int, Choice] = {}
     complaints: list[str] = []
-    noun = noun_of(segments)
+    noun = map_noun(segments)
     for number, rule in enumerate(rules, 1):
         try:
             fits = _fits(rule, segments, picture, shape or segments.labels.shape)
@@ -162,13 +155,13 @@ def _fits(
         return {_label_at(*rule.at, segments, shape): f"at [{rule.at[0]:g}, {rule.at[1]:g}]"}
     if picture is None or picture.shape[:2] != segments.labels.shape:
         raise MaterialError("a rule by colour needs the segmented picture, but there is none of that size")
-    named = enumerate(segment_colours(segments, picture))
-    return {label: f"{100 * share:.0f} % of it {name}" for label, (name, share) in named if name == rule.colour}
+    colours = enumerate(segment_colours(segments, picture))
+    return {label: f"{100 * share:.0f} % of it {name}" for label, (name, share) in colours if name == rule.colour}
 
 
-def parts_of(segment: int, parts: PartMap) -> list[int]:
+def segment_parts(segment: int, parts: PartMap) -> list[int]:
     """Return the parts of a segment. Raises: MaterialError if there is no such segment."""
-    numbers = [number for number, each in enumerate(parts.segments) if each == segment]
+    numbers = [number for number, other in enumerate(parts.segments) if other == segment]
     if not numbers:
         raise MaterialError(missing_number(shown_number(segment), max(parts.segments) + 1, "segment"))
     return numbers
@@ -176,7 +169,7 @@ def parts_of(segment: int, parts: PartMap) -> list[int]:
 
 def _of_segment(segment: int, segments: SegmentMap | PartMap) -> dict[int, str]:
     if isinstance(segments, PartMap):
-        return dict.fromkeys(parts_of(segment, segments), f"of {name_part(segment, noun='segment')}")
+        return dict.fromkeys(segment_parts(segment, segments), f"of {name_part(segment, noun='segment')}")
     if segment >= segments.count:
         raise MaterialError(missing_number(shown_number(segment), segments.count, "segment"))
     return {segment: "named"}

@@ -11,36 +11,31 @@ from ..scene.scaling import middle_pixels
 
 
 def find_parts(segments: SegmentMap) -> PartMap:
-    """Find the connected regions of the segments: pixels of one segment that share a side belong to one part.
-
-    Parts are numbered by their first pixels, row by row. So their numbers do not depend on the labels of the segments
-    or on enlargement by whole pixels, and a new part behind the last one does not change the others.
-    """
+    """Find the connected regions of the segments: pixels of one segment that share a side belong to one part."""
     from skimage.measure import label
 
     none = int(segments.labels.min()) - 1
     parts = np.asarray(label(segments.labels, connectivity=1, background=none)).astype(np.int32)
     parts -= 1
     flat = parts.reshape(-1)
+    # So numbers do not depend on the segments' labels or on enlargement by whole pixels, and a new last part changes
+    # none.
     largest = np.maximum.accumulate(flat)  # numbers are in the order of first pixels: each new maximum is a first pixel
     first = np.flatnonzero(np.diff(largest, prepend=np.int32(-1)))
     return PartMap(parts, tuple(segments.labels.reshape(-1)[first].tolist()))
 
 
 def reduced_parts(parts: PartMap, shape: tuple[int, int]) -> PartMap:
-    """Reduce parts to a coarser grid of (r, c), by the middle pixel of each cell, with the same numbers.
-
-    A part that has no middle pixel takes the cell of its first pixel, of several the last one; a part without pixels
-    has none.
-    """
+    """Reduce parts to a coarser grid of (r, c), by the middle pixel of each cell, with the same numbers."""
     whole = parts.labels
     if whole.shape == shape:
         return parts
     labels = middle_pixels(whole, shape)
-    lost = np.flatnonzero(np.bincount(labels.reshape(-1), minlength=parts.count) == 0)
-    lost = lost[part_sizes(parts)[lost] > 0] if lost.size else lost
-    row, column = np.divmod(_first_pixels(parts)[lost], whole.shape[1])
-    labels[row * shape[0] // whole.shape[0], column * shape[1] // whole.shape[1]] = lost
+    missing = np.flatnonzero(np.bincount(labels.reshape(-1), minlength=parts.count) == 0)
+    missing = missing[part_sizes(parts)[missing] > 0] if missing.size else missing
+    # A part that has no middle pixel takes the cell of its first pixel, of several the last one.
+    row, column = np.divmod(_first_pixels(parts)[missing], whole.shape[1])
+    labels[row * shape[0] // whole.shape[0], column * shape[1] // whole.shape[1]] = missing
     return PartMap(labels, parts.segments)
 
 

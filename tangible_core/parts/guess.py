@@ -13,12 +13,9 @@ from .heights import PartHeights
 from .neighbours import Neighbours, in_front, neighbours
 
 FOOT, MIDDLE, RIM, SIZE, ENCLOSED, FRONT = 0.7, 0.3, 1.5, 0.1, 0.25, 0.5
-"""Weights of the cues to nearness: the height of a part's foot and of its middle in the picture, its share of the upper
-and the side rims, its share of the picture, enclosure by another part, occlusion of another part. Chosen on three
-pictures whose depth is known (`python -m benchmarks parts`)."""
+"""Weights of cues: foot, middle, shares of rims and of the picture, enclosure, occlusion (`benchmarks parts`)."""
 LIKE = 0.5
-"""Largest difference in colour of a hole from a part beyond, as a share of that from the part around it. Of 134
-enclosed parts in people's drawings of 40 photographs (BSDS500), 84 are such holes."""
+"""Largest difference in colour of a hole from a part beyond, as a share of that from the part around it."""
 APART = 1e-6
 """Nearness by which a hole is in front of what is seen through it, so that the two have an order."""
 OWN = 0.5
@@ -34,28 +31,23 @@ SPECK = 0.001
 
 
 def guess_heights(parts: PartMap, top_m: float, picture: np.ndarray | None = None) -> PartHeights:
-    """Guess a height for each part by size, place and border ownership: even steps from 0 to top_m, in their order.
-
-    Parts low in a picture are near; parts that fill much of its upper and side rims, or of the whole picture, are far.
-    Where three parts meet, the one whose border runs straight on hides the two others; a part that another encloses is
-    in front of it, unless its colour is that of a part beyond: then it is a hole, such as the water between the legs of
-    a bear, and is behind. Nearness is the best fit to these cues: a mean of a part's own cues, and of its neighbours'
-    nearness with the cues between them. The cues do not know what is shown: a table may come to lie before the things
-    on it.
-    picture: (h, w[, 3|4]) of the parts; without it no hole is found.
-    """
+    """Guess a height for each part by size, place and border ownership: even steps from 0 to top_m, in their order."""
     parts = reduced_parts(parts, _coarse(parts.labels.shape))
     sizes = part_sizes(parts)
     foot, middle, rim = _places(parts, sizes)
     own = FOOT * foot + MIDDLE * middle - RIM * rim - SIZE * sizes / parts.labels.size
     pairs = neighbours(parts)
     sure = in_front(parts, pairs)
-    enclosed = _enclosure(parts, pairs)
-    nearness = _relax(own, pairs, FRONT * sure + ENCLOSED * enclosed)
-    for pair, beyond in _holes(parts, sizes, pairs, enclosed, picture).items():
-        hole, around = _ends(pairs, pair, enclosed[pair])
+    enclosure = _enclosure(parts, pairs)
+    # Parts low in a picture are near; parts that fill much of its upper and side rims, or of the whole picture, are
+    # far. An enclosed part is in front, unless its colour is that of a part beyond: then it is a hole, such as the
+    # water between the legs of a bear. The cues do not know what is shown: a table may come to lie before the things on
+    # it.
+    nearness = _relax(own, pairs, FRONT * sure + ENCLOSED * enclosure)
+    for pair, beyond in _holes(parts, sizes, pairs, enclosure, picture).items():
+        hole, around = _ends(pairs, pair, enclosure[pair])
         nearness[hole] = min(nearness[beyond] + APART, nearness[around] - APART)
-        sure[pair] = -enclosed[pair]
+        sure[pair] = -enclosure[pair]
     rank, steps = _rank(nearness, sizes)
     heights_m = top_m * rank / max(1, steps - 1)
     reasons = (
@@ -80,11 +72,9 @@ def _places(
 
 
 def _enclosure(parts: PartMap, pairs: Neighbours) -> Float64[np.ndarray, "m"]:
-    """Return, for each pair, 1 if `low` encloses `high`, -1 for the reverse, 0 for neither.
-
-    A part is enclosed if it has one neighbour and no pixel at the rims of the picture.
-    """
+    """Return, for each pair, 1 if `low` encloses `high`, -1 for the reverse, 0 for neither."""
     labels, count = parts.labels, parts.count
+    # It has one neighbour and no pixel at the rims of the picture.
     inside = np.bincount(pairs.low, minlength=count) + np.bincount(pairs.high, minlength=count) == 1
     inside[np.concatenate([labels[0], labels[-1], labels[:, 0], labels[:, -1]])] = False
     return inside[pairs.high].astype(np.float64) - inside[pairs.low]
@@ -94,32 +84,30 @@ def _holes(
     parts: PartMap,
     sizes: Int64[np.ndarray, "n"],
     pairs: Neighbours,
-    enclosed: Float64[np.ndarray, "m"],
+    enclosure: Float64[np.ndarray, "m"],
     picture: np.ndarray | None,
 ) -> dict[int, int]:
-    """Return the pairs of a hole and the part around it, each with the part beyond that is seen through the hole.
-
-    Parts that are enclosed as well are not beyond: two birds before a sky are not holes in it.
-    """
-    found = dict[int, int]()
-    if picture is None or not enclosed.any():
-        return found
+    """Return the pairs of a hole and the part around it, each with the part beyond that is seen through the hole."""
+    holes = dict[int, int]()
+    if picture is None or not enclosure.any():
+        return holes
     lab = _mean_colours(parts, sizes, picture)
-    ends = {pair: _ends(pairs, pair, enclosed[pair]) for pair in np.flatnonzero(enclosed).tolist()}
+    ends = {pair: _ends(pairs, pair, enclosure[pair]) for pair in np.flatnonzero(enclosure).tolist()}
     inside = [hole for hole, _ in ends.values()]
     for pair, (hole, around) in ends.items():
         beside = np.concatenate([pairs.low[pairs.high == around], pairs.high[pairs.low == around]])
+        # Two birds before a sky are not holes in it: enclosed parts are not beyond.
         beyond = np.setdiff1d(beside, inside)
         differ = np.linalg.norm(lab[beyond] - lab[hole], axis=1)
         if beyond.size and differ.min() < LIKE * np.linalg.norm(lab[around] - lab[hole]):
-            found[pair] = int(beyond[differ.argmin()])
-    return found
+            holes[pair] = int(beyond[differ.argmin()])
+    return holes
 
 
-def _ends(pairs: Neighbours, pair: int, enclosed: float) -> tuple[int, int]:
+def _ends(pairs: Neighbours, pair: int, sign: float) -> tuple[int, int]:
     """Return the enclosed part of a pair, and the part around it."""
     low, high = int(pairs.low[pair]), int(pairs.high[pair])
-    return (high, low) if enclosed > 0 else (low, high)
+    return (high, low) if sign > 0 else (low, high)
 
 
 def _mean_colours(parts: PartMap, sizes: Int64[np.ndarray, "n"], picture: np.ndarray) -> Float64[np.ndarray, "n 3"]:
@@ -137,10 +125,7 @@ def _mean_colours(parts: PartMap, sizes: Int64[np.ndarray, "n"], picture: np.nda
 def _relax(
     own: Float64[np.ndarray, "n"], pairs: Neighbours, nearer: Float64[np.ndarray, "m"]
 ) -> Float64[np.ndarray, "n"]:
-    """Relax the nearness of each part between its own and its neighbours', given how much nearer `high` of a pair is.
-
-    A pair weighs by the root of the length of its common border.
-    """
+    """Relax the nearness of each part between its own and its neighbours', by the root of their border's length."""
     weight = np.sqrt(pairs.sides.astype(np.float64))
     count = own.size
     whole = np.bincount(pairs.low, weight, count) + np.bincount(pairs.high, weight, count)
@@ -155,15 +140,15 @@ def _relax(
 def _overlaps(pairs: Neighbours, sure: Float64[np.ndarray, "m"], count: int) -> list[str]:
     """Describe, for each part, the parts that it hides and that hide it, the most certain first."""
     hides: list[list[int]] = [[] for _ in range(count)]
-    hidden: list[list[int]] = [[] for _ in range(count)]
+    behind_parts: list[list[int]] = [[] for _ in range(count)]
     for pair in np.argsort(-np.abs(sure), kind="stable").tolist():
         if abs(sure[pair]) < SURE:
             break
         ends = int(pairs.low[pair]), int(pairs.high[pair])
         behind, front = ends if sure[pair] > 0 else ends[::-1]
         hides[front].append(behind)
-        hidden[behind].append(front)
-    return [_list("it is in front of", a) + _list("it is behind", b) for a, b in zip(hides, hidden, strict=True)]
+        behind_parts[behind].append(front)
+    return [_list("it is in front of", a) + _list("it is behind", b) for a, b in zip(hides, behind_parts, strict=True)]
 
 
 def _list(verb: str, parts: list[int]) -> str:

@@ -25,14 +25,7 @@ FINEST_M, COARSEST_M = 0.00025, 0.0012
 
 @final
 class Layering:
-    """A maker of reliefs that computes once all that does not depend on the heights of the parts.
-
-    A part rises from its border to its middle by a quarter of a circle, `round_m` wide, by at most `bulge_m` and at
-    most its own height: parts at 0 are ground and stay flat, and nothing jumps when a height changes. The picture's rim
-    is not a border. In the detail, light rises and dark sinks by up to half of `detail_m`, but not below 0; it fades
-    out towards the borders, where a part is at its height. So no place is higher than the highest part, bulge and
-    detail together.
-    """
+    """A maker of reliefs that computes once all that does not depend on the heights of the parts."""
 
     def __init__(
         self, parts: PartMap, width_m: float, heights: HeightChoice, picture: np.ndarray | None = None
@@ -59,10 +52,7 @@ class Layering:
             self._detail_m = _detail(picture, width_m) * fade * np.float32(heights.detail_m / 2)
 
     def relief(self, heights_m: Sequence[float]) -> Relief:
-        """Make the relief with these heights of the parts, in their order.
-
-        Raises: GeometryError if there is not one finite height >= 0 a part.
-        """
+        """Make the relief with these heights of the parts, in their order. Raises: GeometryError for a wrong height."""
         heights = np.asarray(heights_m, np.float32)
         if heights.shape != (self.parts.count,):
             raise GeometryError(f"there are {self.parts.count} parts and {heights.size} heights; give one a part")
@@ -94,24 +84,24 @@ def _profile(distance_m: Float32[np.ndarray, "h w"], round_m: float) -> Float32[
     """Return the rise of a part at this distance from its border, 0 to 1; 0 if there is no border."""
     if not np.isfinite(distance_m[0, 0]):
         return np.zeros_like(distance_m)
+    # A part rises by a quarter of a circle, `round_m` wide, by at most `bulge_m` and at most its own height: parts at 0
+    # stay flat, and nothing jumps when a height changes. The picture's rim is not a border.
     inward = np.minimum(distance_m / np.float32(round_m), np.float32(1)) if round_m else np.ones_like(distance_m)
     return np.sqrt(inward * (np.float32(2) - inward))
 
 
 def _detail(picture: np.ndarray, width_m: float) -> Float32[np.ndarray, "h w"]:
-    """Return light and dark at a scale that a fingertip feels, from -1 to 1; 0 for a picture of one shade.
-
-    The grid is no finer than needed, so that a picture of more pixels gives the same detail.
-    """
+    """Return light and dark at a scale that a fingertip feels, from -1 to 1; 0 for a picture of one shade."""
     import cv2
 
     rows, columns = picture.shape[:2]
+    # No finer than needed, so that a picture of more pixels gives the same detail.
     grey = to_grey(reduce_views(Views(picture), felt_factor(columns, width_m, FINEST_M / 3)).left)
     pitch_m = width_m / grey.shape[1]
     with plain_opencv():
         fine, coarse = (
-            np.asarray(cv2.GaussianBlur(grey, (0, 0), each / pitch_m, borderType=cv2.BORDER_REPLICATE))
-            for each in (FINEST_M, COARSEST_M)
+            np.asarray(cv2.GaussianBlur(grey, (0, 0), sigma_m / pitch_m, borderType=cv2.BORDER_REPLICATE))
+            for sigma_m in (FINEST_M, COARSEST_M)
         )
         fine -= coarse
         most = np.float32(3 * fine.std(dtype=np.float64))

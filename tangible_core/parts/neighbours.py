@@ -43,27 +43,22 @@ def _pairs(one: np.ndarray, other: np.ndarray, count: int) -> Int64[np.ndarray, 
 
 
 def in_front(parts: PartMap, pairs: Neighbours) -> Float64[np.ndarray, "m"]:
-    """Return, for each pair, the certainty that `high` is in front of `low`, -1 for the reverse to 1; 0 if unknown.
-
-    Where three parts meet, the one whose border runs straight on hides the border of the two others, which ends there.
-    The certainty falls with the border's angle, to 0 where it is far from straight.
-    Source: Guzman, Decomposition of a visual scene into three-dimensional bodies, 1968 (the T-junction).
-    """
+    """Return, for each pair, the certainty that `high` is in front of `low`, -1 for the reverse to 1; 0 if unknown."""
     three, share = _junctions(parts.labels)
     if not len(three):
         return np.zeros(pairs.low.size)
     nearest = share.argmax(axis=1)
     rows = np.arange(len(three))
+    # Where three parts meet, the one whose border runs straight on hides the border of the two others (Guzman,
+    # Decomposition of a visual scene into three-dimensional bodies, 1968, the T-junction).
     sure = np.clip(1 - np.abs(share[rows, nearest] - 0.5) / STRAIGHT, 0, 1) * (share.min(axis=1) > THIN)
     keys = pairs.low * parts.count + pairs.high
     votes, weight = np.zeros(keys.size), np.ones(keys.size)
-    for each in range(3):
-        front, behind = three[rows, nearest], three[:, each]
-        wanted = np.minimum(front, behind) * parts.count + np.maximum(front, behind)
-        pair = np.minimum(np.searchsorted(keys, wanted), keys.size - 1)
-        vote = np.where(
-            keys[pair] == wanted, sure, 0
-        )  # 0 for the front part itself, and for parts that touch at a corner
+    for third in range(3):
+        front, behind = three[rows, nearest], three[:, third]
+        key = np.minimum(front, behind) * parts.count + np.maximum(front, behind)
+        pair = np.minimum(np.searchsorted(keys, key), keys.size - 1)
+        vote = np.where(keys[pair] == key, sure, 0)  # 0 for the front part itself, and for parts that touch at a corner
         votes += np.bincount(pair, np.where(front > behind, vote, -vote), keys.size)
         weight += np.bincount(pair, vote, keys.size)
     return votes / weight
@@ -83,7 +78,7 @@ def _junctions(labels: Int32[np.ndarray, "h w"]) -> tuple[Int64[np.ndarray, "k 3
     three = np.stack([corner[:, 0], middle, corner[:, 3]], axis=1)
     down, right = _disc(radius)
     around = labels[row[:, None] + down, column[:, None] + right]
-    share = [np.count_nonzero(around == three[:, each, None], axis=1) / down.size for each in range(3)]
+    share = [np.count_nonzero(around == three[:, part, None], axis=1) / down.size for part in range(3)]
     return three, np.stack(share, axis=1)
 
 

@@ -38,27 +38,22 @@ def leakage(width_m: float, band_m: float) -> float:
 
 
 def _response(width_m: float, band_m: float, sides: int) -> float:
-    """Return the share of the height of a long ridge (sides 1) or a round hill (2) that a band passes.
-
-    A Gaussian widens another one and keeps its volume.
-    """
+    """Return the share of the height of a long ridge (sides 1) or a round hill (2) that a band passes."""
     fine, coarse = (width_m / math.hypot(width_m, share * band_m) for share in (FINE, COARSE))
     return fine**sides - coarse**sides
 
 
 def feature_m(relief: Relief, width_m: float) -> float:
-    """Return the height or depth of the greatest feature about this wide: exact for a long ridge of Gaussian profile.
-
-    A sine of amplitude a and wavelength L counts as a (exp(-u/8) - exp(-2u)) / 0.447, u = (2 pi width / L)^2: at most
-    1.74 a, at L = 5.2 widths. The relief is continued point-symmetrically beyond its borders: a plane has no feature.
-    """
+    """Return the height or depth of the greatest feature about this wide: exact for a long Gaussian ridge."""
     import cv2
 
+    # A sine of amplitude a and wavelength L counts as a (exp(-u/8) - exp(-2u)) / 0.447, u = (2 pi width / L)^2: at most
+    # 1.74 a, at L = 5.2 widths. The point-symmetric continuation beyond the borders gives a plane no feature.
     relief = reduce_relief(relief, width_m / PER_WIDTH)
     across, along = (width_m / pitch for pitch in relief.pitch_m)
     margin = [math.ceil(4 * COARSE * cells) for cells in (along, across)]
     heights = np.pad(
-        relief.height_m.astype(np.float64), [(each, each) for each in margin], "reflect", reflect_type="odd"
+        relief.height_m.astype(np.float64), [(cells, cells) for cells in margin], "reflect", reflect_type="odd"
     )
 
     def blur(share: float) -> Any:

@@ -18,26 +18,23 @@ EXPLORING_N = 1.0
 
 
 def fit(material: Material, spec: DeviceSpec, safety: Safety) -> Material:
-    """Limit a material to what this device renders stably at 1 kHz; return itself if that is all of it.
-
-    A wave of amplitude a and wavelength L under a press P is a sideways spring of at most P a (2 pi / L)^2. This and
-    the material's stiffness together stay below the stiffness that the guard leaves to a force law. The damping B stays
-    below what stiffness leaves of the device's damping b: b > K T (1 + 2 d) / 2 + B (1 + g^2), with g the greatest
-    slope of the wave.
-    Source: Colgate & Schenkel 1997, as `safety`.
-    """
+    """Limit a material to what this device renders stably at 1 kHz; return itself if that is all of it."""
     damping = effective_damping_n_s_per_m(spec)
     most = safety.stiffness_margin * stiffness_limit_n_per_m(damping, NOMINAL_S, safety.delay_ticks)
     if safety.friction_n is not None:
         most = min(most, safety.stiffness_margin * encoder_limit_n_per_m(safety.friction_n, spec.resolution_m))
     most = min(most, spec.max_stiffness_n_per_m)  # what the guard leaves to a force law, as in `Safety.arrays`
     stiffness = min(material.stiffness_n_per_m, most)
+    # A wave of amplitude a and wavelength L under a press P is a sideways spring of at most P a (2 pi / L)^2; it and
+    # the material's stiffness stay below what the guard leaves to a force law. The damping B stays below what stiffness
+    # leaves of the device's b: b > K T (1 + 2 d) / 2 + B (1 + g^2), g the greatest slope of the wave (Colgate &
+    # Schenkel 1997).
     per_m = 2 * math.pi / material.grain_m
     roughness_m = min(material.roughness_m, (most - stiffness) / (EXPLORING_N * per_m**2))
-    left = damping - stiffness * NOMINAL_S * (1 + 2 * safety.delay_ticks) / 2
-    own = min(material.damping_n_s_per_m, max(0.0, left) / (1 + (roughness_m * per_m) ** 2))
-    fitted = replace(material, stiffness_n_per_m=stiffness, roughness_m=roughness_m, damping_n_s_per_m=own)
-    return material if fitted == material else fitted
+    rest = damping - stiffness * NOMINAL_S * (1 + 2 * safety.delay_ticks) / 2
+    own = min(material.damping_n_s_per_m, max(0.0, rest) / (1 + (roughness_m * per_m) ** 2))
+    limited = replace(material, stiffness_n_per_m=stiffness, roughness_m=roughness_m, damping_n_s_per_m=own)
+    return material if limited == material else limited
 
 
 def fit_surface(surface: HapticSurface, spec: DeviceSpec, safety: Safety) -> tuple[HapticSurface, str]:

@@ -195,7 +195,7 @@ class Flight:
         ceilings = [Ceiling(self.passive_n_per_m(), margin, PASSIVE), Ceiling(own, 1.0, DEVICE)]
         if friction_n is not None:
             ceilings.append(Ceiling(encoder_limit_n_per_m(friction_n, self.spec.resolution_m), margin, ENCODER))
-        return sorted(ceilings, key=lambda each: each.most_n_per_m)
+        return sorted(ceilings, key=lambda ceiling: ceiling.most_n_per_m)
 
 
 def survey(
@@ -208,11 +208,7 @@ def survey(
     hand: Hand | None = None,
     loop: Loop | None = None,
 ) -> Flight:
-    """Gather facts and measurements of a surface and its touch under a force law, on a device that is not opened.
-
-    Takes `loop.seconds`, in which this machine's lateness is measured, and a moment more.
-    Raises: BrokenMethod if the touch gives a force that is not finite, as a bound cannot be computed then.
-    """
+    """Gather facts of a surface and its touch under a force law, on a closed device. Raises: BrokenMethod."""
     settings, hand, loop = settings or Settings(), hand or Hand(), loop or Loop()
     period_s, spec = loop.period_s, device.spec()
     stiffness = stiffness_of(touch, spec).n_per_m

@@ -20,10 +20,7 @@ class Verdicts(tuple[Verdict, ...]):
 
     @classmethod
     def of(cls, verdicts: Iterable[Verdict]) -> Self:
-        """Collect independent verdicts; cures that change the same key get the same value.
-
-        A change that would undo that of another verdict is left out.
-        """
+        """Collect independent verdicts; changes of one key get one value, one that would undo another is left out."""
         return cls(reconcile_cures(verdicts))
 
     @property
@@ -94,8 +91,8 @@ def reasons(verdicts: Iterable[Verdict]) -> str:
     grade = worst(verdicts)
     texts = list(dict.fromkeys(verdict.says for verdict in verdicts if verdict.verdict == grade and verdict.says))
     more = len(texts) - MAX_REASONS
-    named = texts[:MAX_REASONS] + ([f"{more} more thing{'s' * (more > 1)}"] if more > 0 else [])
-    return " and ".join(filter(None, [", ".join(named[:-1]), named[-1]]))
+    phrases = texts[:MAX_REASONS] + ([f"{more} more thing{'s' * (more > 1)}"] if more > 0 else [])
+    return " and ".join(filter(None, [", ".join(phrases[:-1]), phrases[-1]]))
 
 
 def _rank(verdict: Verdict) -> int:
@@ -104,17 +101,17 @@ def _rank(verdict: Verdict) -> int:
 
 def _reconcile(verdict: Verdict, strictest: dict[str, Change]) -> Verdict:
     """Replace the values of a verdict's changes by the strictest ones."""
-    cure, kept = verdict.cure, list[Change]()
+    cure, changes = verdict.cure, list[Change]()
     for change in verdict.changes:
         best = strictest[change.key]
         if best.keeps(change):
-            kept.append(best)
+            changes.append(best)
             cure = cure.replace(str(change), str(best))
         else:
             cure = cure.replace(
                 str(change), f"(not by `{change.key}`, which another check wants {best.towards} {best.value})"
             )
-    return replace(verdict, cure=cure, changes=tuple(kept))
+    return replace(verdict, cure=cure, changes=tuple(changes))
 
 
 class Legibility(Verdicts):

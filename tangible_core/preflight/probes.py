@@ -55,26 +55,24 @@ class Probes(Record):
 def probe(
     touch: Touch, surface: HapticSurface, press_n: float, stiffness_n_per_m: float, reach_m: float, period_s: float
 ) -> Probes:
-    """Press down on a grid of places with press_n, no deeper than reach_m under the surface.
-
-    The hand is held sideways, so that the force of a slope is the strongest for this press. A force law that does not
-    hold the hand up (one for a device on a table) is probed at the depth at which its spring would.
-    """
+    """Press down on a grid of places with press_n, no deeper than reach_m under the surface."""
     feeler = _Feeler(touch, float(surface.height_m.max()) + CLEAR_M, period_s)
     places = _places(surface)
     down = np.array([0.0, 0.0, -1.0])
     first = min(press_n / stiffness_n_per_m if stiffness_n_per_m > 0 else SOFT_M, reach_m)
     depth_m = np.full(len(places), first)
+    # The hand is held sideways, so that the force of a slope is the strongest for this press. A force law that does not
+    # hold the hand up (for a device on a table) is probed at the depth at which its spring would.
     for _ in range(ROUNDS):
         lift_n = feeler.rest(places + depth_m[:, None] * down)[:, 2]
         deeper = np.divide(press_n, lift_n, out=np.ones_like(lift_n), where=lift_n > 0)
         depth_m = np.clip(depth_m * deeper, SKIN_M, reach_m)
-    pressed = places + depth_m[:, None] * down
-    force_n, _, along = feeler.push(pressed, np.zeros_like(pressed))
+    rest_m = places + depth_m[:, None] * down
+    force_n, _, along = feeler.push(rest_m, np.zeros_like(rest_m))
     strength_n = np.linalg.norm(force_n, axis=1, keepdims=True)
     along = np.divide(force_n, strength_n, out=np.zeros_like(force_n), where=strength_n > 0)
-    rest_n, _, later_n = feeler.push(pressed, -STEP_M * along)
-    _, arrived_n, stopped_n = feeler.push(pressed, -SLOW_STEP_M * along)
+    rest_n, _, later_n = feeler.push(rest_m, -STEP_M * along)
+    _, arrived_n, stopped_n = feeler.push(rest_m, -SLOW_STEP_M * along)
     return Probes(
         depth_m=depth_m,
         force_n=force_n,
@@ -102,18 +100,18 @@ class _Feeler:
 
     def _stop(self, *stops: Points) -> Float64[np.ndarray, "n stops ticks 3"]:
         """Return the forces at each stop, tick by tick, from the arrival on."""
-        lifted = stops[0].copy()
-        lifted[:, 2] = self._clear_m
+        above = stops[0].copy()
+        above[:, 2] = self._clear_m
         ticks = 1 + RESTS
-        way = np.stack([lifted, *(stop for stop in stops for _ in range(ticks))], axis=1)
+        way = np.stack([above, *(stop for stop in stops for _ in range(ticks))], axis=1)
         forces = self._touch.path(np.ascontiguousarray(way.reshape(-1, 3)), self._period_s)
-        return forces.reshape(way.shape)[:, 1:].reshape(len(lifted), len(stops), ticks, 3)
+        return forces.reshape(way.shape)[:, 1:].reshape(len(above), len(stops), ticks, 3)
 
 
 def _places(surface: HapticSurface) -> Points:
     """Return evenly spread cell centres on the surface."""
     rows, columns = (_spread(count) for count in surface.height_m.shape)
-    row, column = (each.ravel() for each in np.meshgrid(rows, columns, indexing="ij"))
+    row, column = (grid.ravel() for grid in np.meshgrid(rows, columns, indexing="ij"))
     x, y = picture_to_workspace(column, row, surface.height_m.shape, surface.extent_m)
     return np.column_stack([x, y, surface.height_m[row, column]]).astype(np.float64)
 

@@ -43,15 +43,11 @@ class Strokes(Record):
 
 
 def stroke(touch: Touch, surface: HapticSurface, press_n: float, speed_m_per_s: float, period_s: float) -> Strokes:
-    """Stroke a surface to and fro along LINES columns and rows, with a hand on a spring that presses down.
-
-    The hand gives way, as a real one does: it presses with `press_n` at most, and pushes sideways with SIDEWAYS times
-    as much at most. Its velocity is integrated before its position, which is stable at 500 Hz and more.
-    """
+    """Stroke a surface to and fro along LINES columns and rows, with a hand on a spring that presses down."""
     ways = _ways(surface, speed_m_per_s * period_s)
-    made = [list(_stroke_once(touch, surface, way, press_n, period_s)) for way in ways]
-    force_n, held_up = (np.concatenate([[tick[k] for tick in each] for each in made]) for k in (0, 1))
-    rise_n = np.concatenate([np.diff([tick[0] for tick in each], prepend=each[0][0]) for each in made])
+    strokes = [list(_stroke_once(touch, surface, way, press_n, period_s)) for way in ways]
+    force_n, held_up = (np.concatenate([[tick[k] for tick in ticks] for ticks in strokes]) for k in (0, 1))
+    rise_n = np.concatenate([np.diff([tick[0] for tick in ticks], prepend=ticks[0][0]) for ticks in strokes])
     return Strokes(force_n.astype(np.float64), rise_n, held_up.astype(bool))
 
 
@@ -78,6 +74,8 @@ def _stroke_once(
     position = [*way[0].tolist(), float(surface.height_m.max()) + CLEAR_M]
     velocity = [0.0, 0.0, 0.0]
     most_n, now_n = SIDEWAYS * press_n, press_n
+    # The hand gives way, as a real one does: it presses with `press_n` at most, and pushes sideways with SIDEWAYS times
+    # as much at most. Its velocity is integrated before its position, which is stable at 500 Hz and more.
     for number, target in enumerate([way[0].tolist()] * APPROACH + way.tolist()):
         x, y, z = position
         force = touch.force(HapticState((x, y, z), (velocity[0], velocity[1], velocity[2]), number * period_s))

@@ -44,7 +44,7 @@ class TickCost(Record):
     """Duration of each call from Python."""
     kernel_s: float
     """Mean duration along a path, without the call from Python."""
-    compiled: bool = True
+    is_compiled: bool = True
     """True for a force law of compiled kernels."""
 
     def at(self, percent: float) -> float:
@@ -53,10 +53,7 @@ class TickCost(Record):
 
 
 def measure_lateness(seconds: float, period_s: float) -> Lateness:
-    """Measure the lateness of sleeps to absolute deadlines, in real time if that is permitted.
-
-    A tick that is more than a period late takes the next deadline to come.
-    """
+    """Measure the lateness of sleeps to absolute deadlines, in real time if that is permitted."""
     late_s = np.zeros(max(1, round(seconds / period_s)))
     with real_time_block() as real_time:
         deadline = time.perf_counter()
@@ -66,6 +63,7 @@ def measure_lateness(seconds: float, period_s: float) -> Lateness:
                 time.sleep(wait)
             late = time.perf_counter() - deadline
             late_s[tick] = late
+            # A tick that is more than a period late takes the next deadline to come.
             deadline += late // period_s * period_s
     return Lateness(late_s, period_s, real_time)
 

@@ -7,8 +7,7 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal, NamedTuple
 
 Grade = Literal["ok", "warn", "unsafe", "illegible"]
-"""Grade of a verdict. `warn`: it will not feel as intended. `unsafe`: the device may buzz, or be driven too late.
-`illegible`: fingers cannot read it."""
+"""`warn`: it will not feel as intended. `unsafe`: the device may buzz. `illegible`: fingers cannot read it."""
 FEW = 0.01
 """Share of the surface up to which places count as exceptions."""
 
@@ -45,7 +44,7 @@ class Change(NamedTuple):
         """Return the one of two changes of a key that meets both bounds."""
         if self.towards == "is" or self.towards != other.towards:
             return self
-        return (min if self.towards == "at most" else max)(self, other, key=lambda each: float(each.value))
+        return (min if self.towards == "at most" else max)(self, other, key=lambda change: float(change.value))
 
 
 Cure = str | Sequence[str | Change]
@@ -172,15 +171,12 @@ def quantity(value: float, unit: str, more_digits: int = 0) -> str:
         return f"{100 * value:.{3 + more_digits}g} %"
     if unit not in ("m", "s"):
         return f"{float(f'{value:.{4 + more_digits}g}'):.15g} {unit}"
-    scale, prefix = next((each for each in PREFIXES if abs(value) >= each[0]), PREFIXES[-1] if value else PREFIXES[0])
+    scale, prefix = next((unit for unit in PREFIXES if abs(value) >= unit[0]), PREFIXES[-1] if value else PREFIXES[0])
     return f"{value / scale:.{3 + more_digits}g} {prefix}{unit}"
 
 
 def as_data(verdict: Verdict) -> dict[str, Any]:
-    """Return a verdict as JSON data: its fields, its changes, and `stands`, the text of `relation`.
-
-    Each of `changes` has a `key` and a `value` for `pipeline.editing.edited`; values that are not finite become None.
-    """
+    """Return a verdict as JSON data: its fields, its changes, and `stands`; values that are not finite become None."""
     infinite = [
         name for name, value in asdict(verdict).items() if isinstance(value, float) and not math.isfinite(value)
     ]

@@ -12,8 +12,7 @@ ACCENT_M = 0.001
 """The default of the most by which a border is accented, m: twice the least step that is felt under a fingertip."""
 
 FIGURE_SLOPE = 0.8
-"""The default slope of what networks see: the rim of a figure is a wall all around it, and a hand that strokes across
-rough materials gets over this slope."""
+"""The default slope of what networks see: a hand gets over the wall around a figure, also on rough materials."""
 
 Length = Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)]
 

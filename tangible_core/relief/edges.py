@@ -17,11 +17,9 @@ from .slope_limit import limit_slopes
 CELL_M = 3.3e-4
 """The cells on which edges are found, m: a third of the blur below."""
 BLUR_M, BLUR_SHARE = 0.001, 1 / 80
-"""The standard deviation of the Gaussian before differences are taken is the geometric mean of this length, m, and this
-share of the width: a wider surface has room for more lines, but not for all that is finer."""
+"""The blur's sigma is the geometric mean of this length, m, and this share of the width: wide ones hold more lines."""
 STRONG, WEAK = 0.94, 1.5
-"""The share of the picture whose contrast is below that of an edge; and by how much less an edge may have that
-continues a strong one."""
+"""Share of the picture below an edge's contrast; by how much less an edge may have that continues a strong one."""
 LEAST = 1.0
 """The least contrast of an edge, Lab units over the blur: about what is seen between two shades side by side."""
 LONG = 10.0
@@ -33,8 +31,7 @@ LINES = 0.6
 HALF = 0.5
 """The distance of the cells on both sides of a border from the border, cells."""
 SURE = 0.55
-"""The least value of a map of borders in a raised line: of .55 to .7, that whose lines lie best at the borders that
-people drew in 30 photographs."""
+"""Least value of a map of borders in a line: of .55 to .7, the best for the borders of 30 drawn photographs."""
 CALM_M, CALM = 0.0015, 0.1
 """The radius, m, within which light and dark are made even, and their standard deviation up to which they are."""
 
@@ -46,13 +43,7 @@ def edge_relief(
     regions: Int32[np.ndarray, "r c"] | None = None,
     borders: Float32[np.ndarray, "h w"] | None = None,
 ) -> Relief:
-    """Make the relief of the left view's edges: raised lines on low steps from dark to light, pixels square.
-
-    regions: labels whose borders are the edges, on the cells of `reduce_to_cells`. borders: how surely people would
-    draw a border at each pixel, 0..1; without regions, lines run along its ridges. Without both, an edge is a
-    difference of colour at the scale of the blur that is among the strongest of the picture, or continues one of these
-    (Canny 1986, on the channel of Lab with the greatest difference), and is at least LONG times as long.
-    """
+    """Make the relief of the left view's edges: raised lines on low steps from dark to light, pixels square."""
     import cv2
 
     extent_m = geometry.surface_extent(views.shape, size.width_m)
@@ -61,6 +52,9 @@ def edge_relief(
     with plain_opencv():
         lab = np.asarray(cv2.cvtColor(_colours(small), cv2.COLOR_RGB2LAB), np.float32)
         sigma = (BLUR_M * BLUR_SHARE * size.width_m) ** 0.5 / pitch_m
+        # The borders of regions, else the ridges of a map of borders, else differences of colour at the scale of the
+        # blur that are among the strongest, or continue one (Canny 1986, on the channel of Lab with the greatest
+        # difference).
         if regions is not None:
             lines = _lines(border_pixels(regions), HALF, pitch_m)
         elif borders is not None:
@@ -71,8 +65,8 @@ def edge_relief(
             lines = _lines(_edges(lab, sigma), 0, pitch_m)
         height_m = (1 - LINES) * size.relief_m * _calm_light(np.ascontiguousarray(lab[..., 0]) / 100, pitch_m)
         height_m = np.maximum(height_m + LINES * size.relief_m * lines, 0).astype(np.float32)
-        shown = np.asarray(cv2.resize(height_m, views.shape[::-1], interpolation=cv2.INTER_LINEAR))
-    relief = Relief(limit_slopes(shown, size.width_m / views.shape[1], choice.slope), extent_m)
+        enlarged = np.asarray(cv2.resize(height_m, views.shape[::-1], interpolation=cv2.INTER_LINEAR))
+    relief = Relief(limit_slopes(enlarged, size.width_m / views.shape[1], choice.slope), extent_m)
     return geometry.smooth(relief, size.smooth_m)
 
 
@@ -103,28 +97,28 @@ def _edges(lab: Float32[np.ndarray, "h w 3"], sigma: float) -> Bool[np.ndarray, 
     """Return the cells of edges. sigma: of the blur, cells."""
     import cv2
 
-    blurred = cv2.GaussianBlur(lab, (0, 0), max(sigma, 0.3), borderType=cv2.BORDER_REPLICATE)
+    smooth = cv2.GaussianBlur(lab, (0, 0), max(sigma, 0.3), borderType=cv2.BORDER_REPLICATE)
     across, along = (
-        cv2.Sobel(blurred, cv2.CV_32F, *order, scale=sigma / 8, borderType=cv2.BORDER_REPLICATE)
+        cv2.Sobel(smooth, cv2.CV_32F, *order, scale=sigma / 8, borderType=cv2.BORDER_REPLICATE)
         for order in ((1, 0), (0, 1))
     )
     contrast = np.hypot(across, along)
     channel = contrast.argmax(axis=2)[..., None]
     across, along, contrast = (
-        np.take_along_axis(np.asarray(each), channel, axis=2)[..., 0] for each in (across, along, contrast)
+        np.take_along_axis(np.asarray(slope), channel, axis=2)[..., 0] for slope in (across, along, contrast)
     )
     strong = max(float(np.quantile(contrast, STRONG)), LEAST)
     unit = 16384 / max(float(contrast.max()), strong)  # OpenCV takes whole numbers of 16 bits
-    whole_across, whole_along = (np.rint(each * unit).astype(np.int16) for each in (across, along))
-    found = cv2.Canny(whole_across, whole_along, strong / WEAK * unit, strong * unit, L2gradient=True)
-    return _long(np.asarray(found), sigma)
+    whole_across, whole_along = (np.rint(slope * unit).astype(np.int16) for slope in (across, along))
+    edges = cv2.Canny(whole_across, whole_along, strong / WEAK * unit, strong * unit, L2gradient=True)
+    return _long(np.asarray(edges), sigma)
 
 
-def _long(found: UInt8[np.ndarray, "h w"], sigma: float) -> Bool[np.ndarray, "h w"]:
+def _long(edges: UInt8[np.ndarray, "h w"], sigma: float) -> Bool[np.ndarray, "h w"]:
     """Return the cells of lines that are not 0, without the short ones. sigma: of the blur, cells."""
     import cv2
 
-    _, pieces, about, _ = cv2.connectedComponentsWithStats(found, connectivity=8)
+    _, pieces, about, _ = cv2.connectedComponentsWithStats(edges, connectivity=8)
     long: np.ndarray = np.asarray(about)[:, cv2.CC_STAT_AREA] >= LONG * sigma
     long[0] = False
     return long[np.asarray(pieces, np.int32)]
@@ -136,5 +130,5 @@ def _calm_light(light: Float32[np.ndarray, "h w"], pitch_m: float) -> Float32[np
     if high - low < LEAST / 100:
         return np.zeros_like(light)
     light = np.clip((light - low) / (high - low), 0, 1).astype(np.float32)
-    kept, offset = filter_coefficients(light, CALM_M / pitch_m, CALM)
-    return kept * light + offset
+    gain, offset = filter_coefficients(light, CALM_M / pitch_m, CALM)
+    return gain * light + offset

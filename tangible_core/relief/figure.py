@@ -1,7 +1,4 @@
-"""The relief of things: what stands out from its ground is raised and rounded, faces have their shape.
-
-Networks see the figure, the borders and the faces (`tangible_core.data.Figure`); what they do not see stays ground.
-"""
+"""The relief of things: what stands out from its ground is raised and rounded, faces have their shape."""
 # scipy has no types.
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
 
@@ -20,21 +17,17 @@ from .slope_limit import limit_slopes
 CELL_M = 2e-4
 """Side of the cells on which heights are made, m: finer than a fingertip resolves."""
 GROUND, STEP, BODY, FACE = 0.1, 0.2, 0.25, 0.2
-"""Shares of the height: of a ground that rises towards the viewer, of the step from the ground to the figure, of the
-figure's rounding, and the largest of a face's own shape. They, and the lengths below, are those with which networks
-know most faces again on the lit reliefs of three photographs; they do so on four others."""
+"""Shares of the height: ground, step to the figure, its rounding, a face; networks know most faces again with them."""
 ROUNDING_M = 0.014
 """Distance from its rim at which a figure is level, m: a thinner limb stays lower, a broad thing stays flat."""
 BOARD = 0.95
-"""Share of the rectangle around a figure from which it is a board, such as a poster or a page, and level, if it is as
-wide as ROUNDING_M. Of 105 photographs without one, no figure fills more than 0.89."""
+"""Share of the rectangle around a figure from which it is a level board, such as a page; no other fills over 0.89."""
 SOFT_M = 0.0004
 """Standard deviation by which the rim of a figure is softened, m."""
 HALO_M = 0.001
 """Distance from an outline within which depth is that of the places behind it: networks for depth have spikes there."""
 SHALLOW = 0.1
-"""Smallest range of nearness that is stretched to a full share of the height, of that of the picture: what is flatter
-than this stays flatter."""
+"""Smallest range of nearness, of the picture's, that is stretched to a full share: what is flatter stays flatter."""
 GROOVE_M, GROOVE_SIGMA_M = 0.0004, 0.00025
 """Depth of the groove at a sure border, and the standard deviation of its profile, m."""
 FACE_SCALE = 0.8
@@ -42,8 +35,7 @@ FACE_SCALE = 0.8
 RIM_M = 0.003
 """Width of the rim along which a face passes into the head, m."""
 FEATURES = 0.01
-"""Height of the features of a face that are seen by their brightness, such as eyes and lips, for one standard deviation
-of the brightness, over the face's width."""
+"""Height of a face's features by brightness, for one standard deviation of it, over the face's width."""
 FINE, COARSE = 0.006, 0.07
 """Standard deviations of the Gaussians whose difference has these features, over the face's width."""
 MIN_FACE_CELLS = 30
@@ -51,16 +43,9 @@ MIN_FACE_CELLS = 30
 
 
 def figure_relief(
-    views: Views, seen: Figure, size: FeltSize, choice: ReliefChoice, disparity: DisparityMap | None = None
+    views: Views, sight: Figure, size: FeltSize, choice: ReliefChoice, disparity: DisparityMap | None = None
 ) -> Relief:
-    """Make the relief of what networks see in the left view, pixels square.
-
-    The figure stands on a step and is rounded towards its rim, as bodies are; the ground rises towards the lower rim,
-    where things are nearer; borders are grooves; a face has the true shape of its points, as far as the height allows,
-    and passes into the head along its rim. Slopes are limited as everywhere.
-    disparity: (h, w) as the view; its nearness then shapes the figure and the ground, each within its own share.
-    Raises: GeometryError if the disparity knows no depth.
-    """
+    """Make the relief of what networks see in the left view, pixels square. Raises: GeometryError without depth."""
     import cv2
 
     rows, columns = views.shape
@@ -68,16 +53,20 @@ def figure_relief(
     shape: tuple[int, int] = small.shape[:2]
     pitch_m = size.width_m / shape[1]
     with plain_opencv():
-        figure = np.zeros(shape, bool) if seen.figure is None else scaling.reduced_map(seen.figure, shape) >= IS_FIGURE
+        figure = (
+            np.zeros(shape, bool) if sight.figure is None else scaling.reduced_map(sight.figure, shape) >= IS_FIGURE
+        )
         nearness = None
         if disparity is not None:
             spans = geometry.nearness_range(disparity, None)
             nearness = scaling.reduced_map(geometry.unit_nearness(disparity, None, spans), shape)
+        # The figure stands on a step and is rounded towards its rim, as bodies are; the ground rises towards the lower
+        # rim, where things are nearer; borders are grooves; a face passes into the head along its rim.
         height_m = size.relief_m * _blur(_shares(figure, nearness, pitch_m), SOFT_M / pitch_m)
-        if seen.borders is not None:
-            height_m -= GROOVE_M * _blur(scaling.reduced_map(seen.borders, shape), GROOVE_SIGMA_M / pitch_m)
+        if sight.borders is not None:
+            height_m -= GROOVE_M * _blur(scaling.reduced_map(sight.borders, shape), GROOVE_SIGMA_M / pitch_m)
         light = to_grey(small)
-        for face in seen.faces:
+        for face in sight.faces:
             _add_face(
                 height_m,
                 (face + np.array([0.5, 0.5, 0], np.float32)) * np.float32(shape[1] / columns),
@@ -86,9 +75,9 @@ def figure_relief(
                 size,
             )
         height_m = np.ascontiguousarray(height_m - height_m.min(), np.float32)
-        limited = limit_slopes(height_m, pitch_m, choice.slope)
-        shown = np.asarray(cv2.resize(limited, (columns, rows), interpolation=cv2.INTER_LINEAR))
-    return geometry.smooth(Relief(shown, geometry.surface_extent(views.shape, size.width_m)), size.smooth_m)
+        gentle_m = limit_slopes(height_m, pitch_m, choice.slope)
+        enlarged_m = np.asarray(cv2.resize(gentle_m, (columns, rows), interpolation=cv2.INTER_LINEAR))
+    return geometry.smooth(Relief(enlarged_m, geometry.surface_extent(views.shape, size.width_m)), size.smooth_m)
 
 
 def _shares(

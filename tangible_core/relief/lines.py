@@ -24,12 +24,7 @@ AREAS = 0.6
 
 
 def line_relief(views: Views, size: FeltSize, choice: ReliefChoice, *, areas: bool) -> tuple[Relief, int]:
-    """Make the relief of the left view's lines, pixels square; and return the number of texts left out of it.
-
-    Every line is raised to `size.relief_m`, and nothing is sunk. Letters are left out. Slopes fall from the line's edge
-    by `choice.slope`, so that all lines are of one height, however close.
-    areas: True for a flat drawing, whose areas of one colour are levels: neighbours differ, and paper is at 0.
-    """
+    """Make the relief of the left view's lines, and areas if requested; return the number of texts left out too."""
     factor = scaling.felt_factor(views.shape[1], size.width_m, CELL_M)
     picture = scaling.reduce_views(Views(views.left), factor).left
     pitch_m = size.width_m / picture.shape[1]
@@ -38,11 +33,12 @@ def line_relief(views: Views, size: FeltSize, choice: ReliefChoice, *, areas: bo
     lines = find_lines(ink, texts.ink)
     base_m = np.zeros(picture.shape[:2], np.float32)
     if areas:
-        found = find_areas(picture)
-        levels = _levels(found)
+        colour_areas = find_areas(picture)
+        levels = _levels(colour_areas)
         top_m = AREAS * size.relief_m if lines.mask.any() else size.relief_m
-        base_m = limit_slopes(top_m * levels[found.labels] / max(1, levels.max()), pitch_m, choice.slope)
+        base_m = limit_slopes(top_m * levels[colour_areas.labels] / max(1, levels.max()), pitch_m, choice.slope)
     line_pitch_m = size.width_m / lines.mask.shape[1]
+    # Slopes fall from the line's edge, so that all lines are of one height, however close; nothing is sunk.
     ridges_m = _ridges(lines.centre, lines.width_px * line_pitch_m, line_pitch_m, size.relief_m, choice.slope)
     height_m = np.maximum(_enlarge(ridges_m, views.shape), _enlarge(base_m, views.shape))
     relief = Relief(np.maximum(height_m, np.float32(0)), geometry.surface_extent(views.shape, size.width_m))
@@ -57,8 +53,8 @@ def _ridges(
 
     if not centre.any():
         return np.zeros(centre.shape, np.float32)
-    found: Any = distance_transform_edt(~centre, return_indices=True)
-    distance, rows, columns = np.asarray(found[0], np.float32), *np.asarray(found[1], np.int64)
+    distances: Any = distance_transform_edt(~centre, return_indices=True)
+    distance, rows, columns = np.asarray(distances[0], np.float32), *np.asarray(distances[1], np.int64)
     beyond_m = np.maximum(distance * pitch_m - np.maximum(width_m, LINE_M)[rows, columns] / 2, 0)
     return (top_m - slope * beyond_m if slope else np.where(beyond_m > 0, 0, top_m)).astype(np.float32)
 
@@ -71,8 +67,8 @@ def _levels(areas: Areas) -> Float32[np.ndarray, "n"]:
         levels[areas.paper] = 0
     for colour in range(levels.size):
         if levels[colour] < 0:
-            taken = {0, *levels[neighbours[colour]].tolist()}
-            levels[colour] = next(level for level in range(1, levels.size + 2) if level not in taken)
+            used_levels = {0, *levels[neighbours[colour]].tolist()}
+            levels[colour] = next(level for level in range(1, levels.size + 2) if level not in used_levels)
     return (levels - levels.min()).astype(np.float32)
 
 

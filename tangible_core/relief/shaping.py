@@ -1,8 +1,4 @@
-"""The steps from a disparity map to the relief that is felt.
-
-Tones: a rising map from nearness to height that gives most height to those depths which borders cross.
-The guided filter with a map itself as its guide makes noise even, and keeps steps.
-"""
+"""The steps from a disparity map to the relief that is felt."""
 
 from typing import NamedTuple
 
@@ -45,7 +41,7 @@ def relief_scale(
     if not choice.spread_share:
         return ReliefScale(spans, STRAIGHT)
     nearness = geometry.unit_nearness(disparity, calibration, spans)
-    return ReliefScale(spans, tones_of(_on_cells(nearness, width_m, CELL_M), choice.spread_share))
+    return ReliefScale(spans, relief_tones(_on_cells(nearness, width_m, CELL_M), choice.spread_share))
 
 
 def shape_relief(
@@ -55,17 +51,12 @@ def shape_relief(
     choice: ReliefChoice,
     scale: ReliefScale | None = None,
 ) -> Relief:
-    """Make the relief of a disparity map: the far end at 0, the near end at `size.relief_m` at most, pixels square.
-
-    Nearness becomes height by tones; noise is taken out (He et al., PAMI 2013), what stands before its surroundings is
-    accented (Luft et al. 2006, as height), slopes are limited, and edges are rounded by a Gaussian of `size.smooth_m`.
-    Each step is done on cells no finer than is felt after that rounding, so that time hardly grows with the picture.
-    scale: that of a film, by default that of this map (`relief_scale`).
-    Raises: GeometryError as `geometry.make_relief`.
-    """
+    """Make the relief of a disparity map: far 0, near `size.relief_m` at most, pixels square. Raises: GeometryError."""
     scale = scale or relief_scale(disparity, calibration, size.width_m, choice)
     extent_m = geometry.surface_extent(disparity.disparity_px.shape, size.width_m)
     nearness = geometry.unit_nearness(disparity, _calibration(calibration, choice), scale.spans)
+    # Each step is done on cells no finer than is felt after the rounding, so that time hardly grows with the picture.
+    # Noise: He et al., PAMI 2013; accent: Luft et al. 2006, as height.
     cells = _on_cells(nearness, size.width_m, min(CELL_M, CELL_SHARE * size.smooth_m))
     pitch_m = size.width_m / cells.shape[1]
     height_m = apply_tones(cells, scale.tones) * np.float32(size.relief_m)
@@ -75,8 +66,8 @@ def shape_relief(
         height_m = _accent(height_m, pitch_m, choice.most_accent_m, size.relief_m)
     if size.holes == "cut" and (unknown := np.isnan(disparity.disparity_px)).any():
         height_m[scaling.reduced_mask(unknown, height_m.shape)] = 0
-    shaped = geometry.smooth(Relief(limit_slopes(height_m, pitch_m, choice.slope), extent_m), size.smooth_m)
-    return Relief(_enlarge(shaped.height_m, nearness.shape), extent_m)
+    smooth = geometry.smooth(Relief(limit_slopes(height_m, pitch_m, choice.slope), extent_m), size.smooth_m)
+    return Relief(_enlarge(smooth.height_m, nearness.shape), extent_m)
 
 
 def _calibration(calibration: Calibration | None, choice: ReliefChoice) -> Calibration | None:
@@ -89,17 +80,15 @@ def _on_cells(nearness: Float32[np.ndarray, "h w"], width_m: float, cell_m: floa
 
 
 def _without_grain(height_m: Float32[np.ndarray, "h w"], pitch_m: float, grain_m: float) -> Float32[np.ndarray, "h w"]:
-    """Flatten noise lower than GRAIN_HIGH_M in windows of this radius, and keep steps.
-
-    Source: the guided filter with itself as guide, its coefficients found on a half as fine grid (He & Sun 2015).
-    """
+    """Flatten noise lower than GRAIN_HIGH_M in windows of this radius, and keep steps."""
     import cv2
 
+    # The guided filter with itself as guide, its coefficients found on a half as fine grid (He & Sun 2015).
     shape = scaling.reduced_shape(height_m.shape, 2)
     with plain_opencv():
         coarse = np.asarray(cv2.resize(height_m, shape[::-1], interpolation=cv2.INTER_AREA))
-        kept, offset = filter_coefficients(coarse * np.float32(1 / GRAIN_HIGH_M), grain_m / (2 * pitch_m), 1)
-    return _enlarge(kept, height_m.shape) * height_m + _enlarge(offset * np.float32(GRAIN_HIGH_M), height_m.shape)
+        gain, offset = filter_coefficients(coarse * np.float32(1 / GRAIN_HIGH_M), grain_m / (2 * pitch_m), 1)
+    return _enlarge(gain, height_m.shape) * height_m + _enlarge(offset * np.float32(GRAIN_HIGH_M), height_m.shape)
 
 
 def _accent(
@@ -138,16 +127,13 @@ STRAIGHT = np.linspace(0, 1, BINS + 1)
 """Tones that keep heights proportional to nearness."""
 
 
-def tones_of(nearness: Float32[np.ndarray, "h w"], share: float) -> Float64[np.ndarray, "n"]:
-    """Return the heights, 0 to 1, of BINS + 1 evenly spaced values of nearness from 0 to 1.
-
-    Each border counts once, however high: its weight is spread evenly over the depths between its two sides. The slope
-    of the map is at least 1 - share and at most 1 + share STEEPEST; without borders it is 1.
-    Source: Pizer et al. 1987, the clipped histogram, here of borders in place of pixels.
-    """
+def relief_tones(nearness: Float32[np.ndarray, "h w"], share: float) -> Float64[np.ndarray, "n"]:
+    """Return the heights, 0 to 1, of BINS + 1 evenly spaced values of nearness from 0 to 1."""
     density = _border_density(nearness) if share else np.zeros(BINS)
     if not density.any():
         return STRAIGHT
+    # Each border counts once, however high: its weight is spread evenly over the depths between its sides (Pizer et al.
+    # 1987, the clipped histogram, of borders in place of pixels). The slope is 1 - share to 1 + share STEEPEST.
     cut = np.minimum(density / density.mean(), STEEPEST)
     slope = share * (cut + 1 - cut.mean()) + 1 - share
     return np.concatenate([[0], np.cumsum(slope) / BINS])
@@ -183,11 +169,7 @@ Map = Float32[np.ndarray, "h w"]
 
 
 def filter_coefficients(values: Map, radius: float, deviation: float) -> tuple[Map, Map]:
-    """Return two maps, of which the filtered map is the first times the values plus the second.
-
-    radius: of the window, cells, at least 1. deviation: the standard deviation below which a window is noise.
-    Source: He et al., PAMI 2013.
-    """
+    """Return two maps: the filtered map is the first times the values plus the second (He et al., PAMI 2013)."""
     import cv2
 
     side = 2 * max(1, round(radius)) + 1
@@ -197,5 +179,5 @@ def filter_coefficients(values: Map, radius: float, deviation: float) -> tuple[M
 
     around = mean(values)
     variance = np.maximum(mean(values * values) - around * around, 0)
-    kept = variance / (variance + np.float32(deviation**2))
-    return mean(kept), mean((1 - kept) * around)
+    gain = variance / (variance + np.float32(deviation**2))
+    return mean(gain), mean((1 - gain) * around)

@@ -32,12 +32,9 @@ def _lower_along(one, other, rise, backwards):
 
 @njit(**KERNEL)
 def lower(heights, straight, diagonal, knight):
-    """Lower two maps, in place, to their highest surfaces that rise no faster; two passes, forwards and backwards.
-
-    heights: float32 (2, h, w). straight, diagonal, knight: float32, greatest rise to the cell (0, 1), (1, 1), (1, 2)
-    away.
-    """
+    """Lower two maps (2, h, w), in place, to the highest surfaces that rise no faster to cells (0|1, 1|2) away."""
     rows = heights.shape[1]
+    # Two passes suffice, forwards and backwards.
     for backwards in (False, True):
         for count in range(rows):
             y = rows - 1 - count if backwards else count

@@ -10,14 +10,12 @@ CHAMFER = 1.0276
 
 
 def limit_slopes(height_m: Float32[np.ndarray, "h w"], pitch_m: float, slope: float) -> Float32[np.ndarray, "h w"]:
-    """Return the heights with no rise over run above `slope` along rows, columns and diagonals; 0 keeps them.
-
-    A step of height s becomes a ramp s / slope wide about its middle. Limiting twice is limiting once; two maps that
-    differ by at most e still do so afterwards; mirrored or negated heights give the mirrored or negated surface.
-    Distances are chamfer lengths, at most 2.8 % over the straight ones (Borgefors 1986).
-    """
+    """Return the heights with no rise over run above `slope` along rows, columns and diagonals; 0 keeps them."""
     if not slope:
         return height_m
+    # A step of height s becomes a ramp s / slope wide about its middle. Limiting twice is limiting once; two maps that
+    # differ by at most e still do so; mirrored or negated heights give the mirrored or negated surface. Distances are
+    # chamfer lengths, at most 2.8 % over the straight ones (Borgefors 1986).
     steps = _between_envelopes(height_m, pitch_m, 2 * slope)  # a step is a ramp of `slope` now, a ridge may be steeper
     return _between_envelopes(steps, pitch_m, slope)
 
@@ -25,13 +23,11 @@ def limit_slopes(height_m: Float32[np.ndarray, "h w"], pitch_m: float, slope: fl
 def _between_envelopes(
     height_m: Float32[np.ndarray, "h w"], pitch_m: float, slope: float
 ) -> Float32[np.ndarray, "h w"]:
-    """Return the mean of the highest such surface that is nowhere above the heights, and the lowest nowhere below.
-
-    Of all surfaces that keep the slope, it has the least greatest error (McShane 1934; Whitney 1934). A step has half
-    of the slope, as only one of both envelopes rises at a place.
-    """
+    """Return the mean of the highest such surface that is nowhere above the heights, and the lowest nowhere below."""
     from . import slope_kernels
 
+    # Of all surfaces that keep the slope, it has the least greatest error (McShane 1934; Whitney 1934). A step has half
+    # of the slope, as only one of both envelopes rises at a place.
     envelopes = np.stack([height_m, -height_m])  # the upper envelope is the lower one upside down
     rise = slope * pitch_m / CHAMFER
     lengths = (np.float32(rise * length) for length in (1, 2**0.5, 5**0.5))

@@ -17,7 +17,7 @@ class CheckFailure(AssertionError):
     """A demand of the kit that a method does not meet."""
 
 
-def demand(met: Any, otherwise: str) -> None:
+def demand(is_met: Any, otherwise: str) -> None:
     """Raise CheckFailure with the message `otherwise` unless the demand is met.
 
     >>> demand(1 + 1 == 3, "one and one make 2")
@@ -25,7 +25,7 @@ def demand(met: Any, otherwise: str) -> None:
     tangible_core.testing.checks.CheckFailure: one and one make 2
     """
     __tracebackhide__ = True  # pytest then shows the check, not this line
-    if not met:
+    if not is_met:
         raise CheckFailure(otherwise)
 
 
@@ -41,8 +41,8 @@ def refuses(error: type[TangibleError], what: str, attempt: Callable[[], object]
 
 def checks_in(module: str) -> tuple[Check, ...]:
     """Return the public functions that a module has defined so far, in their order."""
-    defined = vars(sys.modules[module]).values()
-    return tuple(each for each in defined if getattr(each, "__module__", "") == module and each.__name__[0] != "_")
+    values = vars(sys.modules[module]).values()
+    return tuple(check for check in values if getattr(check, "__module__", "") == module and check.__name__[0] != "_")
 
 
 TINY = ((1, 1), (1, 9), (9, 1), (2, 2), (17, 9))

@@ -52,8 +52,8 @@ LISTING_CHECKS: tuple[Check, ...] = checks_in(__name__)
 
 def every_option_has_a_default(method: Method) -> None:
     """Check that the method can be created without options, so that its name is enough to try it."""
-    required = [name for name, field in type(method).model_fields.items() if field.is_required()]
-    demand(not required, f"{', '.join(required)} must be given; give every option a default")
+    missing = [name for name, field in type(method).model_fields.items() if field.is_required()]
+    demand(not missing, f"{', '.join(missing)} must be given; give every option a default")
     type(method)()
 
 

@@ -48,10 +48,7 @@ class CheckResult(NamedTuple):
 
 
 def checks(kind: str) -> tuple[Check, ...]:
-    """Return every check of this kind, in the order in which they run.
-
-    Raises: UnknownName if there is no such kind.
-    """
+    """Return every check of this kind, in the order in which they run. Raises: UnknownName."""
     if kind not in FAMILIES:
         raise UnknownName("kind of methods", kind, FAMILIES)
     return (*LISTING_CHECKS, *OPTION_CHECKS, *FAMILIES[kind])
@@ -102,16 +99,13 @@ def _would_push(name: str, options: dict[str, Any]) -> bool:
 
 
 def run_checks(kind: str, name: str, registry: Registry | None = None, **options: Any) -> Iterator[CheckResult]:
-    """Run every check on an installed method, without pytest; yield each result at once.
-
-    Raises: UnknownMethod; BrokenMethod, also if its `expected_failures` name a check that does not exist.
-    """
-    installed = registry or default_registry()
-    declared = _declared_failures(installed, kind, name)
+    """Run every check on an installed method, without pytest; yield results. Raises: UnknownMethod, BrokenMethod."""
+    methods = registry or default_registry()
+    reasons = _declared_failures(methods, kind, name)
     for check in checks(kind):
-        reason = declared.get(check.__name__, "")
+        reason = reasons.get(check.__name__, "")
         try:
-            _run(installed, check, kind, name, options)
+            _run(methods, check, kind, name, options)
         except (DeviceAbsent, ModelAbsent) as absent:
             yield CheckResult(check.__name__, not reason, f"not run: {absent}", reason)
         except Exception as error:
@@ -124,10 +118,10 @@ def run_checks(kind: str, name: str, registry: Registry | None = None, **options
 
 def _declared_failures(registry: Registry, kind: str, name: str) -> Mapping[str, str]:
     """Return the checks that the class declares to fail, with its reasons. Raises: UnknownMethod, BrokenMethod."""
-    declared = registry.load(kind, name).expected_failures
-    if complaint := _unknown(kind, declared):
+    reasons = registry.load(kind, name).expected_failures
+    if complaint := _unknown(kind, reasons):
         raise BrokenMethod(f"{kind} method {name}: {complaint}")
-    return declared
+    return reasons
 
 
 def _unknown(kind: str, reasons: Mapping[str, str]) -> str:
@@ -141,8 +135,8 @@ def _unknown(kind: str, reasons: Mapping[str, str]) -> str:
 
 def demand(check: Check) -> str:
     """Return the demand of a check: its docstring's first paragraph, without "Check that"."""
-    said = " ".join((check.__doc__ or "").split("\n\n")[0].split()).removeprefix("Check that ")
-    return said[:1].upper() + said[1:]
+    sentence = " ".join((check.__doc__ or "").split("\n\n")[0].split()).removeprefix("Check that ")
+    return sentence[:1].upper() + sentence[1:]
 
 
 def _run(registry: Registry, check: Check, kind: str, name: str, options: dict[str, Any]) -> None:

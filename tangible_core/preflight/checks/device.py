@@ -12,18 +12,16 @@ REACH = "the device's workspace"
 
 
 def damping(flight: Flight) -> Iterator[Verdict]:
-    """Check that the device's damping, on which the limit of stiffness rests, is plausible.
-
-    Makers' tables give the damping that a device can display: more than its greatest stiffness at 1 kHz implies.
-    """
-    stated, taken = flight.spec.damping_n_s_per_m, flight.damping_n_s_per_m
-    known = flight.spec.simulated or 0 < stated <= taken
-    note = "" if stated == taken else f"{stated:g} N s/m stated; its stiffness at 1 kHz implies no more than this"
-    cure = "" if known else "a guess: start at half the stiffness, and raise it for as long as nothing buzzes"
-    says = "" if known else "how well the device damps is a guess"
+    """Check that the device's damping, on which the limit of stiffness rests, is plausible."""
+    table, limit = flight.spec.damping_n_s_per_m, flight.damping_n_s_per_m
+    # Makers' tables give the damping that a device can display: more than its greatest stiffness at 1 kHz implies.
+    sure = flight.spec.simulated or 0 < table <= limit
+    note = "" if table == limit else f"{table:g} N s/m stated; its stiffness at 1 kHz implies no more than this"
+    cure = "" if sure else "a guess: start at half the stiffness, and raise it for as long as nothing buzzes"
+    says = "" if sure else "how well the device damps is a guess"
     source = "simulated" if flight.spec.simulated else "the device's specification"
     yield Verdict(
-        *("device", "damping", "ok" if known else "warn", taken, "N s/m"),
+        *("device", "damping", "ok" if sure else "warn", limit, "N s/m"),
         source=source,
         note=note,
         cure=cure,
@@ -34,12 +32,12 @@ def damping(flight: Flight) -> Iterator[Verdict]:
 def friction(flight: Flight) -> Iterator[Verdict]:
     """Check that the handle's friction is known, which keeps the steps of its encoders from buzzing."""
     friction_n = flight.settings.safety.friction_n
-    known = flight.spec.simulated or friction_n is not None
-    cure = "" if known else "unknown: measure the force at which the handle starts to move, `safety.friction_n: ...`"
-    source = "simulated" if flight.spec.simulated else "`safety.friction_n`" if known else ""
-    says = "" if known else "the friction of the device's handle is unknown"
+    sure = flight.spec.simulated or friction_n is not None
+    cure = "" if sure else "unknown: measure the force at which the handle starts to move, `safety.friction_n: ...`"
+    source = "simulated" if flight.spec.simulated else "`safety.friction_n`" if sure else ""
+    says = "" if sure else "the friction of the device's handle is unknown"
     yield Verdict(
-        *("device", "friction", "ok" if known else "warn", friction_n or 0.0, "N"), source=source, cure=cure, says=says
+        *("device", "friction", "ok" if sure else "warn", friction_n or 0.0, "N"), source=source, cure=cure, says=says
     )
 
 
@@ -81,8 +79,8 @@ def lateness(flight: Flight) -> Iterator[Verdict]:
         says=LATE,
         cure=cure,
     )
-    lost = late.overruns, "<=", OVERRUNS, "share", "ticks over a period late"
-    yield check_bound("jitter", "overruns", *lost, says=LATE, cure=cure)
+    lost_ticks = late.overruns, "<=", OVERRUNS, "share", "ticks over a period late"
+    yield check_bound("jitter", "overruns", *lost_ticks, says=LATE, cure=cure)
     if (stiffness := flight.felt_n_per_m(flight.stiffness_n_per_m)) == 0:
         return
     bound = flight.passive_n_per_m(max(0.0, late.at(99.9)))
@@ -98,7 +96,7 @@ def tick_cost(flight: Flight) -> Iterator[Verdict]:
     """Check the duration of a tick of the force law, p99, against half a period; unsafe if most take a whole one."""
     period_s, p50, p99 = flight.period_s, flight.cost.at(50), flight.cost.at(99)
     how, lighter = "in Python", "a force law of compiled kernels instead of Python"
-    if flight.cost.compiled:
+    if flight.cost.is_compiled:
         how, lighter = (
             f"called from Python, {1e6 * flight.cost.kernel_s:.2f} us compiled",
             "a lighter force law (`render.use`)",

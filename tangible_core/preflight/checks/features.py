@@ -19,16 +19,14 @@ WAVES = "Campion & Hayward 2005: over 2 v T, from 5 v T to feel right"
 
 
 def features(flight: Flight) -> Iterator[Verdict]:
-    """Check the greatest feature of each width against a bump's threshold and the device's resolution.
-
-    The leakage of a wider feature into a narrower band is not a feature of that width. Widths that are too low are not
-    a fault if others are felt.
-    """
+    """Check the greatest feature of each width against a bump's threshold and the device's resolution."""
     relief, resolution_m = flight.surface.relief, flight.spec.resolution_m
     low, high = 2 * max(relief.pitch_m), min(relief.extent_m) / 2
     widths = [width for width in WIDTHS_M if low <= width <= high]
     height_m = {width: feature_m(relief, width) for width in widths}
     from_wider = {narrow: leakage(wide, narrow) * height_m[wide] for narrow, wide in pairwise(widths)}
+    # The leakage of a wider feature into a narrower band is not a feature of that width. Widths that are too low are
+    # not a fault if others are felt.
     own = [width for width in widths if height_m[width] > max(NOTHING_M, OWN * from_wider.get(width, 0.0))]
     if not own:
         whole_m = float(flight.surface.height_m.max() - flight.surface.height_m.min())

@@ -26,19 +26,17 @@ RARE = 0.001
 
 
 def slope_stiffness(flight: Flight) -> Iterator[Verdict]:
-    """Check the share of the surface where the force law, along its force, is stiffer than the device renders stably.
-
-    The stiffness of a penalty along the gradient grows by 1 + |g|^2 with the slope g, that of a texture by its
-    curvature times the force; that of a proxy does not grow with slopes. The guard does not see it.
-    """
+    """Check the share of the surface where the law, along its force, is stiffer than the device renders stably."""
+    # The stiffness of a penalty along the gradient grows by 1 + |g|^2 with the slope g, that of a texture by its
+    # curvature times the force; that of a proxy does not grow with slopes. The guard does not see it.
     limit, _, source = flight.ceilings[0]
-    felt = np.array([flight.felt_n_per_m(each) for each in flight.probes.stiffness_n_per_m.tolist()])
-    share, most = float(np.mean(~(felt <= MEASURED * limit))), float(felt.max())
+    stiffness = np.array([flight.felt_n_per_m(law) for law in flight.probes.stiffness_n_per_m.tolist()])
+    share, most = float(np.mean(~(stiffness <= MEASURED * limit))), float(stiffness.max())
     yield check_bound(
         *("slope", "too stiff", share, "<=", RARE, "share", source),
         worse="unsafe" if share > FEW else "warn",
         says=TOO_STIFF if most <= LEVEL * flight.stiffness_n_per_m else f"on slopes and textures {TOO_STIFF}",
-        note=f"over {limit:.4g} N/m; up to {most:.4g} N/m, the median {np.median(felt):.4g} N/m",
+        note=f"over {limit:.4g} N/m; up to {most:.4g} N/m, the median {np.median(stiffness):.4g} N/m",
         cure=_less_stiff(flight, limit, most),
     )
 
@@ -71,12 +69,9 @@ def _rounder(flight: Flight, times: float) -> list[Cure]:
 
 
 def cliffs(flight: Flight) -> Iterator[Verdict]:
-    """Check the share of a stroke in which a wall holds the hand up, and in which the force grows too fast.
-
-    Up a slope s with friction m, a press P needs a push P (s + m) / (1 - m s) sideways, and none suffices where m s is
-    1 or more. How much a force grows in a tick depends on the law: by K v T at most for a proxy, whatever the slope,
-    and by K v T s for a penalty. Strokes measure what the law really does.
-    """
+    """Check the share of a stroke in which a wall holds the hand up, and in which the force grows too fast."""
+    # Up a slope s with friction m, a press P needs a push P (s + m) / (1 - m s) sideways, and none suffices where m s
+    # is 1 or more. A force grows by K v T a tick at most for a proxy, whatever the slope, by K v T s for a penalty.
     strokes, steepest = flight.strokes, slopes(flight.surface.relief).max()
     held_up, sudden = float(np.mean(strokes.held_up)), float(np.mean(strokes.rise_n > flight.max_step_n))
     yield check_bound(
@@ -96,11 +91,9 @@ def cliffs(flight: Flight) -> Iterator[Verdict]:
 
 
 def climbable(flight: Flight) -> float:
-    """Return the steepest slope that a hand climbs with this press, by the greatest static friction of the surface.
-
-    Never under GENTLEST: on rougher materials a hand is held up by friction rather than by slopes.
-    """
+    """Return the steepest slope that a hand climbs with this press, by the greatest static friction of the surface."""
     friction = max((present_material.static_friction for present_material in flight.present_materials), default=0.0)
+    # On rougher materials a hand is held up by friction rather than by slopes.
     return max((SIDEWAYS - friction) / (1 + friction * SIDEWAYS), GENTLEST)
 
 
@@ -118,12 +111,10 @@ def _steadier(flight: Flight) -> Cure:
 
 
 def clipping(flight: Flight) -> Iterator[Verdict]:
-    """Check the share of the surface where the force on a hand that presses down exceeds the device's.
-
-    Under a force law without friction it is P sqrt(1 + s^2) on a slope s, for a press P and a hand held sideways. Walls
-    that push the hand away more strongly than it pushes do not count: it does not stay there.
-    """
+    """Check the share of the surface where the force on a hand that presses down exceeds the device's."""
     most_n, press_n = flight.max_force_n, flight.hand.press_n
+    # Without friction it is P sqrt(1 + s^2) on a slope s, for a press P and a hand held sideways. Walls that push the
+    # hand away more strongly than it pushes do not count: it does not stay there.
     stays = np.linalg.norm(flight.probes.force_n[:, :2], axis=1) <= SIDEWAYS * press_n
     strength_n = np.where(stays, flight.probes.strength_n, 0.0)
     share = float(np.mean(~(strength_n <= most_n)))

@@ -22,10 +22,11 @@ def law_stiffness(flight: Flight) -> Iterator[Verdict]:
     if flight.stiffness_n_per_m == 0:
         yield Verdict("stiffness", "the law", "ok", 0.0, "N/m", note="not a spring; see `contact`")
         return
-    felt = flight.felt_n_per_m(flight.stiffness_n_per_m)
-    if felt < SOFTEST_N_PER_M:
+    n_per_m = flight.felt_n_per_m(flight.stiffness_n_per_m)
+    if n_per_m < SOFTEST_N_PER_M:
+        source = "a hand that explores with 1 N sinks 20 mm"
         yield check_bound(
-            *("stiffness", "the law", felt, ">=", SOFTEST_N_PER_M, "N/m", "a hand that explores with 1 N sinks 20 mm"),
+            *("stiffness", "the law", n_per_m, ">=", SOFTEST_N_PER_M, "N/m", source),
             says="the force law is so soft that a hand goes through the surface",
             cure="a stiffer force law, such as by `render.stiffness_n_per_m`",
         )
@@ -64,17 +65,15 @@ def _under_ceiling(of: str, stiffness: float, ceiling: Ceiling, cure: Cure) -> V
 
 
 def law_damping(flight: Flight) -> Iterator[Verdict]:
-    """Check the force law's damping against what its stiffness leaves of the device's: b > K T (1 + 2 d) / 2 + B.
-
-    Each place has its own stiffness and damping. A few places are left out: where a proxy leaps, it is not damping.
-    """
-    felt = np.array([flight.felt_damping_n_s_per_m(each) for each in flight.probes.damping_n_s_per_m.clip(0).tolist()])
+    """Check the force law's damping against what its stiffness leaves of the device's: b > K T (1 + 2 d) / 2 + B."""
+    law_b = np.array([flight.felt_damping_n_s_per_m(law) for law in flight.probes.damping_n_s_per_m.clip(0).tolist()])
     level = np.clip(flight.probes.stiffness_n_per_m, 0, flight.stiffness_n_per_m)  # `slope` checks that of slopes
-    level_n_per_m = np.array([flight.felt_n_per_m(each) for each in level.tolist()])
+    level_n_per_m = np.array([flight.felt_n_per_m(law) for law in level.tolist()])
     tick_s = flight.period_s * (1 + 2 * flight.settings.safety.delay_ticks) / 2
-    left = np.maximum(0.0, flight.damping_n_s_per_m - tick_s * level_n_per_m)
-    worst = int(np.argsort(felt - left, kind="stable")[math.ceil((1 - FEW) * (felt.size - 1))])
-    damping, most = max(0.0, round(float(felt[worst]), 3)), float(left[worst])
+    rest = np.maximum(0.0, flight.damping_n_s_per_m - tick_s * level_n_per_m)
+    # A few places are left out: where a proxy leaps, it is not damping.
+    worst = int(np.argsort(law_b - rest, kind="stable")[math.ceil((1 - FEW) * (law_b.size - 1))])
+    damping, most = max(0.0, round(float(law_b[worst]), 3)), float(rest[worst])
     yield check_bound(
         *("damping", "the law", damping, "<=", most, "N s/m", PASSIVE),
         note=f"b = {flight.damping_n_s_per_m:.3g} N s/m",

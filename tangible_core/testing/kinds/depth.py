@@ -28,20 +28,17 @@ def map_is_well_formed(method: DepthEstimator) -> None:
 
 
 def wall_is_found(method: DepthEstimator) -> None:
-    """Check that a textured wall shifted by 6 px is found: half of it is known, with a median error of 0.5 px at most.
-
-    A method for one picture cannot see the shift: its map must lie within 0..1, where 1 is nearest.
-    """
+    """Check that a textured wall shifted by 6 px is found: half of it is known, with a median error of 0.5 px at
+    most."""
     result = method.estimate(wall(WALL_PX))
-    known = result.disparity_px[np.isfinite(result.disparity_px)]
-    share = known.size / result.disparity_px.size
+    near = result.disparity_px[np.isfinite(result.disparity_px)]
+    share = near.size / result.disparity_px.size
     demand(share >= 0.5, f"{share:.0%} of the wall is known; a texture this clear allows at least half")
+    # A method for one picture cannot see the shift: its map must lie within 0..1, where 1 is nearest.
     if result.unit == "relative":
-        demand(
-            known.min() >= 0 and known.max() <= 1, f"nearness runs from {known.min():g} to {known.max():g}, not 0..1"
-        )
+        demand(near.min() >= 0 and near.max() <= 1, f"nearness runs from {near.min():g} to {near.max():g}, not 0..1")
         return
-    error = float(np.median(np.abs(known - WALL_PX)))
+    error = float(np.median(np.abs(near - WALL_PX)))
     demand(error <= 0.5, f"the wall is shifted by {WALL_PX:g} px; the median error is {error:.3g} px")
 
 
@@ -63,24 +60,18 @@ def views_are_not_written_to(method: DepthEstimator) -> None:
 
 
 def every_picture_type_is_taken(method: DepthEstimator) -> None:
-    """Check that 8 and 16 bits, floats, RGBA and any memory layout give nearly the same map.
-
-    Pictures with less information must give a map of the right size.
-    """
+    """Check that 8 and 16 bits, floats, RGBA and any memory layout give nearly the same map."""
     views = wall(WALL_PX)
-    expected = method.estimate(views)
+    first = method.estimate(views)
     for name, pair in _variants(views, exact_variants):
-        _demand_agreement(expected, method.estimate(pair), name)
+        _demand_agreement(first, method.estimate(pair), name)
     for name, pair in _variants(views, coarse_variants):
         shape = method.estimate(pair).disparity_px.shape
         demand(shape == views.shape, f"{name} pictures of {views.shape} give a map of {shape}")
 
 
 def any_size_is_taken(method: DepthEstimator) -> None:
-    """Check that views of any size, even one pixel, give a map of their size, or a TangibleError with the reason.
-
-    The map may be all NaN.
-    """
+    """Check that views of any size, even one pixel, give a map of their size, or a TangibleError with the reason."""
     for shape in TINY:
         try:
             result = method.estimate(wall(1.0, shape))
@@ -90,28 +81,25 @@ def any_size_is_taken(method: DepthEstimator) -> None:
 
 
 def flat_pair_claims_nothing(method: DepthEstimator) -> None:
-    """Check that at most 5 % of a pair of one colour, which matches at any shift, is known with a confidence above 0.
-
-    A method for one picture claims no shift; it must only give finite values or NaN, or refuse the picture.
-    """
+    """Check that at most 5 % of a pair of one colour, which matches at any shift, is known with a confidence above
+    0."""
     flat = np.full((64, 160, 3), 128, np.uint8)
     try:
         result = method.estimate(Views(flat, flat.copy()))
     except PictureError:
         return
     demand(not np.isinf(result.disparity_px).any(), "a disparity is infinite; write NaN where it is unknown")
-    claimed = float(np.mean(np.isfinite(result.disparity_px) & (result.confidence > 0)))
+    # A method for one picture claims no shift.
+    share = float(np.mean(np.isfinite(result.disparity_px) & (result.confidence > 0)))
     demand(
-        result.unit == "relative" or claimed <= 0.05,
-        f"{claimed:.0%} of a pair without any texture is claimed as known; give NaN or confidence 0",
+        result.unit == "relative" or share <= 0.05,
+        f"{share:.0%} of a pair without any texture is claimed as known; give NaN or confidence 0",
     )
 
 
 def one_view_is_answered(method: DepthEstimator) -> None:
-    """Check that one view gives a relative map, or else a TangibleError, and that `needs_pair` is true for the latter.
-
-    A plan reads `needs_pair`.
-    """
+    """Check that one view gives a relative map, or else a TangibleError, and that `needs_pair` is true for the
+    latter."""
     try:
         result = method.estimate(Views(wall().left))
     except ModelAbsent:
@@ -140,15 +128,15 @@ def _variants(
         yield name, Views(one, other)
 
 
-def _demand_agreement(expected: DisparityMap, result: DisparityMap, name: str) -> None:
-    known, again = np.isfinite(expected.disparity_px), np.isfinite(result.disparity_px)
-    differ = float(np.mean(np.logical_xor(known, again)))
+def _demand_agreement(first: DisparityMap, result: DisparityMap, name: str) -> None:
+    finite, again = np.isfinite(first.disparity_px), np.isfinite(result.disparity_px)
+    differ = float(np.mean(np.logical_xor(finite, again)))
     demand(differ <= 0.05, f"as {name}, {differ:.0%} of the pixels change between known and unknown")
-    both = np.logical_and(known, again)
+    both = np.logical_and(finite, again)
     if both.any():
-        apart = float(np.median(np.abs(expected.disparity_px[both] - result.disparity_px[both])))
-        most = 0.02 if expected.unit == "relative" else 0.5
-        demand(apart <= most, f"as {name}, the median disparity differs by {apart:.3g} ({expected.unit})")
+        apart = float(np.median(np.abs(first.disparity_px[both] - result.disparity_px[both])))
+        most = 0.02 if first.unit == "relative" else 0.5
+        demand(apart <= most, f"as {name}, the median disparity differs by {apart:.3g} ({first.unit})")
 
 
 CHECKS: tuple[Check, ...] = checks_in(__name__)

@@ -48,16 +48,16 @@ def forces_are_limited(method: HapticDevice) -> None:
     """Check that a force too strong is scaled to the device's largest and keeps its direction; no axis wraps around."""
     most = method.spec().max_force_n
     with method.open() as link:
-        for wanted in (Force(0.0, 0.0, 2 * most), Force(1e3, 2e3, -1e3), Force(-1e308, 1e308, 1e308)):
-            link.write(wanted)
-            held = np.array(link.applied)
-            size = float(np.linalg.norm(held))
+        for force in (Force(0.0, 0.0, 2 * most), Force(1e3, 2e3, -1e3), Force(-1e308, 1e308, 1e308)):
+            link.write(force)
+            applied_n = np.array(link.applied)
+            size = float(np.linalg.norm(applied_n))
             link.write(NO_FORCE)
-            demand(size <= most * (1 + 1e-6), f"{wanted} leads to {size:.4g} N; the device's limit is {most:g} N")
-            demand(size >= 0.9 * most, f"{wanted} leads to {size:.4g} N; up to {most:g} N can be given")
-            ideal = np.array(wanted) / max(map(abs, wanted))
-            aligned = float(held @ ideal / np.linalg.norm(ideal))
-            demand(aligned >= 0.98 * size, f"{wanted} turns into {held.tolist()} N, another direction")
+            demand(size <= most * (1 + 1e-6), f"{force} leads to {size:.4g} N; the device's limit is {most:g} N")
+            demand(size >= 0.9 * most, f"{force} leads to {size:.4g} N; up to {most:g} N can be given")
+            ideal = np.array(force) / max(map(abs, force))
+            along_n = float(applied_n @ ideal / np.linalg.norm(ideal))
+            demand(along_n >= 0.98 * size, f"{force} turns into {applied_n.tolist()} N, another direction")
 
 
 def broken_force_is_none(method: HapticDevice) -> None:
@@ -126,9 +126,9 @@ def velocity_is_that_of_the_positions(method: HapticDevice) -> None:
     speeds = np.array([state.velocity_m_per_s for state in states])
     steps_s = np.diff([state.time_s for state in states])
     way = np.subtract(states[-1].position_m, states[0].position_m)
-    summed = (0.5 * (speeds[1:] + speeds[:-1]) * steps_s[:, None]).sum(axis=0)
-    apart, length = float(np.linalg.norm(summed - way)), float((np.linalg.norm(speeds[1:], axis=1) * steps_s).sum())
-    demand(apart <= 0.1 * length + 10 * spec.resolution_m, f"velocities sum to {summed} m, the tip moved by {way} m")
+    path_m = (0.5 * (speeds[1:] + speeds[:-1]) * steps_s[:, None]).sum(axis=0)
+    apart, length = float(np.linalg.norm(path_m - way)), float((np.linalg.norm(speeds[1:], axis=1) * steps_s).sum())
+    demand(apart <= 0.1 * length + 10 * spec.resolution_m, f"velocities sum to {path_m} m, the tip moved by {way} m")
 
 
 def states_make_sense(method: HapticDevice) -> None:

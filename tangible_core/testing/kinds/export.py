@@ -47,10 +47,7 @@ def width_is_a_length(method: Exporter) -> None:
 
 
 def plain_scene_is_written(method: Exporter) -> None:
-    """Check that a plain scene of three parts becomes whole files, named by the stem, whose paths `write` returns.
-
-    The exporter must read no product that is not in its `needs`.
-    """
+    """Check that a plain scene of three parts becomes whole files, named by the stem, whose paths `write` returns."""
     with _write(method, plain_work(method)) as files:
         demand(files, "write returns no path; it must return those of all files that it wrote")
 
@@ -64,21 +61,21 @@ def nothing_else_is_left(method: Exporter) -> None:
         current.mkdir()
         with chdir(current):
             paths = method.write(plain_work(method), folder / STEM)
-        left = {path for path in Path(place).rglob("*") if path not in (folder, current)} - set(paths)
-        names = ", ".join(sorted(path.name for path in left))
-        demand(not left, f"it leaves {names}, which write does not return; remove files that are not exported")
+        strays = {path for path in Path(place).rglob("*") if path not in (folder, current)} - set(paths)
+        names = ", ".join(sorted(path.name for path in strays))
+        demand(not strays, f"it leaves {names}, which write does not return; remove files that are not exported")
 
 
 def same_work_same_files(method: Exporter) -> None:
     """Check that two runs, a day apart, write the same names and the same bytes: files are compared and archived."""
-    first = _bytes_of(method, plain_work(method))
+    first = _write_to_memory(method, plain_work(method))
     with patch("time.time", _tomorrow):
-        second = _bytes_of(type(method)(**dict(method)), plain_work(method))
+        second = _write_to_memory(type(method)(**dict(method)), plain_work(method))
     demand(first.keys() == second.keys(), f"two runs write {', '.join(first)}, and then {', '.join(second)}")
-    changed = [name for name in first if first[name] != second[name]]
-    demand(not changed, f"{', '.join(changed)} differs from run to run; leave out the time, and seed what is random")
-    dated = [name for name, data in first.items() if any(day in data for day in _today())]
-    demand(not dated, f"{', '.join(dated)} contains the date of its writing; leave the date out")
+    unequal = [name for name in first if first[name] != second[name]]
+    demand(not unequal, f"{', '.join(unequal)} differs from run to run; leave out the time, and seed what is random")
+    with_date = [name for name, data in first.items() if any(day in data for day in _today())]
+    demand(not with_date, f"{', '.join(with_date)} contains the date of its writing; leave the date out")
 
 
 def work_is_not_written_to(method: Exporter) -> None:
@@ -92,10 +89,7 @@ def work_is_not_written_to(method: Exporter) -> None:
 
 
 def every_work_is_answered(method: Exporter) -> None:
-    """Check that any work, flat, tiny, without parts, in any script, gives whole files or a TangibleError.
-
-    A BrokenMethod counts as a failure.
-    """
+    """Check that any work, flat, tiny, without parts, in any script, gives whole files or a TangibleError."""
     for name, work in works(method):
         _write_or_refuse(method, work, name)
 
@@ -105,10 +99,10 @@ def every_picture_type_is_taken(method: Exporter) -> None:
     plain = plain_work(method)
     assert plain.picture is not None
     with _write(method, plain) as files:
-        expected = len(files)
+        count = len(files)
     for name, picture in exact_variants(plain.picture):
         with _write(method, replace(plain, picture=picture)) as files:
-            demand(len(files) == expected, f"a picture of {name} gives {len(files)} files, of 8 bits {expected}")
+            demand(len(files) == count, f"a picture of {name} gives {len(files)} files, of 8 bits {count}")
     for name, picture in coarse_variants(plain.picture):
         _write_or_refuse(method, replace(plain, picture=picture), f"a picture of {name}")
 
@@ -142,7 +136,7 @@ def _write(method: Exporter, work: Work) -> Generator[Sequence[Path]]:
         yield files
 
 
-def _bytes_of(method: Exporter, work: Work) -> Mapping[str, bytes]:
+def _write_to_memory(method: Exporter, work: Work) -> Mapping[str, bytes]:
     with _write(method, work) as files:
         return {path.name: path.read_bytes() for path in files}
 
@@ -166,10 +160,7 @@ CHECKS: tuple[Check, ...] = checks_in(__name__)  # what stands below are no chec
 
 
 def demand_whole(path: Path) -> None:
-    """Demand that a file is neither empty nor truncated, and of the format that its ending names.
-
-    Raises: CheckFailure, or the exception of the reader.
-    """
+    """Demand that a file is neither empty nor truncated, and of the format that its ending names."""
     demand(path.stat().st_size > 0, f"{path.name} is empty")
     if (read := READERS.get(path.suffix.lower())) is not None:
         read(path)

@@ -29,7 +29,7 @@ LANGUAGES = ("de-AT", "tlh", "zh-Hant-TW")
 
 def plain_work(exporter: Exporter) -> Work:
     """Return a scene of three parts, two of them named, large enough for fingers."""
-    return work_of(exporter, labels=_labels((ROWS, COLUMNS)), picture=_picture((ROWS, COLUMNS)))
+    return make_work(exporter, labels=_labels((ROWS, COLUMNS)), picture=_picture((ROWS, COLUMNS)))
 
 
 def works(exporter: Exporter) -> Iterator[tuple[str, Work]]:
@@ -42,33 +42,33 @@ def works(exporter: Exporter) -> Iterator[tuple[str, Work]]:
     yield "names in other scripts", replace(plain, names=("стена", "テーブル", "Ωμέγα <&>"))
     yield "parts without names", replace(plain, names=())
     yield "a flat surface", _flat(exporter, plain)
-    yield "a scene without parts", work_of(exporter, picture=_picture((ROWS, COLUMNS)))
-    yield "heights without a picture", work_of(exporter)
+    yield "a scene without parts", make_work(exporter, picture=_picture((ROWS, COLUMNS)))
+    yield "heights without a picture", make_work(exporter)
     labels = _labels((ROWS, COLUMNS))
     fine = np.where(labels == len(NAMES) - 1, 0, labels).astype(np.int32).repeat(FINE, 0).repeat(FINE, 1)
-    yield "a part that was simplified away", work_of(exporter, labels, _picture((ROWS, COLUMNS)), simplified=fine)
+    yield "a part that was simplified away", make_work(exporter, labels, _picture((ROWS, COLUMNS)), fine_labels=fine)
     for shape in ((1, 1), (1, 9), (9, 1), (2, 2)):
         name = f"{shape[0]} x {shape[1]} cells"
-        yield name, work_of(exporter, labels=_labels(shape), picture=_picture(shape), shape=shape)
+        yield name, make_work(exporter, labels=_labels(shape), picture=_picture(shape), shape=shape)
 
 
-def work_of(
+def make_work(
     exporter: Exporter,
     labels: np.ndarray | None = None,
     picture: np.ndarray | None = None,
     shape: tuple[int, int] = (ROWS, COLUMNS),
-    simplified: np.ndarray | None = None,
+    fine_labels: np.ndarray | None = None,
 ) -> Work:
     """Return a work with the products that this exporter needs, and no other. labels: of the parts, or None."""
     width_m = exporter.picture_width_m(shape[1] / shape[0]) or WIDE_M
-    available = _products(shape, width_m, labels, simplified)
+    available = _products(shape, width_m, labels, fine_labels)
     names = () if labels is None else NAMES
     products: dict[str, Record | None] = {name: available[name] for name in exporter.needs if name in EXPORTABLE}
     return Work("Still life", "en", products, picture, names)
 
 
 def _products(
-    shape: tuple[int, int], width_m: float, labels: np.ndarray | None, simplified: np.ndarray | None
+    shape: tuple[int, int], width_m: float, labels: np.ndarray | None, fine_labels: np.ndarray | None
 ) -> dict[str, Any]:
     rows, columns = shape
     heights_m = np.linspace(0, 0.003, columns, dtype=np.float32)[None].repeat(rows, 0)
@@ -79,7 +79,7 @@ def _products(
     products |= {"relief": relief, "surface": HapticSurface(relief), "disparity": DisparityMap(heights_m * 1000)}
     if labels is not None:
         parts = PartMap(labels, tuple(range(len(NAMES))))
-        fine = labels.repeat(FINE, 0).repeat(FINE, 1) if simplified is None else simplified
+        fine = labels.repeat(FINE, 0).repeat(FINE, 1) if fine_labels is None else fine_labels
         materials = (FELT,) * len(NAMES)
         products |= {
             "segments": SegmentMap(labels),

@@ -1,8 +1,4 @@
-"""Checks of a force law that supports surfaces that move; other force laws pass.
-
-A film of small reliefs is felt by a hand on a given path: at its start, at its end, at the change from one frame to
-the next, where nothing may jump, and with the surface velocity that it reports.
-"""
+"""Checks of a force law that supports surfaces that move, felt by a hand on a given path; other force laws pass."""
 
 import gc
 import pickle
@@ -46,8 +42,8 @@ def film_arrives_where_a_touch_is(method: ForceRenderer) -> None:
         _hold(film, TICKS + 1)
         demand(film.arrived, f"frame {frame} is not reached within a frame, though it is near")
         demand(_moving(film)[FRAME] == frame, f"on the way to frame {frame}, it reports {_moving(film)[FRAME]}")
-    wanted = HapticSurface(_relief(3))
-    apart = np.abs(film.touch.path(path) - method.touch(wanted).path(path))[len(path) // 2 :].max()
+    target = HapticSurface(_relief(3))
+    apart = np.abs(film.touch.path(path) - method.touch(target).path(path))[len(path) // 2 :].max()
     demand(apart <= 1e-2, f"once arrived, film and touch are {apart:.3g} N apart")
 
 
@@ -124,13 +120,13 @@ def film_can_be_handed_over(method: ForceRenderer) -> None:
         return
     film, buffers = method.film(_surface(0), PERIOD_S, FRAME_S), list[pickle.PickleBuffer]()
     small = pickle.dumps(film, 5, buffer_callback=buffers.append)
-    shared = [bytearray(buffer.raw()) for buffer in buffers]
-    felt, shown = (pickle.loads(small, buffers=shared) for _ in range(2))
-    before = _hold(felt, 100)[-1]
-    shown.show(_relief(2), 7)
-    change = np.abs(_hold(felt, TICKS)[-1] - before).max()
+    arrays = [bytearray(buffer.raw()) for buffer in buffers]
+    other, shower = (pickle.loads(small, buffers=arrays) for _ in range(2))
+    before = _hold(other, 100)[-1]
+    shower.show(_relief(2), 7)
+    change = np.abs(_hold(other, TICKS)[-1] - before).max()
     demand(change > 0.1, "a relief shown in one process does not change the force in the other")
-    demand(_moving(felt)[FRAME] == 7, f"it was shown frame 7, and reports {_moving(felt)[FRAME]}")
+    demand(_moving(other)[FRAME] == 7, f"it was shown frame 7, and reports {_moving(other)[FRAME]}")
     same = np.allclose(_hold(film, TICKS)[-1], before, rtol=0, atol=1e-6)
     demand(same, "a relief shown to a copy changes the force of the original")
 
@@ -143,19 +139,19 @@ def film_needs_no_more_memory(method: ForceRenderer) -> None:
     for frame in range(8):
         film.show(reliefs[frame % 4], frame)
         _hold(film, 20)
-    dropped, held = film.dropped, list[int]()
+    before, sizes = film.dropped, list[int]()
     tracemalloc.start()
     try:
         for frame in range(8, 308):
             film.show(reliefs[frame % 4], frame)
             if frame % 100 == 7:
                 gc.collect()
-                held.append(tracemalloc.get_traced_memory()[0])
+                sizes.append(tracemalloc.get_traced_memory()[0])
     finally:
         tracemalloc.stop()
-    demand(held[-1] - held[-2] < 20_000, f"100 frames leave {held[-1] - held[-2]} bytes behind")
-    dropped = film.dropped - dropped
-    demand(299 <= dropped <= 300, f"of 300 frames at once it reports {dropped} as dropped")
+    demand(sizes[-1] - sizes[-2] < 20_000, f"100 frames leave {sizes[-1] - sizes[-2]} bytes behind")
+    before = film.dropped - before
+    demand(299 <= before <= 300, f"of 300 frames at once it reports {before} as dropped")
 
 
 def _surface(frame: int) -> HapticSurface:

@@ -1,8 +1,4 @@
-"""Checks of a force law: the size and direction of its force, and where it pushes.
-
-Exact figures are demanded where every sound force law agrees: on a plane, down a slope, in free air. A force law whose
-force on a plane grows in proportion to the depth is a spring, whose direction and size are checked as well.
-"""
+"""Checks of a force law: the size and direction of its force, and where it pushes."""
 
 from itertools import product
 
@@ -41,10 +37,8 @@ def plane_pushes_straight_up(method: ForceRenderer) -> None:
 
 
 def what_it_says_of_itself_is_felt(method: ForceRenderer) -> None:
-    """Check that a force law with `is_lateral` never pushes along z, and that one without does.
-
-    `with-materials` relies on it. A force law that wraps another one passes.
-    """
+    """Check that a force law with `is_lateral` never pushes along z, and that one without does."""
+    # `with-materials` relies on it; a force law that wraps another one passes.
     if type(method).renders_materials:
         return
     up = [_press(method, scene, x, y, depth)[2] for _, scene in _scenes() for x, y in PLACES_M for depth in DEPTHS_M]
@@ -80,11 +74,7 @@ def slopes_push_downhill(method: ForceRenderer) -> None:
 
 
 def springs_are_exact(method: ForceRenderer) -> None:
-    """Check that a spring pushes along the normal of a ramp and of a sphere, within 5 degrees.
-
-    Its size lies between that of a spring to the nearest point, k times the distance, and that of a spring along the
-    gradient, k d sqrt(1 + slope^2), within 5 %. Force laws that are not springs on a plane pass.
-    """
+    """Check that a spring pushes along the normal of a ramp and of a sphere, within 5 degrees."""
     stiffness = _stiffness(method)
     if stiffness is None:
         return
@@ -94,6 +84,8 @@ def springs_are_exact(method: ForceRenderer) -> None:
         size = float(np.linalg.norm(force))
         angle = float(np.degrees(np.arccos(np.clip(force @ normal / size, -1, 1)))) if size else 180.0
         demand(angle <= 5, f"on the {name} at ({x}, {y}) m the force is {angle:.3g} degrees off the normal")
+        # Between a spring to the nearest point, k times the distance, and one along the gradient, k d sqrt(1 +
+        # slope^2).
         least, most = stiffness * depth * normal[2], stiffness * depth / normal[2]
         demand(
             0.95 * least <= size <= 1.05 * most,

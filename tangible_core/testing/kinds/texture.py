@@ -23,10 +23,7 @@ def labels_are_well_formed(method: Segmenter) -> None:
 
 
 def two_textures_are_told_apart(method: Segmenter) -> None:
-    """Check that 95 % of the pixels of two halves, which differ in brightness and texture, are separated.
-
-    A half may have several segments; one smaller than a hundredth of the picture counts as wrong.
-    """
+    """Check that 95 % of the pixels of two halves, which differ in brightness and texture, are separated."""
     picture, truth = two_textures()
     right = _accuracy(method.segment(picture).labels, truth)
     demand(right >= 0.95, f"{right:.1%} of the pixels are in a segment of their own half; 95 % are required")
@@ -57,14 +54,11 @@ def one_colour_is_one_segment(method: Segmenter) -> None:
 
 
 def every_picture_type_is_segmented(method: Segmenter) -> None:
-    """Check that 8 and 16 bits, floats, RGBA and any memory layout give nearly the same segments.
-
-    Pictures with less information must give well-formed labels.
-    """
+    """Check that 8 and 16 bits, floats, RGBA and any memory layout give nearly the same segments."""
     picture, _ = two_textures()
-    expected = method.segment(picture).labels
+    first = method.segment(picture).labels
     for name, variant in exact_variants(picture):
-        same = _accuracy(method.segment(variant).labels, expected)
+        same = _accuracy(method.segment(variant).labels, first)
         demand(same >= 0.95, f"as {name}, only {same:.1%} of the pixels stay in their segment")
     for name, variant in coarse_variants(picture):
         _demand_labels(method.segment(variant).labels, picture.shape[:2], f"the picture as {name}")

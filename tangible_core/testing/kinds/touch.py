@@ -31,10 +31,7 @@ def broken_state_gives_no_force(method: ForceRenderer) -> None:
 
 
 def path_is_force_by_force(method: ForceRenderer) -> None:
-    """Check that `path` gives the same forces as `force` for each position: a study of a path holds for a device.
-
-    The velocity is the step from the previous position over the period; 0 at the first and where it is not finite.
-    """
+    """Check that `path` gives the same forces as `force` for each position: a study of a path holds for a device."""
     scene = sphere_cap()
     path = _path(scene)
     together, touch = method.touch(scene.surface).path(path, PERIOD_S), method.touch(scene.surface)
@@ -65,10 +62,10 @@ def touches_are_apart(method: ForceRenderer) -> None:
     alone, busy, quiet = (method.touch(scene.surface) for _ in range(3))
     for state in states:
         busy.force(HapticState(scene.at(0.02, -0.02, 0.004), (0.1, 0.1, -0.1), state.time_s))
-        expected, second_force = alone.force(state), quiet.force(state)
+        first_force, second_force = alone.force(state), quiet.force(state)
         demand(
-            tuple(second_force) == tuple(expected),
-            f"next to another touch {state} gives {second_force}, alone {expected}",
+            tuple(second_force) == tuple(first_force),
+            f"next to another touch {state} gives {second_force}, alone {first_force}",
         )
     new, first = method.touch(scene.surface).force(states[0]), method.touch(scene.surface).path(_path(scene)[:1])
     demand(tuple(new) == tuple(first[0].tolist()), f"a new touch gives {new}, an earlier one gave {first[0].tolist()}")
@@ -121,11 +118,10 @@ def materials_are_taken(method: ForceRenderer) -> None:
 
 
 def stiffness_is_no_less_than_felt(method: ForceRenderer) -> None:
-    """Check that the stiffness which a force law states is at least the measured one, within 10 %, on level ground.
-
-    By the stated stiffness the guard softens a force law that is too stiff for a device; without one, it measures.
-    """
+    """Check that the stiffness which a force law states is at least the measured one, within 10 %, on level ground."""
     for name, surface in (("a plane", plane().surface), ("a plane of two materials", _patchwork(rough=False))):
+        # By the stated stiffness the guard softens a force law that is too stiff for a device; without one, it
+        # measures.
         touch = method.touch(surface)
         if (stated := touch.stiffness_n_per_m) is not None:
             measured = max(slopes(touch, DEVICE), default=0.0)

@@ -14,21 +14,14 @@ GREY, CONTRAST = 127.5, 40.0
 
 @lru_cache
 def wall(disparity_px: float = 6.0, shape: tuple[int, int] = (96, 320), seed: int = 0) -> Views:
-    """Return views of a textured wall that faces both cameras: all pixels have one disparity, of either sign.
-
-    The texture is a sum of plane waves 4 to 24 px long, so it is exact at any fraction of a pixel.
-    Returns: views of uint8 (h, w, 3), uncalibrated.
-    """
+    """Return views of a textured wall that faces both cameras: all pixels have one disparity, of either sign."""
+    # A sum of plane waves 4 to 24 px long is exact at any fraction of a pixel.
     rows, columns = np.indices(shape, np.float64)
     return Views(_waves(rows, columns, seed), _waves(rows, columns + disparity_px, seed))
 
 
 def two_textures(shape: tuple[int, int] = (96, 128)) -> tuple[UInt8[np.ndarray, "h w 3"], Int32[np.ndarray, "h w"]]:
-    """Return a dark half with upright stripes 4 px apart, a bright one with slanting ones 5.7 px apart, and some noise.
-
-    The halves differ by 110 grey levels and their stripes by 16: in brightness, direction and frequency.
-    Returns: the picture, and the true labels: 0 on the left, 1 on the right.
-    """
+    """Return a dark half with upright stripes 4 px apart, a bright one with slanting ones, and noise; the labels."""
     rows, columns = np.indices(shape, np.float64)
     labels = (columns >= shape[1] / 2).astype(np.int32)
     upright = 70 + 8 * np.cos(2 * np.pi * columns / 4)

@@ -1,10 +1,4 @@
-"""Stereo pairs whose disparity and occlusion are known exactly: planes, steps, spheres and thin bars.
-
-Analytic surfaces stand in front of two cameras; no picture is ever warped. A surface is a disparity d(x, y) over the
-left view, and a texture painted on it: a sum of plane waves none of which is shorter than SHORTEST_PX. The left view at
-(x, y) shows the nearest surface there; the right view at (x_r, y) shows the nearest one among the points x that solve
-x - d(x, y) = x_r, which each surface knows in closed form.
-"""
+"""Stereo pairs whose disparity and occlusion are known exactly: planes, steps, spheres and thin bars."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -50,12 +44,10 @@ def slanted_plane(seed: int, region: Region, base_px: float, across: float = 0.0
 
 
 def cap(seed: int, centre: tuple[float, float], radius_px: float, base_px: float, flatness: float = 0.7) -> Surface:
-    """Return a round cap whose rim has disparity `base_px`: an ellipsoid of radius R, s R deep, within r <= R / 2.
-
-    d = base + s (sqrt(R^2 - r^2) - sqrt(R^2 - radius^2)), with R = 2 radius and s = flatness <= 1, so that its slope is
-    below 0.58 and the right camera sees all of it. With u = x - x_c, v = y - y_c and k = x_r - x_c + base - s sqrt(..),
-    u - k = s sqrt(R^2 - u^2 - v^2) has the root u below.
-    """
+    """Return a round cap whose rim has disparity `base_px`: an ellipsoid of radius R, s R deep, within r <= R / 2."""
+    # d = base + s (sqrt(R^2 - r^2) - sqrt(R^2 - radius^2)), with R = 2 radius and s = flatness <= 1, so that its slope
+    # is below 0.58 and the right camera sees all of it. With u = x - x_c, v = y - y_c and k = x_r - x_c + base - s
+    # sqrt(..), u - k = s sqrt(R^2 - u^2 - v^2) has the root below.
     whole = 2 * radius_px
     lowest = flatness * np.sqrt(whole**2 - radius_px**2)
     square = 1 + flatness**2
@@ -100,11 +92,11 @@ def texture(seed: int, x_px: Points, y_px: Points) -> Points:
 
 
 def left_view(surfaces: Sequence[Surface], shape: tuple[int, int], points: int = 3) -> Float64[np.ndarray, "h w"]:
-    """Render the view of the left camera.
-
-    A pixel mixes the textures at its centre, each in the share of points x points within the pixel where its surface
-    is the nearest: the textures are band-limited, so only edges need it.
-    """
+    """Render the view of the left camera."""
+    # Analytic surfaces stand in front of two cameras; no picture is ever warped. A surface is a disparity d(x, y) over
+    # the left view, and a texture painted on it. The right view at (x_r, y) shows the nearest surface among the points
+    # x that solve x - d(x, y) = x_r, which each surface knows in closed form. A pixel mixes points x points within it:
+    # the textures are band-limited, so only edges need it.
     return _view(surfaces, shape, points, lambda surface, x, y: x)
 
 
@@ -137,9 +129,9 @@ def _view(surfaces: Sequence[Surface], shape: tuple[int, int], points: int, wher
     rows, columns = np.indices(shape, np.float64)
     grey = np.zeros(shape)
     for surface, share in zip(surfaces, _shares(surfaces, columns, rows, points, where), strict=True):
-        shown = share > 0
-        x, y = columns[shown], rows[shown]
-        grey[shown] += share[shown] * texture(surface.seed, where(surface, x, y), y)
+        inside = share > 0
+        x, y = columns[inside], rows[inside]
+        grey[inside] += share[inside] * texture(surface.seed, where(surface, x, y), y)
     return grey
 
 
@@ -180,10 +172,7 @@ class KnownPair(Record):
 
 
 def synthetic_pair(name: str, width_px: int = 480, height_px: int = 360, seed: int = 0) -> KnownPair:
-    """Return one of SCENES in uint8 grey; layout and textures follow from the seed.
-
-    Raises: KeyError if no scene has this name.
-    """
+    """Return one of SCENES in uint8 grey; layout and textures follow from the seed. Raises: KeyError."""
     shape = (height_px, width_px)
     surfaces = SCENES[name](width_px, height_px, np.random.default_rng(seed), 1000 * seed)
     left, right = (np.rint(np.clip(view(surfaces, shape), 0, 255)).astype(np.uint8) for view in (left_view, right_view))

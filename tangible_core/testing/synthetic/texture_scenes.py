@@ -41,23 +41,18 @@ class KnownSegments(Record):
 def texture_mosaic(
     segments: int, shape: Shape = (512, 512), seed: int = 0, textures: Mapping[str, Family] | None = None
 ) -> KnownSegments:
-    """Return a mosaic of n textures, uint8 (h, w), in curvy regions, one or more for each texture.
-
-    textures: to choose from; by default those of `builtin_textures`. Each loses local mean and contrast
-    (`without_grey`), so that grey tells nothing about the label. The seed chooses textures, regions and places. A
-    picture too small for all of the regions has fewer segments.
-    Raises: PictureError if there are fewer textures than segments.
-    """
+    """Return a mosaic of n textures, uint8 (h, w), in curvy regions, one or more each. Raises: PictureError."""
     available = builtin_textures() if textures is None else textures
     if len(available) < segments:
         raise PictureError(f"a mosaic of {segments} needs as many textures, but there are {len(available)}; add some")
     random = np.random.default_rng(seed)
-    chosen = random.choice(sorted(available), segments, replace=False)
+    names = random.choice(sorted(available), segments, replace=False)
+    # Each loses local mean and contrast, so that grey tells nothing; a picture too small has fewer segments.
     count = max(segments + 2, 8 * segments // 5)
     of_region = random.permutation(np.arange(count) % segments)
     labels = in_order(of_region[curvy_regions(shape, count, random)])
     picture = np.empty(shape)
-    for label, name in enumerate(chosen[: labels.max() + 1]):
+    for label, name in enumerate(names[: labels.max() + 1]):
         np.copyto(picture, without_grey(available[name](shape, random)), where=labels == label)
     return KnownSegments(_bytes(picture), labels)
 
@@ -98,10 +93,8 @@ def in_order(labels: np.ndarray) -> Int32[np.ndarray, "h w"]:
 
 
 def scatter_points(shape: Shape, count: int, random: np.random.Generator) -> Float64[np.ndarray, "n 2"]:
-    """Return points (row, column) far apart: each is the one of CANDIDATES that is furthest from earlier points.
-
-    Source: Mitchell, Spectrally optimal sampling for distribution ray tracing, SIGGRAPH 1991 (best candidate).
-    """
+    """Return points (row, column) far apart: each is the one of CANDIDATES that is furthest from earlier points."""
+    # Best candidate: Mitchell, Spectrally optimal sampling for distribution ray tracing, SIGGRAPH 1991.
     points = random.uniform(0, shape, (1, 2))
     while len(points) < count:
         candidates = random.uniform(0, shape, (CANDIDATES, 2))
@@ -116,10 +109,7 @@ def builtin_textures() -> dict[str, Family]:
 
 
 def folder_textures(folder: Path) -> dict[str, Family]:
-    """Return every picture of a folder, in grey, by its name without the ending.
-
-    Raises: PictureError if there is none, one cannot be read, or one is a single flat colour.
-    """
+    """Return every picture of a folder, in grey, by its name without the ending. Raises: PictureError."""
     paths = sorted(path for path in folder.glob("*.*") if path.suffix.lower() in ENDINGS)
     if not paths:
         raise PictureError(f"{folder}: has no texture pictures; add some, such as bark.png")

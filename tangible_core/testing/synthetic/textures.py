@@ -1,7 +1,4 @@
-"""Synthetic textures of any size, and the removal of their local mean and contrast, so that grey tells nothing.
-
-A family is a function of the shape (h, w) and a random generator: float64 (h, w) on any scale, the same for one seed.
-"""
+"""Synthetic textures of any size, and the removal of their local mean and contrast, so that grey tells nothing."""
 # scipy has no types.
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownMemberType=false
 
@@ -21,15 +18,13 @@ WINDOW_PX = 24.0
 
 
 def without_grey(texture: np.ndarray) -> Values:
-    """Remove local mean and contrast from a texture and map its ranks onto one histogram: float64 in 0..255.
-
-    The histogram is a Gaussian, cut at 0 and 255: all textures of one size have the same values, in other places.
-    """
+    """Remove local mean and contrast from a texture and map its ranks onto one histogram: float64 in 0..255."""
     from scipy.special import ndtri
 
     values = texture - _mean_around(texture)
     deviation = np.sqrt(_mean_around(values**2).clip(0))
     values /= deviation + 1e-6 * values.std() + np.finfo(np.float64).tiny
+    # A Gaussian, cut at 0 and 255: all textures of one size have the same values, in other places.
     ranks = np.empty(values.size)
     ranks[np.argsort(values, axis=None, kind="stable")] = (np.arange(values.size) + 0.5) / values.size
     return np.clip(GREY + CONTRAST * ndtri(ranks).reshape(values.shape), 0, 255)
@@ -107,8 +102,8 @@ def cracks(shape: Shape, random: np.random.Generator) -> Values:
 
 
 FAMILIES: Mapping[str, Family] = {
-    each.__name__: each
-    for each in (grain, fibres, ripples, clouds, maze, stripes, zigzag, weave, bricks, dots, pebbles, cracks)
+    family.__name__: family
+    for family in (grain, fibres, ripples, clouds, maze, stripes, zigzag, weave, bricks, dots, pebbles, cracks)
 }
 
 

@@ -9,7 +9,7 @@ import pytest
 from tangible_core.data import Material, SegmentMap
 from tangible_core.errors import ConfigError, MaterialError
 from tangible_core.materials.assignment import LADDER, assign, library, load_library, relative_roughness
-from tangible_core.materials.files import sources_of
+from tangible_core.materials.files import value_sources
 from tangible_core.materials.rules import MaterialRule
 
 MUD = "mud: {stiffness_n_per_m: 300, damping_n_s_per_m: 2, static_friction: 0.6, dynamic_friction: 0.5}\n"
@@ -91,9 +91,9 @@ class TestOwnFile:
         path = tmp_path / "mine.yaml"
         path.write_text(MUD + "ice: {grain_m: 0.002, texture: smooth}\nglass: {source: my rig}\n")
         mine = load_library(path)
-        assert set(sources_of(mine["mud"]).values()) == {"guess"}
-        assert set(sources_of(mine["glass"]).values()) == {"my rig"}
-        ice = sources_of(mine["ice"])
+        assert set(value_sources(mine["mud"]).values()) == {"guess"}
+        assert set(value_sources(mine["glass"]).values()) == {"my rig"}
+        ice = value_sources(mine["ice"])
         assert ice["grain_m"] == ice["texture"] == "mine.yaml"
         assert ice["dynamic_friction"] == "physics.info/friction, ice on steel"
         assert ice["stiffness_n_per_m"] == "guess"

@@ -8,7 +8,7 @@ from hypothesis.extra import numpy as arrays
 
 from tangible_core.data import DisparityMap, PartMap, SegmentMap
 from tangible_core.parts import depth_heights, find_parts
-from tangible_core.parts.depth import medians_of
+from tangible_core.parts.depth import part_medians
 
 VALUES = st.one_of(st.floats(width=32), st.sampled_from([0.0, -0.0, 1.0, -1.0, np.nan, np.inf, -np.inf]))
 
@@ -24,7 +24,7 @@ def stripes(*disparities_px: float, rows: int = 20, width: int = 10) -> tuple[Pa
 @given(arrays.arrays(np.int32, (5, 6), elements=st.integers(0, 2)), arrays.arrays(np.float32, (5, 6), elements=VALUES))
 def test_medians_are_those_of_the_finite_values_of_each_part(labels, values):
     parts = find_parts(SegmentMap(labels))
-    medians, known = medians_of(parts, values)
+    medians, known = part_medians(parts, values)
     for part in range(parts.count):
         finite = values[(parts.labels == part) & np.isfinite(values)].astype(np.float64)
         assert known[part] == finite.size

@@ -87,10 +87,10 @@ def show_one(
     from dataclasses import asdict
 
     from tangible_core.cli import show
-    from tangible_core.materials import VALUES, find, load_library, sources_of
+    from tangible_core.materials import VALUES, find, load_library, value_sources
 
     material = find(name, load_library(library))
-    sources = sources_of(material)
+    sources = value_sources(material)
     if as_json:
         show.print_json({**asdict(material), "sources": sources, "vibration_hz": _vibration_hz(material)})
         return

@@ -14,7 +14,6 @@ from .options import WorkspaceMapping
 from .placement import Placement
 
 NAME = "the mapped device"
-"""Name of a mapped link in messages."""
 
 
 def map_device(device: HapticDevice, mapping: WorkspaceMapping) -> HapticDevice:
@@ -72,7 +71,6 @@ class _ThroughMapping:
         return HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons)
 
     def _send(self, force: Force) -> None:
-        """Send a force in the picture's directions."""
         self._link.write(Force(*self._kernels.push(self._to, self._memory, *force)))
 
     @property
@@ -82,7 +80,6 @@ class _ThroughMapping:
         return Force(*self._to.rotate_back(force.x, force.y), force.z)
 
     def _release(self) -> None:
-        """Close the device."""
         self._link.close()
 
 
@@ -115,7 +112,6 @@ class MappedCompiledLink(_ThroughMapping, CompiledLink):
         return self._device.exchanges
 
     def _exchange(self) -> None:
-        """Exchange with the device."""
         self._device.exchange()
 
 

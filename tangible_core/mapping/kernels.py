@@ -19,7 +19,6 @@ VECTOR = types.UniTuple(float64, 3)
 DRIFT_X, DRIFT_Y, HAND_X, HAND_Y, STARTED, BARRED, MUTED = range(7)
 """Fields of a link's memory: the clutch's shift, the hand's last position, whether there is one, barred, muted."""
 MEMORY = 7
-"""Length of a link's memory."""
 
 
 @njit(void(PLACEMENT, ARRAY, ARRAY), **KERNEL)

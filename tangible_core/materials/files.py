@@ -101,7 +101,6 @@ def _material(source: Source, name: Any, block: Any, base: Mapping[str, Material
 
 
 def _merge(name: str, block: Tree, model: MaterialBlock, base: Material | None, path: Path) -> Material:
-    """Return a new material, or the base with the given values."""
     values: dict[str, Any] = {key: getattr(model, key) for key in VALUES if key in block}
     origin = model.source
     source = "; ".join(f"{key}: {text}" for key, text in origin.items()) if isinstance(origin, dict) else origin

@@ -28,7 +28,6 @@ HUES: tuple[tuple[float, Colour], ...] = (
 )  # fmt: skip
 """Upper angle of each name, in degrees of CIELAB's hue, between the answers of the XKCD colour survey (2010)."""
 BROWN_CHROMA = 52.0
-"""Chroma below which orange is called brown."""
 _BITS = 5  # of each channel, by which colours are looked up
 
 
@@ -76,7 +75,6 @@ Place = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Number = Annotated[int, AfterValidator(check_number), WithJsonSchema({"type": "integer", "minimum": 1})]
 """The number of a segment or part in a file, from 1."""
 Choice = tuple[str, str]
-"""The name of a material, and the reason for the choice."""
 
 
 class MaterialRule(BaseModel):
@@ -146,7 +144,6 @@ def apply_rules(
 def _fits(
     rule: MaterialRule, segments: SegmentMap | PartMap, picture: np.ndarray | None, shape: tuple[int, ...]
 ) -> dict[int, str]:
-    """Return the labels that a rule fits, each with the reason."""
     if rule.segment is not None:
         return _of_segment(label_of_number(rule.segment), segments)
     if rule.part is not None:

@@ -52,7 +52,6 @@ def part_medians(
 
 
 def _value(keys: np.ndarray) -> Float64[np.ndarray, "n"]:
-    """Return the values of sort keys."""
     sortable = (keys & np.uint64(0xFFFFFFFF)).astype(np.uint32)
     bits = np.where(sortable >> 31, sortable & np.uint32(0x7FFFFFFF), ~sortable)
     return bits.view(np.float32).astype(np.float64)

@@ -21,11 +21,9 @@ APART = 1e-6
 OWN = 0.5
 """Weight of a part's own cues; those of its neighbours have weight 1."""
 ROUNDS = 40
-"""Number of relaxation steps."""
 SURE, MAX_NAMED = 0.3, 3
 """Smallest certainty of an occlusion that the reasons name, and how many they name."""
 LONGEST_PX = 1000
-"""Longest side of the grid on which the cues are measured, pixels."""
 SPECK = 0.001
 """Share of the picture below which a part shares a neighbour's height step."""
 
@@ -105,13 +103,11 @@ def _holes(
 
 
 def _ends(pairs: Neighbours, pair: int, sign: float) -> tuple[int, int]:
-    """Return the enclosed part of a pair, and the part around it."""
     low, high = int(pairs.low[pair]), int(pairs.high[pair])
     return (high, low) if sign > 0 else (low, high)
 
 
 def _mean_colours(parts: PartMap, sizes: Int64[np.ndarray, "n"], picture: np.ndarray) -> Float64[np.ndarray, "n 3"]:
-    """Return the mean of each part's colours in CIELAB."""
     import cv2
 
     labels = parts.labels

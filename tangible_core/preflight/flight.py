@@ -95,13 +95,11 @@ class Settings:
     exaggeration: float | None = None
     """Exaggeration of heights at a scale, in place of a height of the relief."""
     of_parts: bool = False
-    """True if heights are per part."""
     smoothed: bool = True
     """True if `workspace.smooth_m` rounds the relief; a relief that the scene brings is not rounded."""
     slope: float | None = None
     """Greatest slope, `relief.slope`, 0 for none; None for a relief whose slopes that key does not limit."""
     law_name: str = ""
-    """Name of the force law in the configuration."""
     fitted: bool = False
     """True if the materials were limited to the device."""
 

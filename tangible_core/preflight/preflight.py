@@ -7,7 +7,6 @@ from typing import Any, ClassVar, Self
 from .verdict import Change, Grade, Verdict, as_data
 
 MAX_REASONS = 3
-"""Number of reasons in a sentence; further ones are counted."""
 
 
 class Verdicts(tuple[Verdict, ...]):
@@ -100,7 +99,6 @@ def _rank(verdict: Verdict) -> int:
 
 
 def _reconcile(verdict: Verdict, strictest: dict[str, Change]) -> Verdict:
-    """Replace the values of a verdict's changes by the strictest ones."""
     cure, changes = verdict.cure, list[Change]()
     for change in verdict.changes:
         best = strictest[change.key]

@@ -11,7 +11,6 @@ from ..plugins.interfaces import Touch
 from ..scene.geometry import picture_to_workspace
 
 PLACES = 64
-"""Places along a side of the grid; a surface of fewer cells is probed at every cell."""
 SKIN_M = 1e-6
 """Depth of a hand that has just made contact."""
 STEP_M = 1e-4
@@ -38,7 +37,6 @@ class Probes(Record):
     depth_m: Each
     """Depth straight under the surface at which the hand came to rest."""
     force_n: Points
-    """Force at rest."""
     onset_n: Each
     """Magnitude of the force a micrometre under the surface: its step on contact."""
     stiffness_n_per_m: Each
@@ -109,7 +107,6 @@ class _Feeler:
 
 
 def _places(surface: HapticSurface) -> Points:
-    """Return evenly spread cell centres on the surface."""
     rows, columns = (_spread(count) for count in surface.height_m.shape)
     row, column = (grid.ravel() for grid in np.meshgrid(rows, columns, indexing="ij"))
     x, y = picture_to_workspace(column, row, surface.height_m.shape, surface.extent_m)

@@ -27,7 +27,6 @@ CLEAR_M = 0.003
 APPROACH = 150
 """Ticks at the start of a stroke in which the hand comes down; they do not count."""
 MARGIN = 0.04
-"""The share of the surface at each end of a stroke that it leaves out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +34,6 @@ class Strokes(Record):
     """Measurements at each tick of all strokes."""
 
     force_n: Float64[np.ndarray, "n"]
-    """Magnitude of the force."""
     rise_n: Float64[np.ndarray, "n"]
     """Growth of that magnitude since the tick before; negative where it falls."""
     held_up: Bool[np.ndarray, "n"]

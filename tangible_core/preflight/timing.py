@@ -12,9 +12,7 @@ from ..plugins.interfaces import Touch
 from ..runtime.system.priority import real_time as real_time_block
 
 TICKS = 2000
-"""Number of ticks of a stroke over the surface that are timed one by one."""
 PERCENTILES = {"p50": 50.0, "p99": 99.0, "p99.9": 99.9, "max": 100.0}
-"""Percentiles of times that are reported."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,11 +39,9 @@ class TickCost(Record):
     """The duration of a tick of the force law."""
 
     call_s: Float64[np.ndarray, " n"]
-    """Duration of each call from Python."""
     kernel_s: float
     """Mean duration along a path, without the call from Python."""
     is_compiled: bool = True
-    """True for a force law of compiled kernels."""
 
     def at(self, percent: float) -> float:
         """Return a percentile of the calls' duration, seconds."""

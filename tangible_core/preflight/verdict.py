@@ -48,7 +48,6 @@ class Change(NamedTuple):
 
 
 Cure = str | Sequence[str | Change]
-"""A cure: a text, or its parts in order."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +64,6 @@ class Verdict:
     """Required relation of the value to the bound; empty for a value without a bound."""
     bound: float = math.nan
     source: str = ""
-    """Source of the bound."""
     note: str = ""
     cure: str = ""
     """Cure; empty for `ok`."""

@@ -15,7 +15,6 @@ from .shaping import filter_coefficients
 from .slope_limit import limit_slopes
 
 CELL_M = 3.3e-4
-"""The cells on which edges are found, m: a third of the blur below."""
 BLUR_M, BLUR_SHARE = 0.001, 1 / 80
 """The blur's sigma is the geometric mean of this length, m, and this share of the width: wide ones hold more lines."""
 STRONG, WEAK = 0.94, 1.5
@@ -23,7 +22,6 @@ STRONG, WEAK = 0.94, 1.5
 LEAST = 1.0
 """The least contrast of an edge, Lab units over the blur: about what is seen between two shades side by side."""
 LONG = 10.0
-"""The least length of a line, of the blur."""
 LINE_M = 0.0004
 """The standard deviation of the profile of a line, m: a line of 1 mm, as tactile graphics have."""
 LINES = 0.6
@@ -77,7 +75,6 @@ def reduce_to_cells(views: Views, width_m: float) -> np.ndarray:
 
 
 def _colours(picture: np.ndarray) -> Float32[np.ndarray, "h w 3"]:
-    """Return the picture's colours, 0 to 1."""
     scale = np.iinfo(picture.dtype).max if picture.dtype.kind in "iu" else 1
     colours = picture[..., :3] if picture.ndim == 3 and picture.shape[2] >= 3 else np.dstack([picture] * 3)
     return colours.astype(np.float32) / np.float32(scale)

@@ -23,7 +23,6 @@ ROUNDING_M = 0.014
 BOARD = 0.95
 """Share of the rectangle around a figure from which it is a level board, such as a page; no other fills over 0.89."""
 SOFT_M = 0.0004
-"""Standard deviation by which the rim of a figure is softened, m."""
 HALO_M = 0.001
 """Distance from an outline within which depth is that of the places behind it: networks for depth have spikes there."""
 SHALLOW = 0.1
@@ -33,13 +32,11 @@ GROOVE_M, GROOVE_SIGMA_M = 0.0004, 0.00025
 FACE_SCALE = 0.8
 """Largest ratio of a face's depth to its true depth."""
 RIM_M = 0.003
-"""Width of the rim along which a face passes into the head, m."""
 FEATURES = 0.01
 """Height of a face's features by brightness, for one standard deviation of it, over the face's width."""
 FINE, COARSE = 0.006, 0.07
 """Standard deviations of the Gaussians whose difference has these features, over the face's width."""
 MIN_FACE_CELLS = 30
-"""Fewest cells of a face that has a shape."""
 
 
 def figure_relief(
@@ -83,7 +80,6 @@ def figure_relief(
 def _shares(
     figure: Bool[np.ndarray, "r c"], nearness: Float32[np.ndarray, "r c"] | None, pitch_m: float
 ) -> Float32[np.ndarray, "r c"]:
-    """Return the heights of ground and figure, in shares of the whole."""
     if nearness is None:
         body, ground = _rounding(figure, pitch_m), np.linspace(0, 1, len(figure), dtype=np.float32)[:, None]
     else:

@@ -16,7 +16,6 @@ from .choice import ReliefChoice
 from .slope_limit import limit_slopes
 
 CELL_M = 1e-4
-"""The cells on which lines are found, m."""
 LINE_M = 0.001
 """The least width of the top of a line, m, as in tactile graphics; a wider stroke keeps its width."""
 AREAS = 0.6
@@ -73,7 +72,6 @@ def _levels(areas: Areas) -> Float32[np.ndarray, "n"]:
 
 
 def _neighbours(labels: Int32[np.ndarray, "h w"], count: int) -> Bool[np.ndarray, "n n"]:
-    """Return which colours share a border."""
     touch = np.zeros((count, count), np.bool_)
     for one, other in ((labels[1:], labels[:-1]), (labels[:, 1:], labels[:, :-1])):
         touch[one.reshape(-1), other.reshape(-1)] = True

@@ -27,7 +27,6 @@ class ReliefScale(NamedTuple):
     """What the frames of a film share, so that a thing that stands still keeps its height."""
 
     spans: ValueRange
-    """The nearness of the lowest and of the highest place."""
     tones: Float64[np.ndarray, "n"]
     """Heights, 0 to 1, of evenly spaced values of nearness between these."""
 
@@ -153,7 +152,6 @@ def apply_tones(nearness: Float32[np.ndarray, "h w"], tones: Float64[np.ndarray,
 
 
 def _border_density(nearness: Float32[np.ndarray, "h w"]) -> Float64[np.ndarray, "n"]:
-    """Return how many borders cross each of BINS depths."""
     change = np.zeros(BINS + 1)
     for one, other in ((nearness[:, REACH:], nearness[:, :-REACH]), (nearness[REACH:], nearness[:-REACH])):
         at_border = np.abs(one - other) > BORDER

@@ -84,7 +84,6 @@ def _rotate(values: np.ndarray, clockwise_deg: int) -> np.ndarray:
 def _heights(
     values: Float[np.ndarray, "h w"], files: SceneFiles, warn: Notify
 ) -> tuple[Float32[np.ndarray, "h w"], float]:
-    """Return the heights less an offset, and this offset."""
     values = without(values, *as_numbers(files.nodata))
     _warn_of_nodata(values, files, warn)
     values, offset = in_32_bits(values)

@@ -13,9 +13,7 @@ MATCHED = 0.15
 NEGATIVE_PX = -2.0
 """Disparities count as negative throughout if all but one in twenty are below this."""
 MAX_ROWS = 512
-"""Largest number of rows that are examined, evenly spread."""
 MIN_STEP_PX = 3.0
-"""Smallest step between two depths that is examined."""
 STEP_SHARE = 0.4
 """Largest difference between a step and the width of its strip, as a share of the step; 2 px are always allowed."""
 CLEARER, MIN_EDGE = 1.5, 0.01
@@ -35,7 +33,6 @@ class ViewOrder(NamedTuple):
 
     exchanged: bool
     message: str
-    """A remark for the user; empty if there is none."""
     open: bool = False
     """True if the disparities are odd for this order, and the contours do not decide."""
 

@@ -36,7 +36,6 @@ _OF_VIEWS = (*_OF_DEPTH, "truth", "truth_scale", "focal_px", "baseline_m", "offs
 
 
 def _video(value: object) -> object:
-    """Check the source of a video. Raises: ValueError."""
     if isinstance(value, str) and re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", value):
         raise ValueError("addresses are not opened: save the video, and name its file")
     if isinstance(value, bool) or value == "" or not isinstance(value, str | Path | int | None):
@@ -184,7 +183,6 @@ class SceneFiles(Quantities):
                 raise ValueError(f"{name} needs {other}")
 
     def _check_video(self, names: Collection[str]) -> None:
-        """Check the options of a video. Raises: ValueError."""
         self._check_needs(set(names) | ({"left"} if self.rig else set()))
         mono = self.layout in (None, "mono")
         fitting = {*_OF_VIDEOS, *(("rotate", "invert") if mono else _OF_VIDEO_PAIRS)}
@@ -199,7 +197,6 @@ class SceneFiles(Quantities):
             raise ValueError(f"rig gives the cameras and rectifies the pictures; leave out {', '.join(idle)}")
 
     def _check_framing(self) -> None:
-        """Check crop, rotate, invert and clip for this kind of scene. Raises: ValueError."""
         if self.clip is not None and not self.clip[0] < self.clip[1]:
             raise ValueError(f"clip is [low, high] with low < high, not {list(self.clip)}")
         if self.main in ("left", "stereo") and (idle := [name for name in _OF_ONE_VIEW if getattr(self, name)]):

@@ -74,7 +74,6 @@ class SceneSource:
     folder: Path = Path()
     arrays: Mapping[str, Any] | None = None
     rig: StereoRig | None = None
-    """The cameras, if they are not in a file."""
     origin: str | SceneFiles | None = None
     """The builtin name or the files that identify the scene; None if a part is an array."""
 

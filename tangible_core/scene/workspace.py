@@ -43,7 +43,6 @@ FLAT: dict[ReliefKind, str] = {
     "heights": "all heights are equal; check the file, and `nodata`, `clip`, `crop`, `low_m` and `high_m`",
     "parts": "all parts are equally high; give them heights, `heights: {by: given}` and `height_m` under `parts:`",
 }
-"""Why a relief is flat, and the cure."""
 
 
 def flat_warning(relief: Relief, kind: ReliefKind) -> str:
@@ -67,9 +66,7 @@ class FeltSize(NamedTuple):
 
 
 MIN_WIDTH_M, MAX_WIDTH_M = 1e-6, 10
-"""Bounds of the width of a surface."""
 SCALE = r"^1:[0-9]+(\.[0-9]+)?$"
-"""The form of a scale."""
 
 
 def _check_scale(scale: object) -> object:

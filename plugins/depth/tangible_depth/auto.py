@@ -63,7 +63,6 @@ class Auto(DepthEstimator, Following):
 
 
 def _network() -> Onnx | None:
-    """Return the first network for one picture."""
     for network in networks_here("depth"):
         if not network.card.is_stereo:
             return Onnx(model=network.path, card=str(network.card_file or network.name))

@@ -62,7 +62,6 @@ class KorniaReport(DepthEstimator):
 
 
 _BORDER = 4
-"""Pixels of padding at the border."""
 
 
 def kornia_response(grey: "Grey", torch_device: TorchDevice = "auto") -> "Grey":

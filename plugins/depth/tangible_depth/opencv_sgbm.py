@@ -26,7 +26,6 @@ def left_right_confidence(
 
 
 MODES = {"sgbm": 0, "hh": 1, "3way": 2, "hh4": 3}
-"""Variants of the matcher and their numbers in OpenCV."""
 
 STEP = 16
 """Steps of a pixel in OpenCV's disparities, and the number of which its range must be a multiple."""

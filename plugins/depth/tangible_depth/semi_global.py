@@ -81,7 +81,6 @@ class SemiGlobal(DepthEstimator, Following):
         return FilmMatcher(views, "semi-global", *self._search_and_matcher())
 
     def _search_and_matcher(self) -> "tuple[Search, Matcher]":
-        """Return the options of the chain, and the matcher."""
         from .matching.adaptive import MAX_ROW_OFFSET_PX
         from .matching.chain import Search
         from .matching.scaling import Scaling, match_scaled

@@ -42,7 +42,6 @@ def energies(
 
 
 def _dense_smoothing_table(cells: int, step_px: int, wide_px: float, samples: int, pad_px: int) -> Tensor:
-    """Return `smoothing_table` as a matrix (cells, samples)."""
     first, weights = smoothing_table(cells, step_px, wide_px, samples, 1.0, pad_px)
     matrix = np.zeros((cells, samples), np.float32)
     np.put_along_axis(matrix, first[:, None] + np.arange(weights.shape[1]), weights, axis=1)

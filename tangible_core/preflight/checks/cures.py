@@ -97,7 +97,6 @@ def slopes(relief: Relief) -> Slopes:
 
 
 def _rise(heights: Slopes) -> Slopes:
-    """Return the greater step to the row before or after."""
     rise = np.zeros_like(heights)
     steps = np.abs(np.diff(heights, axis=0))
     rise[1:] = steps

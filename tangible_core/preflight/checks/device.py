@@ -61,7 +61,6 @@ def workspace(flight: Flight) -> Iterator[Verdict]:
 
 
 OVERRUNS = 0.001
-"""Share of ticks that may be lost."""
 HALF = 0.5
 """Share of a period for the force law; the device needs the rest."""
 LATE = "this machine keeps time badly just now"

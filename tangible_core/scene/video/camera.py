@@ -15,7 +15,6 @@ from .capture import USUAL_FPS, Capture, OpenCamera, VideoFrame, VideoFrames, Vi
 FIRST_S = 15.0
 """Time-out for the first picture, seconds; some cameras take seconds to adjust their exposure."""
 NEXT_S = 5.0
-"""Time-out for each further picture, seconds."""
 AGAIN_S = 0.5
 """Pause between two attempts to reach an unplugged camera, seconds."""
 SLICE_S = 0.2
@@ -163,6 +162,5 @@ class CameraFrames(VideoFrames):
 
 
 def _cameras() -> list[int]:
-    """Return the numbers of the cameras that the system lists."""
     names = (path.name.removeprefix("video") for path in Path("/dev").glob("video*"))
     return sorted(int(name) for name in names if name.isdecimal())

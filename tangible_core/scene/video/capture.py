@@ -202,7 +202,6 @@ class VideoFrames(ABC):
         return VideoFrame(number, time_s, self._views_of(picture))
 
     def _raise_once(self, kind: str, error: PictureError) -> None:
-        """Raise an error, if none of its kind was raised before."""
         if kind not in self._raised_kinds:
             self._raised_kinds.add(kind)
             raise error

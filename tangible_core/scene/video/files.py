@@ -29,12 +29,9 @@ class Video:
     source: Path | int
     """A file, a folder of pictures, or the number of a camera."""
     layout: VideoLayout
-    """Arrangement of the two views of a pair in each frame; `mono` for one view."""
     fps: float
-    """Frames a second, as requested or as the source states."""
     name: str
     repeat: bool = True
-    """Start a file or a folder again at its end."""
     timed: bool = True
     """Show the frames of a file by its time stamps, not at a requested even rate."""
     count: int | None = None

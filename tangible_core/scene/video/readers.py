@@ -32,7 +32,6 @@ from .capture import (
 LONGEST_S = 60.0
 """Longest time between two frames of a file, seconds; a larger step of the time stamps is taken for an error."""
 EARLY_S = 1e-6
-"""Tolerance for rounding in sums of times, seconds."""
 UNEVEN = 0.25
 """Largest error of a time stamp at an even rate, as a share of the frame time: stamps are whole milliseconds."""
 CATCH_UP_S = 0.1
@@ -116,7 +115,6 @@ class FileFrames(VideoFrames):
         return False
 
     def _time(self, capture: Capture) -> None:
-        """Compute when the grabbed frame is due."""
         stamp_s, usual_s = position_s(capture), 1 / self.fps
         step_s = stamp_s - self._stamp_s if self._in_round and self._uses_stamps else usual_s
         if not 0 < step_s <= LONGEST_S:

@@ -108,7 +108,6 @@ def every_picture_type_is_taken(method: Exporter) -> None:
 
 
 def _write_or_refuse(method: Exporter, work: Work, name: str) -> None:
-    """Demand whole files of a work, or a TangibleError."""
     try:
         with _write(method, work):
             pass
@@ -151,7 +150,6 @@ def _tomorrow(now: float = time.time()) -> float:
 
 
 def _today() -> list[bytes]:
-    """Return today's date in the forms that files use, in UTC and local time."""
     days = (datetime.now(UTC), datetime.now().astimezone())
     return [day.strftime(form).encode() for day in days for form in ("%Y-%m-%d", "%Y%m%d", "D:%Y%m%d", "%a %b %d %Y")]
 

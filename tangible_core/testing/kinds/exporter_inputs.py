@@ -92,7 +92,6 @@ def _products(
 
 
 def _flat(exporter: Exporter, plain: Work) -> Work:
-    """Return the plain work with a surface that is 0 everywhere."""
     products = dict(plain.products)
     width_m = exporter.picture_width_m(COLUMNS / ROWS) or WIDE_M
     relief = Relief(np.zeros((ROWS, COLUMNS), np.float32), (width_m, width_m * ROWS / COLUMNS))

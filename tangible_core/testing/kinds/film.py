@@ -176,7 +176,6 @@ def _circle() -> np.ndarray:
 
 
 def _hold(film: Film, ticks: int) -> np.ndarray:
-    """Return the forces on a hand at rest, a row a tick."""
     return np.array([film.touch.force(HapticState(HAND_M)) for _ in range(ticks)])
 
 

@@ -36,9 +36,7 @@ class KnownSurface:
 
     surface: HapticSurface
     height_m: Callable[[float, float], float]
-    """Height at (x, y)."""
     slope: Callable[[float, float], tuple[float, float]]
-    """Gradient of the height at (x, y)."""
 
     def at(self, x_m: float, y_m: float, depth_m: float) -> tuple[float, float, float]:
         """Return the point this deep under the surface, measured straight down."""

@@ -25,7 +25,6 @@ class Surface:
     """A surface that both cameras see."""
 
     seed: int
-    """Seed of its texture."""
     region: Region
     disparity_px: OfPoints
     """(x, y) -> d, larger is nearer."""
@@ -138,7 +137,6 @@ def _view(surfaces: Sequence[Surface], shape: tuple[int, int], points: int, wher
 def _shares(
     surfaces: Sequence[Surface], x: Points, y: Points, points: int, where: Where
 ) -> Float64[np.ndarray, "n h w"]:
-    """Return the share of each pixel that each surface fills."""
     shares = np.zeros((len(surfaces), *x.shape))
     offsets = (np.arange(points) + 0.5) / points - 0.5
     for down, across in product(offsets, offsets):
@@ -156,10 +154,8 @@ def _depth(surface: Surface, x: Points, y: Points) -> Points:
 
 
 FAR, NEAR = 0.02, 0.1
-"""Disparities of a scene, as shares of its width."""
 BAR_WIDTHS_PX = (1.5, 2.0, 3.0, 5.0, 8.0)
 BACKGROUND, FIRST = 1, 2
-"""Seeds of textures within a scene."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -143,7 +143,6 @@ def _wavering(shape: Shape, random: np.random.Generator, deviation_px: float) ->
 
 
 def _to_line(place: Values, period: float) -> Values:
-    """Return the distance to the nearest whole multiple of the period."""
     return np.abs((place + period / 2) % period - period / 2)
 
 

@@ -14,9 +14,7 @@ MEDIAN_REACH = 2
 NEARBY = 1
 """Radius, in pixels, of the window in which a depth edge is detected."""
 VOTERS = 4
-"""Radius of the voting window, in pixels."""
 STRIDE = 2
-"""Distance between voters, in pixels."""
 JUMP = 24
 """Smallest depth step of an edge, in sixteenths of a pixel."""
 GREY_REACH = 24
@@ -24,7 +22,6 @@ GREY_REACH = 24
 LANES = 16
 """SIMD lanes for a row of the voting window, at least as many as it has pixels."""
 VOTING = np.array([k <= 2 * VOTERS and k % STRIDE == 0 for k in range(LANES)], np.uint16)
-"""Mask of the lanes that have a vote."""
 ZERO_RANK = np.uint16(32768)
 """Offset that makes disparities unsigned and keeps their order."""
 NO_GREY = 1000

@@ -65,11 +65,8 @@ class Cleaning(NamedTuple):
     sharpen: bool = True
     """Switch for the sharpening of depth edges; a map to be enlarged is sharpened by `enlarge` instead."""
     specks: Specks = Specks()
-    """Sizes up to which islands are removed, in pixels of the full-size picture."""
     factor: int = 1
-    """Factor by which the picture was downsampled."""
     effort: Effort = "balanced"
-    """Effort of the filling, see `fill_gaps`."""
 
 
 def _empty(shape: tuple[int, int]) -> DenseMatches:

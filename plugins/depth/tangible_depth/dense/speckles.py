@@ -19,7 +19,6 @@ def slices_with_margin(y0: int, y1: int, rows: int) -> tuple[slice, slice]:
 
 
 ISLAND_PX = 60
-"""Default size, in pixels, up to which an island is removed."""
 REACH = 20
 """Radius, in pixels, of the window in which the share of matched pixels is counted."""
 FEW, HARDLY_ANY = 0.5, 0.2
@@ -83,7 +82,6 @@ def _remove(disparity: np.ndarray, largest_px: np.ndarray, step: int, reach: int
 
 
 def _matched_share(disparity: np.ndarray, y0: int, y1: int, reach: int) -> UInt8[np.ndarray, "rows w"]:
-    """Return the share of matched pixels near each pixel of rows y0..y1-1, in 255ths."""
     cut, own = slices_with_margin(y0, y1, reach)
     window = 2 * reach + 1, 2 * reach + 1
     return cv2.blur(np.uint8(255) * (disparity[cut] != UNKNOWN), window)[own]  # pyright: ignore[reportReturnType]

@@ -29,7 +29,6 @@ LEVELS_LOSS, LEVELS_DIFFERING = 0.06, 0.265
 LEVELS_APART = 0.6
 """Share of matches whose levels differ by the most that counts from which the views were exposed differently."""
 EVERY_ROW = 16
-"""Distance of the trial's rows in which levels are compared."""
 MAX_ROW_OFFSET_PX = 1.0
 """Largest row offset, in pixels, that the trial measures and corrects."""
 PROBE_ROWS = 64
@@ -127,9 +126,7 @@ class _Health(NamedTuple):
     """The quality of a trial's matches."""
 
     loss: float
-    """Share of the matches that are speckles."""
     differing: float
-    """Mean share of differing bits of the other matches."""
 
 
 def _cost_for_noise(health: _Health, effort: Effort) -> Cost:

@@ -34,7 +34,6 @@ class Search(NamedTuple):
     """The options of all dense matchers, and the steps that a matcher takes itself."""
 
     least: int | Auto
-    """Lower end of the search range, pixels."""
     most: int | Auto
     """Upper end of the search range, exclusive, pixels."""
     rectify: Rectify
@@ -86,7 +85,6 @@ def _is_reliable(pair: Pair, disparity: DisparityMap) -> bool:
 
 
 def _retry_rectified(views: Views, name: str, search: Search, match: Matcher, first: DisparityMap) -> DisparityMap:
-    """Return a better map by rectification, or else the first one."""
     note(log, f"retried with rectification: {low_confidence_share(first):.0%} of the pixels have low confidence")
     try:
         again = _match_rectified(views, name, search, match, first)

@@ -65,7 +65,6 @@ def _match_features(views: Views, parts: Parts, least: float, least_score: float
 
 
 def _range(matches: Matches, rectified_pair: RectifiedPair, most: MaxDisparity) -> Span:
-    """Return the lowest and highest disparity to try in the rectified views."""
     width = rectified_pair.views.shape[1]
     if most != "auto":
         return Span(floor(-rectified_pair.offset_px), ceil(most - rectified_pair.offset_px)).within(width)

@@ -16,12 +16,10 @@ from ..simd.lanes import Lanes
 from ..windows.correlation import correlate_strip
 
 MIN_VARIANCE = 1.0
-"""Smallest variance of a window that is matched, in grey levels squared."""
 SSD_SCALE = 400.0
 """Mean squared difference of grey levels at which the confidence has fallen to 1/e."""
 
 Trust = Callable[[Float32[np.ndarray, "rows w"]], Float32[np.ndarray, "rows w"]]
-"""Confidence 0..1 from scores."""
 
 
 def match_by_correlation(pair: Pair, span: Span, window_px: int) -> DenseMatches:

@@ -23,7 +23,6 @@ CELL_PX = 6
 MAX_SAMPLED = 100
 """Largest number of matches off a plane whose pairs are tried for an epipole."""
 FEWEST = 8
-"""Fewest matches of the eight-point method."""
 
 
 class DegenerateMatches(GeometryError):

@@ -16,7 +16,6 @@ from .projective import Plane, product, transform, undistort
 MIN_TRUSTED = 30
 """Fewest inliers of a trusted geometry: a few wrong matches agree on one by chance."""
 PARTS = 4
-"""Rows and columns into which the left picture is divided."""
 MIN_PARTS = 5
 """Fewest of the PARTS x PARTS parts that must contain inliers."""
 MIN_KEPT = 0.5
@@ -28,13 +27,11 @@ RADIALS = (0.0, -0.02, 0.02, -0.04, 0.04, -0.08, 0.08, -0.14, 0.14, -0.22)
 FINE = 0.5
 """Share of the threshold used to compare distortions."""
 MAX_RADIAL = 0.3
-"""Largest plausible distortion coefficient of a lens."""
 MAX_FITTED = 800
 """Largest number of matches that lenses are fitted to; more do not improve the fit."""
 _PRIOR = np.array([0.5, 0.2, 0.5, 0.2, 0.2, 0.5, 0.5])
 """Standard deviations of left roll and tilt; right roll, tilts along x and y, log scale and shift, about the start."""
 _RADIAL_PRIOR = np.array([0.1, 0.1])
-"""Standard deviations of the distortion coefficients of both lenses."""
 _START = 2.0**-10
 """Step to which the start's roll is rounded, in radians, as linear algebra varies in its last bits by processor."""
 _FOUND = 2.0**-20
@@ -42,7 +39,6 @@ _FOUND = 2.0**-20
 _SINE = 2.0**-32
 """Step to which sines and the like are rounded, as the C library varies in their last bits by processor."""
 _STILL_PRIOR = np.array([1e-9, 1e-9, 0.5, 0.2, 0.2, 0.5, 0.5])
-"""Standard deviations of the parameters if the left picture stays unchanged."""
 
 
 class RectificationError(GeometryError):
@@ -104,7 +100,6 @@ def find_rotation(matches: Matches, shape: tuple[int, int], fit: Fit) -> tuple[R
 
 
 def _fit_rotation(matches: Matches, shape: tuple[int, int], fit: Fit) -> Rotation:
-    """Fit a rotation without lens distortion."""
     threshold = threshold_px(shape)
     try:
         fundamental = robust_fundamental(matches, threshold, fit)
@@ -146,7 +141,6 @@ def _fit_lenses(rotation: Rotation, matches: Matches, shape: tuple[int, int], fi
 
 
 def _count_explained(matches: Matches, radial: float, shape: tuple[int, int], fit: Fit) -> int:
-    """Count the inliers within FINE of the threshold if both lenses distort by `radial`."""
     fundamental = _fit_straight(matches, radial, shape, FINE * threshold_px(shape), fit)
     return 0 if fundamental is None else int(np.count_nonzero(fundamental.inliers))
 
@@ -210,7 +204,6 @@ def _fit(
 
 
 def _disagreement(pair: tuple[np.ndarray, np.ndarray], matches: Matches) -> float:
-    """Return the sum of the squared robust offsets of the matches from their rows."""
     left, right = (transform(h, points) for h, points in zip(pair, matches, strict=True))
     return float(np.square(robust_pull(left[:, 1] - right[:, 1])).sum())
 

@@ -22,7 +22,6 @@ LOOK_PX = 160
 POINTS, APART_PX = 32, 6
 """Largest number of corners, and their smallest distance in pixels of the copy."""
 WINDOW_PX = 11
-"""Side, in pixels, of the windows that are tracked."""
 PATCH_PX = 48
 """Side, in pixels, of the full-size patches in which corners are tracked again."""
 FINE_ENOUGH = 1 / 3
@@ -95,7 +94,6 @@ MIN_BETTER = 0.05
 LESS_LEFT = 0.6
 """Share of the unexplained part at the own height below which another height fails the test too: courses repeat."""
 NO_BETTER = 0.995
-"""Correlation at the own height that always passes."""
 SLOW = 1 / 8
 """Wavelength, as a share of the height, from which changes of grey are ignored: light, and the views' borders."""
 
@@ -148,7 +146,6 @@ SMOOTHING_PX = 1.2
 MIN_AGREED_OF_MAP, MAX_SPREAD_OF_MAP_PX = 0.5, 0.4
 """The same for a whole map: with noise of sd 5 to 15 two thirds agree, of rows that lie two lower a quarter."""
 MAX_OFF_PX = 0.5
-"""Largest row offset of a whole map whose rows correspond, in pixels."""
 
 
 def align_rows(pair: Pair, bands: Bands, most_row_offset_px: float) -> Pair | None:

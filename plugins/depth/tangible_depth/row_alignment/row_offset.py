@@ -16,9 +16,7 @@ NEAR_PX = 1
 MAX_POINTS = 250
 """Largest number of edges that vote, for speed."""
 MIN_VOTES = 20
-"""Fewest votes that determine an offset."""
 MIN_ROW_OFFSET_PX = 0.3
-"""Smallest offset that is corrected, in pixels."""
 MIN_EDGE = 40
 """Smallest Sobel response across rows, in grey levels, of a pixel that determines its row."""
 RADIUS, REACH = 3, 2

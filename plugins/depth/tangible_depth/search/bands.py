@@ -17,7 +17,6 @@ from .sparse_sweep import sweep_columns
 
 COUNT = 16
 FINE_WIDTH = 1280
-"""Largest number of columns of a band by default."""
 MAX_DISPARITIES = 256
 """Largest number of disparities tried in a band: of more, columns are averaged."""
 HIGH_PX = 3
@@ -25,9 +24,7 @@ HIGH_PX = 3
 TALL = 2 * RADIUS + 1
 """Rows of a band: the window of a census code."""
 STRIDE = 3
-"""Distance of matched columns in wide bands."""
 MIN_STRIDDEN = 200
-"""Columns from which a band is wide."""
 LARGEST_SPECK = 8
 """Largest speckle, in pixels of the bands: thin near objects have hardly more in so few rows."""
 

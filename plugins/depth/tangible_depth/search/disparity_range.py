@@ -14,7 +14,6 @@ from .bands import FINE_WIDTH, Bands, match_bands
 from .pairs import Pair
 
 FIRST_WIDTH = 80
-"""Width of the first copy, in columns."""
 REACH = 0.36
 """Largest disparity of either sign, as a share of the picture's width, unless something stands still nearer."""
 FAR_REACH, MIN_REVEALED = 0.8, 0.015
@@ -93,7 +92,6 @@ Auto = Literal["auto"]
 MIN_BEYOND = 0.01
 """Lowest share of the bands' matches in a step beyond verified ones that extends the range by that step."""
 MIN_STEP_PX = 8
-"""Smallest width, in pixels, of such a step."""
 MAX_FILLED = 256
 """Disparities up to which the range of a rectified pair is extended to all lanes: a larger one shrinks the pictures."""
 

@@ -9,9 +9,7 @@ from jaxtyping import UInt8
 from tangible_core.compiled import KERNEL, in_blocks, njit
 
 RADIUS = 2
-"""Radius of the window, in pixels."""
 PLANES = 3
-"""Bytes of a code, one plane each."""
 BITS = 8 * PLANES
 BLOCK = 64
 """Columns of a block: rows are padded to whole blocks, so that vector code needs no remainder loop."""

@@ -14,7 +14,6 @@ class Penalties(NamedTuple):
     """The penalties of a path, in differing bits."""
 
     p1: np.uint8
-    """Penalty of a change by one disparity."""
     neutral: np.uint8
     """Cost of a disparity that leads out of the right view, where nothing can be compared."""
     p2_by_step: UInt8[np.ndarray, "256"]
@@ -32,7 +31,6 @@ class Cost(NamedTuple):
     most_level: int = 0
     """Largest value that the difference of two grey levels counts; 0 for codes without levels."""
     specks: Specks = Specks()
-    """Sizes up to which islands are removed."""
 
 
 def p2_by_grey_step(flat: int, edge: int, slope: float) -> UInt8[np.ndarray, "256"]:
@@ -58,7 +56,6 @@ LEVELS = Cost(
 )
 """Census and grey levels: more precise still, if both views have the same exposure."""
 NOISY = Specks(among_many_px=30, alone_px=200)
-"""Islands that are removed in noisy pictures."""
 LIGHT = Cost(
     "light",
     2 * BITS,
@@ -66,7 +63,6 @@ LIGHT = Cost(
     Penalties(np.uint8(18), np.uint8(16), p2_by_grey_step(110, 28, 2.0)),
     specks=NOISY,
 )
-"""Two-scale census for light noise or compression."""
 HEAVY = Cost(
     "heavy",
     2 * BITS,
@@ -74,6 +70,4 @@ HEAVY = Cost(
     Penalties(np.uint8(22), np.uint8(16), p2_by_grey_step(120, 40, 2.0)),
     specks=NOISY,
 )
-"""Two-scale census for heavy noise."""
 COSTS = {cost.name: cost for cost in (SHARP, LEVELS, LIGHT, HEAVY)}
-"""All costs by name, the option `cost`."""

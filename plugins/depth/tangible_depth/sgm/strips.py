@@ -15,7 +15,6 @@ from .costs import Penalties
 from .paths import row_limits
 
 ROWS = 128
-"""Rows of a strip."""
 WARM_ROWS = 16
 """Rows before a strip at which its paths start: rows farther away hardly affect it."""
 VOLUME_BYTES = 256 << 20

@@ -39,7 +39,6 @@ def _fold(b: Any, vec: Vec, value: Any, of_two: Callable[[Any, Vec, Any, Any], A
 
 
 def _halve(b: Any, vec: Vec, value: Any, width: int, narrow: int, of_two: Callable[[Any, Vec, Any, Any], Any]) -> Any:
-    """Halve `width` lanes until `narrow` are left."""
     while width > narrow:
         width //= 2
         halves = (shuffle(b, value, value, range(i, i + width)) for i in (0, width))

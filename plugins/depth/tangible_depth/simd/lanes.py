@@ -10,9 +10,7 @@ from numba.extending import NativeValue, intrinsic, models, register_model, type
 operation: Any = intrinsic
 """Decorator of an intrinsic; callers omit its first parameter, the typing context, which type checkers cannot know."""
 INDEX: Any = ir.IntType(32)
-"""Machine type of a lane's index."""
 WORD: Any = ir.IntType(64)
-"""Machine type of offsets and masks."""
 
 
 class Lanes:

@@ -11,9 +11,7 @@ from .harris import corners, harris_response, least_response
 from .matches import corner_matches
 
 MAX_CORNERS = 2000
-"""Largest number of corners of each picture that are matched all against all."""
 FEWEST = 20
-"""Fewest matches that determine a range."""
 
 MaxDisparity = int | Literal["auto"]
 

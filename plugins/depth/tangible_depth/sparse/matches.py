@@ -19,15 +19,11 @@ FLAT = 1e-4
 STEPS = 2.0**24
 """Steps per unit to which normalised windows are rounded before they are correlated all against all."""
 WINDOW_PX = 7
-"""Side of the matched windows, in pixels, small enough for small objects."""
 MAX_CORNERS = 1000
-"""Largest number of corners of each picture that are matched all against all."""
 MIN_ALIKE = 0.7
 """Lowest correlation of windows at the same place that lie on the plane."""
 MIN_SCORE = 0.85
-"""Lowest correlation of a match."""
 SMALLEST_SIDE = 16
-"""Smallest side of a picture, in pixels, in which features are matched."""
 
 
 class Matches(NamedTuple):
@@ -83,7 +79,6 @@ def _distances(left_codes: np.ndarray, right_codes: np.ndarray) -> Float32[np.nd
 
 
 def _mutual_best(score: np.ndarray) -> Int64[np.ndarray, "n 2"]:
-    """Return the mutual best pairs (i, j)."""
     best = score.argmax(axis=1)
     back = score.argmax(axis=0)
     mine = np.arange(len(best))

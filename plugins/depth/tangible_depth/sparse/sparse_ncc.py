@@ -58,7 +58,6 @@ def _row_scores(anchor, other, anchor_inverse, other_inverse, x, y, first, last,
 
 @njit(cache=True, nogil=True)
 def _peak(scores, best, count):
-    """Return the peak of the parabola through the best score and its neighbours, relative to the best one."""
     if best == 0 or best == count - 1:
         return np.float32(0)
     bend = 2 * scores[best] - scores[best - 1] - scores[best + 1]

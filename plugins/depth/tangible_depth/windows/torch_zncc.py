@@ -48,7 +48,6 @@ def _statistics(padded: Tensor, window_px: int) -> tuple[Tensor, Tensor]:
 
 
 def _mean(padded: Tensor, window_px: int) -> Tensor:
-    """Average over each whole window, along the rows and then along the columns."""
     columns, rows = padded.shape[-1] - window_px + 1, padded.shape[-2] - window_px + 1
     # Sums of slices are ten times as fast as torch's pooling, and a GPU's convolution would round to 10 bits.
     along = reduce(torch.add, (padded[..., i : i + columns] for i in range(window_px)))

@@ -9,17 +9,13 @@ from ..surface.spline import bend
 STEPS = 8
 """The most Newton steps in a tick; on a smooth surface at the speed of a hand, one or two are taken."""
 STEP_M = 2.5e-4
-"""The longest step, m."""
 BACK_OFFS = 3
-"""The number of times a step that does not bring the proxy nearer is shortened, at most."""
 BACK_OFF = 0.35
-"""The factor by which a step is shortened."""
 NEAR_CELLS = 1 / 128
 """The length of the last Newton step, in cells: after a shorter one the Taylor series replaces the spline."""
 NEAR_M = 2e-6
 """The length of the last Newton step on cells finer than 256 um, m: longer in cells, but short for their detail."""
 NEAR_FINE_CELLS = 1 / 8
-"""The bound of NEAR_M in cells."""
 STEEP = 0.1
 """The least determinant of Newton's matrix as a share of the Gauss-Newton one, which is used below it."""
 

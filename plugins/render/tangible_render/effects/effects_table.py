@@ -11,7 +11,6 @@ from tangible_render.haptic_textures.table import COUNT, DRAG, STIFFNESS
 
 Table = Float64[np.ndarray, "n p"]
 TEXTURE_COLUMNS = [COUNT, DRAG, STIFFNESS]
-"""The columns of a texture; at least one of them is not 0 in a texture."""
 LAW_COLUMNS = 4
 """The number of columns after those of a texture: k, b, mu_s and mu_d, as in `material_table`."""
 EFFECT_COLUMNS = [*TEXTURE_COLUMNS, -3, -2]

@@ -12,13 +12,10 @@ from ..contact.approach import TOUCHING
 from ..surface.spline import height
 
 SLOTS = 3
-"""The number of slots."""
 STATE = 0
 """The index in `shared` of the played and the published slot, see `state`."""
 TICK = 1
-"""The index in `shared` of the number of ticks for which the slot has been played."""
 SHARED = 2
-"""The length of `shared`."""
 MOVING_SURFACE = (
     types.Array(float32, 4, "C"),
     types.Array(float32, 4, "C"),

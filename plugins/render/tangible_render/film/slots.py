@@ -27,9 +27,7 @@ class Slots(NamedTuple):
     tiles_m: Float32[np.ndarray, "3 r c 2"]
     """The bounds of both surfaces, tile by tile, which a tick reads."""
     ends_m: Float32[np.ndarray, "3 r c 2"]
-    """The bounds of the last surface."""
     frames: Float64[np.ndarray, "3"]
-    """The frame to which each slot moves."""
     shared: Int64[np.ndarray, "2"]
     """The slots that are played and published, see `playing`."""
     host_state: Int64[np.ndarray, "4"]

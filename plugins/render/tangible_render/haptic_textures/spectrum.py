@@ -8,9 +8,7 @@ from jaxtyping import Float, Float64
 from .waves import powers_of_two
 
 STEP_OCTAVES = 1 / 48
-"""Width of a bin."""
 BLUR_OCTAVES = 1 / 8
-"""Standard deviation of the Gaussian over the bins."""
 
 Spectrum = tuple[Float64[np.ndarray, " bins"], Float64[np.ndarray, " bins"]]
 """Wavelengths in metres, from long to short, and the power of each per octave, 1 in sum."""

@@ -12,7 +12,6 @@ from tangible_core.data import Material, Texture
 WAVES = 24
 """Largest number of waves of a material; each costs time in the servo loop."""
 BESIDE_FRICTION = 8
-"""Number of waves of the noise under stick-slip friction."""
 STRAY, STRAY_OCTAVES, STRAY_DEG = 7, 0.1, 6.0
 """Number of waves that make a set of lines irregular, and their largest difference from it in length and direction."""
 
@@ -74,7 +73,6 @@ Spread = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 def _smooth(material: Material, random: np.random.Generator) -> Spread:
-    """Return no waves."""
     none = np.empty(0)
     return none, none, none, none
 

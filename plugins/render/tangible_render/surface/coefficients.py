@@ -110,7 +110,6 @@ def roll_ball(
 
 
 def _means(height_m: Float32[np.ndarray, "n m"], half: int) -> Float32[np.ndarray, "k m"]:
-    """Return the heights, or with `half` those in the middle between each row and the next."""
     return (height_m[:-1] + height_m[1:]) / 2 if half else height_m
 
 
@@ -123,6 +122,5 @@ def _steps(half: int, reach_m: float, cell_m: float, cells: int) -> Iterator[tup
 
 
 def _overlap(shift: int, cells: int, half: int) -> tuple[slice, slice]:
-    """Return the cells that have a place at this shift, and the places."""
     first, last = max(0, -shift), min(cells, cells - half - shift)
     return slice(first, last), slice(first + shift, last + shift)

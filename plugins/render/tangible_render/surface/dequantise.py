@@ -9,18 +9,14 @@ from pydantic import Field
 from tangible_core.runtime import plain_opencv
 
 Filter = Literal["auto", "never"] | Annotated[float, Field(gt=0, le=64)]
-"""The type of a force law's option `dequantise`."""
 
 FEWEST_STEPS = 16
 """The least number of steps that are smoothed: fewer are intended terraces."""
 MAX_STEPS = 255
 """The largest number of steps that are smoothed, that of 8 bits: more are fine enough."""
 SIGMA_CELLS = 4.0
-"""The standard deviation of the Gaussian for `auto`, cells."""
 PASSES = 5
-"""The number of Gaussians in a low-pass."""
 ROUNDS = 8
-"""The number of low-passes, each clipped to half a step."""
 
 
 def dequantise(height_m: Float32[np.ndarray, "h w"], cells: Filter = "auto") -> Float32[np.ndarray, "h w"]:

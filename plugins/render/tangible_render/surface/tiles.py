@@ -9,7 +9,6 @@ from jaxtyping import Float32
 from .coefficients import BORDER
 
 TILE_CELLS = 16
-"""The side of a tile, cells."""
 MAX_TILES = 256
 """The largest number of tiles along a side; larger grids have larger tiles."""
 

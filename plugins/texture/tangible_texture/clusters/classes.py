@@ -14,7 +14,6 @@ from .neighbourhood import interior_shares, refit_labels
 from .planes import combine_planes
 
 PRINCIPAL_AXES = 14
-"""The number of principal axes along which cells are divided."""
 HALF_WHITE = 0.25
 """The power of its variance that divides a principal axis: half way between none, 0, and full whitening, 0.5."""
 FINAL_ROUNDS = 8
@@ -25,9 +24,7 @@ class Effort(NamedTuple):
     """The initial number of clusters, and the number of joinings with recomputed discriminants."""
 
     per_segment: int
-    """Initial clusters for each segment."""
     besides: int
-    """Initial clusters on top of these."""
     last: int
     """Joinings with recomputed discriminants, before the number of segments is reached."""
 

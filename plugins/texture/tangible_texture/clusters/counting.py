@@ -76,5 +76,4 @@ def _log_odds(step: Step, weights: Weights) -> float:
 
 
 def _softplus(value: float) -> float:
-    """Return log(1 + exp(value)) without overflow."""
     return max(value, 0.0) + log1p(exp(-abs(value)))

@@ -18,7 +18,6 @@ WHITE = 1 / (2 * sqrt(pi) * SMOOTH_PX)
 INSIDE_PX = 5
 """Distance from a change of tone at which a pixel is inside of an area, px."""
 MAX_AREAS = 32
-"""Number of areas beyond which they make a pattern."""
 SENSOR = 0.05
 """Largest deviation of the noise of a sensor, as a share of what the tones differ by: beyond, it is a texture."""
 ROUNDING = 1.5 / 255

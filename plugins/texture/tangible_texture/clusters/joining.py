@@ -23,7 +23,6 @@ class Pairs(NamedTuple):
     """Clusters and their distances."""
 
     sizes: Int64[np.ndarray, "k"]
-    """The number of cells of each cluster."""
     means: Float64[np.ndarray, "k a"]
     scatters: Float64[np.ndarray, "k a a"]
     ridge: float
@@ -114,7 +113,6 @@ def _fill_distances(means, scatters, ridge, one, count, distances):
 
 
 AXES = 20
-"""The largest number of discriminants."""
 FEW_POWER, MANY_POWER, MANY = 0.4, 0.8, 8
 """Exponents of two clusters' sizes in their joining's cost, 1 in Ward's method: the few may differ in size."""
 

@@ -126,7 +126,6 @@ def _scatter_rows(planes, weights, first, step, result):
 
 @njit(cache=True, nogil=True)
 def _mirror_lower_triangle(result):
-    """Copy the lower triangle to the upper one, in place."""
     for d in range(result.shape[0]):
         for e in range(d):
             result[e, d] = result[d, e]

@@ -111,7 +111,6 @@ fft: Any = scipy.fft  # its annotations are those of its dispatcher
 RELATIVE_SIGMA = 0.35
 """The least standard deviation of smoothing, in wavelengths: single waves must not show in the energy."""
 REACH = 4.0
-"""The standard deviations at which the smoothing Gaussian ends."""
 TAIL = 3.0
 """The standard deviations of a filter, in frequency, at which it is cut: an energy below the fifth decimal is lost."""
 FINENESS = 3.4
@@ -123,7 +122,6 @@ class Spectrum(NamedTuple):
 
     values: Complex64[np.ndarray, "rows half_columns"]
     shape: tuple[int, int]
-    """The shape of the mirrored picture."""
     pad_px: int
 
 
@@ -209,7 +207,6 @@ def _response(spectrum: Spectrum, gabor: Gabor, wide_px: float) -> Complex64[np.
 
 
 def _cut(spectrum: Spectrum, gabor: Gabor, wide_px: float) -> Complex64[np.ndarray, "rows columns"]:
-    """Return the filtered spectrum around the filter's centre."""
     samples = _samples(spectrum.shape, gabor, wide_px)
     top, left = (
         round(frequency * side) - count // 2

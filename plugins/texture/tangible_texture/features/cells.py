@@ -10,7 +10,6 @@ from tangible_core.compiled import in_turns, njit
 from tangible_core.runtime import plain_opencv
 
 CELL_PX = 4
-"""The side of a cell, px."""
 ENERGY_SIGMA_PX = 4.0
 """The standard deviation of the window in which energies are averaged before windows of cells, px."""
 RARE = 0.985

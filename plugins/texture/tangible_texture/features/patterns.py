@@ -10,17 +10,12 @@ from tangible_core.compiled import in_blocks, njit
 from tangible_core.runtime import plain_opencv
 
 CELL_PX = 4
-"""The side of a cell, px."""
 CLASSES = 10
-"""The number of rotation-invariant classes."""
 AGREEMENTS = 12
-"""The number of agreements between neighbours, by direction."""
 COUNTERS = CLASSES + AGREEMENTS
-"""The number of counters for each radius."""
 RADII = ((1, 0.0), (3, 0.0), (5, 1.5))
 """The distances of the neighbours, px, and the standard deviations of the smoothing before, px."""
 PATTERNS = len(RADII) * COUNTERS
-"""The number of planes of `pattern_frequencies`."""
 ALIKE = 1e-3
 """The largest difference of equal greys, as a share of the picture's standard deviation: that of rounding."""
 

@@ -54,7 +54,6 @@ def _silhouette(rows: Float32[np.ndarray, "n d"], labels: np.ndarray) -> float:
 
 log: logging.Logger = logging.getLogger(__name__)
 MAX_SEGMENTS = 8
-"""The largest number of segments under `auto`."""
 
 
 def choose_segments(rows: Float32[np.ndarray, "n d"], segments: int | Literal["auto"], seed: int) -> int:

@@ -20,7 +20,6 @@ class Clusters(NamedTuple):
     """The cluster of each row, the clusters' means, and the sum of squared distances of the rows from these."""
 
     labels: Int32[np.ndarray, "n"]
-    """Labels 0..k-1, each of them present."""
     centres: Float32[np.ndarray, "k d"]
     cost: float
 

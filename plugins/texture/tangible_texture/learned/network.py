@@ -78,7 +78,6 @@ def learned_values(features: Features) -> Window | None:
 
 
 def _reduce(narrow: Window, numbers: list[int], shape: tuple[int, int]) -> Float32[np.ndarray, "k n"]:
-    """Return means of 2 x 2 cells of the chosen planes."""
     import cv2
 
     planes, means = narrow.planes.reshape(-1, *narrow.shape), np.empty((len(numbers), *shape), np.float32)

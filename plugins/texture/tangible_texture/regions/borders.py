@@ -11,14 +11,12 @@ from tangible_core.runtime import plain_opencv
 from ..signal.slopes import slopes
 
 _LARGEST = 16000
-"""The value of the steepest slope in 16 bits, for Canny's thresholds."""
 
 
 class Landscape(NamedTuple):
     """Slopes in the channel where they are steepest, in units of the local noise: float32 (h, w) each."""
 
     steep: Float32[np.ndarray, "h w"]
-    """The magnitude."""
     across: Float32[np.ndarray, "h w"]
     down: Float32[np.ndarray, "h w"]
 
@@ -56,9 +54,7 @@ class Border(NamedTuple):
     """The border of two neighbouring regions: sums over the pairs of pixels (4 neighbours) across it."""
 
     pairs: float
-    """The number of pairs."""
     height: float
-    """The sum of the higher pixel of each pair."""
     edges: float
     """The number of pairs with an edge in them or between them."""
 

@@ -9,7 +9,6 @@ LEVELS = 1024
 """The number of levels of height; low ones, where most waters meet, are finer than high ones."""
 
 TILE_PX = 512
-"""The side of a tile flooded at once, px."""
 
 AROUND_PX = 32
 """The margin flooded around a tile, px: more than the distance between two flat basins."""

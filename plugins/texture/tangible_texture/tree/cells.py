@@ -14,11 +14,9 @@ from ..signal.smoothing import gaussian
 CELLS = 40_000
 """The most cells of a picture, so that the same picture at another size has the same regions."""
 BINS = 12
-"""The number of bins of brightness, and of each colour."""
 RANGES = {"brightness": (0.0, 1.0), "red": (-0.4, 0.4), "yellow": (-0.5, 0.5)}
 """Lowest and highest bin, as shares of the picture's range; symmetric, so that a negative has the same bins."""
 ROUGH_BINS, ROUGHEST = 8, 0.8
-"""The number of bins of roughness, and the highest one."""
 RARE = 0.001
 """The share of the darkest and of the brightest values that the picture's range does not have to hold."""
 WEAK = 0.02

@@ -15,7 +15,6 @@ FINE_CELLS = 0.6
 WINDOW_CELLS = 1.5
 """The standard deviation of the narrowest window of shares, in cells."""
 LEVELS = 3
-"""The number of widths of windows, each twice as wide as the one before."""
 EMPTY = 1e-4
 """A share that is added to all: the square root of nearly nothing must not change fast."""
 

@@ -8,7 +8,6 @@ from tangible_core.compiled import KERNEL, inner, logarithm, njit
 from .regions import Regions
 
 TERMS = 6
-"""The number of terms of a border's cost, see `_measure`."""
 _NONE = -1
 
 
@@ -36,7 +35,6 @@ def _join(
     areas, colours, roughness, owners, links, first, marks, nodes, pairs, strengths, prices, weights, constant, terms,
     record, joins, costs,
 ):  # fmt: skip
-    """Join regions in place; returns the number of rows seen."""
     count, borders, rows, total = areas.size, prices.size, 0, areas.sum()
     # The borders of a region are a linked list of half borders: those of border b are b and b + len(prices).
     for half in range(2 * borders - 1, -1, -1):

@@ -23,17 +23,11 @@ class Regions(NamedTuple):
 
     labels: Int32[np.ndarray, "h w"]
     areas: Float64[np.ndarray, "n"]
-    """The cells of each region."""
     colours: Float64[np.ndarray, "n 3"]
-    """Sums over cells."""
     roughness: Float64[np.ndarray, "n bins"]
-    """Sums over cells."""
     borders: Int64[np.ndarray, "m 2"]
-    """The two regions of each border, the lower one first."""
     pairs: Float64[np.ndarray, "m"]
-    """The pairs of each border."""
     strengths: Float64[np.ndarray, "m"]
-    """Sums over pairs."""
 
 
 def small_regions(strength: Float32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:

@@ -53,7 +53,6 @@ WITHOUT = Weights(
     (1.0, 0.540, 1.529, 0.199, 0.280, -0.186),
     -5.592,
 )
-"""The weights without a network."""
 WITH_BORDERS = Weights(
     {
         "brightness, fine": Cue((0.73,), (0.00,)),
@@ -67,4 +66,3 @@ WITH_BORDERS = Weights(
     (1.0, 0.691, 0.823, 0.232, 0.174, -0.125),
     -4.309,
 )
-"""The weights with one."""

@@ -13,7 +13,6 @@ from .candidates import GEODESIC_SCORE, geodesic_candidates, known_or_nearest, p
 from .four_directions import fill_from_four_directions
 
 DIAGONAL_SCORE = -0.9
-"""Term of a diagonal candidate in its score."""
 HALF = 4
 """Directions of one scan: within the row, straight up, and two diagonals; the scan back has the opposite ones."""
 LONGEST_PATH = 65535
@@ -90,7 +89,6 @@ def _choose_rows(disparity, values, paths, first, ends, lengths, nearest, column
 
 @inner()
 def _choose(values, paths, geodesic, length, x, nearest):
-    """Return the candidate of the highest score; UNKNOWN without one."""
     row_farthest = min(known_or_nearest(values[0, 0]), known_or_nearest(values[1, 0]))
     farthest = min(row_farthest, known_or_nearest(geodesic))
     for side in range(1, HALF):

@@ -47,7 +47,6 @@ def _fill_once(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w
 
 
 def _scratch(rows: int, w: int) -> tuple[np.ndarray, ...]:
-    """Return scratch memory for filling a block of rows."""
     of_sides, of_below = (GEODESIC + 1, w), (rows, w)
     return (
         np.empty(of_sides, np.int16),
@@ -151,7 +150,6 @@ def _carry(row, grey, next_grey, latest, path):
 
 @inner()
 def _start(latest, path):
-    """Start a scan with no known value."""
     for x in range(latest.size):
         latest[x] = UNKNOWN
         path[x] = 0

@@ -21,7 +21,6 @@ OF_SURFACE, OF_GREY = 36, 30
 RIDGE = 1.0
 """Ridge added to the variance of the positions, in square half samples; that is 48 where all samples are known."""
 FEWEST = 4
-"""Fewest samples that determine a plane."""
 FARTHEST_OFF = 32000
 """Disparity, in sixteenths of a pixel, from which a value is kept: 16 bits could turn it into UNKNOWN."""
 

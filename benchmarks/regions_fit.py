@@ -21,8 +21,15 @@ from tangible_core.data import SegmentTree, to_rgb
 from tangible_core.data.views import border_pixels
 from tangible_networks.seeing import look_for_borders
 from tangible_texture.features.channels import channels
-from tangible_texture.tree.cells import opponent_colours, reduce_to_cells, shares
-from tangible_texture.tree.cues import Tensors, border_tensors, tensors, weighted_strength
+from tangible_texture.tree.cues import (
+    Tensors,
+    border_tensors,
+    opponent_colours,
+    reduce_to_cells,
+    shares,
+    tensors,
+    weighted_strength,
+)
 from tangible_texture.tree.joining import TERMS, join_regions
 from tangible_texture.tree.regions import Regions, measure_regions, small_regions
 

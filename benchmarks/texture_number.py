@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments
-from tangible_texture.clusters.counting import Weights, number_likelihoods
+from tangible_texture.clusters.classes import Weights, number_likelihoods
 from tangible_texture.clusters.joining import Step
 from tangible_texture.gabor import Gabor
 

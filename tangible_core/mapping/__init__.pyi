@@ -3,5 +3,5 @@ from .device import intended_path as intended_path
 from .device import map_device as map_device
 from .device import over as over
 from .device import placement_of as placement_of
-from .options import WorkspaceMapping as WorkspaceMapping
 from .placement import Placement as Placement
+from .placement import WorkspaceMapping as WorkspaceMapping

@@ -10,8 +10,7 @@ from pydantic import SerializeAsAny
 from ..compiled.touch import CompiledLink, LinkKernels
 from ..data import DeviceSpec, Force, HapticState
 from ..plugins.interfaces import HapticDevice, Link, Scripted
-from .options import WorkspaceMapping
-from .placement import Placement
+from .placement import Placement, WorkspaceMapping
 
 NAME = "the mapped device"
 

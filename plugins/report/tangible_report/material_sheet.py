@@ -11,7 +11,7 @@ from matplotlib.ticker import NullFormatter, NullLocator
 
 from tangible_core.data import HapticSurface, Material
 from tangible_render.haptic_textures import Stroke, radial_spectrum, sample_tile, stroke
-from tangible_render.haptic_textures.spectrum import Spectrum, line_spectrum
+from tangible_render.haptic_textures.sample import Spectrum, line_spectrum
 
 from .drawing.sheet import write_sheet
 from .panels import Panel

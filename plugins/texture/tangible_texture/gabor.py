@@ -40,8 +40,7 @@ class Gabor(Dividing):
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Divide the picture by texture, in 64 bytes a pixel and 16 MiB. Raises: PictureError as `check_picture`."""
-        from .clusters.classes import classes
-        from .clusters.counting import LARGEST_NUMBER
+        from .clusters.classes import LARGEST_NUMBER, classes
         from .clusters.flat_areas import flat_areas
         from .clusters.full_size import fine_memberships, pixel_labels
         from .clusters.planes import combine_planes

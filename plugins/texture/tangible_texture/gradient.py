@@ -93,10 +93,9 @@ class Gradient(Dividing):
 
     def _regions(self, land: "Landscape", step: int) -> Int32[np.ndarray, "h w"] | None:
         """Return labels of every step-th pixel; None where there is only one region."""
-        from .regions.basins import MAX_SEGMENTS, STEEPER, basins
         from .regions.borders import borders, canny_edges
         from .regions.merging import merge, weakest_border
-        from .regions.watershed import watershed
+        from .regions.watershed import MAX_SEGMENTS, STEEPER, basins, watershed
 
         smallest = max(4, min(self.smallest_px // step**2, land.steep.size // 16))
         markers, count = basins(land.steep, [self.flat * times for times in STEEPER], smallest)

@@ -54,8 +54,8 @@ class Hierarchy(Dividing, Hierarchical):
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Divide the picture along the borders of highest level. Raises: PictureError as `check_picture`."""
-        from .regions.basins import MAX_SEGMENTS
         from .regions.merging import number_in_reading_order
+        from .regions.watershed import MAX_SEGMENTS
 
         if self.segments == 1:
             return one_segment(check_picture(picture).shape[:2])
@@ -74,8 +74,7 @@ class Hierarchy(Dividing, Hierarchical):
 
         from .features.channels import channels
         from .regions.refining import refine_regions
-        from .tree.cells import opponent_colours, reduce_to_cells, shares
-        from .tree.cues import border_tensors, tensors, weighted_strength
+        from .tree.cues import border_tensors, opponent_colours, reduce_to_cells, shares, tensors, weighted_strength
         from .tree.joining import join_regions
         from .tree.regions import measure_regions, small_regions
         from .tree.weights import WITH_BORDERS, WITHOUT

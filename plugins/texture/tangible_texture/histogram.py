@@ -106,7 +106,7 @@ class Histogram(Dividing):
         """Divide the picture by grey level; one segment where all of it has the same grey. Raises: PictureError."""
         from .features.channels import channels
         from .regions.merging import number_in_reading_order
-        from .regions.small_parts import remove_small_parts
+        from .regions.refining import remove_small_parts
         from .signal.slopes import slopes
         from .signal.smoothing import gaussian, remove_specks
 

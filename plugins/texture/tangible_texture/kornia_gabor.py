@@ -88,7 +88,7 @@ class KorniaGabor(Dividing):
         """Return labels and confidence of the cells; seams are replaced by up to MORE extra clusters."""
         from .kmeans.labelling import margins
         from .kornia_gabor_kernels import kmeans
-        from .regions.small_parts import remove_seams
+        from .regions.refining import remove_seams
 
         features, clusters = rows.cpu().numpy(), count
         most = count if self.segments == "auto" else count + MORE

@@ -86,7 +86,7 @@ class KorniaGradient(Dividing):
 
     def _markers(self, steep: Float32[np.ndarray, "h w"]) -> tuple[Int32[np.ndarray, "h w"], int]:
         """Return the largest basins under canny_low, or its multiples if none is so flat, -1 elsewhere; count them."""
-        from .regions.basins import MAX_SEGMENTS, STEEPER, basins
+        from .regions.watershed import MAX_SEGMENTS, STEEPER, basins
 
         levels = [self.canny_low * times for times in STEEPER]
         basin_labels, count = basins(steep, levels, max(4, min(self.smallest_px, steep.size // 16)))

@@ -11,8 +11,8 @@ from label_maps import rand_index
 from tangible_texture import Hierarchy
 from tangible_texture.gradient import Gradient
 from tangible_texture.histogram import MAX_LEVELS, Histogram, OtsuClasses
-from tangible_texture.regions.basins import MAX_SEGMENTS
-from tangible_texture.regions.small_parts import remove_small_parts
+from tangible_texture.regions.refining import remove_small_parts
+from tangible_texture.regions.watershed import MAX_SEGMENTS
 from wavy_cells import cells, smooth_scene
 
 

@@ -10,8 +10,7 @@ from tangible_core.compiled import KERNEL, inner, njit
 from ..dense.confidence import FLAT_REACH
 from ..dense.span import UNKNOWN, Span
 from ..dense.speckles import remove_speckles
-from ..sgm.census import BLOCK, OFFSETS, PLANES, RADIUS, code_rows
-from ..sgm.costs import SHARP
+from ..sgm.costs import BLOCK, OFFSETS, PLANES, RADIUS, SHARP, code_rows
 from .pairs import Pair
 from .sparse_sweep import sweep_columns
 

@@ -7,10 +7,9 @@ from numba import uint8
 from tangible_core.compiled import KERNEL, inner, njit
 
 from ..dense.span import UNKNOWN, Span
-from ..sgm.aggregation import WORST, begin_path, equiangular, shift_codes
-from ..sgm.census import PLANES
-from ..sgm.costs import Penalties
+from ..sgm.costs import PLANES, Penalties
 from ..sgm.paths import add_horizontal_paths, jump_penalties, jump_penalties_along, limited_cost, row_limits, step
+from ..sgm.strips import WORST, begin_path, equiangular, shift_codes
 from ..simd.lane_reductions import first_equal, first_lane, lowest
 from ..simd.lanes import Lanes, load, minimum, saturating_add, shift_down, splat, store, width
 

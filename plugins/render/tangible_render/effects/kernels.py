@@ -7,9 +7,8 @@ import numpy as np
 from tangible_core.compiled import KERNEL, inner, njit
 from tangible_render.haptic_textures.forces import STATE, texture_force
 from tangible_render.haptic_textures.heights import texture_height
-from tangible_render.haptic_textures.table import COUNT, DRAG, HEAD
+from tangible_render.haptic_textures.table import COUNT, DRAG, HEAD, WAVES
 from tangible_render.haptic_textures.table import STIFFNESS as STICKS
-from tangible_render.haptic_textures.waves import WAVES
 
 from ..contact.approach import LEAP_M
 from ..surface.bilinear import bilinear, cell, over

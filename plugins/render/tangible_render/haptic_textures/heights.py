@@ -12,8 +12,7 @@ from numba.np.arrayobj import populate_array
 
 from tangible_core.compiled import KERNEL, inner, njit
 
-from .table import COUNT, HEAD
-from .waves import WAVES
+from .table import COUNT, HEAD, WAVES
 
 WHOLE, GONE = 1 / 5, 1 / 3
 """Turns a tick up to which a wave is whole, and from which it is gone: no servo renders over 1/3 of its rate."""

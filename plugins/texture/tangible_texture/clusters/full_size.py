@@ -8,8 +8,7 @@ from tangible_core.compiled import exponential, in_blocks, logarithms, njit
 from tangible_core.runtime import plain_opencv
 
 from ..features.features import Window
-from .discriminants import evidence, scatters
-from .dividing import one_hot
+from .discriminants import evidence, one_hot, scatters
 from .neighbourhood import EVIDENCE, mean_field
 
 NARROW = 0.6

@@ -8,8 +8,7 @@ from jaxtyping import Bool, Float32, Float64, Int32, Int64
 
 from tangible_core.compiled import cholesky, njit, whiten
 
-from .discriminants import discriminant_axes, scatters
-from .dividing import one_hot
+from .discriminants import discriminant_axes, one_hot, scatters
 from .neighbourhood import INSIDE_CELLS, interior_shares, refit_labels, smooth_memberships
 from .planes import add_planes, inner_products, scatter_matrix_in_kernel
 

@@ -9,8 +9,7 @@ from jaxtyping import Float32, Int32
 from tangible_core.compiled import exponential, njit
 from tangible_core.runtime import plain_opencv
 
-from .discriminants import evidence, scatters
-from .dividing import one_hot
+from .discriminants import evidence, one_hot, scatters
 
 PULL = 4.0
 """The weight of the neighbours' mean membership against evidence."""

@@ -1,5 +1,6 @@
-"""Refining of regions from a coarse grid to the pixel."""
+"""Refining of regions to the pixel, and removal of small parts and of seams between two textures."""
 
+import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, Int32, Int64
 
@@ -49,3 +50,43 @@ def inner_cells(labels: Int32[np.ndarray, "r c"]) -> Bool[np.ndarray, "r c"]:
         inside[first] &= same
         inside[second] &= same
     return inside
+
+
+def remove_seams(
+    labels: Int32[np.ndarray, "rows columns"], radius: int
+) -> tuple[Int32[np.ndarray, "rows columns"], Bool[np.ndarray, "rows columns"]]:
+    """Give parts too narrow for a disc of this radius to the nearest wide segment; return the unchanged cells too."""
+    from scipy.ndimage import distance_transform_edt
+
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1))
+    frame = np.pad(labels, 2 * radius, mode="symmetric")
+    inner = tuple(slice(2 * radius, 2 * radius + side) for side in labels.shape)
+    wide = np.zeros(labels.shape, np.bool_)
+    for label in range(int(labels.max()) + 1):
+        wide |= cv2.morphologyEx((frame == label).astype(np.uint8), cv2.MORPH_OPEN, disc)[inner] > 0
+    if not wide.any():
+        return labels, ~wide
+    nearest = distance_transform_edt(~wide, return_distances=False, return_indices=True)
+    _, numbers = np.unique(labels[tuple(np.asarray(nearest))], return_inverse=True)
+    return numbers.reshape(labels.shape).astype(np.int32), wide
+
+
+def remove_small_parts(
+    classes: Int32[np.ndarray, "h w"], steep: Float32[np.ndarray, "h w"], flat: float, smallest_px: int
+) -> Int32[np.ndarray, "h w"]:
+    """Give parts (4 neighbours) of fewer flat pixels to the adjacent classes, up to the steepest pixels in between."""
+    # An edge from dark to bright is not a segment of grey: pixels steeper than `flat` are in no part.
+    markers = np.full(classes.shape, UNSEEN, np.int32)
+    for label in range(int(classes.max()) + 1):
+        _add_large_parts(markers, (classes == label) & (steep <= flat), label, smallest_px)
+    if markers.max() == UNSEEN:
+        return np.zeros_like(classes)
+    return watershed(steep, markers)
+
+
+def _add_large_parts(markers: Int32[np.ndarray, "h w"], mask: np.ndarray, label: int, smallest_px: int) -> None:
+    count, parts = cv2.connectedComponents(mask.view(np.uint8), connectivity=4)
+    numbers = np.asarray(parts, np.int32)
+    large = np.bincount(numbers.ravel(), minlength=count) >= smallest_px
+    large[0] = False
+    markers[large[numbers]] = label

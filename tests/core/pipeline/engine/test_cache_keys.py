@@ -250,7 +250,7 @@ class TestCode:
             ("tangible_core.pipeline.engine.cache", set(KEPT)),
             ("tangible_core.pipeline.engine.engine", set()),
             ("tangible_depth.semi_global", {"disparity"}),
-            ("tangible_depth.sgm.aggregation", {"disparity"}),
+            ("tangible_depth.sgm.strips", {"disparity"}),
             ("tangible_core.compiled.threads", {"disparity", "figure", "segments"}),
             ("tangible_texture.energies.local_energy", {"segments"}),
         ],

@@ -16,7 +16,7 @@ from tangible_depth.dense.filling.four_directions import GEODESIC, choose_of_fou
 from tangible_depth.dense.refinement import DenseMatches, enlarge, to_disparity_map
 from tangible_depth.dense.span import UNKNOWN
 from tangible_depth.dense.speckles import Specks, remove_speckles, remove_specks
-from tangible_depth.sgm.aggregation import equiangular
+from tangible_depth.sgm.strips import equiangular
 from tangible_depth.windows.correlation import parabola
 
 MAPS = arrays(

@@ -17,8 +17,7 @@ from tangible_depth.search.bands import COUNT, FINE_WIDTH, HIGH_PX, RADIUS, TALL
 from tangible_depth.search.disparity_range import FIRST_WIDTH, RangeEstimate, find_disparity_range, find_range
 from tangible_depth.search.pairs import Pair, grey_pair
 from tangible_depth.search.sparse_sweep import FEWEST_LANES, sweep_columns
-from tangible_depth.sgm.census import BLOCK, census
-from tangible_depth.sgm.costs import SHARP
+from tangible_depth.sgm.costs import BLOCK, SHARP, census
 
 PAIR = Pair.of(*np.zeros((2, 8, 500), np.uint8))
 

@@ -8,8 +8,7 @@ from semi_global_plainly import plain_disparity, plain_sums
 from stereo_scenes import step
 from tangible_depth.dense.span import Span
 from tangible_depth.sgm import strips
-from tangible_depth.sgm.census import census, census_with_levels, two_scale_census
-from tangible_depth.sgm.costs import COSTS, LEVELS, SHARP, p2_by_grey_step
+from tangible_depth.sgm.costs import COSTS, LEVELS, SHARP, census, census_with_levels, p2_by_grey_step, two_scale_census
 from tangible_depth.sgm.strips import sweep, unknown_matches
 
 

@@ -24,9 +24,8 @@ from tangible_render.haptic_textures import (
 )
 from tangible_render.haptic_textures.forces import STATE, along, texture_force
 from tangible_render.haptic_textures.heights import GONE, WHOLE, remaining, texture_height
-from tangible_render.haptic_textures.spectrum import line_spectrum
-from tangible_render.haptic_textures.table import DRAG, STIFFNESS, SWING
-from tangible_render.haptic_textures.waves import WAVES, directions, waves
+from tangible_render.haptic_textures.sample import line_spectrum
+from tangible_render.haptic_textures.table import DRAG, STIFFNESS, SWING, WAVES, directions, waves
 
 TICK_S = 0.001
 GRAIN_M, ROUGH_M = 1e-3, 1e-4

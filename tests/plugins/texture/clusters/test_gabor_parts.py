@@ -8,9 +8,8 @@ import pytest
 from tangible_core.compiled.small_matrices import eigen, solve
 from tangible_core.plugins.notes import collected
 from tangible_texture.clusters import planes as matrices
-from tangible_texture.clusters.counting import Weights, largest_number, likeliest_division, number_likelihoods
-from tangible_texture.clusters.discriminants import discriminant_axes, evidence, scatters
-from tangible_texture.clusters.dividing import one_hot
+from tangible_texture.clusters.classes import Weights, largest_number, likeliest_division, number_likelihoods
+from tangible_texture.clusters.discriminants import discriminant_axes, evidence, one_hot, scatters
 from tangible_texture.clusters.full_size import pixel_labels
 from tangible_texture.clusters.joining import Step, axes_between, join_clusters, measure_pairs
 from tangible_texture.clusters.neighbourhood import (

@@ -10,7 +10,7 @@ from tangible_texture.energies.filter_choice import is_flat, is_one_texture
 from tangible_texture.kmeans import lloyd as module
 from tangible_texture.kmeans.labelling import choose_count, label_map_of_cells, margins, segment_by_kmeans
 from tangible_texture.kmeans.lloyd import kmeans
-from tangible_texture.regions.small_parts import remove_seams
+from tangible_texture.regions.refining import remove_seams
 
 
 def blobs(count, each=200, dims=5, seed=0, apart=20.0):

@@ -6,8 +6,17 @@ from math import log, sqrt
 import numpy as np
 import pytest
 
-from tangible_texture.tree.cells import CELLS, opponent_colours, reduce_to_cells, shares
-from tangible_texture.tree.cues import EMPTY, LEVELS, border_tensors, tensors, weighted_strength
+from tangible_texture.tree.cues import (
+    CELLS,
+    EMPTY,
+    LEVELS,
+    border_tensors,
+    opponent_colours,
+    reduce_to_cells,
+    shares,
+    tensors,
+    weighted_strength,
+)
 from tangible_texture.tree.joining import TERMS, join_regions
 from tangible_texture.tree.regions import Regions, measure_regions
 

@@ -15,7 +15,7 @@ from tangible_core.pipeline.engine import product_at_hand
 from tangible_core.pipeline.output import title_of
 from tangible_core.scene import kind_of
 from tangible_legibility.words.languages import LANGUAGES, Language
-from tangible_render.haptic_textures.waves import waves
+from tangible_render.haptic_textures.table import waves
 from tangible_report.description import describe, describe_at_length, facts, page_of
 from tangible_report.description.at_length import tell
 

@@ -16,7 +16,7 @@ from tangible_core.testing.synthetic.stereo_scenes import (
     true_disparity,
     truly_visible,
 )
-from tangible_core.testing.synthetic.textures import FAMILIES, smooth_noise
+from tangible_core.testing.synthetic.texture_scenes import FAMILIES, smooth_noise
 
 WIDTH, HEIGHT = 480, 360
 TILE_PX = 256

@@ -20,7 +20,7 @@ from tangible_bench.metrics.segments import contingency
 from tangible_core.data import SegmentTree, to_rgb
 from tangible_core.data.views import border_pixels
 from tangible_networks.seeing import look_for_borders
-from tangible_texture.features.channels import channels
+from tangible_texture.features.cells import channels
 from tangible_texture.tree.cues import (
     Tensors,
     border_tensors,

@@ -18,7 +18,7 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-from tangible_core.testing.synthetic.textures import without_grey
+from tangible_core.testing.synthetic.texture_scenes import without_grey
 from tangible_texture.features.features import features
 from tangible_texture.features.patterns import CLASSES, PATTERNS, RADII
 from tangible_texture.learned.network import FILTERS, WINDOWS

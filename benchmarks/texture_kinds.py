@@ -8,14 +8,15 @@ import numpy as np
 from jaxtyping import Int32
 
 from tangible_core.testing.synthetic.texture_scenes import (
+    Family,
     KnownSegments,
     builtin_textures,
     curvy_regions,
     folder_textures,
     in_order,
     scatter_points,
+    without_grey,
 )
-from tangible_core.testing.synthetic.textures import Family, without_grey
 
 from .texture_scenes import folders
 

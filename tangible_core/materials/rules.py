@@ -114,13 +114,7 @@ def apply_rules(
     picture: np.ndarray | None,
     shape: tuple[int, int] | None = None,
 ) -> Mapping[int, Choice]:
-    """Return the choices of the rules for segments or parts; log a rule that fits none.
-
-    rules: with parts by number, not by name. shape: (h, w) of the picture in whose pixels points are given, if segments
-    and picture are reduced.
-    Raises: MaterialError, with every complaint, for a segment, a part or a point that does not exist, or a colour
-    without a picture of the segments' size.
-    """
+    """Return the choices of the rules for segments or parts; log a rule that fits none. Raises: MaterialError."""
     choices: dict[int, Choice] = {}
     complaints: list[str] = []
     noun = map_noun(segments)

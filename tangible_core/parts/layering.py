@@ -30,10 +30,7 @@ class Layering:
     def __init__(
         self, parts: PartMap, width_m: float, heights: HeightChoice, picture: np.ndarray | None = None
     ) -> None:
-        """picture: of the parts' size; None for no detail.
-
-        Raises: GeometryError if width_m is not positive, PictureError for an array that is not a picture of this size.
-        """
+        """picture: of the parts' size, None for no detail. Raises: GeometryError, PictureError."""
         if not 0 < width_m < np.inf:
             raise GeometryError(f"width_m must be a positive length in metres, not {width_m}")
         rows, columns = parts.labels.shape

@@ -30,10 +30,7 @@ MOTORS = "TANGIBLE_MOTORS"
 
 
 class CheckResult(NamedTuple):
-    """The result of one check: `message` is the reason of a failure, or the demand that the method meets.
-
-    If a device or a model is absent, checks that need it pass, and their message starts with "not run".
-    """
+    """The result of a check, its failure or the demand that is met; "not run" without the device or model."""
 
     name: str
     passed: bool

@@ -39,11 +39,7 @@ class KorniaReport(DepthEstimator):
     ones a GPU."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Estimate dense disparity of the left view.
-
-        Raises: PictureError without a right view, BrokenMethod without torch or kornia, RectificationError as
-        `rectify`.
-        """
+        """Estimate dense disparity of the left view. Raises: PictureError, RectificationError, BrokenMethod."""
         need("torch")
         need("kornia")
         from .matching.feature_chain import Parts, disparity_by_features

@@ -34,10 +34,7 @@ class KorniaZNCC(DepthEstimator):
     ones a GPU."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Estimate dense disparity of the left view.
-
-        Raises: PictureError without a right view, BrokenMethod without torch, RectificationError as `rectify`.
-        """
+        """Estimate dense disparity of the left view. Raises: PictureError, RectificationError, BrokenMethod."""
         need("torch")
         from .rectify.rectification import estimate_rectified
 

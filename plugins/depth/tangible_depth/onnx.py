@@ -57,11 +57,7 @@ class Onnx(DepthEstimator, Skippable):
         return None
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Estimate disparity in pixels, or nearness from one picture; NaN where the network returns no number.
-
-        Raises: ModelAbsent without a network file, ConfigError for a card or a network that does not fit, PictureError
-        without a right view that the network needs.
-        """
+        """Estimate disparity in pixels, or nearness of one picture. Raises: ModelAbsent, ConfigError, PictureError."""
         if self.model is None:
             raise ModelAbsent(
                 "onnx needs a network from you: depth: {use: onnx, model: FILE.onnx, card: NAME or FILE.yaml}; "

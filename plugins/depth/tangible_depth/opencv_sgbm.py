@@ -83,10 +83,7 @@ class OpenCVSGBM(DepthEstimator, Skippable):
         return None
 
     def estimate(self, views: Views) -> DisparityMap:
-        """Estimate disparity in pixels, NaN if unknown; confidence by `left_right_confidence`.
-
-        Raises: PictureError if there is no right view, or the pair is too large for the mode.
-        """
+        """Estimate disparity in pixels, NaN if unknown, with `left_right_confidence`. Raises: PictureError."""
         if views.right is None:
             raise PictureError(
                 "stereo needs two views, but this scene has one; use a method for a single picture, such as luminance"

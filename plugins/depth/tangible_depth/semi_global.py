@@ -76,7 +76,7 @@ class SemiGlobal(DepthEstimator, Following):
 
     def follow(self, views: Views) -> Callable[[Views], DisparityMap]:
         """Return `estimate` for a film: it rectifies by these views and follows the range of recent frames."""
-        from .matching.film import FilmMatcher
+        from .matching.chain import FilmMatcher
 
         return FilmMatcher(views, "semi-global", *self._search_and_matcher())
 

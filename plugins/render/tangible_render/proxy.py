@@ -14,9 +14,8 @@ from tangible_render.haptic_textures.table import bristle_stiffness
 
 from .effects.effects_table import split_textures
 from .effects.material_table import material_table
-from .surface.coefficients import spline_surface
+from .surface.coefficients import spline_surface, tile_bounds
 from .surface.dequantise import Filter
-from .surface.tiles import tile_bounds
 
 MAX_RADIUS_M = 0.002
 """The largest ball, m: nothing narrower than twice this, a fingertip's width, would be left in a groove."""

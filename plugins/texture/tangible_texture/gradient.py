@@ -68,12 +68,11 @@ class Gradient(Dividing):
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Divide the picture at its edges; one segment if it holds nothing but noise. Raises: PictureError."""
-        from .features.channels import channels
+        from .features.cells import channels
         from .regions.borders import landscape
         from .regions.merging import number_in_reading_order
         from .regions.refining import refine_labels
-        from .signal.slopes import slopes
-        from .signal.smoothing import remove_specks, smooth_at_two_scales
+        from .signal.smoothing import remove_specks, slopes, smooth_at_two_scales
 
         near, wide, step = smooth_at_two_scales(remove_specks(channels(picture, self.colour)), self.sigma_px)
         magnitude, _, _, noise = slopes(near)

@@ -72,7 +72,7 @@ class Hierarchy(Dividing, Hierarchical):
         """Divide the picture into its smallest regions, and join them down to one. Raises: PictureError."""
         from tangible_core.compiled import exponentials
 
-        from .features.channels import channels
+        from .features.cells import channels
         from .regions.refining import refine_regions
         from .tree.cues import border_tensors, opponent_colours, reduce_to_cells, shares, tensors, weighted_strength
         from .tree.joining import join_regions

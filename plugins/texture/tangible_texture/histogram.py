@@ -104,11 +104,10 @@ class Histogram(Dividing):
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         """Divide the picture by grey level; one segment where all of it has the same grey. Raises: PictureError."""
-        from .features.channels import channels
+        from .features.cells import channels
         from .regions.merging import number_in_reading_order
         from .regions.refining import remove_small_parts
-        from .signal.slopes import slopes
-        from .signal.smoothing import gaussian, remove_specks
+        from .signal.smoothing import gaussian, remove_specks, slopes
 
         values = remove_specks(channels(picture, colour=False))
         sigma_px = min(self.sigma_px, values.size**0.5 / 16)

@@ -69,7 +69,7 @@ class KorniaGabor(Dividing):
 
     def _segments(self, grey: Float32[np.ndarray, "h w"], filters: "list[Gabor]", most_px: float) -> SegmentMap:
         from .energies.filter_choice import is_one_texture
-        from .kmeans.labelling import choose_segments, label_map_of_cells
+        from .kmeans.lloyd import choose_segments, label_map_of_cells
         from .kornia_gabor_kernels import energies, standardise_roots
 
         window_px = min(self.window_px, most_px)
@@ -86,7 +86,7 @@ class KorniaGabor(Dividing):
         self, rows: "Tensor", shape: tuple[int, ...], count: int, radius: int
     ) -> tuple[Int32[np.ndarray, "rows columns"], Float32[np.ndarray, "n"]]:
         """Return labels and confidence of the cells; seams are replaced by up to MORE extra clusters."""
-        from .kmeans.labelling import margins
+        from .kmeans.lloyd import margins
         from .kornia_gabor_kernels import kmeans
         from .regions.refining import remove_seams
 

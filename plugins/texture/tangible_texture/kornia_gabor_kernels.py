@@ -16,11 +16,7 @@ from .kmeans.lloyd import SAME
 def energies(
     grey: Float32[np.ndarray, "h w"], filters: Sequence[Gabor], step_px: int, sigma_px: float, device: torch.device
 ) -> Tensor:
-    """Compute the planes of `local_energy.energy_planes` from every pixel of every response.
-
-    Returns: (filters, rows, columns).
-    Memory: about 60 bytes a pixel of the mirrored picture.
-    """
+    """Compute the planes of `local_energy.energy_planes` from every pixel of responses: (filters, rows, columns)."""
     pad_px = padding(filters, sigma_px)
     picture = standardise(grey)
     cells = [-(-side // step_px) for side in grey.shape]

@@ -60,7 +60,7 @@ class Report(Dividing):
         """Divide the picture by texture. Raises: PictureError as `check_picture`."""
         from .energies.filter_choice import is_flat, is_one_texture, needed_filters
         from .energies.gabor_bank import bank, octaves, printed_wavelengths
-        from .kmeans.labelling import segment_by_kmeans
+        from .kmeans.lloyd import segment_by_kmeans
 
         grey = to_grey(picture)
         if is_flat(grey):

@@ -119,7 +119,7 @@ def assert_forces_are_those_of_proxy(tab: "Tab"):
     from tangible_core.compiled.touch import CompiledTouch
     from tangible_render.contact.approach import REMEMBERED
     from tangible_render.kernels.proxy import tick
-    from tangible_render.surface.tiles import tile_bounds
+    from tangible_render.surface.coefficients import tile_bounds
 
     sent = next(surface_to_send(picture_to_send()))
     coefficients, labels = sent.coefficients, sent.labels

@@ -53,7 +53,7 @@ class WindowMatcher(DepthEstimator, Following):
 
     def follow(self, views: Views) -> Callable[[Views], DisparityMap]:
         """Return `estimate` for a film: it rectifies by these views and follows the range of recent frames."""
-        from .film import FilmMatcher
+        from .chain import FilmMatcher
 
         return FilmMatcher(views, *self._named_search_and_matcher())
 

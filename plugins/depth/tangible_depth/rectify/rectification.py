@@ -56,19 +56,7 @@ def rectify(
     fit: Fit = eight_point,
     quick: bool = True,
 ) -> RectifiedPair:
-    """Rectify a pair of unknown cameras, so that its rows correspond.
-
-    Skipped, with the reason in `why`, if the views have a calibration, if the median vertical offset of their
-    matches is within tolerance_px (in large pictures: within 1/8000 of the longer side) already, if rectifying would
-    not reduce it by MIN_GAIN_PX, or if there are too few matches to decide.
-    matches: those to use; by optical flow and SIFT if None. fit: estimates F from trusted matches. quick: False leaves
-    out optical flow, as repetitive texture misleads it, unlike SIFT.
-    A flat scene is aligned as well, with a warning: the cameras' poses stay ambiguous, so the left picture stays
-    unchanged. If most matches lie on a plane, matches off it are searched and resolve the ambiguity.
-    Exchanged views are not swapped, but a warning says so: their disparities are negative.
-    Raises: PictureError if there is only one view; RectificationError if the rows do not correspond but no geometry, or
-    only one that distorts the pictures, explains the matches, or if the camera only rotated: that shows no depth.
-    """
+    """Rectify a pair of unknown cameras, so that its rows correspond. Raises: PictureError, RectificationError."""
     if views.right is None:
         raise PictureError("rectification needs two views; give a right one")
     if views.calibration is not None:
@@ -76,11 +64,14 @@ def rectify(
     left, right = to_grey(views.left), to_grey(views.right)
     tolerance_px = max(tolerance_px, max(views.shape) / 8000)
     if matches is None:
+        # Repetitive texture misleads optical flow, unlike SIFT.
         matches = flow_matches(left, right) if quick else NO_MATCHES
         if len(matches.left_px) < FEWEST_TO_TELL or _median_offset(matches) > tolerance_px:
             matches = sift_matches(left, right)
     if len(matches.left_px) < FEWEST_TO_TELL:
         return _keep_pair(views, f"only {len(matches.left_px)} matches, too few to decide; taken as rectified")
+    # Warping for less than MIN_GAIN_PX would only blur. A flat scene is aligned too, with a warning: the cameras' poses
+    # stay ambiguous. Exchanged views are not swapped, but a warning says so: their disparities are negative.
     if (before := _median_offset(matches)) > tolerance_px:
         return _rotate(views, left, right, matches, before, fit)
     if _all_negative(matches.left_px[:, 0] - matches.right_px[:, 0]):

@@ -15,25 +15,20 @@ from .projective import distort, inverse, product, transform, undistort
 
 @dataclass(frozen=True, eq=False)
 class RectifiedPair(Record):
-    """A pair whose matches lie on common rows, with the homographies back to the original pictures.
-
-    left_homography, right_homography: (3, 3), from a point of the original picture, free of its lens's distortion, to
-    its place in `views`; left_radial, right_radial: that distortion (see `projective`), 0 for none.
-    offset_px: added to a disparity of `views`; `rectify` moves the right view so that none is negative.
-    skipped: whether the pair is unchanged. why: a message about what was done, or why nothing was.
-    verified_px: lowest and highest disparity, in `views`, of the matches used; None if skipped.
-    """
+    """A pair whose matches lie on common rows, with the homographies from the original, undistorted pictures to it."""
 
     views: Views
     left_homography: Float64[np.ndarray, "3 3"]
     right_homography: Float64[np.ndarray, "3 3"]
     original_shape: tuple[int, int]
     offset_px: float
+    """Added to a disparity of `views`; `rectify` moves the right view so that none is negative."""
     skipped: bool
     why: str
     left_radial: float = 0.0
     right_radial: float = 0.0
     verified_px: tuple[int, int] | None = None
+    """Lowest and highest disparity, in `views`, of the matches used; None if skipped."""
 
     def warp(self, views: Views) -> "RectifiedPair":
         """Warp other pictures of the same cameras by the same homographies."""

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float32, Float64, Int64
 
-from ..surface.tiles import tile_bounds
+from ..surface.coefficients import tile_bounds
 from .filter_kernels import fill_slot
 from .playing import SLOTS, publish, slots
 

@@ -1,6 +1,6 @@
-"""Coefficients of a C2 surface: a cubic B-spline through the heights at the cells' centres, except near jumps."""
+"""Coefficients of a C2 surface, a cubic B-spline through the heights except near jumps, and its bounds by tiles."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import pairwise, product
 
 import numpy as np
@@ -124,3 +124,27 @@ def _steps(half: int, reach_m: float, cell_m: float, cells: int) -> Iterator[tup
 def _overlap(shift: int, cells: int, half: int) -> tuple[slice, slice]:
     first, last = max(0, -shift), min(cells, cells - half - shift)
     return slice(first, last), slice(first + shift, last + shift)
+
+
+TILE_CELLS = 16
+MAX_TILES = 256
+"""The largest number of tiles along a side; larger grids have larger tiles."""
+
+
+def tile_bounds(coefficients: Float32[np.ndarray, "h4 w4"]) -> Float32[np.ndarray, "r c 2"]:
+    """Compute an upper and a lower bound of the surface over each of r x c equal tiles: of 16 cells, or 256 a side."""
+    # A B-spline is nowhere above the greatest of its 4 x 4 coefficients, nor below the least: its weights are positive
+    # and sum to 1. Where both bounds of a tile are equal, the surface is level.
+    highest, lowest = coefficients, coefficients
+    for axis in (0, 1):
+        highest, lowest = _reduce(np.max, highest, axis), _reduce(np.min, lowest, axis)
+    return np.ascontiguousarray(np.stack([highest, lowest], axis=2))
+
+
+def _reduce(extreme: Callable[..., np.ndarray], values: np.ndarray, axis: int) -> np.ndarray:
+    """Return one value for each tile along this axis, over all coefficients of the points in it and at its edge."""
+    lines = np.moveaxis(values, axis, 0)
+    cells = len(lines) - 2 * BORDER
+    count = min(-(-cells // TILE_CELLS), MAX_TILES)
+    edges = np.floor(np.arange(count + 1) * cells / count).astype(int) + BORDER
+    return np.moveaxis(np.stack([extreme(lines[max(a - 3, 0) : b + 4], axis=0) for a, b in pairwise(edges)]), 0, axis)

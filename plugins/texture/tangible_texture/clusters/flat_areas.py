@@ -8,7 +8,7 @@ from jaxtyping import Int32
 
 from tangible_core.runtime import plain_opencv
 
-from ..features.channels import channels
+from ..features.cells import channels
 from ..signal.smoothing import gaussian
 
 SMOOTH_PX = 2.0

@@ -14,8 +14,7 @@ from tangible_core.runtime import plain_opencv
 from ..energies.filter_choice import is_flat, is_one_texture
 from ..energies.gabor_bank import bank, octaves
 from ..energies.local_energy import energy_planes, mean_energies, padding, picture_spectrum, standardise
-from .cells import CELL_PX, ENERGY_SIGMA_PX, cap_rare_values, standardise_roots, window_means
-from .channels import channels
+from .cells import CELL_PX, ENERGY_SIGMA_PX, cap_rare_values, channels, standardise_roots, window_means
 from .patterns import PATTERNS, pattern_frequencies
 
 log: logging.Logger = logging.getLogger(__name__)

@@ -8,7 +8,7 @@ from jaxtyping import Float32, Int32, UInt8
 
 from tangible_core.runtime import plain_opencv
 
-from ..signal.slopes import slopes
+from ..signal.smoothing import slopes
 
 _LARGEST = 16000
 

@@ -4,8 +4,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, Int32, Int64
 
-from ..signal.slopes import slopes
-from ..signal.smoothing import gaussian
+from ..signal.smoothing import gaussian, slopes
 from .borders import ACROSS, DOWN
 from .watershed import UNSEEN, watershed
 

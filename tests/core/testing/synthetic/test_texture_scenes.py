@@ -7,13 +7,16 @@ import pytest
 from PIL import Image
 
 from tangible_core.testing.synthetic.texture_scenes import (
+    CONTRAST,
+    FAMILIES,
+    GREY,
     builtin_textures,
     curvy_regions,
     folder_textures,
     smooth_scene,
     texture_mosaic,
+    without_grey,
 )
-from tangible_core.testing.synthetic.textures import CONTRAST, FAMILIES, GREY, without_grey
 
 SHAPE = (70, 101)
 

@@ -8,8 +8,8 @@ from stereo_scenes import slanted, step
 from tangible_core.data import Views
 from tangible_core.plugins.interfaces import Following
 from tangible_depth import SemiGlobal, Ssd, Zncc
-from tangible_depth.matching import film
-from tangible_depth.matching.film import SEARCH_EVERY, FilmMatcher
+from tangible_depth.matching import chain as film
+from tangible_depth.matching.chain import SEARCH_EVERY, FilmMatcher
 from tangible_depth.rectify import rectification
 from tangible_depth.search import disparity_range
 

@@ -6,8 +6,7 @@ import pytest
 from tangible_core.data import HapticSurface, Relief
 from tangible_render.surface import spline
 from tangible_render.surface.bilinear import cell
-from tangible_render.surface.coefficients import spline_surface
-from tangible_render.surface.tiles import tile_bounds
+from tangible_render.surface.coefficients import spline_surface, tile_bounds
 
 RNG = np.random.default_rng(2)
 

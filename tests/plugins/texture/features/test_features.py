@@ -8,8 +8,7 @@ import pytest
 from tangible_core.plugins.notes import collected
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments, texture_mosaic
 from tangible_texture.features import features as module
-from tangible_texture.features.cells import cap_rare_values, standardise_roots, window_means
-from tangible_texture.features.channels import channels
+from tangible_texture.features.cells import cap_rare_values, channels, standardise_roots, window_means
 from tangible_texture.features.features import Features, features
 from tangible_texture.features.patterns import PATTERNS
 from tangible_texture.learned.network import MIN_CELLS, learned_values

@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 from tangible_core.compiled import threads
 from tangible_texture.energies.filter_choice import is_flat, is_one_texture
 from tangible_texture.kmeans import lloyd as module
-from tangible_texture.kmeans.labelling import choose_count, label_map_of_cells, margins, segment_by_kmeans
-from tangible_texture.kmeans.lloyd import kmeans
+from tangible_texture.kmeans.lloyd import choose_count, kmeans, label_map_of_cells, margins, segment_by_kmeans
 from tangible_texture.regions.refining import remove_seams
 
 

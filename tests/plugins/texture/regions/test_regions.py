@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
-from tangible_texture.features.channels import channels
+from tangible_texture.features.cells import channels
 from tangible_texture.regions.borders import Border, Landscape, borders, canny_edges, landscape
 from tangible_texture.regions.merging import merge, weakest_border
 from tangible_texture.regions.refining import refine_labels
 from tangible_texture.regions.watershed import basins, watershed
-from tangible_texture.signal.slopes import slopes
-from tangible_texture.signal.smoothing import gaussian
+from tangible_texture.signal.smoothing import gaussian, slopes
 from wavy_cells import smooth_scene
 
 

@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangible_texture.signal.slopes import slopes
-from tangible_texture.signal.smoothing import WIDER, gaussian, remove_specks, smooth_at_two_scales
+from tangible_texture.signal.smoothing import WIDER, gaussian, remove_specks, slopes, smooth_at_two_scales
 
 
 class TestSmoothing:

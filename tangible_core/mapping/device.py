@@ -62,7 +62,6 @@ class _ThroughMapping:
         self._memory = np.zeros(kernels.MEMORY)
 
     def _read(self) -> HapticState:
-        """Read the state of the tip, in the picture."""
         state = self._link.read()
         numbers = np.array([*state.position_m, *state.velocity_m_per_s, state.buttons], np.float64)
         self._kernels.place(self._to, self._memory, numbers)

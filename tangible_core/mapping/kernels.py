@@ -55,7 +55,6 @@ def push(to, memory, fx, fy, fz):
 
 
 def _mapped_read(to, memory, fixed, read, write, state):
-    """Read the device, and convert a fresh state."""
     fresh = read(*fixed, state)
     if fresh:
         place(to, memory, state)
@@ -63,7 +62,6 @@ def _mapped_read(to, memory, fixed, read, write, state):
 
 
 def _mapped_write(to, memory, fixed, read, write, fx, fy, fz):
-    """Convert the force, and send it to the device."""
     x, y, z = push(to, memory, fx, fy, fz)
     write(*fixed, x, y, z)
 

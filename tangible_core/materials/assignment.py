@@ -18,10 +18,8 @@ from .files import parse_materials, read_materials
 from .rules import Choice, MaterialRule, apply_rules, map_noun, segment_parts
 
 NEUTRAL = "plain"
-"""Material of segments for which none is named."""
 
 LADDER = ("ice", "metal", "paper", "leather", "wood", "cloth", "sand", "stone", "brick")
-"""Materials for assignment by roughness, from smooth to rough."""
 
 
 def load_library(path: Path | None = None) -> Mapping[str, Material]:
@@ -56,18 +54,11 @@ def assign(
     ground: Collection[int] = (),
     own: Mapping[int, str] | None = None,
 ) -> MaterialMap:
-    """Assign a material, with a reason, to each segment, or to each part if parts are given.
+    """Assign a material, with a reason, to each segment or part; the default where nothing decides.
 
-    own: materials by label that stand with the parts themselves; they decide first.
-    rules: decide next, the first that fits (see `apply_rules`).
-    by: decides the rest. A map from a segment's number, from 1, to material; `rules`, nothing; or `roughness`, which
-    ranks the rest by `relative_roughness` in this picture and spreads it evenly over `LADDER`, the smoothest to ice,
-    the roughest to brick. Equally rough segments share a rank; a single rank gives the default.
-    default: the material of undecided segments.
-    shape: see `apply_rules`.
-    ground: segments where the picture is transparent: they get the default, and have no roughness.
-    Raises: MaterialError for a name, a label or a point that does not exist, or for `roughness` or a colour without a
-    picture of the segments' size; PictureError if the picture is not one.
+    `own` decides first, by label; then `rules`, the first that fits; then `by`: a map from a segment's number, from 1,
+    or `roughness`, which ranks the rest by `relative_roughness` evenly over `LADDER`; equal ones share a rank.
+    shape: see `apply_rules`. ground: transparent segments, which get the default. Raises: MaterialError, PictureError.
     """
     noun = map_noun(segments)
     picks = {label: (name, f"{name_part(label, noun=noun)}: its own -> {name}") for label, name in (own or {}).items()}

@@ -59,7 +59,6 @@ def guess_heights(parts: PartMap, top_m: float, picture: np.ndarray | None = Non
 def _places(
     parts: PartMap, sizes: Int64[np.ndarray, "n"]
 ) -> tuple[Float64[np.ndarray, "n"], Float64[np.ndarray, "n"], Float64[np.ndarray, "n"]]:
-    """Return a part's row of the 95th percentile and its mean row, 0 to 1; its share of the upper and side rims."""
     labels, (rows, columns) = parts.labels, parts.labels.shape
     lines = np.repeat(np.arange(rows, dtype=np.int64), columns)
     lowest = np.sort(labels.reshape(-1).astype(np.int64) * rows + lines) % rows

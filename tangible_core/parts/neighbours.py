@@ -91,7 +91,6 @@ def _three_meet(labels: Int32[np.ndarray, "h w"]) -> Bool[np.ndarray, "r c"]:
 
 
 def _disc(radius: int) -> tuple[Int64[np.ndarray, "k"], Int64[np.ndarray, "k"]]:
-    """Return rows and columns of even points of a disc around the corner right of and below a pixel."""
     places = np.unique(np.rint(np.linspace(-radius + 1, radius, min(ACROSS, 2 * radius))).astype(np.int64))
     down, right = np.meshgrid(places, places, indexing="ij")
     within = (2 * down - 1) ** 2 + (2 * right - 1) ** 2 <= (2 * radius) ** 2

@@ -73,7 +73,6 @@ class Ceiling(NamedTuple):
     """A limit of stiffness."""
 
     limit_n_per_m: float
-    """Stiffness above which a force law may buzz."""
     share: float
     """Share of the limit that the guard leaves to a force law; a stiffer one is softened."""
     source: str
@@ -93,7 +92,6 @@ class Settings:
     scene_relief_m: float | None = None
     """Height of the relief, if the scene sets it and not the workspace."""
     exaggeration: float | None = None
-    """Exaggeration of heights at a scale, in place of a height of the relief."""
     of_parts: bool = False
     smoothed: bool = True
     """True if `workspace.smooth_m` rounds the relief; a relief that the scene brings is not rounded."""
@@ -235,7 +233,6 @@ def survey(
 
 
 def _stroke(surface: HapticSurface, probes: Probes, step_m: float) -> Float64[np.ndarray, "n 3"]:
-    """Return a path to and fro over the surface, at the median depth of the probes."""
     (width_m, length_m), shape = surface.extent_m, surface.height_m.shape
     way_m = np.arange(TICKS) * step_m
     x, y = _to_and_fro(way_m, width_m), _to_and_fro(way_m / math.e, length_m)

@@ -12,7 +12,6 @@ from ..scene.geometry import picture_to_workspace
 
 PLACES = 64
 SKIN_M = 1e-6
-"""Depth of a hand that has just made contact."""
 STEP_M = 1e-4
 """Further depth at which the stiffness is measured: about the movement of a hand in a tick."""
 SLOW_STEP_M = 2e-5
@@ -20,7 +19,6 @@ SLOW_STEP_M = 2e-5
 SOFT_M = 1e-3
 """Depth of the hand under a force law that is not a spring and does not hold the hand up."""
 CLEAR_M = 0.02
-"""Height of the hand over the highest point, between two places."""
 RESTS = 8
 """Ticks at rest, in which a proxy settles."""
 ROUNDS = 3
@@ -97,7 +95,6 @@ class _Feeler:
         return forces[:, 0, -1], forces[:, 1, 0], forces[:, 1, -1]
 
     def _stop(self, *stops: Points) -> Float64[np.ndarray, "n stops ticks 3"]:
-        """Return the forces at each stop, tick by tick, from the arrival on."""
         above = stops[0].copy()
         above[:, 2] = self._clear_m
         ticks = 1 + RESTS

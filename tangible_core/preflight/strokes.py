@@ -11,7 +11,6 @@ from ..data import HapticState, HapticSurface, Record
 from ..plugins.interfaces import Touch
 
 LINES = 6
-"""Strokes from left to right, and as many from the front to the back."""
 MAX_TICKS = 1000
 """The most ticks of a stroke; a stroke over a wider surface is shorter than the surface, about its middle."""
 MASS_KG, SPRING_N_PER_M, DAMPING_N_S_PER_M = 0.1, 300.0, 6.0
@@ -23,7 +22,6 @@ EASES_S = 0.1
 REACH_DOWN_M = 0.02
 """Depth of the target under the lowest point of the surface, so that the hand presses everywhere."""
 CLEAR_M = 0.003
-"""Height of the hand over the highest point at the start of a stroke."""
 APPROACH = 150
 """Ticks at the start of a stroke in which the hand comes down; they do not count."""
 MARGIN = 0.04
@@ -50,7 +48,6 @@ def stroke(touch: Touch, surface: HapticSurface, press_n: float, speed_m_per_s: 
 
 
 def _ways(surface: HapticSurface, step_m: float) -> list[Float64[np.ndarray, "n 2"]]:
-    """Return the targets along x and y of each stroke, every other one backwards."""
     ways: list[np.ndarray] = []
     for axis in (0, 1):
         length_m, across_m = surface.extent_m[axis], surface.extent_m[1 - axis]

@@ -10,7 +10,6 @@ SPREAD = 0.5
 """The default share of the height that goes where borders are: more steepens level ground between them."""
 ACCENT_M = 0.001
 """The default of the most by which a border is accented, m: twice the least step that is felt under a fingertip."""
-
 FIGURE_SLOPE = 0.8
 """The default slope of what networks see: a hand gets over the wall around a figure, also on rough materials."""
 

@@ -27,7 +27,6 @@ LINE_M = 0.0004
 LINES = 0.6
 """The share of the height that lines have; the rest is that of light over dark."""
 HALF = 0.5
-"""The distance of the cells on both sides of a border from the border, cells."""
 SURE = 0.55
 """Least value of a map of borders in a line: of .55 to .7, the best for the borders of 30 drawn photographs."""
 CALM_M, CALM = 0.0015, 0.1
@@ -91,7 +90,6 @@ def _lines(at_edge: Bool[np.ndarray, "h w"], off: float, pitch_m: float) -> Floa
 
 
 def _edges(lab: Float32[np.ndarray, "h w 3"], sigma: float) -> Bool[np.ndarray, "h w"]:
-    """Return the cells of edges. sigma: of the blur, cells."""
     import cv2
 
     smooth = cv2.GaussianBlur(lab, (0, 0), max(sigma, 0.3), borderType=cv2.BORDER_REPLICATE)

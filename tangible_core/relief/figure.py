@@ -164,7 +164,6 @@ def _add_face(
 
 
 def _blur(values: Float32[np.ndarray, "r c"], sigma: float) -> Float32[np.ndarray, "r c"]:
-    """Return a map blurred by a Gaussian; sigma: in cells."""
     import cv2
 
     return np.asarray(cv2.GaussianBlur(values, (0, 0), max(sigma, 0.1), borderType=cv2.BORDER_REPLICATE))

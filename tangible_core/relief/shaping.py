@@ -16,7 +16,6 @@ from .slope_limit import limit_slopes
 CELL_M = 1e-4
 """The finest cells on which a relief is shaped, m; what is rounded by 0.25 mm has no finer detail."""
 CELL_SHARE = 0.4
-"""Width of these cells where less is rounded, of the rounding's standard deviation."""
 GRAIN_HIGH_M = 1e-4
 """The standard deviation below which a neighbourhood is noise, m: what a Falcon feels is three times as high."""
 ACCENT_REACH_M = 0.0015
@@ -93,7 +92,6 @@ def _without_grain(height_m: Float32[np.ndarray, "h w"], pitch_m: float, grain_m
 def _accent(
     height_m: Float32[np.ndarray, "h w"], pitch_m: float, most_m: float, relief_m: float
 ) -> Float32[np.ndarray, "h w"]:
-    """Add the difference from the surroundings, at most `most_m` of it, within 0 and `relief_m`."""
     import cv2
 
     shape = scaling.reduced_shape(height_m.shape, 4)
@@ -123,7 +121,6 @@ REACH = 2
 STEEPEST = 4.0
 """The greatest density of borders, over its mean; what is cut off is shared out to all depths."""
 STRAIGHT = np.linspace(0, 1, BINS + 1)
-"""Tones that keep heights proportional to nearness."""
 
 
 def relief_tones(nearness: Float32[np.ndarray, "h w"], share: float) -> Float64[np.ndarray, "n"]:

@@ -49,7 +49,6 @@ def measured_size(files: SceneFiles, shape: tuple[int, ...] | None = None) -> Me
 
 
 def _ground(path: Path, cell_m: float | tuple[float, float] | None, shape: tuple[int, ...] | None) -> Ground | None:
-    """Return the cells of a map on the ground: the given ones, or those that its file states."""
     if cell_m is None:
         return read_ground(path)
     rows, columns = shape or read_map(path).shape
@@ -110,7 +109,6 @@ def _warn_of_nodata(values: Float[np.ndarray, "h w"], files: SceneFiles, warn: N
 
 
 def _tones(picture: np.ndarray, files: SceneFiles) -> np.ndarray:
-    """Clip every channel to percentiles of the brightness, and exchange light and dark."""
     if files.clip is None and not files.invert:
         return picture
     result = picture.copy()

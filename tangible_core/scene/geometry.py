@@ -11,7 +11,6 @@ from ..runtime.opencv import plain_opencv
 
 Holes = Literal["fill", "cut"]
 """Treatment of unknown places: `fill` takes the farther neighbour in the row, `cut` goes down to the base plane."""
-
 RANGE_PERCENT = (0.5, 99.5)
 """Percentiles of an estimated map between which the relief spans; values beyond, mostly wrong matches, are clipped."""
 TINY, HUGE = 1e-30, 1e30
@@ -187,7 +186,6 @@ def _value_range(values: Float[np.ndarray, "h w"], percent: tuple[float, float])
 
 
 def _unit_range(values: Float[np.ndarray, "h w"], spans: ValueRange) -> Float[np.ndarray, "h w"]:
-    """Clip values to a range and map them to 0..1; 0 if the range is empty."""
     size = max(abs(spans.low), abs(spans.high)) or 1.0
     low, high = spans.low / size, spans.high / size
     if not low < high:

@@ -9,7 +9,6 @@ from ..data import DisparityMap, Views
 from ..data.pictures import to_grey
 
 MATCHED = 0.15
-"""Confidence above which a disparity was matched, not filled in."""
 NEGATIVE_PX = -2.0
 """Disparities count as negative throughout if all but one in twenty are below this."""
 MAX_ROWS = 512
@@ -104,7 +103,6 @@ def correct_exchanged(disparity: DisparityMap) -> DisparityMap:
 
 
 def _votes(values: Float32[np.ndarray, "h w"], grey: Float32[np.ndarray, "h w"]) -> _Votes:
-    """Count the strips for either order. values: NaN where nothing was matched."""
     known_rows, known_columns = np.nonzero(~np.isnan(values))
     same_row = known_rows[1:] == known_rows[:-1]
     row, before, after = (values_at[same_row] for values_at in (known_rows[1:], known_columns[:-1], known_columns[1:]))
@@ -121,7 +119,6 @@ def _votes(values: Float32[np.ndarray, "h w"], grey: Float32[np.ndarray, "h w"])
 
 
 def _slope(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
-    """Return the steepest slope along the row within one pixel."""
     slope = np.zeros_like(grey)
     slope[:, 1:-1] = np.abs(grey[:, 2:] - grey[:, :-2]) / 2
     steepest = slope.copy()

@@ -163,7 +163,6 @@ def undistort_points(
 def _places(
     lens: Camera, axes: np.ndarray, camera: np.ndarray, size: tuple[int, int]
 ) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
-    """Return the column and the row in the raw picture of each pixel of a rectified one."""
     import cv2
 
     find: Any = cv2.fisheye.initUndistortRectifyMap if lens.model == "equidistant" else cv2.initUndistortRectifyMap

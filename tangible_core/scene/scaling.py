@@ -121,7 +121,6 @@ def _mean(picture: np.ndarray, rows: int, columns: int) -> np.ndarray:
 
 
 def _resize(values: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
-    """Interpolate linearly between known values; next to a hole, take the nearest value."""
     import cv2
 
     size = shape[1], shape[0]

@@ -177,7 +177,6 @@ class SceneFiles(Quantities):
         return self
 
     def _check_needs(self, names: Collection[str]) -> None:
-        """Check that an option stands with the one that it needs. Raises: ValueError."""
         for name, other in _NEEDS.items():
             if name in names and not set(other.split(" or ")) & set(names):
                 raise ValueError(f"{name} needs {other}")

@@ -161,7 +161,6 @@ def make_source(arguments: Mapping[str, Any]) -> SceneSource:
 
 
 def _validate(values: Mapping[str, Any], calibration: Calibration | None) -> SceneFiles:
-    """Return the parts and options as `SceneFiles`. Raises: ConfigError if they do not make a scene."""
     cameras: dict[str, float] = {}
     if calibration is not None:
         cameras = {"focal_px": calibration.focal_px, "baseline_m": calibration.baseline_m}
@@ -179,7 +178,6 @@ def scene_name(files: SceneFiles) -> str:
 
 
 def _read(part: str, path: Path, files: SceneFiles, notify: Notify) -> dict[str, np.ndarray]:
-    """Read a file of a scene: two views, or a photo and its depth, or one part."""
     if part == "stereo":
         return read_pair(path, cast("Layout | None", files.layout), files.non_finite, notify)._asdict()
     if part in _DISPARITIES:

@@ -137,7 +137,6 @@ def demand(check: Check) -> str:
 
 
 def _run(registry: Registry, check: Check, kind: str, name: str, options: dict[str, Any]) -> None:
-    """Run a check on the method's listing, or on a new instance of the method."""
     if check in LISTING_CHECKS:
         check(registry.find(kind, name))
     else:

@@ -85,7 +85,6 @@ def _distance_to_lines(
 def _distance_to_segment(
     here: Float64[np.ndarray, "n 2"], start: Float64[np.ndarray, "n 2"], end: Float64[np.ndarray, "n 2"]
 ) -> Float64[np.ndarray, "n"]:
-    """Compute distances from points to straight segments; a segment of no length is a point."""
     way = end - start
     square = np.maximum((way * way).sum(axis=1), 1e-300)
     share = np.clip(((here - start) * way).sum(axis=1) / square, 0.0, 1.0)

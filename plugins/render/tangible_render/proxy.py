@@ -90,10 +90,8 @@ class Proxy(ForceRenderer, Filming):
     def film(self, surface: HapticSurface, period_s: float = 0.001, frame_s: float = 1 / 30) -> Film:
         """Return a film that begins with this surface, whose labels and materials stay in place.
 
-        Each place moves evenly from one relief to the next, at 0.1 m/s at most and so slowly that the spring force on a
-        hand at rest changes by at most 0.08 N a tick; that bound also holds where the proxy loses its hold. Friction
-        holds the proxy in place while the surface rises and falls; damping sees the velocity of the hand alone.
-        Quantised heights are not smoothed.
+        Each place moves at 0.1 m/s at most, and so slowly that the spring force on a hand at rest changes by at most
+        0.08 N a tick. Quantised heights are not smoothed.
         """
         from .film.film import create_film
 

@@ -95,7 +95,6 @@ class Hierarchy(Dividing, Hierarchical):
         return SegmentTree(refine_regions(cells, paint), joins, 1 / (1 + exponentials(-rising)))
 
     def _borders(self, picture: np.ndarray, shape: tuple[int, int]) -> Float32[np.ndarray, "r c"] | None:
-        """Return how surely people would draw a border at each cell, 0..1; None without a network."""
         if not self.reads():
             return None
         from tangible_networks.seeing import look_for_borders

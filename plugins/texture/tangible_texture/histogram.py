@@ -14,16 +14,12 @@ from .signal.skipping import Dividing, one_segment
 
 BINS = 256
 """The number of grey levels between the darkest and the brightest: that of 8 bits."""
-
 MAX_LEVELS = 16
 """The largest number of segments under `auto`: more than the modes of any histogram seen."""
-
 FLAT_SHARE = 0.8
 """The share of the pixels, the flattest ones, that make up the histogram: edges have levels of their own."""
-
 NOTHING = 1e-6
 """The largest difference of grey that rounding can produce in a picture of one colour, when white is 1."""
-
 CLEAR = 0.75
 """The largest ratio of Marriott's criterion at which levels count as several classes."""
 

@@ -85,7 +85,6 @@ class KorniaGabor(Dividing):
     def _cluster(
         self, rows: "Tensor", shape: tuple[int, ...], count: int, radius: int
     ) -> tuple[Int32[np.ndarray, "rows columns"], Float32[np.ndarray, "n"]]:
-        """Return labels and confidence of the cells; seams are replaced by up to MORE extra clusters."""
         from .kmeans.lloyd import margins
         from .kornia_gabor_kernels import kmeans
         from .regions.refining import remove_seams

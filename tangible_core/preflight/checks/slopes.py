@@ -42,7 +42,6 @@ def slope_stiffness(flight: Flight) -> Iterator[Verdict]:
 
 
 def _less_stiff(flight: Flight, limit: float, most: float) -> Cure:
-    """Return the cures that are not yet applied, the least intrusive first."""
     level = flight.stiffness_n_per_m
     if most <= LEVEL * level:
         return soften(flight, limit)
@@ -98,7 +97,6 @@ def climbable(flight: Flight) -> float:
 
 
 def _steadier(flight: Flight) -> Cure:
-    """Return the cures of a force that grows too fast: gentler slopes for a penalty, otherwise a softer law."""
     stiffness = flight.stiffness_n_per_m
     per_tick_n = stiffness * flight.hand.speed_m_per_s * flight.period_s
     if flight.settings.law_name != PROXY and per_tick_n > 0:

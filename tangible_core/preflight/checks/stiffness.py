@@ -52,7 +52,6 @@ def material_stiffness(flight: Flight) -> Iterator[Verdict]:
 
 
 def _under_ceiling(of: str, stiffness: float, ceiling: Ceiling, cure: Cure) -> Verdict:
-    """Check a stiffness against a limit: above the guard's share it is softened, above the limit it may buzz."""
     limit, share, source = ceiling
     name = "the force law" if of == "the law" else of
     return check_bound(

@@ -13,10 +13,8 @@ from . import capture as video_capture
 from .capture import USUAL_FPS, Capture, OpenCamera, VideoFrame, VideoFrames, ViewsOf, grab, retrieve, stated_fps
 
 FIRST_S = 15.0
-"""Time-out for the first picture, seconds; some cameras take seconds to adjust their exposure."""
 NEXT_S = 5.0
 AGAIN_S = 0.5
-"""Pause between two attempts to reach an unplugged camera, seconds."""
 SLICE_S = 0.2
 """Longest single wait, seconds: some systems deliver a signal only between two waits."""
 MAX_DAMAGED = 30
@@ -123,7 +121,6 @@ class CameraFrames(VideoFrames):
             self._stopped.wait(AGAIN_S)
 
     def _follow(self) -> PictureError:
-        """Take pictures until that fails; return the reason."""
         shot_count, capture = self._shot_count, None
         try:
             capture = self._open(self._camera, self._requested_fps)

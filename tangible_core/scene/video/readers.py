@@ -103,7 +103,6 @@ class FileFrames(VideoFrames):
         return self._known_even and not last and self._due_s + self._late_s + (1 + UNEVEN) / self.fps <= time_s
 
     def _advance(self) -> bool:
-        """Grab the next frame; False at the end. Raises: PictureError if the file ends before it should."""
         while not self._is_over:
             if self._capture is None:
                 self._capture = open_file(self._path)
@@ -126,7 +125,6 @@ class FileFrames(VideoFrames):
         self._in_round += 1
 
     def _take(self) -> VideoFrame | None:
-        """Return the grabbed frame; None for a damaged one. Raises: PictureError, once, for a damaged one."""
         self._waiting = False
         picture = None if self._capture is None else retrieve(self._capture, self._path)
         if picture is None:

@@ -103,7 +103,6 @@ def _flat(exporter: Exporter, plain: Work) -> Work:
 
 
 def _labels(shape: tuple[int, int]) -> np.ndarray:
-    """Draw a wall, a table in its lower half, and a thing in its upper left; as many parts as there is room for."""
     rows, columns = shape
     labels = np.zeros(shape, np.int32)
     labels[(rows + 1) // 2 :, : max(1, columns - columns // 4)] = 1
@@ -112,7 +111,6 @@ def _labels(shape: tuple[int, int]) -> np.ndarray:
 
 
 def _picture(shape: tuple[int, int]) -> np.ndarray:
-    """Draw a colour gradient that gets lighter to the right."""
     rows, columns = shape
     across = np.linspace(20, 235, columns).astype(np.uint8)[None].repeat(rows, 0)
     return np.ascontiguousarray(np.dstack([across, across // 2, 255 - across]))

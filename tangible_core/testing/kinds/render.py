@@ -108,7 +108,6 @@ def _scenes() -> tuple[tuple[str, KnownSurface], ...]:
 
 
 def _press(method: ForceRenderer, scene: KnownSurface, x: float, y: float, depth_m: float) -> Float64[np.ndarray, "3"]:
-    """Return the first force of a new touch at rest, this deep under (x, y)."""
     return np.array(method.touch(scene.surface).force(HapticState(scene.at(x, y, depth_m))), np.float64)
 
 

@@ -146,7 +146,6 @@ def _bell(value: Float64[np.ndarray, "..."], centre: float, deviation: float) ->
 
 
 def _wavering(shape: Shape, random: np.random.Generator, deviation_px: float) -> tuple[Values, Values]:
-    """Return row and column of each pixel from a random origin, plus smooth noise, so that no pattern is regular."""
     places = np.indices(shape, np.float64) + random.uniform(0, 1000, (2, 1, 1))
     rows, columns = (place + deviation_px * smooth_noise(shape, random, 12) for place in places)
     return rows, columns
@@ -279,7 +278,6 @@ def _texture(picture: np.ndarray, name: str) -> Float64[np.ndarray, "h w"]:
 
 
 def _crop(texture: Float64[np.ndarray, "H W"], shape: Shape, random: np.random.Generator) -> np.ndarray:
-    """Crop a random part; a texture that is too small is continued by its mirror image."""
     missing = [max(0, side - has) for side, has in zip(shape, texture.shape, strict=True)]
     large = np.pad(texture, [(0, more) for more in missing], mode="symmetric")
     top, left = random.integers(0, np.subtract(large.shape, shape) + 1)

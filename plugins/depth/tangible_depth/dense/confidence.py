@@ -15,7 +15,6 @@ AGREEMENT = 16
 FLAT_REACH = 2
 """Radius, in pixels, of the window of `flat_pixels`: that of a census code."""
 MIN_MATCHED = 0.2
-"""Confidence of the worst match."""
 FILLED = 0.1
 """Highest confidence of a value that comes from neighbours."""
 STEP_REACH = 3

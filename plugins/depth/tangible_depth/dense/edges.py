@@ -12,7 +12,6 @@ from ..simd.lanes import Lanes, add, load, maximum, minimum, multiply, splat, su
 
 MEDIAN_REACH = 2
 NEARBY = 1
-"""Radius, in pixels, of the window in which a depth edge is detected."""
 VOTERS = 4
 STRIDE = 2
 JUMP = 24

@@ -157,6 +157,5 @@ def _enlarge(frame, trust, y0, out, out_trust):
 
 @inner()
 def _step(own, other):
-    """Return the difference to a neighbour on the same surface; 0 for any other neighbour."""
     step = int32(other) - own
     return step if abs(step) <= SAME_SURFACE else int32(0)

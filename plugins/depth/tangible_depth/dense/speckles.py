@@ -114,7 +114,6 @@ def _label(disparity, step, y0, y1, start, stop, parent, size, begin, end):
 
 @njit(**KERNEL)
 def _join_rows(disparity, step, y, start, stop, parent, size, begin, end):
-    """Join the runs of row y with the touching runs of row y-1."""
     upper, lower = disparity[y - 1], disparity[y]
     above = begin[y - 1]
     for here in range(begin[y], end[y]):

@@ -21,7 +21,6 @@ from ..sgm.strips import WARM_ROWS, StripMatches, sweep, unknown_matches
 
 log: logging.Logger = logging.getLogger(__name__)
 NOISE = 0.20
-"""Loss from which the heavy cost is used."""
 FAR_TOO_NOISY = 0.40
 """Loss of matches by order and levels from which the order alone loses more than NOISE too: it is not tried."""
 LEVELS_LOSS, LEVELS_DIFFERING = 0.06, 0.265
@@ -43,7 +42,6 @@ class _Spending(NamedTuple):
     speckle_threshold: float
     """Loss from which `sharp` gives way to a cost for noise."""
     differing_threshold: float
-    """Share of differing bits from which `sharp` gives way to a cost for noise."""
     warm_rows: int
     """Rows by which the paths of a strip begin early: the more, the less a seam is seen."""
 

@@ -66,7 +66,6 @@ def disparity_map(views: Views, name: str, search: Search, match: Matcher) -> Di
 def _match_rectified(
     views: Views, name: str, search: Search, match: Matcher, instead: DisparityMap | None
 ) -> DisparityMap:
-    """Rectify a pair by features of the whole picture and match it; return `instead` if it needs no rectification."""
     rectified_pair = rectify(views, quick=False)
     if rectified_pair.skipped and instead is not None:
         return instead

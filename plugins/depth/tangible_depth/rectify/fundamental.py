@@ -156,7 +156,6 @@ def best_plane(matches: Matches, threshold_px: float) -> Plane | None:
 def _better_off_plane(
     plane: Plane, first: Fundamental | None, matches: Matches, threshold_px: float
 ) -> Fundamental | None:
-    """Return the estimate that explains more matches off the dominant plane."""
     if first is not None and 2 * np.count_nonzero(first.inliers & ~plane.near) > np.count_nonzero(~plane.near):
         return first
     # A second estimate is made only if the first leaves most of these unexplained.
@@ -219,7 +218,6 @@ def _log_choose(n: int, k: int) -> float:
 
 
 def _refine(first: Fundamental, matches: Matches, threshold_px: float, fit: Fit) -> Fundamental:
-    """Repeat eight-point on the inliers, weighting each equation by certainty and to a residual in pixels."""
     best = first
     for _ in range(5):
         inlier_matches = matches.select(best.inliers)

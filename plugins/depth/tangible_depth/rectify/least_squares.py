@@ -11,7 +11,6 @@ _LOG_2 = 0.6931471805599453
 _ROUNDS, _TRIES = 80, 15
 """Maximum number of steps of a fit, and of damping factors tried for a step."""
 _STEP = 1e-5
-"""Step of the finite differences, in units of each parameter's scale."""
 _STILL = 1e-5
 """Step at which the fit has converged, in units of each parameter's scale."""
 _MIN_GAIN = 0.05

@@ -23,7 +23,6 @@ POINTS, APART_PX = 32, 6
 """Largest number of corners, and their smallest distance in pixels of the copy."""
 WINDOW_PX = 11
 PATCH_PX = 48
-"""Side, in pixels, of the full-size patches in which corners are tracked again."""
 FINE_ENOUGH = 1 / 3
 """Scale of the copies from which a tenth of their pixel is precise enough, without tracking at full size."""
 FEWEST = 12
@@ -112,7 +111,6 @@ def rows_match_elsewhere(pair: Pair) -> bool:
 
 
 def _profile(view: UInt8[np.ndarray, "h w"]) -> Float64[np.ndarray, "h"]:
-    """Return the mean grey of each row, without slow changes."""
     means = cv2.reduce(view, 1, cv2.REDUCE_SUM, dtype=cv2.CV_32S)[:, 0] / view.shape[1]
     half = max(3, int(SLOW * len(means)))
     sums = np.concatenate([[0.0], np.cumsum(np.pad(means, half, mode="edge"))])

@@ -108,7 +108,6 @@ def _average_rows(view, middle, factor, columns, total, means):
 
 @inner()
 def _find_flat_columns(band, flat):
-    """Find flat pixels of the band's middle row, as `flat_pixels` does."""
     for x in range(flat.size):
         flat[x] = True
     for j in range(TALL):

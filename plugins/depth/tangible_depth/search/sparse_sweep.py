@@ -79,7 +79,6 @@ def _vertical(lanes, p1, p2, costs, path, path_lowest, total, first):
 
 @inner()
 def _best_right_sums(lanes, total, stride, right_sums):
-    """Find the lowest sum of all matched left pixels for each right pixel."""
     n = width(lanes)
     wall = splat(lanes, uint8(255))
     running_lowest = wall  # lowest sums so far of the n right pixels that later left pixels can match

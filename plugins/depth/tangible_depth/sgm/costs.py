@@ -87,7 +87,6 @@ class Cost(NamedTuple):
 
     name: str
     bits: int
-    """Bits of a code, the most that a pixel can cost."""
     codes: Callable[[UInt8[np.ndarray, "h w"]], Any]
     penalties: Penalties
     most_level: int = 0

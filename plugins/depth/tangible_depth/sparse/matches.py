@@ -13,7 +13,6 @@ from .harris import corners, harris_response, least_response
 MAX_PIXELS = 2_000_000
 """Largest picture for SIFT, in pixels; larger ones are reduced, as it needs about 300 bytes a pixel."""
 FLOW_PIXELS = 60_000
-"""Largest picture in which optical flow detects its corners, in pixels."""
 FLAT = 1e-4
 """Smallest norm of a window minus its mean, white being 1: a smaller one is rounding error."""
 STEPS = 2.0**24
@@ -230,7 +229,6 @@ def match_off_plane(
 
 
 def _correlating(one: Float32[np.ndarray, "h w"], other: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
-    """Find the pixels at which windows of two pictures at the same place correlate."""
     side, half = (WINDOW_PX, WINDOW_PX), WINDOW_PX // 2
     with plain_opencv():
         mean, its, both = (

@@ -10,7 +10,6 @@ from ..surface.coefficients import BORDER
 TAPS = 10
 """The reach of the filter in cells: further heights weigh less than (2 - sqrt 3)^11, 5e-7."""
 MARGIN = BORDER + TAPS
-"""The cells of values beyond each border, for the filter."""
 RING = BORDER + 1
 """The cells of the mask beyond each border, the outermost of which are 0."""
 

@@ -14,7 +14,6 @@ SPEED_M_PER_S = 0.1
 STEP_N = 0.08
 """The greatest change of the spring force on a hand at rest in a tick, N: more feels like a knock."""
 DROPPED = 0
-"""The index in `host_state` of the number of frames never reached."""
 SHORT = 1
 """The first index in `host_state` of a flag for each slot: 1 if it ends short of its frame."""
 
@@ -25,7 +24,6 @@ class Slots(NamedTuple):
     pairs: Float32[np.ndarray, "3 h4 w4 2"]
     """The coefficients of the first and the last surface of each slot."""
     tiles_m: Float32[np.ndarray, "3 r c 2"]
-    """The bounds of both surfaces, tile by tile, which a tick reads."""
     ends_m: Float32[np.ndarray, "3 r c 2"]
     frames: Float64[np.ndarray, "3"]
     shared: Int64[np.ndarray, "2"]

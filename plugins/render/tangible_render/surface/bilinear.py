@@ -47,7 +47,6 @@ def bilinear(height_m, width_m, length_m, x, y):
 
 @inner()
 def _between(place, count):
-    """Return the two centres around a place, and its position between them, 0..1."""
     last = count - 1
     if place <= 0.0:
         return 0, 0, 0.0

@@ -90,7 +90,6 @@ def _bends(t):
 
 @inner()
 def _rows(coefficients, row, column, weights):
-    """Return the weighted sums of four rows, one for each of four columns."""
     return (
         _column(coefficients, row, column, weights),
         _column(coefficients, row, column + 1, weights),

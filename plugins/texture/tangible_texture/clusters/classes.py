@@ -87,7 +87,6 @@ PRINCIPAL_AXES = 14
 HALF_WHITE = 0.25
 """The power of its variance that divides a principal axis: half way between none, 0, and full whitening, 0.5."""
 FINAL_ROUNDS = 8
-"""The number of rounds in which the final classes are fitted again and settle with their neighbours."""
 
 
 class Effort(NamedTuple):

@@ -33,7 +33,6 @@ def divide(planes: Float32[np.ndarray, "d n"], most: int) -> Int32[np.ndarray, "
 
 
 def _halve_cluster(planes: Float32[np.ndarray, "d n"]) -> tuple[float, np.ndarray]:
-    """Return the sum of squared distances from the mean, and a mask of the columns above it on the longest axis."""
     deviations = planes - planes.mean(axis=1, keepdims=True)
     moments = scatter_matrix(deviations, np.ones(planes.shape[1], np.float32))
     return float(np.trace(moments)), combine_planes(eigen(moments)[1][:1], deviations)[0] > 0

@@ -12,7 +12,6 @@ from ..features.cells import channels
 from ..signal.smoothing import gaussian
 
 SMOOTH_PX = 2.0
-"""Standard deviation of the Gaussian that smooths noise, px."""
 WHITE = 1 / (2 * sqrt(pi) * SMOOTH_PX)
 """Share of the deviation of white noise that this Gaussian leaves."""
 INSIDE_PX = 5

@@ -12,7 +12,6 @@ from .discriminants import evidence, one_hot, scatters
 from .neighbourhood import EVIDENCE, mean_field
 
 NARROW = 0.6
-"""The weight of the evidence in narrow windows; that of the wide ones is the rest."""
 SURE = 1e-6
 """The least membership, so that its logarithm stays finite."""
 

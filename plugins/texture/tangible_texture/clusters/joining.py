@@ -25,7 +25,6 @@ class Pairs(NamedTuple):
     means: Float64[np.ndarray, "k a"]
     scatters: Float64[np.ndarray, "k a a"]
     ridge: float
-    """The ridge added to the mean scatter of two clusters."""
     distances: Float64[np.ndarray, "k k"]
     """The squared Mahalanobis distances between means, each in the mean scatter of the two clusters."""
 
@@ -126,7 +125,6 @@ class Step(NamedTuple):
     distance: float = np.inf
     """The squared Mahalanobis distance between the two that are joined next."""
     size: float = 0.0
-    """Their combined size a b / (a + b), as a share of all cells."""
 
 
 def join_clusters(

@@ -42,11 +42,9 @@ def is_one_texture(
 log: logging.Logger = logging.getLogger(__name__)
 
 ENOUGH = 0.95
-"""The share of the energy in all filters that remains when weak ones are dropped."""
 NOTHING = 1e-4
 """The least share of a picture's variance that matters: the rounding of grey to 8 bits is little less."""
 PAD_PX = 32
-"""The width of the mirrored frame around the picture whose spectrum is taken, px."""
 
 
 def needed_filters(

@@ -10,7 +10,6 @@ from jaxtyping import Complex128
 SHORTEST_PX = 2 * sqrt(2)
 """The wavelength of the highest octave, px: sqrt(2)/4 cycles a pixel; one octave wide, it ends near Nyquist's."""
 HALF = sqrt(log(2) / 2)
-"""The constant sqrt(ln 2 / 2) of the formulas for the bandwidth at half height."""
 
 
 class Gabor(NamedTuple):

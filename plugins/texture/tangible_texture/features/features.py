@@ -136,7 +136,6 @@ def _colour_planes(picture: np.ndarray, colour: bool | Literal["auto"]) -> Float
 
 
 def _remove_slope(planes: Float32[np.ndarray, "d rows columns"]) -> Float32[np.ndarray, "d rows columns"]:
-    """Subtract an even change across the picture, as light causes."""
     for axis in (1, 2):
         place = np.arange(planes.shape[axis], dtype=np.float32) - np.float32((planes.shape[axis] - 1) / 2)
         place = np.expand_dims(place, tuple({0, 1, 2} - {axis}))

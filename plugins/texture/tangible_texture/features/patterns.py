@@ -46,7 +46,6 @@ def _agreeing_pairs(code: int) -> Iterator[tuple[bool, ...]]:
 
 
 def _rotation_class(code: int) -> int:
-    """Return the number of bright neighbours if they are contiguous, else 9."""
     bits = [code >> i & 1 for i in range(8)]
     return sum(bits) if sum(bits[i] != bits[i - 1] for i in range(8)) <= 2 else CLASSES - 1
 

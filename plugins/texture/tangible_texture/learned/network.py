@@ -17,7 +17,6 @@ from ..features.features import Features, Window
 from ..features.patterns import PATTERNS
 
 FILTERS = 24
-"""The number of filters that the weights were fitted with: six directions of four octaves."""
 MIN_CELLS = 64
 """The least side of the narrow grid, in cells: the weights were fitted to pictures of 256 pixels or more."""
 GROUP = 16
@@ -32,7 +31,6 @@ class Weights(NamedTuple):
     first: Float64[np.ndarray, "h d"]
     first_bias: Float32[np.ndarray, "h"]
     second: Float64[np.ndarray, "g 3h"]
-    """Of the values in each of WINDOWS, in turn."""
     second_bias: Float32[np.ndarray, "g"]
     last: Float64[np.ndarray, "e g"]
 

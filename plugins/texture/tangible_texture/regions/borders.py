@@ -45,7 +45,6 @@ Ways = tuple[tuple[slice, slice], tuple[slice, slice]]
 WEAK_EDGE = 2 / 3
 """The least slope of an edge on a border of two regions, as a share of the slope that starts an edge elsewhere."""
 ACROSS_IT = 0.45
-"""The least share of that slope that leads across the border."""
 DOWN: Ways = np.s_[:-1, :], np.s_[1:, :]
 ACROSS: Ways = np.s_[:, :-1], np.s_[:, 1:]
 
@@ -56,7 +55,6 @@ class Border(NamedTuple):
     pairs: float
     height: float
     edges: float
-    """The number of pairs with an edge in them or between them."""
 
     def plus(self, other: "Border") -> "Border":
         """Add two borders of one region, with two regions that are merged."""

@@ -10,7 +10,6 @@ from tangible_core.compiled import KERNEL, njit
 from .borders import Border
 
 HELD_APART = 0.6
-"""The least share of edges in a border that keeps its two regions separate."""
 
 
 def merge(areas: list[int], borders: dict[tuple[int, int], Border], most: int) -> Int32[np.ndarray, "n"]:

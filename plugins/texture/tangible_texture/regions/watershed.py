@@ -10,17 +10,13 @@ from tangible_core.compiled import KERNEL, inner, njit
 
 LEVELS = 1024
 """The number of levels of height; low ones, where most waters meet, are finer than high ones."""
-
 TILE_PX = 512
-
 AROUND_PX = 32
 """The margin flooded around a tile, px: more than the distance between two flat basins."""
-
 UNSEEN = -1
 _OUTSIDE = -2
 _LAST = -1
 _UNQUEUED = -2
-
 _LABEL, _LEVEL, _NEXT = range(3)
 """The columns of the state of a pixel, contiguous because the flood jumps about in memory."""
 

@@ -60,13 +60,10 @@ def smooth_at_two_scales(
 
 TILE_PX = 128
 """The side of the tiles in which noise is measured, px."""
-
 QUIET_SHARE = 0.25
 """The share of the pixels of a tile assumed to hold noise and no edge, at least."""
-
 _QUIET_RATIO = np.float32(sqrt(-2 * log(1 - QUIET_SHARE)))
 """The QUIET_SHARE quantile over the parameter of a Rayleigh distribution, that of slopes of Gaussian noise."""
-
 _HALF = np.float32(0.5)
 
 Map = Float32[np.ndarray, "h w"]

@@ -81,9 +81,7 @@ def _directions(across: Plane, down: Plane) -> Planes:
 
 
 FINE_CELLS = 0.6
-"""The standard deviation of the window of the change of brightness, in cells."""
 WINDOW_CELLS = 1.5
-"""The standard deviation of the narrowest window of shares, in cells."""
 LEVELS = 3
 EMPTY = 1e-4
 """A share that is added to all: the square root of nearly nothing must not change fast."""
@@ -140,7 +138,6 @@ def border_tensors(borders: Float32[np.ndarray, "h w"]) -> Tensors:
 
 @njit(**KERNEL)
 def _add_outer(plane, tensor):
-    """Add the outer product of central differences; the border is repeated."""
     rows, columns = plane.shape
     half = np.float32(0.5)
     for row in range(rows):

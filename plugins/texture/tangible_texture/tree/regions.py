@@ -78,7 +78,6 @@ def measure_regions(
 
 
 def _pairs(labels: Int32[np.ndarray, "h w"]) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the flat indices of both cells of every pair, above each other and next to each other."""
     at = np.arange(labels.size).reshape(labels.shape)
     return [
         (at[one][differ], at[other][differ])

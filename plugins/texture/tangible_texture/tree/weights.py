@@ -11,9 +11,7 @@ class Cue(NamedTuple):
     """The weights of the square root of one cue, in windows narrow to wide; of a network's borders, in two powers."""
 
     in_map: tuple[float, ...]
-    """In the map of strengths that is flooded."""
     on_borders: tuple[float, ...]
-    """In the strength of a border."""
 
 
 class Weights(NamedTuple):

@@ -11,7 +11,6 @@ from ...simd.lanes import Lanes, add, load, minimum, multiply, splat, subtract
 from ..span import UNKNOWN
 
 EVERY = 4
-"""Distance of the samples, in rows and columns."""
 COUNT = 12
 """Samples near a pixel along either axis that are used."""
 COLUMNS = np.arange(1 - COUNT, COUNT, 2).astype(np.uint16)

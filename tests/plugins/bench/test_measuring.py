@@ -65,14 +65,22 @@ def test_measures_are_errors_against_the_truth(registry: Registry, tmp_path: Pat
 
 
 @pytest.mark.usefixtures("cells_here")
-def test_option_given_by_the_scene_is_set_for_that_method_only(registry: Registry, tmp_path: Path):
-    """Disparities of this scene end below 16: the next multiple of 16, for the method with `given:` only."""
-    methods = "ranged, {use: ranged, label: told, given: [max_disparity_px]}"
+def test_option_given_by_the_scene_is_set_for_that_method_only(
+    registry: Registry, tmp_path: Path, caplog: pytest.LogCaptureFixture
+):
+    """Disparities of this scene end below 16: the next multiple of 16, for the method with `given:` only.
+
+    One whose range ends below the truth is named in the log.
+    """
+    methods = "{use: ranged, max_disparity_px: 2}, {use: ranged, label: told, given: [max_disparity_px]}"
     rows = measure_rows(registry, tmp_path / "r.jsonl", methods)
     assert [(row.method, row.options) for row in rows] == [
-        ("ranged", {"max_disparity_px": 8}),
+        ("ranged", {"max_disparity_px": 2}),
         ("told", {"max_disparity_px": 16}),
     ]
+    (doubt,) = caplog.messages
+    assert doubt.startswith("ranged on steps 64x32: max_disparity_px 2 is below the truth of "), doubt
+    assert doubt.endswith("write `max_disparity_px: 16`, or `given: [max_disparity_px]`")
 
 
 def test_option_given_by_the_scene_out_of_bounds_is_refused(registry: Registry, tmp_path: Path):

@@ -11,6 +11,7 @@ from pydantic import Field
 
 from tangible_core.errors import ConfigError, TangibleError, did_you_mean, quoted
 from tangible_core.files.yaml import Source, parse_source, plain_tree, read_text
+from tangible_core.plugins import Method
 from tangible_core.plugins.registry import Registry
 from tangible_core.scene import Section
 
@@ -111,11 +112,15 @@ def preset(name: str) -> Path | None:
 
 
 def comparison_of_methods(names: Sequence[str], registry: Registry) -> str:
-    """Return the text of a comparison of these methods on the scenes of the shipped file. Raises: ConfigError."""
+    """Return the text of a comparison of these methods with their defaults, on the scenes of the shipped file.
+
+    An option that is a number by default, and that the truth of a scene tells, is given: others would miss the truth.
+    Raises: ConfigError for names that no kind of comparable methods has together.
+    """
     kinds = {kind: registry.names(kind) for kind in TASKS}
     kind = next((kind for kind, all_names in kinds.items() if set(names) <= set(all_names)), None)
     file = kind and preset(f"compare-{kind}")
-    if not file:
+    if not (kind and file):
         all_names = [name for some in kinds.values() for name in some]
         wrong = next((name for name in names if name not in all_names), "")
         if not wrong:
@@ -123,7 +128,13 @@ def comparison_of_methods(names: Sequence[str], registry: Registry) -> str:
         hint = did_you_mean(wrong, all_names) or "; `tangible plugins` lists these"
         raise ConfigError(f"{wrong}: is neither a file, nor a standard set, nor the name of a method{hint}")
     scenes = plain_tree(read_text(file), file)["scenes"]
-    return json.dumps({"compare": kind, "methods": list(names), "scenes": scenes})
+    methods = [{"use": name, "given": _given(registry.load(kind, name), load_task(kind))} for name in names]
+    return json.dumps({"compare": kind, "methods": methods, "scenes": scenes})
+
+
+def _given(method: type[Method], task: Task) -> list[str]:
+    fields = method.model_fields
+    return [name for name in task.facts if name in fields and isinstance(fields[name].default, int)]
 
 
 def load_comparison(path: Path, registry: Registry, overrides: Iterable[str] = ()) -> Comparison:

@@ -1,5 +1,6 @@
 """The measurements of a comparison, in order: rounds over all scenes and perturbations, methods side by side."""
 
+import logging
 import platform
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -20,6 +21,8 @@ from ..config.reading import Comparison, Damage, Entry
 from .rows import Row
 from .worker import Job
 
+log: logging.Logger = logging.getLogger(__name__)
+
 
 @dataclass(frozen=True)
 class Measurement:
@@ -32,7 +35,11 @@ class Measurement:
 
 
 def measurements(comparison: Comparison) -> list[Measurement]:
-    """Return every measurement of a comparison, in order. Raises: ConfigError naming every unreadable scene."""
+    """Return every measurement of a comparison, in order.
+
+    A method whose options keep it from the truth of a scene is named in the log.
+    Raises: ConfigError naming every unreadable scene.
+    """
     scenes = _known_scenes(comparison)
     plan: list[Measurement] = []
     # A round runs every method on a scene before the next scene, so that a drift of the machine affects all alike and
@@ -61,6 +68,9 @@ def _known_scenes(comparison: Comparison) -> dict[str, KnownScene]:
         else:
             facts = {key: fact_of(scene) for key, fact_of in comparison.task.facts.items()}
             scenes[name] = scene.digest(), facts
+            for entry in comparison.methods:
+                if doubt := comparison.task.doubt(entry.method_for(facts), scene):
+                    log.warning("%s on %s: %s", entry.label, name, doubt)
     if complaints:
         raise ConfigError(*complaints)
     return scenes

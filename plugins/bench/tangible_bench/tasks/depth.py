@@ -81,6 +81,20 @@ def range_px(pair: Pair) -> int:
     return STEP_PX * (int(np.nanmax(pair.truth_px)) // STEP_PX + 1)
 
 
+def doubt(method: DepthEstimator, pair: Pair) -> str:
+    """Return a sentence if the range of a method ends below the truth, as a wrong default does; else nothing."""
+    limit_px = method.model_dump().get("max_disparity_px")
+    if pair.truth_px is None or not isinstance(limit_px, int) or not np.isfinite(pair.truth_px).any():
+        return ""
+    beyond = 100 * float((pair.truth_px[np.isfinite(pair.truth_px)] >= limit_px).mean())
+    if not beyond:
+        return ""
+    return (
+        f"max_disparity_px {limit_px} is below the truth of {beyond:.1f} % of the pixels, which count as wrong; "
+        f"write `max_disparity_px: {range_px(pair)}`, or `given: [max_disparity_px]`"
+    )
+
+
 def fill(disparity: DisparityMap) -> DisparityMap:
     """Fill holes from the background in their row (`geometry.fill_rows`); a map without any value stays as it is."""
     if np.isnan(disparity.disparity_px).all():
@@ -178,5 +192,6 @@ TASK = Task(
     perturbations=PERTURBATIONS,
     facts={"max_disparity_px": range_px},
     finishes={"fill": fill},
+    doubt=doubt,
     scene_size=scene_size,
 )

@@ -138,6 +138,8 @@ class Task:
     """Options of methods whose values follow from a scene: name -> (scene) -> value."""
     finishes: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict[str, Callable[[Any], Any]])
     """Untimed steps that a comparison may apply to the results of chosen methods, by their keys in its file."""
+    doubt: Callable[[Any, Any], str] = lambda method, scene: ""
+    """(method, scene) -> why the method's options keep it from the truth of the scene; empty if they do not."""
     scene_size: Callable[[str], str] = lambda scene: ""
     """(name of a scene) -> its size, such as Q; empty for the full size."""
 

@@ -43,13 +43,20 @@ def what_is_missing(path: Path, names: Iterable[str], what: str = "file") -> str
     return f"there is no such {what}{did_you_mean(path.name, names)}"
 
 
-def without_folders(name: str) -> str:
-    """Return the name of a scene for people to read: that of the file, without its folders.
+LEFT = ("left", "l", "im0", "im2", "view0", "view1")
+"""Names that the left views of all pairs have."""
 
-    >>> without_folders("/home/me/photo.jpg"), without_folders("builtin/brick")
-    ('photo.jpg', 'builtin/brick')
+
+def without_folders(name: str) -> str:
+    """Return the name of a scene for people to read: that of the file, without its folders, or that of a pair's folder.
+
+    >>> without_folders("/home/me/photo.jpg"), without_folders("builtin/brick"), without_folders("/data/cones/left.png")
+    ('photo.jpg', 'builtin/brick', 'cones')
     """
-    return plain_line(Path(name).name if Path(name).is_absolute() else name)
+    path = Path(name)
+    if path.stem.casefold() in LEFT and path.parent.name:
+        return plain_line(path.parent.name)
+    return plain_line(path.name if path.is_absolute() else name)
 
 
 def plain_line(name: str) -> str:

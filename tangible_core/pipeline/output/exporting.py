@@ -14,7 +14,7 @@ from ...data import Note, Outcome, Outcomes, Record, Work
 from ...data.outcome import OutcomeKind
 from ...data.products import EXPORTABLE
 from ...errors import BrokenMethod, ConfigError, Stopped, TangibleError, exit_error, quoted, wrong_argument
-from ...files.paths import plain_line
+from ...files.paths import without_folders
 from ...files.writing import sole_writer, temporary_folder
 from ...plugins import failures, hooks
 from ...plugins.interfaces import Exporter
@@ -244,8 +244,8 @@ def title_of(config: PipelineConfig, scene: Scene) -> str:
     """Return the title for exporters: the configured one, or the name of the scene without folder and ending."""
     if config.title.strip():
         return config.title.strip()
-    name = Path(scene.name)
-    return plain_line(name.stem if isinstance(scene.files, SceneFiles) else name.name)
+    name = Path(without_folders(scene.name))
+    return name.stem if isinstance(scene.files, SceneFiles) else name.name
 
 
 def stem_of(config: PipelineConfig, scene: Scene) -> str:

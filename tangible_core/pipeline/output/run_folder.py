@@ -17,6 +17,7 @@ from typing import Any, cast
 
 from ...data.products import PRODUCTS
 from ...errors import OutputError
+from ...files.paths import LEFT
 from ...files.reading import MAX_TEXT_BYTES, content_digest, read_bytes
 from ...files.writing import sweep, write_text
 from ...runtime.system.files import folder_lock
@@ -31,10 +32,6 @@ GUESSED = "parts-guessed.yaml"
 SHEETS = tuple(f"{SHEET}.{drawn_as}" for drawn_as in ("png", "svg", "pdf"))
 NAMES = (*CLAIMS, *(f"{product}.npz" for product in PRODUCTS), RECORDING, GUESSED, *SHEETS)
 """The names of all files that a run may write."""
-
-
-LEFT = ("left", "l", "im0", "im2", "view0", "view1")
-"""Names that the left views of all pairs have."""
 
 
 @dataclass(frozen=True)

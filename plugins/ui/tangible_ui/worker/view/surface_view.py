@@ -19,6 +19,7 @@ from tangible_core.data import (
     digest_of,
     to_rgb8,
 )
+from tangible_core.files import without_folders
 from tangible_core.metrics import absolute_error
 from tangible_core.pipeline import Pipeline
 from tangible_core.pipeline.config import PipelineConfig, names_of
@@ -123,7 +124,7 @@ def _view(pipeline: Pipeline, shows: Shows, relief: Relief) -> SurfaceView:
     if picture is not None and (opaque := pipeline.scene.shown) is not None:  # transparent ground is white paper
         picture = np.where(opaque[..., None], to_rgb8(picture), np.uint8(255))
     names = _names(pipeline) if labels is not None else None
-    name = pipeline.config.title.strip() or Path(pipeline.scene.name).name
+    name = pipeline.config.title.strip() or Path(without_folders(pipeline.scene.name)).name
     return SurfaceView(name, shows, relief, labels, materials, picture, _layers(pipeline), names)
 
 

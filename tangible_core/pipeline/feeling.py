@@ -14,7 +14,7 @@ from .. import session
 from ..data import TICK_COLUMNS, ServoReport
 from ..data.arguments import named_options
 from ..errors import ConfigError
-from ..files.paths import as_path
+from ..files.paths import as_path, without_folders
 from ..plugins.failures import naming_plugins
 from ..plugins.interfaces import Film, HapticDevice, Medium, Reshaping, Touch
 from ..preflight import Flight, Hand, Legibility, Loop, Preflight, Settings, judge, survey
@@ -252,7 +252,9 @@ class Feeling:
         if self.given is None and ours.device is None and theirs.device is not None:
             on = Feeling(self.pipeline, theirs.device.method)
         reliefs = None if self.engine.scene.frames is None else lambda: self.reliefs
-        return Slot(on._touch_or_film(), ours.safety, self.pipeline.make("surface"), self._beacon(beacon), reliefs)
+        touch, surface = on._touch_or_film(), self.pipeline.make("surface")
+        name = ours.path.name if ours.path else without_folders(self.engine.scene.name)
+        return Slot(touch, ours.safety, surface, self._beacon(beacon), reliefs, name)
 
     def _touch_or_film(self) -> Touch | Film:
         """Return the touch; the film for a video."""

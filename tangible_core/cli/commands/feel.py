@@ -47,6 +47,7 @@ def feel(
     Several files are felt in turn on the device of the first; none may have another device. If the depth map is
     unreliable, the command asks first.
     """
+    import logging
     import math
     import time
     from dataclasses import asdict
@@ -65,6 +66,8 @@ def feel(
         confirm_doubts(one, yes)
         if one.scene.frames is not None and one.segments is not None:
             show.note(f"{one.scene.name}: parts and materials stay where they are in the first frame")
+    if (then or wait) and not is_quiet():
+        logging.getLogger("tangible_core.session.kiosk").setLevel(logging.INFO)  # each scene, with the time
     loop: dict[str, Any] = {}
     looks = session.TickSampler()
     reports: list[ServoReport] = []

@@ -18,6 +18,7 @@ from ...data import TICK_COLUMNS, ServoReport, TickFlag
 from ...errors import DeviceError, check_positive
 from ...plugins.interfaces import HapticDevice
 from ...runtime.stopping import stop_asked, stoppable
+from ...runtime.system.service import tell_service_manager
 from ...runtime.system.timers import now_ns
 from ...servo import OVER, Servo
 from ...servo.reports import LoopTotals, brief_report, report
@@ -27,6 +28,8 @@ from ..recording import INTERRUPTED, STOPPED
 from ..recording.tick_file import ARRAYS
 from .rotation import Rotation, Slot
 
+ALIVE = "WATCHDOG=1"
+"""The message to systemd by which a program says that it does not hang."""
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 8.0
 """First and longest pause between two searches for a device; each is twice as long, as a search starts a process."""
 
@@ -51,10 +54,12 @@ class DeviceWait:
         if why != self._reason:
             self._reason = why
             self._notify(f"no force; waiting for the device: {why}")
+            tell_service_manager(f"READY=1\nSTATUS=waiting for the device: {why.partition(chr(10))[0]}")
         until_s = time.monotonic() + self._pause_s
         self._pause_s = min(2 * self._pause_s, LONGEST_PAUSE_S)
         while not (ended := end_reason()) and time.monotonic() < until_s:
             time.sleep(LOOK_EVERY_S)
+            tell_service_manager(ALIVE)
         return ended
 
 
@@ -216,6 +221,7 @@ class _Kiosk:
     def _report(self, servo: Servo, of_loop: ServoReport) -> None:
         whole = with_part(self.totals.report(servo, of_loop.stopped), self.rotation.current.parts)
         self.last = replace(whole, film=self.rotation.frames)
+        tell_service_manager(ALIVE)
         self.on_report(self.last)
 
     def _end_reason(self) -> str:

@@ -1,5 +1,6 @@
 """Scenes in rotation on one loop, each with its limits, its beacon and its film."""
 
+import logging
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -8,9 +9,12 @@ from typing import NamedTuple, final
 
 from ...data import FilmFelt, HapticSurface
 from ...plugins.interfaces import Film, Touch
+from ...runtime.system.service import tell_service_manager
 from ...servo import Beacon, Safety, Servo
 from ...servo.beacon import BUTTON
 from ..film import Player, Reliefs
+
+log: logging.Logger = logging.getLogger(__name__)
 
 
 class Slot(NamedTuple):
@@ -24,6 +28,8 @@ class Slot(NamedTuple):
     """A beacon to a part of this scene, on in each of its turns until a button has released a beacon."""
     reliefs: Callable[[], Reliefs] | None = None
     """A function that makes the reliefs of a touch that is a film; called for each turn."""
+    name: str = ""
+    """The name of the scene, for the log."""
 
 
 @final
@@ -51,6 +57,8 @@ class Rotation:
     def begin(self, servo: Servo) -> None:
         """Begin the turn of the current scene, with its beacon and the first frame of its film."""
         self._swapping, self._due_s = None, time.monotonic() + self._each_s
+        log.info("now on the device, at %s: %s", time.strftime("%H:%M:%S"), self.current.name)
+        tell_service_manager(f"READY=1\nSTATUS=on the device: {self.current.name}")
         self.note_release(servo)
         if not self._released:
             servo.pull_to(self.current.beacon)

@@ -1,8 +1,10 @@
 """A kiosk whose device may be unplugged and return: no force is left, and no tick is lost or counted twice."""
 
 import signal
+from contextlib import closing
 from functools import partial
 from pathlib import Path
+from socket import AF_UNIX, SOCK_DGRAM, socket
 from threading import Event
 
 import numpy as np
@@ -33,7 +35,15 @@ def no_pause(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("loop_in_thread")
-def test_kiosk_rotates_scenes_with_their_own_limits() -> None:
+def test_kiosk_rotates_scenes_with_their_own_limits(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Each is named in the log, and to systemd, which also hears that the program lives."""
+    heard = socket(AF_UNIX, SOCK_DGRAM)
+    heard.bind(str(tmp_path / "systemd"))
+    heard.setblocking(False)
+    monkeypatch.setenv("NOTIFY_SOCKET", str(tmp_path / "systemd"))
+    caplog.set_level("INFO", "tangible_core.session.kiosk")
     kept: list[np.ndarray] = []
     stop = Event()
 
@@ -42,7 +52,8 @@ def test_kiosk_rotates_scenes_with_their_own_limits() -> None:
         if sum(int((each[:, FLAGS].astype(int) & TickFlag.SWAPPED != 0).sum()) for each in kept) == 2:
             stop.set()
 
-    turns = [Slot(soft(0.05), AT_ONCE), Slot(soft(0.06), AT_ONCE.model_copy(update={"max_force_n": 0.08}))]
+    tighter = AT_ONCE.model_copy(update={"max_force_n": 0.08})
+    turns = [Slot(soft(0.05), AT_ONCE, name="forest"), Slot(soft(0.06), tighter, name="harbour")]
     last = run_kiosk(turns, Circling(), 60.0, each_s=0.2, keep=keep, stop=stop)
     rows = np.concatenate(kept)
     assert (last.stopped, last.ticks) == (STOPPED, len(rows))
@@ -51,6 +62,10 @@ def test_kiosk_rotates_scenes_with_their_own_limits() -> None:
     scenes = rows[:first], rows[first:second], rows[second:]
     found = [(np.median(each[:, PROXY_Z_M]), each[:, FORCE_Z_N].max()) for each in scenes]
     np.testing.assert_allclose(found, [(0.05, 0.1), (0.06, 0.08), (0.05, 0.1)], atol=1e-6)
+    with closing(heard):
+        said = [heard.recv(200).decode() for _ in range(3)]
+    assert said[:2] == ["READY=1\nSTATUS=on the device: forest", "WATCHDOG=1"]
+    assert [text.rpartition(": ")[2] for text in caplog.messages[:2]] == ["forest", "harbour"]
 
 
 @pytest.mark.usefixtures("no_pause")

@@ -55,11 +55,12 @@ def where(files: Sequence[Path]) -> str:
 
 def export_summary(scene: str, done: Export) -> str:
     """Return what a scene was exported as, and which exports failed; a warning tells what fingers cannot read."""
-    written = [
-        f"{export.name}{' (parts simplified)' * made_simpler(export.made)}" for export in done.exports if export.files
-    ]
+    written = [export.name for export in done.exports if export.files]
+    simple = [export.name for export in done.exports if export.files and made_simpler(export.made)]
     failed = [export.name for export in done.exports if not export.files]
     text = f"{scene} is written as {listing(written)}." if written else f"Nothing of {scene} was written."
+    if simple:
+        text += f" Parts are simplified in {listing(simple)}."
     if written and failed:
         text += f" {listing(failed)} could not be written."
     return text

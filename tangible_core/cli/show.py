@@ -155,7 +155,8 @@ def verdicts(
         say(line)
     grades = Counter(lines.values())
     more = " (--verbose lists them)" if grades["ok"] and not verbose else ""
-    counts = ", ".join(f"{grades[grade]} {grade}{more if grade == 'ok' else ''}" for grade in colours)
+    words = {"warn": "warning" if grades["warn"] == 1 else "warnings"}
+    counts = ", ".join(f"{grades[one]} {words.get(one, one)}{more if one == 'ok' else ''}" for one in colours)
     say(f"\n{counts}" if shown else counts)
 
 

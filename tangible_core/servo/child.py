@@ -5,6 +5,7 @@ Python's lock.
 """
 
 import gc
+import logging
 import os
 import signal
 import sys
@@ -17,6 +18,7 @@ from ..errors import DeviceError
 from ..plugins.interfaces import Link, Touch, touch_of
 from ..runtime.system import priority
 from ..runtime.system.console import ENDING, PAUSING, end_before_console, take_input
+from ..translation import translate
 from . import limits, parcel, watchdog
 from .framing import End, Refusal, Start, StartReply, Swap, SwapReply, receive, send, sendable
 from .ring import COUNT, STOP, SWAP, Ring
@@ -26,6 +28,18 @@ TERMINATED = "the process received a signal to end"
 PAUSED = "the program was paused from the keyboard"
 SWITCH_S = 1e-4
 """Time after which a thread passes Python's lock to a waiting one, such as a loop that needs Python."""
+
+
+class _InLanguage(logging.Handler):
+    """Prints what the opening of a device logs in the language of the person at it."""
+
+    def __init__(self, language: str) -> None:
+        super().__init__(logging.WARNING)
+        self._language = language
+
+    def emit(self, record: logging.LogRecord) -> None:
+        with suppress(OSError, ValueError):
+            sys.stderr.write(f"{translate(record.getMessage(), self._language)}\n")
 
 
 @final
@@ -61,7 +75,10 @@ class Child:
         touch = touch_of(parcel.unpack(Path(start.scene)))
         if ring.header[STOP]:
             return
+        root = logging.getLogger()
+        root.addHandler(own := _InLanguage(start.language))
         with start.device.open() as link:
+            root.removeHandler(own)  # to read a catalogue takes longer than a tick
             self._serve(ring, link, touch, start)
 
     def _serve(self, ring: Ring, link: Link, touch: Touch, start: Start) -> None:

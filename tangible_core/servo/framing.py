@@ -28,6 +28,8 @@ class Start(NamedTuple):
     """Settings of the guard."""
     timeout_s: float
     """The watchdog's time-out."""
+    language: str
+    """The language of what a device asks of the person while it is opened, such as to home it."""
 
 
 class Swap(NamedTuple):

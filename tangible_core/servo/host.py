@@ -9,6 +9,7 @@ from ..data import Relief, ServoReport
 from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import Film, HapticDevice, Touch, touch_of
 from ..runtime.system import shared_memory
+from ..translation import language
 from . import limits as time_limits
 from . import parcel
 from .beacon import ALL_BUTTONS, ASKED, SEEN, Beacon, BeaconState
@@ -69,7 +70,8 @@ class Servo:
             self.ring.guard[: memory.size] = memory
             self.ring.header[[PERIOD_NS, LAST]] = round(self._period_s * 1e9), self._ticks
             scene, film = self._pack(self._touch)
-            self._loop.start(self.ring, Start(str(self.ring.path), scene, self._device, settings, self._timeout_s))
+            ring = str(self.ring.path)
+            self._loop.start(self.ring, Start(ring, scene, self._device, settings, self._timeout_s, language()))
             self._note_scene(self._loop.reply(StartReply), film)
             self._loop.watch(self.ring)
             self.start_s = time.monotonic() - start_s

@@ -10,6 +10,7 @@ from rich.table import Table as RichTable
 from rich.text import Text
 
 from tangible_core.cli import show
+from tangible_core.translation import localise
 
 from ..comparing import ComparisonOutcome
 from ..results import files, set_tables
@@ -76,7 +77,7 @@ def summary(results: Results) -> str:
     scenes = f"{len(results.scenes)} scenes" if len(results.scenes) > 1 else results.scenes[0]
     value = best.measures.get(results.main_measure, nan)
     heading = results.heading(results.main_measure) if with_time else task.measures[results.main_measure].title
-    exact = f"{best.method} is the most exact ({heading} {value:.{task.measures[results.main_measure].digits}f})"
+    exact = f"{best.method} is the most exact ({heading}: {value:.{task.measures[results.main_measure].digits}f})"
     if not with_time:
         return f"On {scenes}, {exact}; times were not measured."
     fastest = min(with_time, key=lambda line: line.seconds)
@@ -104,18 +105,18 @@ def _change(regression: Regression) -> tuple[str, str, str]:
 
 def _print_table(table: Table) -> None:
     """Print a table without cutting numbers: one with many columns is as wide as it must be, on any terminal."""
-    rich_table = RichTable(title=table.title, title_justify="left", box=None, pad_edge=False, header_style="bold")
+    rich_table = RichTable(title=localise(table.title), title_justify="left", box=None, pad_edge=False, header_style="bold")
     for heading in table.headings:
         if heading in WORDS:
-            rich_table.add_column(heading, overflow="fold", vertical="bottom")
+            rich_table.add_column(localise(heading), overflow="fold", vertical="bottom")
         else:
-            rich_table.add_column(heading.replace(" ", "\n"), justify="right", vertical="bottom")
-    rows = [[Text(cell) for cell in row] for row in table.rows]
+            rich_table.add_column(localise(heading).replace(" ", "\n"), justify="right", vertical="bottom")
+    rows = [[Text(localise(cell)) for cell in row] for row in table.rows]
     for row in rows:
         rich_table.add_row(*row)
     console = show.console()
     if (console.is_terminal or "COLUMNS" in environ) and show.is_narrow(console, rich_table):
-        console.print(table.title, "")
+        console.print(localise(table.title), "")
         show.entries(console, table.headings, rows)
         return
     if sum(heading not in WORDS for heading in table.headings) > 1:

@@ -212,12 +212,12 @@ def _devices_summary(rows: Sequence[Mapping[str, Any]]) -> str:
 
 def _doctor_summary(name: str | None, verdicts: Sequence[str]) -> str:
     """Return the number of problems that keep a device, or any device, from working."""
-    failures, omissions = verdicts.count("failed"), verdicts.count("not asked")
-    if failures:
-        return f"{_number(failures, 'check')} failed; each has its cure below."
+    failed, omissions = verdicts.count("failed"), verdicts.count("not asked")
+    if failed:
+        return f"{_checks(failed)} failed; each has its cure below."
     text = f"Nothing was found that keeps {name or 'a device'} from working"
-    return f"{text}, but {_number(omissions, 'check')} could not be made." if omissions else f"{text}."
+    return f"{text}, but {_checks(omissions)} could not be made." if omissions else f"{text}."
 
 
-def _number(count: int, noun: str) -> str:
-    return f"{count} {noun}{'' if count == 1 else 's'}"
+def _checks(count: int) -> str:
+    return f"{count} {'check' if count == 1 else 'checks'}"

@@ -9,7 +9,7 @@ import typer
 
 from tangible_core.cli import is_quiet
 
-from .schema import LINE
+from .schema import write_beside
 
 
 def new(
@@ -24,12 +24,14 @@ def new(
 ) -> None:
     """Write a pipeline file for your pictures.
 
-    Its values suit these pictures, and comments say what they mean.
+    Its values suit these pictures, and comments say what they mean. Editors complete and check it by the schema that
+    is written next to it.
     """
     from tangible_core.cli import show
     from tangible_core.errors import OutputError
     from tangible_core.files import write_text
     from tangible_core.pipeline import are_pictures, not_pictures
+    from tangible_core.pipeline.config import json_schema
     from tangible_core.pipeline.output import default_name
     from tangible_core.pipeline.starter import starter
 
@@ -38,12 +40,11 @@ def new(
     file = out or Path(f"{default_name(*pictures)}.yaml")
     if file.exists() and not force:
         raise OutputError(f"{file}: is there already; --out FILE writes another one, --force writes over it")
-    schema = file.with_name("tangible.schema.json")
-    write_text(file, f"{LINE}{schema.name}\n" * schema.exists() + starter(pictures, file).text)
+    write_text(file, starter(pictures, file).text)
+    schema = write_beside(file, json_schema(), "tangible")
     if is_quiet():
         return
-    show.plain(f"written: {file}\n\nNext:")
+    show.plain(f"written: {file}\nwritten: {schema}\n\nNext:")
     show.plain(f"  tangible ui {file}         shows it on a page in the browser, to be felt with the mouse")
     show.plain(f"  tangible run {file}        makes what can be felt, and draws it")
     show.plain(f"  tangible preflight {file}  says whether it is safe on its device")
-    show.plain(f"  tangible schema {file}     lets editors complete and check it")

@@ -1,7 +1,7 @@
 """The command `schema`: the schema of pipeline files and of material files."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -34,17 +34,19 @@ def schema(
     elif file is None:
         print_json(schema)
     else:
-        plain(f"written: {_write_beside(file, schema, 'materials' if materials else 'tangible')}")
+        plain(f"written: {write_beside(file, schema, 'materials' if materials else 'tangible')}")
 
 
-def _write_beside(file: Path, schema: object, name: str) -> Path:
-    """Write the schema into the folder of a file, and name it in the file's first line unless it is named there."""
+def write_beside(file: Path, schema: dict[str, Any], name: str) -> Path:
+    """Write a schema for editors next to a file, and name it in the file's first line unless it is named there."""
     from tangible_core.files import as_json, write_text
     from tangible_core.files.yaml import read_text
 
+    from ..editor_schema import for_editors
+
     text = read_text(file)
     path = file.with_name(f"{name}.schema.json")
-    write_text(path, f"{as_json(schema)}\n")
+    write_text(path, f"{as_json(for_editors(schema))}\n")
     if LINE not in text:
         write_text(file, f"{LINE}{path.name}\n{text}")
     return path

@@ -10,6 +10,7 @@ import pytest
 from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
 
+from tangible_authoring.editor_schema import for_editors
 from tangible_authoring.schema_page import schema_page
 from tangible_core.errors import UnknownMethod
 from tangible_core.pipeline.config.parsing import parse_config
@@ -19,9 +20,9 @@ from tangible_core.plugins.registry import Registry, default_registry
 ROOT = Path(__file__).parents[4]
 
 
-@pytest.fixture(scope="module")
-def validator() -> Draft202012Validator:
-    schema = json_schema()
+@pytest.fixture(scope="module", params=[dict, for_editors], ids=["program", "editors"])
+def validator(request: pytest.FixtureRequest) -> Draft202012Validator:
+    schema = request.param(json_schema())
     Draft202012Validator.check_schema(schema)
     return Draft202012Validator(schema)
 

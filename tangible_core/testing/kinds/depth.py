@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ...data import DisparityMap, Views
-from ...errors import ModelAbsent, PictureError, TangibleError
+from ...errors import BrokenMethod, ModelAbsent, PictureError, TangibleError
 from ...plugins.interfaces import DepthEstimator
 from ..checks import TINY, Check, checks_in, coarse_variants, demand, exact_variants, refuses
 from ..synthetic.scenes import wall
@@ -75,6 +75,8 @@ def any_size_is_taken(method: DepthEstimator) -> None:
     for shape in TINY:
         try:
             result = method.estimate(wall(1.0, shape))
+        except BrokenMethod:
+            raise
         except TangibleError:
             continue
         demand(result.disparity_px.shape == shape, f"views of {shape} give a map of {result.disparity_px.shape}")
@@ -102,12 +104,11 @@ def one_view_is_answered(method: DepthEstimator) -> None:
     latter."""
     try:
         result = method.estimate(Views(wall().left))
-    except ModelAbsent:
+    except (BrokenMethod, ModelAbsent):
         raise
-    except TangibleError:
-        demand(
-            method.needs_pair, "it raises without a right view; write `needs_pair: ClassVar[bool] = True` in its class"
-        )
+    except TangibleError as error:
+        cure = "if the method needs a pair, write `needs_pair: ClassVar[bool] = True` in its class"
+        demand(method.needs_pair, f"it raises without a right view ({error}); {cure}")
         return
     demand(not method.needs_pair, "one view gives a map, though the class has `needs_pair = True`; leave that out")
     demand(result.unit == "relative", "one view gives a map in px; without a second view only relative is known")

@@ -14,6 +14,11 @@ MISTAKES = (
     ("name: a, question: rating, conditions: [one]", "7:3", "one condition"),
     (HIGHER.replace("0.001, 0.002", "0.002, 0.001"), "7:57", "must rise"),
     (HIGHER.replace("higher", "same"), "7:3", "the standard from itself"),
+    (
+        HIGHER.replace("higher", "same").replace("0.002]", "0.003]") + ", procedure: quest, conditions: [one]",
+        "7:3",
+        "equally far from the standard",
+    ),
     (HIGHER.replace("higher", "different"), "7:3", "no levels"),
     (HIGHER.replace("relief_m", "relif_m") + ", conditions: [one]", "7:31", "'relief_m'"),
     (HIGHER.replace("[0.001, 0.002]", "[0.001, 20]") + ", conditions: [one]", "7:73", "not 20"),

@@ -197,6 +197,11 @@ class TestSee:
         }
         np.testing.assert_array_equal(found.relief.height_m, pipeline.surface.height_m)
 
+    def test_depth_that_the_relief_is_not_made_of_is_no_layer(self):
+        pipeline = Pipeline(Scene.photo(np.eye(40)), depth="luminance", relief="edges", cached=False)
+        assert pipeline.make("disparity") is not None
+        assert view_of(pipeline, "surface").layers == {}
+
     def test_segments_are_viewed_flat_without_a_depth(self):
         picture = np.zeros((40, 60), np.uint8)
         picture[:, 30:] = np.random.default_rng(1).integers(0, 255, (40, 30))

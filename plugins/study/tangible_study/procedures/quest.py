@@ -28,7 +28,7 @@ class Quest(Procedure):
 
     def refusal(self, comparison: Comparison) -> str:
         itself = standard_among_levels(comparison) if _asks_for_odd_one(comparison) else ""
-        return itself or asks(comparison, "quest") or without_levels(comparison)
+        return itself or asks(comparison, "quest") or without_levels(comparison) or _twice_as_far(comparison)
 
     def course(self, comparison: Comparison, generator: np.random.Generator) -> Course:
         return _Tracks(self, comparison, generator)
@@ -98,6 +98,14 @@ class _Track:
     def update(self, level: float, yes: bool) -> None:
         intensity = self._levels[self._comparison.levels.index(level)]
         self._quest.update(stim={"intensity": intensity}, outcome={"response": int(yes)})
+
+
+def _twice_as_far(comparison: Comparison) -> str:
+    """Return a complaint if two levels are the same intensity, as 700 and 900 are from 800; "" if none are."""
+    intensities = _function(comparison).intensities(np.array(comparison.levels), comparison.standard)
+    if len(np.unique(intensities)) == len(intensities):
+        return ""
+    return "cannot tell levels apart that are equally far from the standard; leave out those on one side of it"
 
 
 def _function(comparison: Comparison) -> Function:

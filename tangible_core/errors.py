@@ -64,9 +64,11 @@ class OptionError(ConfigError, ValueError):
 class UnknownMethod(TangibleError):
     """A name that no installed method has."""
 
-    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+    def __init__(self, kind: str, name: str, known: Iterable[str], meant: str = "") -> None:
+        """meant: the name to suggest where none is spelt like this one."""
         names, name = sorted(set(known)), str(name)
-        hint, there = did_you_mean(name, names), ", ".join(names) or "none"
+        hint = did_you_mean(name, names) or (f" (did you mean {quoted(meant)}?)" if meant else "")
+        there = ", ".join(names) or "none"
         super().__init__(self._sentence(kind, quoted(name), hint, there))
 
     @staticmethod

@@ -68,7 +68,7 @@ def table(
         return
     if title:
         terminal.print(f"{title}\n")
-    entries(terminal, headings, cells)
+    entries(terminal, headings, [(first, *map(Text.from_markup, rest)) for first, *rest in cells])  # translated once
 
 
 def is_narrow(terminal: Console, grid: Table) -> bool:

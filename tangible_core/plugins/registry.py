@@ -91,13 +91,23 @@ class Registry:
             if listing.kind == kind and listing.name == short and distribution in ("", listing.distribution)
         ]
         if not listings:
-            raise UnknownMethod(kind, name, self.names(kind))
+            raise UnknownMethod(kind, name, self.names(kind), self._meant(kind, short))
         if len(listings) > 1:
             raise BrokenMethod(
                 f"{kind} method {name!r} is offered by {' and '.join(listing.origin for listing in listings)}; "
                 f"write {' or '.join(f'{listing.distribution}/{short}' for listing in listings)}"
             )
         return listings[0]
+
+    def _meant(self, kind: str, word: str) -> str:
+        """Return the method whose initials a word begins with (sgm), or whose summary has it (god-object, pdf)."""
+        of_kind = [each for each in self.listings if each.kind == kind and len(word) > 2]
+        for each in of_kind:
+            initials = "".join(part[0] for part in each.name.split("-"))
+            if len(initials) > 1 and word.startswith(initials) and len(word) <= len(initials) + 1:
+                return each.name
+        pattern = re.compile(rf"\b{re.escape(word)}\b", re.IGNORECASE)
+        return next((each.name for each in of_kind if pattern.search(each.summary)), "")
 
     def load(self, kind: str, name: str) -> type[Method]:
         """Import the class of a method.

@@ -114,7 +114,13 @@ class Onnx(DepthEstimator, Skippable):
         return maps
 
     def _card(self, model: Path) -> Card:
-        return read_card(self._card_file(model) or self.card)
+        file = self._card_file(model)
+        if file and not self.card and not file.is_file():
+            raise ConfigError(
+                f"{model}: has no card, which says what the network takes and gives; write `card: NAME`, one of "
+                f"{', '.join(shipped_cards())}, or describe it in {file.name} (docs/learned-depth.md)"
+            )
+        return read_card(file or self.card)
 
     def _card_file(self, model: Path) -> Path | None:
         """Return the card's file; None for a shipped card. A relative file may also lie next to the network."""

@@ -22,7 +22,7 @@ from .bounds import MAX_DEPTH, MAX_DIGITS, BoundedConstructor, BoundedScanner, c
 CONFLICT = re.compile(r"(<{7}|>{7}|={7}|\|{7})( |$)")
 CURES = {
     "\\t": "{text}; indent with spaces, not tabs",
-    "mapping values are not allowed": "{text}; a text with a colon and a space stands in quotes",
+    "mapping values are not allowed": "{text}; a text with a colon and a space stands in quotes, keys in one column",
     "could not find expected ':'": "{text}; a line is `key: value`, and what belongs to a key is indented",
     "cannot start any token": "{text}; a text that begins with this character stands in quotes",
     "undefined alias": "{text}; a text that begins with * stands in quotes",
@@ -105,6 +105,8 @@ class Source:
     def complain(self, location: Location, text: str) -> None:
         """Add a complaint at a location."""
         mark = (None, None) if self._override_of(location) else self._mark(location)
+        if tuple(map(str, location)) in self.overridden:  # its text names the key as it was typed
+            text = text.removeprefix(f"{'.'.join(map(str, location))}: ")
         complaint = Complaint(tuple(map(_word_or_number, location)), text, *mark)
         self.complaints.append((f"{self.place(location)}: {text}", complaint))
 

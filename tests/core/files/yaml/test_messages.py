@@ -16,7 +16,7 @@ HEAD = "scene: builtin/brick\n"
     ("text", "message"),
     [
         ("<<<<<<< HEAD\nwant: relief\n=======\nwant: touch\n>>>>>>> other\n", "2:1: a merge has left both versions"),
-        ("title: a: b\n", "2:9: mapping values are not allowed here; a text with a colon and a space stands in quotes"),
+        ("title: a: b\n", "2:9: mapping values are not allowed here; a text with a colon and a space stands in "),
         ("workspace: {width_m: 0,08}\n", r"2:24: workspace.8: Keys should be words \(a number has a decimal point"),
         ("workspace:\n  width_m: 0,08\n", "3:3: workspace.width_m: .*, not '0,08'; with a decimal point it is 0.08"),
         ("workspace:\n  width_m: 8,5 cm\n", "3:3: workspace.width_m: .*; with a decimal point it is 8.5 cm"),

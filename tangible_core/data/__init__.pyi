@@ -41,6 +41,7 @@ from .surface import Material as Material
 from .surface import MaterialMap as MaterialMap
 from .surface import Relief as Relief
 from .surface import Texture as Texture
+from .texts import PictureText as PictureText
 from .ticks import BEACON_SHIFT as BEACON_SHIFT
 from .ticks import TICK_COLUMNS as TICK_COLUMNS
 from .ticks import UNTOUCHED as UNTOUCHED

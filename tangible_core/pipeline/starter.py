@@ -1,5 +1,6 @@
 """A commented pipeline file for pictures, with values that suit these pictures."""
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from importlib.resources import files
 from math import floor
@@ -11,12 +12,14 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from jaxtyping import Float32
 
+from ..data.part_words import shown_number
 from ..data.pictures import to_grey
 from ..drawing import PictureKind, kind_sentence
-from ..errors import ConfigError
+from ..errors import MOST_QUOTED, ConfigError
 from ..files.paths import as_path, plain_line
 from ..files.yaml.editing import on_one_line
 from ..files.yaml.source import plain_tree
+from ..parts import find_parts
 from ..plugins.interfaces import DepthEstimator
 from ..plugins.registry import Registry, default_registry
 from ..runtime.opencv import plain_opencv
@@ -190,8 +193,27 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
     if kind == "photo":
         size["texture"] = TEXTURES[_is_drawing(scene)]
         size["kind"] = f"   # {kind_sentence(scene.kind)}" if _is_drawing(scene) else ""
+        size["named"] = _named(scene)
         size["relief"] = Template(PHOTOS[_felt_of(scene)]).substitute(size)
     return size
+
+
+def _named(scene: Scene) -> str:
+    """Return the lines with the title and the names of the parts that the picture states; "" without any.
+
+    No two parts have one name: the second one of a name is followed by 2.
+    """
+    title = f"title: {on_one_line(scene.title)}\n" if scene.title else ""
+    if scene.segments is None or not any(scene.segment_names):
+        return title
+    lines, numbers = list[str](), Counter[str]()
+    for label, segment in enumerate(find_parts(scene.segments).segments):
+        name = plain_line(scene.segment_names[segment])[: MOST_QUOTED - 5].strip()
+        if name and not name.isdecimal():  # a number would be taken for that of a part
+            numbers[name.casefold()] += 1
+            again = numbers[name.casefold()]
+            lines.append(f"  {shown_number(label)}: {on_one_line(f'{name} {again}' if again > 1 else name)}\n")
+    return f"{title}parts:                             # as the drawing names them\n{''.join(lines)}"
 
 
 def _is_drawing(scene: Scene) -> bool:

@@ -21,6 +21,7 @@ OURS = package(__name__)
 PACKAGES = {
     "PIL": "pillow",
     "cv2": "opencv-contrib-python-headless",
+    "resvg_py": "resvg-py",
     "ruamel": "ruamel.yaml",
     "skimage": "scikit-image",
     "usb": "pyusb",

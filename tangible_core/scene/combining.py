@@ -15,6 +15,7 @@ from .formats.pictures import without
 from .framing import OFFSET, apply_framing, cut_out, measured_size
 from .rig import StereoRig, rectify_views
 from .scene_files import SceneFiles, as_numbers
+from .vectors import VectorPage, framed_texts, rank_labels
 from .video.files import still
 
 PICTURES = {"left", "right", "photo", "stereo"}
@@ -27,14 +28,20 @@ FAR_APART_M = 10.0
 
 
 def combine_parts(
-    files: SceneFiles, parts: dict[str, np.ndarray], rig: StereoRig | None, notes: list[str], warnings: list[str]
+    files: SceneFiles,
+    parts: dict[str, np.ndarray],
+    rig: StereoRig | None,
+    notes: list[str],
+    warnings: list[str],
+    page: VectorPage | None = None,
 ) -> dict[str, Any]:
-    """Frame the parts and return them as fields of a `Scene`."""
+    """Frame the parts and return them as fields of a `Scene`. page: what vectors say of the photo."""
     if files.video is not None:
         files = still(files)
     elif files.stereo is not None:
         files = files.model_copy(update={"left": files.stereo, "right": files.stereo, "stereo": None})
     _check_sizes(files, parts)
+    whole = parts[files.main].shape
     map_size = measured_size(files, parts["height"].shape) if files.height else None
     parts = apply_framing(parts, files, warnings.append)
     opaque_mask = None if files.height else _cut_out(parts, files, notes.append)
@@ -56,9 +63,9 @@ def combine_parts(
             values.flags.writeable = False
     return {
         "views": views,
-        "stated_kind": None if files.kind is None else PictureKind(files.kind),
+        "stated_kind": PictureKind(files.kind) if files.kind else page and page.kind,
         "disparity": _disparity(parts, files, camera),
-        "segments": SegmentMap(parts["segments"]) if "segments" in parts else None,
+        **_said(parts, files, page, whole),
         "height": parts.get("height"),
         "offset": float(parts.get(OFFSET, 0.0)),
         "measured": map_size,
@@ -66,6 +73,20 @@ def combine_parts(
         "known": known_mask,
         "shown": opaque_mask,
     }
+
+
+def _said(
+    parts: Mapping[str, np.ndarray], files: SceneFiles, page: VectorPage | None, whole: tuple[int, ...]
+) -> dict[str, Any]:
+    """Return the segments, and what vectors say of them: names, texts and the title."""
+    given = SegmentMap(parts["segments"]) if "segments" in parts and (page is None or files.segments) else None
+    if page is None:
+        return {"segments": given}
+    said = {"segments": given, "title": page.title, "texts": framed_texts(page.texts, whole, files.crop, files.rotate)}
+    if given is not None or "segments" not in parts:
+        return said
+    present, labels = rank_labels(parts["segments"])  # a crop may leave some out
+    return said | {"segments": SegmentMap(labels), "segment_names": tuple(page.names[each] for each in present)}
 
 
 def _disparity(parts: Mapping[str, np.ndarray], files: SceneFiles, camera: Calibration | None) -> DisparityMap | None:

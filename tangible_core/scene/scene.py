@@ -10,7 +10,7 @@ from typing import Any, Self, Unpack
 import numpy as np
 from jaxtyping import Bool, Float32
 
-from ..data import DisparityMap, Record, Relief, SegmentMap, Views
+from ..data import DisparityMap, PictureText, Record, Relief, SegmentMap, Views
 from ..data.arguments import named_options
 from ..data.records import short_repr
 from ..drawing import KindFound, PictureKind, picture_kind
@@ -57,6 +57,12 @@ class Scene:
     """Mask of the opaque pixels of the left view or the photo, None if all are; the others become flat ground."""
     stated_kind: PictureKind | None = None
     """The kind of the picture, where it is given and not measured."""
+    segment_names: tuple[str, ...] = ()
+    """What the file calls the segments, by their numbers, "" without a name; () where it names none."""
+    texts: tuple[PictureText, ...] = ()
+    """The texts that the file states, which are not in the picture."""
+    title: str = ""
+    """The title that the file states; "" without one."""
     frames: Video | None = None
     """The frames of a video, of which the views are the first."""
     notes: tuple[str, ...] = ()

@@ -24,7 +24,7 @@ Number = Annotated[float, Field(allow_inf_nan=False)]
 _NEEDS = {
     **{"focal_px": "baseline_m", "baseline_m": "focal_px", "offset_px": "focal_px"},
     **{"relief_m": "height", "cell_m": "height", "nodata": "height or depth or disparity"},
-    **{"kind": "photo", "rig": "left", "rig_unit_m": "rig", "fps": "video", "repeat": "video"},
+    **{"kind": "photo", "page": "photo", "rig": "left", "rig_unit_m": "rig", "fps": "video", "repeat": "video"},
     **{"truth_scale": "truth", "disparity_scale": "disparity"},
     **{"depth_unit_m": "depth", "near_m": "depth", "far_m": "depth"},
 }
@@ -73,10 +73,12 @@ class SceneFiles(Quantities):
     `mono`, for a video of one view. When left out, the one that the file states, and otherwise side-by-side (.jps:
     cross-eyed; a video: mono)."""
     photo: Path | None = None
-    """A single picture."""
+    """A single picture, or a drawing in vectors: an SVG, or a page of a PDF."""
     kind: Literal["photograph", "drawing", "lines", "text"] | None = None
     """What the photo shows: a `photograph`; a flat `drawing`, with areas of one colour, such as a map or a chart; line
     art, `lines`; or a page of `text`. When left out, the likeliest by its colours, lines and ground."""
+    page: Count | None = None
+    """The page of a PDF, from 1; the first when left out."""
     photo_depth: bool = True
     """Use the depth map that a phone stored in the photo, if there is one; no depth is estimated then."""
     height: Path | None = None
@@ -149,6 +151,7 @@ class SceneFiles(Quantities):
         names += [name for name in ("nodata", "cell_m") if isinstance(getattr(self, name), tuple)]
         names += ["video"] if isinstance(self.video, int) else []
         names += [] if self.repeat else ["repeat"]
+        names += ["page"] if self.page else []
         if "video" in names:
             names += [] if self.non_finite == "error" else ["non_finite"]
             self._check_video([*names, *(name for name in ("crop", *_OF_ONE_VIEW) if getattr(self, name))])
@@ -169,6 +172,8 @@ class SceneFiles(Quantities):
             raise ValueError(f"rig gives the cameras and rectifies the pictures; leave out {', '.join(idle)}")
         if idle := self.height and [name for name in names if name in _OF_VIEWS]:
             raise ValueError(f"height already gives all heights; leave out {', '.join(idle)}")
+        if self.page and self.photo and self.photo.suffix.lower() != ".pdf":
+            raise ValueError("page is for a PDF; leave it out")
         if self.depth and self.disparity:
             raise ValueError("depth and disparity are two forms of one map; leave one of them out")
         if self.near_m and self.far_m and not self.near_m < self.far_m:

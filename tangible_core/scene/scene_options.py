@@ -58,6 +58,7 @@ class PhotoOptions(SceneOptions, MapOptions, TurnOptions, total=False):
     """The options of one picture."""
 
     photo_depth: bool
+    page: int | None
     kind: Literal["photograph", "drawing", "lines", "text"] | None
     clip: Sequence[float] | None
 

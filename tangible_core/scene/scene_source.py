@@ -18,6 +18,7 @@ from ..data.option_errors import sentences_about
 from ..errors import ConfigError, PictureError, wrong_argument
 from ..files.paths import as_path
 from .combining import PHONE_DEPTH, PICTURES, combine_parts
+from .formats.decoding import bytes_of
 from .formats.height_maps import find_picture, in_metres, metadata_beside, read_heights_metadata
 from .formats.multi_picture import Notify
 from .formats.pairs import Layout, Stored, halves, read_pair, read_stored, views_of
@@ -36,6 +37,7 @@ from .formats.pictures import (
 from .formats.rigs import find_rig, read_rig
 from .rig import StereoRig
 from .scene_files import SceneFiles, as_numbers
+from .vectors import is_vectors, read_vectors
 from .video.files import frame_parts, read_video
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -98,6 +100,13 @@ class SceneSource:
                 for part, path in (("left", files.left), ("right", files.right))
             )
             parts |= views_of(left, right, files.non_finite, notes.append)._asdict()
+        warnings: list[str] = []
+        page = None
+        if "photo" in paths and is_vectors(paths["photo"]):
+            page = read_vectors(paths["photo"], bytes_of(paths["photo"]), files.page, warnings.append)
+            parts["photo"] = page.picture
+            if page.labels is not None and files.segments is None:
+                parts["segments"] = page.labels
         for part, path in files:
             if part in parts:
                 continue
@@ -116,7 +125,7 @@ class SceneSource:
                 shown_path = rig_file.relative_to(self.folder) if rig_file.is_relative_to(self.folder) else rig_file
                 notes.append(f"{rig_file.name} states the cameras of the pair; write `rig: {shown_path}` to use it")
         warnings: list[str] = []
-        fields = combine_parts(files, parts, rig, notes, warnings)
+        fields = combine_parts(files, parts, rig, notes, warnings, page)
         for note in notes:
             log.info("%s", note)
         for warning in warnings:

@@ -241,9 +241,9 @@ def _illegible(name: str, legible: Legibility | None) -> list[Note]:
 
 
 def title_of(config: PipelineConfig, scene: Scene) -> str:
-    """Return the title for exporters: the configured one, or the name of the scene without folder and ending."""
-    if config.title.strip():
-        return config.title.strip()
+    """Return the title for exporters: the configured one, the picture's own, or the scene's name without folder."""
+    if title := config.title.strip() or scene.title:
+        return title
     name = Path(without_folders(scene.name))
     return name.stem if isinstance(scene.files, SceneFiles) else name.name
 

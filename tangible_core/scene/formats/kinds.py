@@ -14,7 +14,7 @@ FileKind = Literal["picture", "heights", "video"]
 PICTURES = frozenset(
     (
         ".png", ".jpg", ".jpeg", ".jpe", ".jfif", ".mpo", ".jps", ".jp2", ".j2k", ".webp", ".bmp", ".gif", ".tif",
-        ".tiff", ".ppm", ".pgm", ".pbm", ".pnm", ".heic", ".heif", ".avif",
+        ".tiff", ".ppm", ".pgm", ".pbm", ".pnm", ".heic", ".heif", ".avif", ".svg", ".pdf",
     )
 )  # fmt: skip
 """Suffixes of pictures; a file with another one is a picture if its first bytes say so."""

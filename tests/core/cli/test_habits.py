@@ -55,8 +55,8 @@ def test_version_option_prints_the_version(tmp_path: Path):
         ("run q.yaml -q", "q.yaml: there is no such file\n"),
         ("run pp.yaml", "(did you mean 'p.yaml'?)"),
         ("ui dots.png --no-browser", "(did you mean 'dot.png'?)"),
-        ("run leaflet.pdf", "leaflet.pdf: name a picture"),
-        ("new leaflet.pdf", "leaflet.pdf: name a picture"),
+        ("run leaflet.odt", "leaflet.odt: name a picture"),
+        ("new leaflet.pdf", "leaflet.pdf: cannot be read as PDF"),
         ("plugins show depth semi-globl", "'semi-global'?"),
         ("plugins show semi-globl", "'semi-global'?"),
         ("plugins show depth sgm", "(did you mean 'semi-global'?)"),
@@ -75,7 +75,8 @@ def test_version_option_prints_the_version(tmp_path: Path):
     ],
 )
 def test_mistake_on_the_command_line_is_refused_with_the_cure(words: str, said: str, folder: Path):
-    (folder / "leaflet.pdf").write_bytes(b"%PDF-1.7")
+    for name in ("leaflet.pdf", "leaflet.odt"):
+        (folder / name).write_bytes(b"%PDF-1.7")
     (folder / "empty.yaml").touch()
     (folder / "left.yaml").write_text("scene: {left: dot.png}\n")
     done = tangible(*words.split(), cwd=folder)

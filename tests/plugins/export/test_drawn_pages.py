@@ -74,3 +74,19 @@ def test_lost_parts_and_texts_are_named():
     says = " ".join(each.says for each in found)
     assert "parts are left out (part 4 (lake); 2.9 % of the picture)" in says, says
     assert "texts are left out (1: at the lower left)" in says and not found.readable, says
+
+
+def test_page_comes_back_as_the_same_parts(tmp_path):
+    names = {1: "paper", 2: "north", 3: "east", 4: "lake"}
+    pipeline = Pipeline(Scene.photo(countries()[0]), texture=Flat(), title="A map", parts=names)
+    [done] = pipeline.export(tmp_path, ["swell"]).exports
+    scene, parts = Scene.photo(done.files[0]), pipeline.make("simplified")
+    labels = scene.segments.labels
+    down, across = np.nonzero(labels)
+    whole = labels[down.min() : down.max() + 1, across.min() : across.max() + 1]
+    rows, columns = ((np.arange(n) * own // n) for n, own in zip(whole.shape, parts.labels.shape, strict=True))
+    before = parts.labels[np.ix_(rows, columns)]
+    assert (scene.title, sorted(scene.segment_names)) == ("A map", ["", *sorted(names.values())])
+    for number, name in names.items():
+        one, other = before == number - 1, whole == scene.segment_names.index(name)
+        assert (one & other).sum() / (one | other).sum() > 0.9, name

@@ -1,0 +1,53 @@
+"""A page of vectors, whichever format it has."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Int32, UInt8
+
+from ...data import PictureText
+from ...drawing import PictureKind
+
+SIDE_PX = 2000
+"""The longer side of a page as a picture, px: a tenth of a millimetre on A4."""
+
+
+class VectorPage(NamedTuple):
+    """What vectors say of a picture."""
+
+    picture: UInt8[np.ndarray, "h w 3"]
+    """The page on white, without its texts."""
+    labels: Int32[np.ndarray, "h w"] | None = None
+    """The shape of each pixel, 0 for the ground; None where they are not known."""
+    names: tuple[str, ...] = ()
+    """The name of each shape by its label, "" without one."""
+    texts: tuple[PictureText, ...] = ()
+    title: str = ""
+    kind: PictureKind | None = None
+    """None to measure it."""
+
+
+def rank_labels(labels: Int32[np.ndarray, "h w"]) -> tuple[tuple[int, ...], Int32[np.ndarray, "h w"]]:
+    """Return the labels that are there, in order, and the rank of each pixel's label among them."""
+    there = np.bincount(labels.reshape(-1)) > 0
+    return tuple(map(int, np.flatnonzero(there))), (np.cumsum(there, dtype=np.int32) - 1)[labels]
+
+
+def framed_texts(
+    texts: tuple[PictureText, ...], shape: tuple[int, ...], crop: tuple[int, int, int, int] | None, clockwise_deg: int
+) -> tuple[PictureText, ...]:
+    """Return the texts in the frame of a picture of (h, w) that is cropped and then turned; others are left out."""
+    rows, columns = shape[:2]
+    x, y, width, height = crop or (0, 0, columns, rows)
+    framed = list[PictureText]()
+    for text in texts:
+        corners = np.reshape(text.box, (2, 2)) * (columns, rows)
+        (left, top), (right, bottom) = (corners - (x, y)) / (width, height)
+        if not (0 <= (left + right) / 2 <= 1 and 0 <= (top + bottom) / 2 <= 1):
+            continue
+        for _ in range(clockwise_deg // 90):
+            left, top, right, bottom = 1 - bottom, left, 1 - top, right
+        box = float(left), float(top), float(right), float(bottom)
+        framed.append(replace(text, box=box, direction_deg=(text.direction_deg - clockwise_deg) % 360))
+    return tuple(framed)

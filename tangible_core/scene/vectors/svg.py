@@ -1,0 +1,233 @@
+"""SVG: the picture, and what its shapes and texts say."""
+
+import re
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from math import atan2, degrees
+from pathlib import Path
+from typing import Any, cast
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
+
+import numpy as np
+from jaxtyping import Bool, Int32, UInt8
+
+from ...data import PictureText
+from ...data.pictures import fill_from_nearest
+from ...drawing import PictureKind, find_ink, find_texts
+from ...errors import PictureError, shown
+from ...files.reading import in_words
+from ...runtime.opencv import plain_opencv
+from ..formats.multi_picture import Notify, ignore
+from .page import SIDE_PX, VectorPage, rank_labels
+from .tree import HIDE, Item, cut_off, items_of, local, title_of, walk, words_in
+
+MAX_BYTES = 20_000_000
+"""The most bytes of an SVG: what is larger is a scan, or a map of a whole country."""
+MAX_SHAPES = 4096
+"""The most shapes that are parts: more are a texture."""
+MIN_PIECE_PX = 25
+"""The least piece of a shape that shows; what is smaller is a gap between two others."""
+LEAST = 1 / 60
+"""The side of the least square that shows as a shape without a name, by the longer side: a speck, or a letter."""
+STROKE = 1 / 55
+"""The width from which a stroke is an area, as a share of the longer side."""
+LARGER = 1.5
+"""The least ratio of the height of a text that names a part to those of others in it."""
+PLAIN = "*{opacity:1!important;fill-opacity:1!important;stroke-opacity:1!important;filter:none!important;" \
+    "mask:none!important;mix-blend-mode:normal!important;marker:none!important;marker-start:none!important;" \
+    "marker-mid:none!important;marker-end:none!important;shape-rendering:crispEdges!important}"  # fmt: skip
+"""Rules under which each pixel has the colour of one shape alone."""
+
+
+def read_svg(path: Path, data: bytes, notify: Notify = ignore) -> VectorPage:
+    """Read an SVG. Its texts name the shapes in which they lie, and are left out of the picture.
+
+    Raises: PictureError for one that cannot be read, is too large, declares entities, or shows nothing.
+    """
+    root = _parse(path, data)
+    outside, runs = cut_off(root)
+    if outside:
+        notify(f"{path.name} refers to {', '.join(sorted(outside)[:3])}, which is not read; embed it in the file")
+    if runs:
+        notify(f"scripts in {path.name} are not run; if they draw something, save the drawing as it is shown")
+    shapes, texts = items_of(root)
+    try:
+        pixels = _render(root, {each.element: HIDE for each in texts})
+        alpha = pixels[..., 3:].astype(np.float32) / 255
+        picture = np.rint(pixels[..., :3] * alpha + 255 * (1 - alpha)).astype(np.uint8)
+        labels = _labels(root, shapes, texts, picture) if len(shapes) <= MAX_SHAPES else None
+        read = _read_texts(root, shapes, texts) if texts else ()
+    except ValueError as error:
+        raise _unreadable(path, str(error)) from error
+    if not alpha.any():
+        what = "holds only texts, which fingers cannot read as a picture; write them in braille" if texts else (
+            "shows nothing; check that the drawing is not hidden or outside of the page"
+        )  # fmt: skip
+        raise PictureError(f"{path}: {what}")
+    names: tuple[str, ...] = ()
+    if labels is None:
+        notify(f"{path.name} has more than {MAX_SHAPES} shapes, which is a texture: its parts are found by colour")
+    else:
+        labels, names = _named(labels, shapes, read, path.name, notify)
+    raster = any(local(each) == "image" and "href" in "".join(each.attrib) for each, _, _ in walk(root))
+    drawn = PictureKind.drawing if labels is None or labels.any() else PictureKind.lines
+    title = title_of(root)
+    return VectorPage(picture, labels, names, read, title, None if raster else drawn)
+
+
+def _parse(path: Path, data: bytes) -> Element:
+    if len(data) > MAX_BYTES:
+        raise PictureError(
+            f"{path}: holds more than {in_words(MAX_BYTES)}, which is too much for a drawing; simplify its "
+            "paths, or save it as PNG"
+        )
+    if b"<!ENTITY" in data or b"\0" in data:  # UTF-16 would hide them
+        raise PictureError(f"{path}: declares entities, which are not read; save it as plain SVG in UTF-8")
+    try:
+        root = ElementTree.fromstring(data)  # there are no entities, and it loads nothing
+    except (ElementTree.ParseError, ValueError, LookupError) as error:
+        raise _unreadable(path, str(error)) from error
+    if local(root) != "svg":
+        raise _unreadable(path, f"its first element is {local(root)[:40]}")
+    try:
+        for _ in walk(root):
+            pass
+    except ValueError as error:
+        raise _unreadable(path, str(error)) from error
+    return root
+
+
+def _unreadable(path: Path, why: str) -> PictureError:
+    return PictureError(f"{path}: cannot be read as SVG: {why}; save it again as plain SVG, or as PNG")
+
+
+def _render(root: Element, styles: Mapping[Element, str], sheet: str = "") -> UInt8[np.ndarray, "h w 4"]:
+    """Render the tree with further styles of its elements, SIDE_PX long. Raises: ValueError."""
+    import cv2
+    import resvg_py
+    from matplotlib import get_data_path
+
+    before = {element: element.get("style", "") for element in styles}
+    try:
+        for element, style in styles.items():
+            element.set("style", (before[element] + style).lstrip(";"))
+        text = ElementTree.tostring(root, encoding="unicode")
+    finally:
+        for element, style in before.items():
+            element.set("style", style)
+    font = str(Path(get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf")  # the same on every system
+    png = resvg_py.svg_to_bytes(
+        *(text, None, None, True), dpi=96, width=SIDE_PX, height=SIDE_PX, style_sheet=sheet or None, font_files=[font],
+        font_family="DejaVu Sans", serif_family="DejaVu Sans", sans_serif_family="DejaVu Sans",
+        monospace_family="DejaVu Sans",
+    )  # fmt: skip
+    with plain_opencv():
+        pixels = np.asarray(cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_UNCHANGED), np.uint8)
+    return pixels[..., [2, 1, 0, 3]]
+
+
+def _numbers(pixels: UInt8[np.ndarray, "h w 4"], count: int) -> Int32[np.ndarray, "h w"]:
+    """Return the numbers that are painted as colours; 0 elsewhere."""
+    red, green, blue, alpha = np.moveaxis(pixels.astype(np.int32), 2, 0)
+    numbers = red << 16 | green << 8 | blue
+    return np.where((alpha == 255) & (numbers <= count), numbers, 0)
+
+
+def _labels(
+    root: Element, shapes: list[Item], texts: list[Item], picture: UInt8[np.ndarray, "h w 3"]
+) -> Int32[np.ndarray, "h w"]:
+    """Return the number of the shape, from 1, that covers each pixel; 0 for the ground.
+
+    A stroke is an area only where it is wide. Letters that are drawn as shapes go to what is around them.
+    """
+    import cv2
+    from skimage.measure import label  # pyright: ignore[reportMissingTypeStubs, reportUnknownVariableType]
+
+    hidden = {each.element: HIDE for each in texts}
+    hidden |= {element: HIDE for element, _, _ in walk(root) if local(element) == "image"}
+    fills, drawn = dict(hidden), dict(hidden)
+    for number, shape in enumerate(shapes, 1):
+        paint, none = f"#{number:06x}!important", "none!important"
+        fill = f";fill:{paint if shape.filled else none};stroke:"
+        fill = f";fill-rule:evenodd!important{fill}" if shape.outline else fill
+        fills[shape.element] = fill + none
+        drawn[shape.element] = fill + (paint if shape.stroked else none)
+    labels, whole = (_numbers(_render(root, styles, PLAIN), len(shapes)) for styles in (fills, drawn))
+    side = round(STROKE * max(labels.shape)) | 1
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))
+    with plain_opencv():
+        wide = np.asarray(cv2.morphologyEx((whole != labels).astype(np.uint8), cv2.MORPH_OPEN, disc)) > 0
+    labels = np.where(wide, whole, labels)
+    pieces = np.asarray(label(labels, connectivity=1, background=-1), np.int32)
+    ink = find_ink(picture)
+    with plain_opencv():
+        letters = cv2.resize(find_texts(ink).ink.astype(np.uint8), labels.shape[::-1], interpolation=cv2.INTER_NEAREST)
+    size = np.bincount(pieces.reshape(-1))
+    shape_of = np.zeros(size.size, np.int32)
+    shape_of[pieces.reshape(-1)] = labels.reshape(-1)
+    least_px = (LEAST * max(labels.shape)) ** 2
+    least = np.array([MIN_PIECE_PX, *(MIN_PIECE_PX if shape.label else least_px for shape in shapes)])
+    large = (size >= least[shape_of]) & (2 * np.bincount(pieces.reshape(-1), letters.reshape(-1)) < size)
+    known: Bool[np.ndarray, "h w"] = large[pieces]
+    return labels if known.all() or not known.any() else fill_from_nearest(labels, known)
+
+
+def _read_texts(root: Element, shapes: list[Item], texts: list[Item]) -> tuple[PictureText, ...]:
+    """Return what the texts say, and where; those that are not shown are left out."""
+    styles = {each.element: HIDE for each in shapes}
+    for number, text in enumerate(texts, 1):
+        for element, _, _ in walk(text.element):
+            styles[element] = f";fill:#{number:06x}!important;stroke:none!important"
+    numbers = _numbers(_render(root, styles, PLAIN), len(texts))
+    found, (rows, columns) = list[PictureText](), numbers.shape
+    for number, (down, across) in enumerate(_places(numbers, len(texts)), 1):
+        content = " ".join(words_in(texts[number - 1].element).split())
+        if content and down.stop:
+            box = across.start / columns, down.start / rows, across.stop / columns, down.stop / rows
+            found.append(PictureText(content, box, _direction(texts[number - 1].element)))
+    return tuple(found)
+
+
+def _places(numbers: Int32[np.ndarray, "h w"], count: int) -> list[tuple[slice, slice]]:
+    """Return the rows and columns of each number; empty slices for one that is nowhere."""
+    from scipy import ndimage  # pyright: ignore[reportMissingTypeStubs]
+
+    found: list[tuple[slice, slice] | None] = cast(Any, ndimage).find_objects(numbers, max_label=count)
+    return [each or (slice(0, 0), slice(0, 0)) for each in found]
+
+
+def _direction(element: Element) -> float:
+    """Return the direction of a text by its own turn, degrees counterclockwise."""
+    if found := re.search(r"rotate\(\s*(-?[\d.]+)", element.get("transform", "")):
+        return -float(found[1]) % 360
+    found = re.search(r"matrix\(\s*(-?[\d.]+)[\s,]+(-?[\d.]+)", element.get("transform", ""))
+    return -degrees(atan2(float(found[2]), float(found[1]))) % 360 if found else 0.0
+
+
+def _named(
+    labels: Int32[np.ndarray, "h w"], shapes: list[Item], texts: tuple[PictureText, ...], file: str, notify: Notify
+) -> tuple[Int32[np.ndarray, "h w"], tuple[str, ...]]:
+    """Return labels from 0, each of them present, and their names; and remark on texts that name nothing."""
+    present, labels = rank_labels(labels)
+    rim = np.bincount(np.concatenate([labels[0], labels[-1], labels[:, 0], labels[:, -1]]), minlength=len(present))
+    inside = defaultdict[int, list[PictureText]](list)
+    for text in texts:
+        across, down = text.middle
+        inside[int(labels[int(down * labels.shape[0]), int(across * labels.shape[1])])].append(text)
+    names, used = list[str](), set[str]()
+    for place, number in enumerate(present):
+        shape = shapes[number - 1] if number else Item(Element("g"), "", "")
+        is_ground = number == 0 or 2 * rim[place] > rim.sum()
+        said = "" if is_ground else _largest(inside[place])
+        used.add(said)
+        names.append(shape.label or said or shape.name)
+    if loose := [text.content for text in texts if text.content not in used]:
+        notify(f"texts of {file} that name no part are left out: {shown(', '.join(loose))}")
+    return labels, tuple(names)
+
+
+def _largest(texts: Sequence[PictureText]) -> str:
+    """Return the text that is clearly the largest; "" if there is none."""
+    tall = sorted(((text.box[3] - text.box[1], text.content) for text in texts), reverse=True)
+    return tall[0][1] if len(tall) == 1 or (tall and tall[0][0] > LARGER * tall[1][0]) else ""

@@ -1,6 +1,7 @@
 """Pages for swell paper."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, final
 
@@ -13,6 +14,7 @@ from tangible_core.errors import BrokenMethod, PictureError
 from tangible_core.plugins import Exporter, Medium, Previewing
 from tangible_core.plugins.failures import missing_package
 
+from .braille import BrailleChoice, in_grade
 from .paper.sheet import Page, check_readable, sheet_for
 
 if TYPE_CHECKING:
@@ -37,6 +39,8 @@ class Swell(Exporter, Previewing):
     """Size of the paper; it lies on its side where that makes the picture larger."""
     width_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] | None = None
     """Width of the picture; null for the largest that the page allows."""
+    braille: BrailleChoice = BrailleChoice()
+    """The braille of the title and the key."""
 
     def picture_width_m(self, aspect: float) -> float:
         """Return the width of the picture on the page."""
@@ -96,6 +100,7 @@ class Swell(Exporter, Previewing):
             if missing_package(error) not in (None, "shapely"):
                 raise
             raise BrokenMethod(f"pages need shapely ({error}); pip install shapely") from error
+        work = replace(work, language=in_grade(work.language, self.braille.grade))
         if work.kind == "text":
             raise PictureError(
                 "this is a page of text, which fingers cannot read as a picture; write it in braille, or give "

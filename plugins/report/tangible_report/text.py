@@ -12,7 +12,7 @@ from pydantic import Field
 from tangible_core.data import Figure, Work
 from tangible_core.files import write_text
 from tangible_core.plugins import Exporter, note
-from tangible_export.braille import as_ascii, width_m, wrapped, written_by
+from tangible_export.braille import BrailleChoice, as_ascii, in_grade, width_m, wrapped, written_by
 from tangible_legibility.words.languages import Language, spoken_language
 
 from .description import PartFacts, describe_at_length, facts, page_of
@@ -40,8 +40,8 @@ class Text(Exporter):
     """Name the material of each part; false for paper and prints, which have no materials."""
     width_m: Annotated[float, Field(ge=0.001, le=10, allow_inf_nan=False)] | None = None
     """Width of the whole picture in the description, such as that on a page; null for that of the workspace."""
-    braille: bool = False
-    """Write NAME.brf too: uncontracted braille in the characters that embossers accept."""
+    braille: bool | BrailleChoice = False
+    """Write NAME.brf too: uncontracted braille in the characters that embossers accept; `{grade: 2}` contracts it."""
     cells: Annotated[int, Field(ge=10, le=200)] = 40
     """Cells in a line of braille."""
     lines: Annotated[int, Field(ge=5, le=200)] = 25
@@ -64,8 +64,9 @@ class Text(Exporter):
             ".html": page_of(*content, named_in=work.language),
         }
         if self.braille:
-            note(log, f"braille by {written_by(language)}")
-            texts[".brf"] = self._emboss(lines, language)
+            in_braille = in_grade(language, BrailleChoice.in_force(self.braille).grade)
+            note(log, f"braille by {written_by(in_braille)}")
+            texts[".brf"] = self._emboss(lines, in_braille)
         for suffix, text in texts.items():
             write_text(stem.with_suffix(suffix), text)
         return tuple(map(stem.with_suffix, texts))
@@ -82,7 +83,7 @@ class Text(Exporter):
             parts = facts(surface, work.materials, simplified, work.names)
         return parts if self.materials else tuple(part._replace(material="") for part in parts)
 
-    def _emboss(self, lines: Sequence[str], language: Language) -> str:
+    def _emboss(self, lines: Sequence[str], language: str) -> str:
         """Return lines and pages of braille for embossers, in plain ASCII."""
         line_m = width_m((0,) * self.cells)
         cells = chain.from_iterable(wrapped(line, language, line_m, RUNOVER_CELLS) or [()] for line in lines)

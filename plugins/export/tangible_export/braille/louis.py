@@ -15,6 +15,8 @@ from .cells import Cells
 
 TABLES = {"en": "en-ueb-g1.ctb", "de": "de-g0.utb", "fr": "fr-bfu-comp6.utb"}
 """Tables of uncontracted braille: Unified English Braille, German Basisschrift, French Braille uniformisé."""
+CONTRACTED = {"en": "en-ueb-g2.ctb", "de": "de-g2.ctb", "fr": "fr-bfu-g2.ctb"}
+"""Tables of contracted braille: Unified English Braille, German Kurzschrift, French Braille abrégé."""
 VERSION = 20
 """The version of the library's binary interface."""
 _PROBE = "abc"
@@ -36,16 +38,20 @@ class Louis(NamedTuple):
     character: Any
     """Type of a character, of 2 or 4 bytes."""
 
-    def translate(self, text: str, language: str) -> Cells:
-        """Translate text. Raises: BrailleError for a character that is not in the table, OSError if the table fails."""
+    def translate(self, text: str, language: str, grade: int = 1) -> Cells:
+        """Translate text, contracted in grade 2.
+
+        Raises: BrailleError for a character that is not in the table, OSError if the table fails.
+        """
+        table = (TABLES if grade == 1 else CONTRACTED)[language]
         for place, each in enumerate(text, 1):
             if not each.isascii():
-                self._check_known(each, place, text, language)
-        return self._call(text, TABLES[language], _DOTS | _UNICODE)
+                self._check_known(each, place, text, table)
+        return self._call(text, table, _DOTS | _UNICODE)
 
-    def _check_known(self, character: str, place: int, text: str, language: str) -> None:
-        if not any(self._call(character, TABLES[language], _DOTS | _UNICODE | _KNOWN_ALONE)):
-            raise BrailleError(missing_character(character, place, text, f"liblouis's table {TABLES[language]}"))
+    def _check_known(self, character: str, place: int, text: str, table: str) -> None:
+        if not any(self._call(character, table, _DOTS | _UNICODE | _KNOWN_ALONE)):
+            raise BrailleError(missing_character(character, place, text, f"liblouis's table {table}"))
 
     def _call(self, text: str, table: str, mode: int) -> Cells:
         size = ctypes.sizeof(self.character)

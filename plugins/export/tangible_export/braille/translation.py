@@ -1,4 +1,4 @@
-"""Text as lines of uncontracted braille, by liblouis where it is installed and otherwise by our own tables."""
+"""Text as lines of braille, by liblouis where it is installed and otherwise by our own tables."""
 
 import logging
 import re
@@ -10,7 +10,7 @@ from tangible_core.plugins import note
 from .cells import Cells
 from .cells import width_m as width_of_m
 from .latin import LANGUAGES, code_of, translate_by_table
-from .louis import TABLES, louis, missing_character
+from .louis import CONTRACTED, TABLES, louis, missing_character
 
 log: logging.Logger = logging.getLogger(__name__)
 
@@ -23,8 +23,35 @@ _GERMAN_QUOTES = re.compile("[„\u201c\u201d]")
 _FRENCH_SPACE = re.compile("(«) +| +([:;!?»])")
 """Spaces that print has and braille has not."""
 _HYPHEN = "-"
+_GRADE_2 = "-x-grade2"
+"""The end of a language tag, for private use as BCP 47 allows it, by which texts are contracted."""
+_SHORT = 2
+"""The characters of a text that is never contracted: the letters of a key stand for themselves."""
 _BREAK = re.compile("[^\\S\u00a0\u202f]+(?!%)")
 """Spaces at which a line may break: not the non-breaking ones, nor before a per cent sign."""
+
+
+def in_grade(language: str, grade: int) -> str:
+    """Return the tag by which texts in a language are written in grade 1, or contracted in grade 2.
+
+    Raises: BrailleError where there is no contracted braille.
+    """
+    if grade == 1:
+        return language
+    cure = "or write `braille: {grade: 1}`"
+    if (own := language.partition("-")[0].lower()) not in CONTRACTED:
+        raise BrailleError(f"there is no contracted braille for {quoted(language)}; there is for en, de and fr, {cure}")
+    library = louis()
+    if isinstance(library, str):
+        raise BrailleError(
+            f"contracted braille needs liblouis, and {library}; install it (apt install liblouis20, brew install "
+            f"liblouis), {cure}"
+        )
+    try:
+        library.translate("abc", own, grade)
+    except OSError as error:
+        raise BrailleError(f"{error}; install all of its tables (apt install liblouis-data), {cure}") from error
+    return f"{language}{_GRADE_2}"
 
 
 def translate(text: str, language: str = "en") -> Cells:
@@ -43,7 +70,7 @@ def translate(text: str, language: str = "en") -> Cells:
     if isinstance(library, str):
         return translate_by_table(text, code_language)
     try:
-        return library.translate(text, code_language)
+        return library.translate(text, code_language, 2 if language.endswith(_GRADE_2) and len(text) > _SHORT else 1)
     except OSError as error:
         note(log, f"braille by our own table: {error}", logging.WARNING)
         return translate_by_table(text, code_language)
@@ -59,7 +86,8 @@ def written_by(language: str = "en") -> str:
     other = "" if is_own else f", for want of one for {quoted(language)}"
     if isinstance(library, str):
         return f"{code_of(code_language).title}{other} ({library})"
-    return f"liblouis {library.version}, {TABLES[code_language]}{other}"
+    tables = CONTRACTED if language.endswith(_GRADE_2) else TABLES
+    return f"liblouis {library.version}, {tables[code_language]}{other}"
 
 
 def _language_of(tag: str) -> str:

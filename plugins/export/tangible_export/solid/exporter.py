@@ -13,6 +13,8 @@ from tangible_core.data import Work
 from tangible_core.plugins import Exporter, Medium, Previewing
 from tangible_core.preflight import over
 
+from ..braille import BrailleChoice
+
 if TYPE_CHECKING:
     from .closed import Solid
     from .plate import Layout
@@ -39,8 +41,8 @@ class SolidExporter(Exporter, Previewing):
     """Width of the flat rim around the picture; 0 for none. The title and the corner mark need 4 mm."""
     corner_mark: bool = True
     """Add a raised triangle to the rim, at the upper right: fingers find which way up the plate lies."""
-    braille: bool = True
-    """Write the title in braille, on the rim below the picture."""
+    braille: bool | BrailleChoice = True
+    """Write the title in braille, on the rim below the picture; `{grade: 2}` contracts it."""
     braille_language: Annotated[str, Field(min_length=1, max_length=35)] | None = None
     """Language of the braille, such as de; null for the title's own."""
 

@@ -13,7 +13,7 @@ from tangible_core.errors import GeometryError, OutputError, quoted
 from tangible_core.plugins import note
 from tangible_core.runtime import plain_opencv
 
-from ..braille import Cells, title_in_braille, width_m, wrapped, written_by
+from ..braille import BrailleChoice, Cells, in_grade, title_in_braille, width_m, wrapped, written_by
 from .closed import Solid, close_solid
 from .plate import MIN_RIM_M, Layout, plate
 from .triangles import Triangles, all_triangles, few_triangles, sample_nodes
@@ -56,7 +56,7 @@ class PlateOptions(NamedTuple):
     base_m: float
     rim_m: float
     corner_mark: bool
-    braille: bool
+    braille: bool | BrailleChoice
     braille_language: str | None
 
 
@@ -114,7 +114,8 @@ def _layout(options: PlateOptions, work: Work) -> Layout:
 
 def _title(options: PlateOptions, work: Work) -> tuple[Cells, ...]:
     """Return the title in lines of braille."""
-    language, room_m = options.braille_language or work.language, work.relief.extent_m[0]
+    grade = BrailleChoice.in_force(options.braille).grade
+    language, room_m = in_grade(options.braille_language or work.language, grade), work.relief.extent_m[0]
     if room_m < MIN_LINE_M:
         raise OutputError(
             f"the picture is {1000 * room_m:.3g} mm wide, too narrow for its title in braille; make longer_side_m "

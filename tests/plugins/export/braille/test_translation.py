@@ -8,9 +8,9 @@ import pytest
 
 from tangible_core.errors import BrailleError
 from tangible_core.plugins.notes import collected
-from tangible_export.braille import as_ascii, as_unicode, translate, translation, written_by
+from tangible_export.braille import as_ascii, as_unicode, in_grade, translate, translation, written_by
 from tangible_export.braille.latin import LANGUAGES, LETTERS, code_of, translate_by_table
-from tangible_export.braille.louis import TABLES, Louis, louis
+from tangible_export.braille.louis import CONTRACTED, TABLES, Louis, louis
 
 ORDINARY = {
     "en": (
@@ -115,6 +115,30 @@ def test_written_by_names_the_translator(installed: Louis, without: Callable[[ob
     assert written_by("pt") == f"liblouis {installed.version}, en-ueb-g1.ctb, for want of one for 'pt'"
     without(OSError("not found"))
     assert written_by("de-AT") == "our own table of the German Basisschrift (liblouis is not installed)"
+
+
+@pytest.mark.parametrize(
+    ("text", "language", "braille"),
+    [("the", "en", "⠮"), ("knowledge", "en", "⠅"), ("und", "de", "⠥"), ("b", "en", "⠃"), ("abc", "en", "⠁⠃⠉")],
+)
+def test_contracted_braille_is_that_of_the_codes(installed: Louis, text: str, language: str, braille: str):
+    contracted = in_grade(language, 2)
+    assert as_unicode(translate(text, contracted)) == braille and written_by(contracted).endswith(CONTRACTED[language])
+    assert len(translate("quelque chose", in_grade("fr", 2))) < len(translate("quelque chose", in_grade("fr", 1)))
+
+
+@pytest.mark.parametrize(
+    ("library", "language", "says"),
+    [
+        (OSError("not found"), "de-AT", r"needs liblouis, and liblouis is not installed; install it .*{grade: 1}"),
+        ("three calls", "en", r"cannot use its table en-ueb-g2.ctb; install all of its tables .*{grade: 1}"),
+        (OSError("not found"), "pt", r"no contracted braille for 'pt'; there is for en, de and fr, or .*{grade: 1}"),
+    ],
+)
+def test_contracted_braille_is_refused_with_the_cure(without, library: object, language: str, says: str):
+    without(odd(works=len(TABLES)) if library == "three calls" else library)
+    with pytest.raises(BrailleError, match=says):
+        in_grade(language, 2)
 
 
 def odd(size: int = 4, cells: tuple[int, ...] = (1, 3, 9), works: int = 10**9, unread: int = 0) -> object:

@@ -62,11 +62,12 @@ def svg(drawing: Drawing, colour: str = BLACK, over: Sequence[str] = ()) -> str:
     colour: of the marks. over: elements that lie over them.
     """
     sheet = drawing.sheet
+    language = quoteattr(drawing.language.partition("-x-")[0])  # without the grade of the braille
     paint = "" if colour == BLACK else f'fill="{colour}" '
     width, length = f"{sheet.width_mm:g}", f"{sheet.length_mm:g}"
     lines = [
         f'<svg {paint}xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{length}mm" '
-        f'viewBox="0 0 {width} {length}" lang={quoteattr(drawing.language)} xml:lang={quoteattr(drawing.language)} '
+        f'viewBox="0 0 {width} {length}" lang={language} xml:lang={language} '
         'role="graphics-document document" aria-labelledby="title" aria-describedby="description">',
         f'<title id="title">{escape(drawing.title)}</title>',
         f'<desc id="description">{escape(drawing.description)}</desc>',

@@ -193,12 +193,12 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
     if kind == "photo":
         size["texture"] = TEXTURES[_is_drawing(scene)]
         size["kind"] = f"   # {kind_sentence(scene.kind)}" if _is_drawing(scene) else ""
-        size["named"] = _named(scene)
+        size["named"] = _names_text(scene)
         size["relief"] = Template(PHOTOS[_felt_of(scene)]).substitute(size)
     return size
 
 
-def _named(scene: Scene) -> str:
+def _names_text(scene: Scene) -> str:
     """Return the lines with the title and the names of the parts that the picture states; "" without any.
 
     No two parts have one name: the second one of a name is followed by 2.

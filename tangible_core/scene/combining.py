@@ -15,7 +15,7 @@ from .formats.pictures import without
 from .framing import OFFSET, apply_framing, cut_out, measured_size
 from .rig import StereoRig, rectify_views
 from .scene_files import SceneFiles, as_numbers
-from .vectors import VectorPage, framed_texts, rank_labels
+from .vectors import VectorPage, frame_texts, rank_labels
 from .video.files import still
 
 PICTURES = {"left", "right", "photo", "stereo"}
@@ -65,7 +65,7 @@ def combine_parts(
         "views": views,
         "stated_kind": PictureKind(files.kind) if files.kind else page and page.kind,
         "disparity": _disparity(parts, files, camera),
-        **_said(parts, files, page, whole),
+        **_statements(parts, files, page, whole),
         "height": parts.get("height"),
         "offset": float(parts.get(OFFSET, 0.0)),
         "measured": map_size,
@@ -75,14 +75,14 @@ def combine_parts(
     }
 
 
-def _said(
+def _statements(
     parts: Mapping[str, np.ndarray], files: SceneFiles, page: VectorPage | None, whole: tuple[int, ...]
 ) -> dict[str, Any]:
     """Return the segments, and what vectors say of them: names, texts and the title."""
     given = SegmentMap(parts["segments"]) if "segments" in parts and (page is None or files.segments) else None
     if page is None:
         return {"segments": given}
-    said = {"segments": given, "title": page.title, "texts": framed_texts(page.texts, whole, files.crop, files.rotate)}
+    said = {"segments": given, "title": page.title, "texts": frame_texts(page.texts, whole, files.crop, files.rotate)}
     if given is not None or "segments" not in parts:
         return said
     present, labels = rank_labels(parts["segments"])  # a crop may leave some out

@@ -58,7 +58,7 @@ class Scene:
     stated_kind: PictureKind | None = None
     """The kind of the picture, where it is given and not measured."""
     segment_names: tuple[str, ...] = ()
-    """What the file calls the segments, by their numbers, "" without a name; () where it names none."""
+    """The names that the file gives the segments, by their numbers, "" without one; () where it names none."""
     texts: tuple[PictureText, ...] = ()
     """The texts that the file states, which are not in the picture."""
     title: str = ""

@@ -37,7 +37,7 @@ from .formats.pictures import (
 from .formats.rigs import find_rig, read_rig
 from .rig import StereoRig
 from .scene_files import SceneFiles, as_numbers
-from .vectors import is_vectors, read_vectors
+from .vectors import read_pdf, read_svg
 from .video.files import frame_parts, read_video
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -101,9 +101,12 @@ class SceneSource:
             )
             parts |= views_of(left, right, files.non_finite, notes.append)._asdict()
         warnings: list[str] = []
-        page = None
-        if "photo" in paths and is_vectors(paths["photo"]):
-            page = read_vectors(paths["photo"], bytes_of(paths["photo"]), files.page, warnings.append)
+        page, photo = None, paths.get("photo", Path())
+        if photo.suffix.lower() == ".svg":
+            page = read_svg(photo, bytes_of(photo), warnings.append)
+        elif photo.suffix.lower() == ".pdf":
+            page = read_pdf(photo, bytes_of(photo), files.page, warnings.append)
+        if page is not None:
             parts["photo"] = page.picture
             if page.labels is not None and files.segments is None:
                 parts["segments"] = page.labels

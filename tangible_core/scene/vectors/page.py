@@ -1,5 +1,6 @@
 """A page of vectors, whichever format it has."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -14,7 +15,7 @@ SIDE_PX = 2000
 
 
 class VectorPage(NamedTuple):
-    """What vectors say of a picture."""
+    """A picture in vectors, and its shapes, names and texts."""
 
     picture: UInt8[np.ndarray, "h w 3"]
     """The page on white, without its texts."""
@@ -25,7 +26,17 @@ class VectorPage(NamedTuple):
     texts: tuple[PictureText, ...] = ()
     title: str = ""
     kind: PictureKind | None = None
-    """None to measure it."""
+    """The kind of the picture; None to measure it."""
+
+
+def title_among(texts: Sequence[PictureText]) -> str:
+    """Return the text that stands where titles do: the uppermost, if it is in the middle above, and no small print."""
+    if not texts:
+        return ""
+    tallest = max(text.box[3] - text.box[1] for text in texts)
+    first = min(texts, key=lambda text: text.middle[1])
+    (across, down), tall = first.middle, first.box[3] - first.box[1]
+    return first.content if abs(across - 0.5) < 0.1 and down < 0.15 and tall > 0.8 * tallest else ""
 
 
 def rank_labels(labels: Int32[np.ndarray, "h w"]) -> tuple[tuple[int, ...], Int32[np.ndarray, "h w"]]:
@@ -34,7 +45,7 @@ def rank_labels(labels: Int32[np.ndarray, "h w"]) -> tuple[tuple[int, ...], Int3
     return tuple(map(int, np.flatnonzero(there))), (np.cumsum(there, dtype=np.int32) - 1)[labels]
 
 
-def framed_texts(
+def frame_texts(
     texts: tuple[PictureText, ...], shape: tuple[int, ...], crop: tuple[int, int, int, int] | None, clockwise_deg: int
 ) -> tuple[PictureText, ...]:
     """Return the texts in the frame of a picture of (h, w) that is cropped and then turned; others are left out."""

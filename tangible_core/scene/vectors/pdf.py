@@ -13,7 +13,7 @@ from ...data import PictureText
 from ...drawing import PictureKind, picture_kind
 from ...errors import PictureError
 from ..formats.multi_picture import Notify, ignore
-from .page import SIDE_PX, VectorPage
+from .page import SIDE_PX, VectorPage, title_among
 
 _turn = Lock()
 """Lock around the library, which keeps its state in global variables."""
@@ -56,10 +56,10 @@ def _read_page(document: Any, number: int) -> VectorPage:
     whole = _render(page)
     texts = _texts(page)
     if picture_kind(whole).likely == PictureKind.text:
-        return VectorPage(whole, texts=texts, title=_title(document), kind=PictureKind.text)
+        return VectorPage(whole, texts=texts, title=_title(document, texts), kind=PictureKind.text)
     for each in list(page.get_objects(filter=(raw.FPDF_PAGEOBJ_TEXT,), max_depth=1)):
         page.remove_obj(each)
-    return VectorPage(_render(page), texts=texts, title=_title(document))
+    return VectorPage(_render(page), texts=texts, title=_title(document, texts))
 
 
 def _render(page: Any) -> UInt8[np.ndarray, "h w 3"]:
@@ -68,8 +68,8 @@ def _render(page: Any) -> UInt8[np.ndarray, "h w 3"]:
     return np.ascontiguousarray(bitmap.to_numpy()[..., :3])
 
 
-def _title(document: Any) -> str:
-    return " ".join(str(document.get_metadata_value("Title")).split())
+def _title(document: Any, texts: tuple[PictureText, ...]) -> str:
+    return " ".join(str(document.get_metadata_value("Title")).split()) or title_among(texts)
 
 
 def _texts(page: Any) -> tuple[PictureText, ...]:

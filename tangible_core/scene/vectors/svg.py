@@ -19,7 +19,7 @@ from ...errors import PictureError, shown
 from ...files.reading import in_words
 from ...runtime.opencv import plain_opencv
 from ..formats.multi_picture import Notify, ignore
-from .page import SIDE_PX, VectorPage, rank_labels
+from .page import SIDE_PX, VectorPage, rank_labels, title_among
 from .tree import HIDE, Item, cut_off, items_of, local, title_of, walk, words_in
 
 MAX_BYTES = 20_000_000
@@ -69,10 +69,13 @@ def read_svg(path: Path, data: bytes, notify: Notify = ignore) -> VectorPage:
     if labels is None:
         notify(f"{path.name} has more than {MAX_SHAPES} shapes, which is a texture: its parts are found by colour")
     else:
-        labels, names = _named(labels, shapes, read, path.name, notify)
+        labels, names = _name_shapes(labels, shapes, read)
+    loose = [text for text in read if text.content not in names]
+    title = title_of(root) or title_among(loose)
+    if left := [text.content for text in loose if text.content != title]:
+        notify(f"texts of {path.name} that name no part are left out: {shown(', '.join(left))}")
     raster = any(local(each) == "image" and "href" in "".join(each.attrib) for each, _, _ in walk(root))
     drawn = PictureKind.drawing if labels is None or labels.any() else PictureKind.lines
-    title = title_of(root)
     return VectorPage(picture, labels, names, read, title, None if raster else drawn)
 
 
@@ -205,25 +208,21 @@ def _direction(element: Element) -> float:
     return -degrees(atan2(float(found[2]), float(found[1]))) % 360 if found else 0.0
 
 
-def _named(
-    labels: Int32[np.ndarray, "h w"], shapes: list[Item], texts: tuple[PictureText, ...], file: str, notify: Notify
+def _name_shapes(
+    labels: Int32[np.ndarray, "h w"], shapes: list[Item], texts: tuple[PictureText, ...]
 ) -> tuple[Int32[np.ndarray, "h w"], tuple[str, ...]]:
-    """Return labels from 0, each of them present, and their names; and remark on texts that name nothing."""
+    """Return labels from 0, each of them present, and their names."""
     present, labels = rank_labels(labels)
     rim = np.bincount(np.concatenate([labels[0], labels[-1], labels[:, 0], labels[:, -1]]), minlength=len(present))
     inside = defaultdict[int, list[PictureText]](list)
     for text in texts:
         across, down = text.middle
         inside[int(labels[int(down * labels.shape[0]), int(across * labels.shape[1])])].append(text)
-    names, used = list[str](), set[str]()
+    names = list[str]()
     for place, number in enumerate(present):
         shape = shapes[number - 1] if number else Item(Element("g"), "", "")
         is_ground = number == 0 or 2 * rim[place] > rim.sum()
-        said = "" if is_ground else _largest(inside[place])
-        used.add(said)
-        names.append(shape.label or said or shape.name)
-    if loose := [text.content for text in texts if text.content not in used]:
-        notify(f"texts of {file} that name no part are left out: {shown(', '.join(loose))}")
+        names.append(shape.label or ("" if is_ground else _largest(inside[place])) or shape.name)
     return labels, tuple(names)
 
 

@@ -29,7 +29,7 @@ RULE = re.compile(r"([^{}]+)\{([^{}]*)\}")
 SELECTOR = re.compile(r"([\w-]*|\*)(?:\.([\w-]+)|#([\w-]+))?")
 """A selector of one element: a tag, a class, an id, or a tag with a class."""
 OWN_MARKS = ("braille", "fill", "corner")
-"""The marks of our own pages for swell paper that are no part of the picture (`data-mark`)."""
+"""The marks of our own pages for swell paper that do not belong to the picture (`data-mark`)."""
 
 
 class Item(NamedTuple):
@@ -85,9 +85,9 @@ def items_of(root: Element) -> tuple[list[Item], list[Item]]:
     shapes, texts, aside = list[Item](), list[Item](), set[Element]()
     for element, parent, _ in walk(root):
         styles, label, name = (dict[str, str](), "", "") if parent is None else known[parent]
-        styles = {**styles, **_declared(element, rules)}
+        styles = {**styles, **_declarations(element, rules)}
         if parent is not None:
-            label, name = _label(element) or label, _chosen(element.get("id", "")) or name
+            label, name = _label(element) or label, _own_name(element.get("id", "")) or name
         known[element] = styles, label, name
         tag = local(element)
         if tag in ASIDE or parent in aside:
@@ -131,7 +131,7 @@ def _label(element: Element) -> str:
     return next(filter(None, titles), "") or next((" ".join(each.split()) for each in given), "")
 
 
-def _chosen(own: str) -> str:
+def _own_name(own: str) -> str:
     return "" if GIVEN.fullmatch(own) else " ".join(own.replace("_", " ").split())
 
 
@@ -147,7 +147,7 @@ def _pairs(block: str) -> dict[str, str]:
     return {name.strip(): value.replace("!important", "").strip() for name, _, value in pairs if value}
 
 
-def _declared(element: Element, rules: list[tuple[re.Match[str], dict[str, str]]]) -> dict[str, str]:
+def _declarations(element: Element, rules: list[tuple[re.Match[str], dict[str, str]]]) -> dict[str, str]:
     """Return what an element says of its paint: attributes, then rules in their order, then its own style."""
     declared = dict(element.attrib)
     classes = element.get("class", "").split()

@@ -65,6 +65,13 @@ def test_texts_are_known_and_out_of_the_picture(scene: Scene):
     assert scene.warnings == ("texts of cell.svg that name no part are left out: energy, 3, side",)
 
 
+def test_title_of_a_drawing_without_one_is_the_text_above_it(tmp_path: Path):
+    texts = '<text x="34" y="9" font-size="7">Fruit</text><text x="80" y="50" font-size="6">5</text>'
+    (tmp_path / "f.svg").write_text(f'{HEAD}viewBox="0 0 90 60">{texts}<path d="M9 20H60V50H9Z" fill="red"/></svg>')
+    scene = Scene.photo(tmp_path / "f.svg")
+    assert (scene.title, scene.warnings) == ("Fruit", ("texts of f.svg that name no part are left out: 5",))
+
+
 def test_crop_and_turn_take_names_and_texts_along(cell: Path):
     scene = Scene.photo(cell, crop=(200, 1000, 1000, 500), rotate=90)
     assert scene.segment_names == ("", "cell body", "vacuole") and scene.shape == (1000, 500)

@@ -1,6 +1,9 @@
 """SVG: the picture, and what its shapes and texts say."""
 
+import json
 import re
+import subprocess
+from base64 import b64decode
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from math import atan2, degrees
@@ -17,6 +20,7 @@ from ...data.pictures import fill_from_nearest
 from ...drawing import PictureKind, find_ink, find_texts
 from ...errors import PictureError, shown
 from ...files.reading import in_words
+from ...runtime.child_process import python
 from ...runtime.opencv import plain_opencv
 from ..formats.multi_picture import Notify, ignore
 from .page import SIDE_PX, VectorPage, rank_labels, title_among
@@ -32,6 +36,16 @@ LEAST = 1 / 60
 """The side of the least square that shows as a shape without a name, by the longer side: a speck, or a letter."""
 STROKE = 1 / 55
 """The width from which a stroke is an area, as a share of the longer side."""
+MAX_SECONDS, MAX_MEMORY = 60, 4 << 30
+"""The limits of drawing, s and bytes."""
+CHILD = """import base64, json, {0} as resvg
+try:
+    import resource
+    resource.setrlimit(resource.RLIMIT_AS, ({1}, {1}))
+except ImportError:
+    pass
+print(json.dumps([base64.b64encode(resvg.svg_to_bytes(**call)).decode() for call in json.load(sys.stdin)]))"""
+"""The program that renders; Windows has no limits of memory."""
 LARGER = 1.5
 """The least ratio of the height of a text that names a part to those of others in it."""
 PLAIN = "*{opacity:1!important;fill-opacity:1!important;stroke-opacity:1!important;filter:none!important;" \
@@ -52,19 +66,22 @@ def read_svg(path: Path, data: bytes, notify: Notify = ignore) -> VectorPage:
     if runs:
         notify(f"scripts in {path.name} are not run; if they draw something, save the drawing as it is shown")
     shapes, texts = items_of(root)
+    flat = _flat_styles(root, shapes, texts) if len(shapes) <= MAX_SHAPES else []
+    lettered = [_text_styles(shapes, texts)] if texts else []
+    ways = [{each.element: HIDE for each in texts}, *flat, *lettered]
     try:
-        pixels = _render(root, {each.element: HIDE for each in texts})
-        alpha = pixels[..., 3:].astype(np.float32) / 255
-        picture = np.rint(pixels[..., :3] * alpha + 255 * (1 - alpha)).astype(np.uint8)
-        labels = _labels(root, shapes, texts, picture) if len(shapes) <= MAX_SHAPES else None
-        read = _read_texts(root, shapes, texts) if texts else ()
+        pixels, *numbered = _render([_styled(root, styles) for styles in ways])
     except ValueError as error:
         raise _unreadable(path, str(error)) from error
-    if not alpha.any():
+    if not pixels[..., 3].any():
         what = "holds only texts, which fingers cannot read as a picture; write them in braille" if texts else (
             "shows nothing; check that the drawing is not hidden or outside of the page"
         )  # fmt: skip
         raise PictureError(f"{path}: {what}")
+    alpha = pixels[..., 3:].astype(np.float32) / 255
+    picture = np.rint(pixels[..., :3] * alpha + 255 * (1 - alpha)).astype(np.uint8)
+    labels = _labels(numbered[0], numbered[1], shapes, picture) if flat else None
+    read = _read_texts(numbered[-1], texts) if texts else ()
     names: tuple[str, ...] = ()
     if labels is None:
         notify(f"{path.name} has more than {MAX_SHAPES} shapes, which is a texture: its parts are found by colour")
@@ -105,29 +122,49 @@ def _unreadable(path: Path, why: str) -> PictureError:
     return PictureError(f"{path}: cannot be read as SVG: {why}; save it again as plain SVG, or as PNG")
 
 
-def _render(root: Element, styles: Mapping[Element, str], sheet: str = "") -> UInt8[np.ndarray, "h w 4"]:
-    """Render the tree with further styles of its elements, SIDE_PX long. Raises: ValueError."""
-    import cv2
-    import resvg_py
-    from matplotlib import get_data_path
-
+def _styled(root: Element, styles: Mapping[Element, str]) -> str:
+    """Return the text of the tree with further styles of its elements."""
     before = {element: element.get("style", "") for element in styles}
     try:
         for element, style in styles.items():
             element.set("style", (before[element] + style).lstrip(";"))
-        text = ElementTree.tostring(root, encoding="unicode")
+        return ElementTree.tostring(root, encoding="unicode")
     finally:
         for element, style in before.items():
             element.set("style", style)
+
+
+def _render(texts: Sequence[str]) -> list[UInt8[np.ndarray, "h w 4"]]:
+    """Render documents, SIDE_PX long: the first as it is, the others in flat colours.
+
+    A process of its own does it, since the library ends it where memory is lacking, and a drawing may take hours.
+    Raises: ValueError.
+    """
+    import cv2
+    import resvg_py
+    from matplotlib import get_data_path
+
     font = str(Path(get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf")  # the same on every system
-    png = resvg_py.svg_to_bytes(
-        *(text, None, None, True), dpi=96, width=SIDE_PX, height=SIDE_PX, style_sheet=sheet or None, font_files=[font],
-        font_family="DejaVu Sans", serif_family="DejaVu Sans", sans_serif_family="DejaVu Sans",
-        monospace_family="DejaVu Sans",
-    )  # fmt: skip
+    families = dict.fromkeys(("font_family", "serif_family", "sans_serif_family", "monospace_family"), "DejaVu Sans")
+    every = {"dpi": 96, "width": SIDE_PX, "height": SIDE_PX, "skip_system_fonts": True, "font_files": [font]} | families
+    sheets = [None, *[PLAIN] * (len(texts) - 1)]
+    calls = [{"svg_string": text, "style_sheet": sheet, **every} for text, sheet in zip(texts, sheets, strict=True)]
+    try:
+        done = subprocess.run(
+            python(CHILD.format(resvg_py.__name__, MAX_MEMORY)), input=json.dumps(calls), timeout=MAX_SECONDS,
+            capture_output=True, text=True, encoding="utf-8", check=False,
+        )  # fmt: skip
+    except subprocess.TimeoutExpired as error:
+        raise ValueError(f"it takes more than {MAX_SECONDS} s to draw") from error
+    if done.returncode:
+        said = re.findall(r"^ValueError: (.*)$", done.stderr, re.MULTILINE)
+        raise ValueError(said[-1] if said else "it takes too much memory to draw")
+    pictures = list[UInt8[np.ndarray, "h w 4"]]()
     with plain_opencv():
-        pixels = np.asarray(cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_UNCHANGED), np.uint8)
-    return pixels[..., [2, 1, 0, 3]]
+        for png in json.loads(done.stdout):
+            pixels = cv2.imdecode(np.frombuffer(b64decode(png), np.uint8), cv2.IMREAD_UNCHANGED)
+            pictures.append(np.asarray(pixels, np.uint8)[..., [2, 1, 0, 3]])
+    return pictures
 
 
 def _numbers(pixels: UInt8[np.ndarray, "h w 4"], count: int) -> Int32[np.ndarray, "h w"]:
@@ -137,16 +174,8 @@ def _numbers(pixels: UInt8[np.ndarray, "h w 4"], count: int) -> Int32[np.ndarray
     return np.where((alpha == 255) & (numbers <= count), numbers, 0)
 
 
-def _labels(
-    root: Element, shapes: list[Item], texts: list[Item], picture: UInt8[np.ndarray, "h w 3"]
-) -> Int32[np.ndarray, "h w"]:
-    """Return the number of the shape, from 1, that covers each pixel; 0 for the ground.
-
-    A stroke is an area only where it is wide. Letters that are drawn as shapes go to what is around them.
-    """
-    import cv2
-    from skimage.measure import label  # pyright: ignore[reportMissingTypeStubs, reportUnknownVariableType]
-
+def _flat_styles(root: Element, shapes: list[Item], texts: list[Item]) -> list[dict[Element, str]]:
+    """Return the styles by which each shape is its number, from 1, as a colour: without strokes, and with them."""
     hidden = {each.element: HIDE for each in texts}
     hidden |= {element: HIDE for element, _, _ in walk(root) if local(element) == "image"}
     fills, drawn = dict(hidden), dict(hidden)
@@ -156,7 +185,20 @@ def _labels(
         fill = f";fill-rule:evenodd!important{fill}" if shape.outline else fill
         fills[shape.element] = fill + none
         drawn[shape.element] = fill + (paint if shape.stroked else none)
-    labels, whole = (_numbers(_render(root, styles, PLAIN), len(shapes)) for styles in (fills, drawn))
+    return [fills, drawn]
+
+
+def _labels(
+    fills: UInt8[np.ndarray, "h w 4"], drawn: UInt8[np.ndarray, "h w 4"], shapes: list[Item], picture: np.ndarray
+) -> Int32[np.ndarray, "h w"]:
+    """Return the number of the shape, from 1, that covers each pixel; 0 for the ground.
+
+    A stroke is an area only where it is wide. Letters that are drawn as shapes go to what is around them.
+    """
+    import cv2
+    from skimage.measure import label  # pyright: ignore[reportMissingTypeStubs, reportUnknownVariableType]
+
+    labels, whole = _numbers(fills, len(shapes)), _numbers(drawn, len(shapes))
     side = round(STROKE * max(labels.shape)) | 1
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))
     with plain_opencv():
@@ -176,13 +218,18 @@ def _labels(
     return labels if known.all() or not known.any() else fill_from_nearest(labels, known)
 
 
-def _read_texts(root: Element, shapes: list[Item], texts: list[Item]) -> tuple[PictureText, ...]:
-    """Return what the texts say, and where; those that are not shown are left out."""
+def _text_styles(shapes: list[Item], texts: list[Item]) -> dict[Element, str]:
+    """Return the styles by which each text is its number, from 1, as a colour."""
     styles = {each.element: HIDE for each in shapes}
     for number, text in enumerate(texts, 1):
         for element, _, _ in walk(text.element):
             styles[element] = f";fill:#{number:06x}!important;stroke:none!important"
-    numbers = _numbers(_render(root, styles, PLAIN), len(texts))
+    return styles
+
+
+def _read_texts(pixels: UInt8[np.ndarray, "h w 4"], texts: list[Item]) -> tuple[PictureText, ...]:
+    """Return what the texts say, and where; those that are not shown are left out."""
+    numbers = _numbers(pixels, len(texts))
     found, (rows, columns) = list[PictureText](), numbers.shape
     for number, (down, across) in enumerate(_places(numbers, len(texts)), 1):
         content = " ".join(words_in(texts[number - 1].element).split())

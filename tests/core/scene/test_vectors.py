@@ -103,6 +103,10 @@ def test_starter_names_the_parts_and_the_title(cell: Path):
             + "".join(f'<g id="a{i}">' + f'<use href="#a{i - 1}"/>' * 10 + "</g>" for i in range(1, 9)) + "</svg>",
             "nodes limit reached",
         ),
+        (
+            HEAD + 'viewBox="0 0 9 9"><pattern id="p" width="1e6" height="1e6" patternUnits="userSpaceOnUse"><path '
+            'd="M0 0H9V9Z"/></pattern><rect width="9" height="9" fill="url(#p)"/></svg>', "too much memory",
+        ),
     ],
 )  # fmt: skip
 def test_svg_that_cannot_be_a_picture_is_refused_with_the_cure(text: str, said: str, tmp_path: Path):

@@ -151,17 +151,24 @@ def _raised(made: Made, drawn: np.ndarray) -> np.ndarray:
 
 
 def _texts() -> Iterator[Figure]:
-    found = count = 0
+    found = count = false = boxes = 0
     for kind in ("drawing", "lines"):
         for made in made_drawings("told", kind, FEW):
             ink = find_ink(made.picture)
-            letters = find_texts(ink).ink
+            texts = find_texts(ink)
+            near = np.zeros(ink.mask.shape, np.bool_)
             for box in made.texts:
                 left, top, right, bottom = (max(0, round(edge)) for edge in box)
                 own = ink.mask[top:bottom, left:right]
-                found += bool(own.any()) and letters[top:bottom, left:right][own].mean() > OVERLAP
-                count += 1
+                found += bool(own.any()) and texts.ink[top:bottom, left:right][own].mean() > OVERLAP
+                near[top:bottom, left:right] = True
+            for text in texts.boxes:
+                at = np.array(text[:4]) * np.tile(ink.mask.shape[::-1], 2)
+                left, top, right, bottom = np.rint(at).astype(int)
+                false += not near[top:bottom, left:right].any()
+            count, boxes = count + len(made.texts), boxes + len(texts.boxes)
     yield Figure("labels found", ">= 0.95", f"{found / count:.3f}", found / count >= 0.95)
+    yield Figure("places taken for a text without one", "<= 0.02", f"{false / boxes:.3f}", false / boxes <= 0.02)
 
 
 def pictures(folder: Path) -> None:

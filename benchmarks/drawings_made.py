@@ -14,6 +14,8 @@ from PIL import Image, ImageDraw, ImageFont
 
 FINER = 4
 """The factor by which a picture is drawn larger before it is reduced, which smooths its edges."""
+SEEN = 0.9
+"""The share of a text from which on it is one; of others too much is painted over."""
 SIDES = (640, 1000)
 """The least and the most pixels of a side."""
 WORDS = [
@@ -56,6 +58,10 @@ class Made:
     widths: list[float] = field(default_factory=list)
     texts: list[tuple[float, float, float, float]] = field(default_factory=list)
     """Boxes of texts: left, top, right, bottom."""
+    words: list[str] = field(default_factory=list)
+    """What the texts say."""
+    names: list[int] = field(default_factory=list)
+    """The number of the area that each text names; -1 without one."""
 
 
 class Paper:
@@ -66,13 +72,18 @@ class Paper:
         self.width, self.height = (int(each) for each in rng.integers(*SIDES, 2))
         self.fine = np.full((self.height * FINER, self.width * FINER, 3), paper, np.uint8)
         self.areas = np.zeros(self.fine.shape[:2], np.int32)
+        self.letters = np.zeros(self.fine.shape[:2], np.uint8)
+        self.sizes: list[int] = []
+        self.last = 0
         self.made = Made(self.fine, "", "", self.areas)
 
     def area(self, points: np.ndarray, colour: Any) -> None:
         """Fill a polygon, which is an area of its own."""
         at = [np.rint(points * FINER).astype(np.int32)]
         cv2.fillPoly(self.fine, at, tuple(int(each) for each in colour))
-        cv2.fillPoly(self.areas, at, int(self.areas.max()) + 1)
+        cv2.fillPoly(self.areas, at, self.last + 1)
+        cv2.fillPoly(self.letters, at, 0)
+        self.last += 1
 
     def line(self, points: np.ndarray, width: float, ink: Any, *, closed: bool = False) -> None:
         """Draw a line, and keep it."""
@@ -80,29 +91,39 @@ class Paper:
         at, thick = [np.rint(points * FINER).astype(np.int32)], max(1, round(width * FINER))
         cv2.polylines(self.fine, at, False, tuple(int(each) for each in ink), thick)
         cv2.polylines(self.areas, at, False, -1, thick)
+        cv2.polylines(self.letters, at, False, 0, thick)
         self.made.lines.append(np.asarray(points, float))
         self.made.widths.append(width)
 
-    def text(self, words: str, x: float, y: float, size: float, ink: Any) -> float:
-        """Write words with their upper left corner here, and return their width."""
-        name = FONTS[self.half][int(self.rng.integers(len(FONTS[self.half])))]
-        font = ImageFont.truetype(font_manager.findfont(name), round(size * FINER))
+    def text(self, words: str, x: float, y: float, size: float, ink: Any, name: int = -1) -> float:
+        """Write words with their upper left corner here, and return their width; name: the area that they name."""
+        family = FONTS[self.half][int(self.rng.integers(len(FONTS[self.half])))]
+        font = ImageFont.truetype(font_manager.findfont(family), round(size * FINER))
         left, top, right, bottom = (each / FINER for each in font.getbbox(words))
         if x + right >= self.width - 2 or y + bottom >= self.height - 2 or x < 0 or y < 0:
             return right
-        for target, value in ((self.fine, tuple(int(each) for each in ink)), (self.areas, -1)):
+        number = len(self.made.texts) + 1
+        for target, value in ((self.fine, tuple(map(int, ink))), (self.areas, -1), (self.letters, number)):
             box = np.s_[int(y * FINER) : int((y + bottom + 2) * FINER), int(x * FINER) : int((x + right + 2) * FINER)]
             mask = Image.new("L", (target[box].shape[1], target[box].shape[0]))
             ImageDraw.Draw(mask).text((0, 0), words, fill=255, font=font)
             target[box][np.asarray(mask) > 127] = value
         self.made.texts.append((x + left, y + top, x + right, y + bottom))
+        self.made.words.append(words)
+        self.made.names.append(name)
+        self.sizes.append(int((self.letters == number).sum()))
         return right
 
     def finished(self, kind: str, style: str) -> Made:
         """Reduce the picture to its size."""
         picture = cv2.resize(self.fine, (self.width, self.height), interpolation=cv2.INTER_AREA)
         labels = self.areas[FINER // 2 :: FINER, FINER // 2 :: FINER]
-        return replace(self.made, picture=picture, kind=kind, style=style, labels=np.ascontiguousarray(labels))
+        left = np.bincount(self.letters.ravel(), minlength=len(self.sizes) + 1)[1:]
+        seen = [number for number, size in enumerate(self.sizes) if left[number] >= SEEN * size]
+        every = self.made.texts, self.made.words, self.made.names
+        texts, words, names = ([values[number] for number in seen] for values in every)
+        made = replace(self.made, picture=picture, kind=kind, style=style, texts=texts, words=words, names=names)
+        return replace(made, labels=np.ascontiguousarray(labels))
 
 
 def _blob(rng: np.random.Generator, x: float, y: float, radius: float, rough: float = 0.25) -> np.ndarray:
@@ -130,8 +151,8 @@ def _word(rng: np.random.Generator) -> str:
     return str(rng.choice(WORDS))
 
 
-def _label(paper: Paper, x: float, y: float, ink: Any) -> None:
-    paper.text(_word(paper.rng) + " " * 0, x, y, paper.rng.uniform(15, 26), ink)
+def _label(paper: Paper, x: float, y: float, ink: Any, name: int = -1) -> None:
+    paper.text(_word(paper.rng), x, y, paper.rng.uniform(15, 26), ink, name)
 
 
 def _ink(rng: np.random.Generator) -> np.ndarray:
@@ -154,7 +175,7 @@ def _map(paper: Paper) -> None:
         if outlined:
             paper.line(country, width, ink, closed=True)
         if (middle := country.mean(axis=0)) is not None and rng.random() < 0.8:
-            _label(paper, middle[0] - 30, middle[1] - 10, ink)
+            _label(paper, middle[0] - 30, middle[1] - 10, ink, paper.last)
 
 
 def _cell(paper: Paper) -> None:
@@ -174,7 +195,7 @@ def _cell(paper: Paper) -> None:
             side = -1 if x < 0 else 1
             out = np.array([w / 2 + side * (r + 0.08 * w), h / 2 + y])
             paper.line(np.array([[w / 2 + x, h / 2 + y], out]), rng.uniform(1.2, 2.5), ink)
-            _label(paper, out[0] + (6 if side > 0 else -80), out[1] - 10, ink)
+            _label(paper, out[0] + (6 if side > 0 else -80), out[1] - 10, ink, paper.last)
 
 
 def _bars(paper: Paper) -> None:

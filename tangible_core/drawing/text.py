@@ -18,12 +18,27 @@ APART = 1.2
 """The greatest distance from a letter to the next, by the height of the higher one."""
 TALLER = 2.4
 """The greatest ratio of the heights of two letters next to each other."""
-SOLID = 0.8
-"""The share of its own rectangle from which on a piece is a dash or a dot, and may only stand among letters."""
-HOLLOW = 0.4
-"""The least share of pieces of a row that are letters, and neither dashes nor dots."""
 MAX_PIECES = 12_000
 """The most pieces that are looked at: more are a texture."""
+
+
+CONSTANTS: tuple[float, float] = (-0.35, 0.33)
+MEASURES: Float64[np.ndarray, "measures 4"] = np.array([
+    (0.53, 1.18, 1.54, -0.19),
+    (0.80, 0.19, -4.66, -1.19),
+    (-0.60, 0.45, 1.45, -0.28),
+    (-1.06, 0.43, -1.43, 0.25),
+    (2.68, 1.18, -1.87, -1.13),
+    (0.38, 0.24, 2.26, -2.40),
+    (1.13, 0.25, -0.26, 0.19),
+    (1.45, 0.76, 2.48, -0.37),
+])  # fmt: skip
+"""The constants of a score that is above 0 for text, for a row of one piece and of more; and for each measure of
+`_measure_rows` its mean and spread, and the weights of its deviation and of the square of that."""
+FAR = 4.0
+"""The greatest deviation of a measure that counts, in spreads."""
+TILTED = 3.0
+"""The least width of a row by its height whose direction is that of its ink; a shorter one counts as level."""
 
 
 class Text(NamedTuple):
@@ -35,6 +50,8 @@ class Text(NamedTuple):
     bottom: float
     letters: int
     """The number of its pieces."""
+    direction_deg: float
+    """The direction in which it is read, counterclockwise from the picture's right."""
 
 
 class Texts(NamedTuple):
@@ -46,9 +63,9 @@ class Texts(NamedTuple):
 
 
 def find_texts(ink: Ink) -> Texts:
-    """Find rows of letters in ink: pieces of like height next to each other, most of them neither dash nor dot.
+    """Find rows of letters in ink: pieces of like height next to each other that are shaped and inked like letters.
 
-    Rows may be tilted by some degrees. A single letter is not told from a mark.
+    Rows may be tilted by some degrees, letters of a word may touch, and a letter may stand alone.
     """
     import cv2
     from scipy.sparse import coo_array
@@ -59,34 +76,46 @@ def find_texts(ink: Ink) -> Texts:
     pieces, boxes = np.asarray(pieces, np.int32), np.asarray(about, np.int64)
     left, top, wide, high = boxes[:, :4].T
     large = LETTER * max(pieces.shape)
-    small = (high >= LETTER_PX) & (high <= large) & (wide <= LONG * high) & (wide >= 1) & (wide <= 6 * large)
+    small = (high >= LETTER_PX) & (high <= large) & (wide <= LONG * high) & (wide <= 6 * large)
     dots = (high < LETTER_PX) & (wide <= large)
     small[0] = dots[0] = False
     chosen = np.flatnonzero(small)
     none = Texts((), np.zeros(pieces.shape, np.bool_))
-    if not 1 < chosen.size <= MAX_PIECES:
+    if not 0 < chosen.size <= MAX_PIECES:
         return none
     one, other = _neighbours(left[chosen], top[chosen], wide[chosen], high[chosen])
     graph = coo_array((np.ones(one.size), (one, other)), (chosen.size, chosen.size))
     row = np.asarray(connected_components(graph, directed=False)[1], np.int64)
-    letters = np.bincount(row)
-    hollow = np.bincount(row, _solidity(pieces, count)[chosen] < SOLID) / letters
-    is_text = (letters > 1) & (hollow >= HOLLOW)
+    letters, measures = np.bincount(row), _measure_rows(ink, pieces, boxes, chosen, row)
+    mean, spread, first, second = MEASURES.T
+    away = np.clip((measures - mean) / spread, -FAR, FAR)
+    is_text = np.where(letters == 1, *CONSTANTS) + away @ first + away**2 @ second > 0
     if not is_text.any():
         return none
     rows, columns = pieces.shape
     found = list[Text]()
     on = np.zeros(count, np.bool_)
-    on[chosen[is_text[row]]] = True
-    for each in np.flatnonzero(is_text):
-        of = chosen[row == each]
+    for number in np.flatnonzero(is_text):
+        of = chosen[row == number]
+        on[of] = True
         box = [int(edge.min()) for edge in (left[of], top[of])] + [
             int(edge.max()) for edge in ((left + wide)[of], (top + high)[of])
         ]
         inside = (left >= box[0] - high[of].max() / 4) & (left + wide <= box[2] + high[of].max() / 4)
         on |= dots & inside & (top >= box[1] - high[of].max() / 2) & (top <= box[3] + high[of].max() / 4)
-        found.append(Text(box[0] / columns, box[1] / rows, box[2] / columns, box[3] / rows, int(letters[each])))
+        shares = box[0] / columns, box[1] / rows, box[2] / columns, box[3] / rows
+        own = on[pieces[box[1] : box[3], box[0] : box[2]]]
+        found.append(Text(*shares, int(letters[number]), _direction(own)))
     return Texts(tuple(found), on[pieces])
+
+
+def _direction(own: Bool[np.ndarray, "r c"]) -> float:
+    """Return the direction of the longer axis of ink, degrees; 0 where it is hardly longer."""
+    if own.shape[1] < TILTED * own.shape[0]:
+        return 0.0
+    y, x = np.nonzero(own)
+    spread = np.cov(x, y)
+    return float(np.degrees(np.arctan2(-2 * spread[0, 1], spread[0, 0] - spread[1, 1])) / 2)
 
 
 def _neighbours(left: np.ndarray, top: np.ndarray, wide: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -105,15 +134,62 @@ def _neighbours(left: np.ndarray, top: np.ndarray, wide: np.ndarray, high: np.nd
     return np.concatenate([one for one, _ in pairs]), np.concatenate([other for _, other in pairs])
 
 
-def _solidity(pieces: Int32[np.ndarray, "r c"], count: int) -> Float64[np.ndarray, "n"]:
-    """Return the share of the area of a rectangle of the same second moments that each piece fills, about 1 for one."""
+def _measure_rows(
+    ink: Ink, pieces: Int32[np.ndarray, "r c"], boxes: np.ndarray, chosen: np.ndarray, row: np.ndarray
+) -> Float64[np.ndarray, "rows measures"]:
+    """Return what tells rows of letters from marks.
+
+    The logarithm of the number of pieces; means over the ink of its pieces of: the share of a rectangle of the same
+    second moments that a piece fills, the width of its stroke by its height, its holes, the step of the ground there,
+    its darkness, and the strokes that a column and a row of its pixels cross.
+    """
+    import cv2
+
     y, x = np.nonzero(pieces)
-    of = pieces[y, x]
+    of, count = pieces[y, x], len(boxes)
     size = np.maximum(np.bincount(of, minlength=count), 1)
-    mean_x, mean_y = (np.bincount(of, each, count) / size for each in (x, y))
-    xx, xy, yy = (
-        np.bincount(of, one * other, count) / size - first * second
-        for one, other, first, second in ((x, x, mean_x, mean_x), (x, y, mean_x, mean_y), (y, y, mean_y, mean_y))
+    wide, high = np.maximum(boxes[:, 2:4], 1).T
+
+    def mean(values: np.ndarray) -> np.ndarray:
+        return np.bincount(of, values, count) / size
+
+    mean_x, mean_y = mean(x), mean(y)
+    spread_x, spread_y = mean(x * x) - mean_x**2 + 1 / 12, mean(y * y) - mean_y**2 + 1 / 12
+    moment = np.maximum(spread_x * spread_y - (mean(x * y) - mean_x * mean_y) ** 2, 1e-9)
+    with plain_opencv():
+        inside = np.asarray(cv2.distanceTransform(ink.mask.astype(np.uint8), cv2.DIST_L2, 3))
+        window = np.ones((7, 7), np.uint8)
+        step = np.asarray(cv2.dilate(ink.ground, window) - cv2.erode(ink.ground, window)).max(axis=2)
+    begins = [
+        np.bincount(after.reshape(-1), ((after > 0) & (before == 0)).reshape(-1), count)
+        for after, before in ((pieces[1:], pieces[:-1]), (pieces[:, 1:], pieces[:, :-1]))
+    ]
+    of_pieces = [
+        size / (12 * np.sqrt(moment)),
+        4 * mean(inside[y, x]) / high,
+        _holes(pieces, count),
+        mean(step[y, x]),
+        mean(ink.darkness[y, x]),
+        begins[0] / wide,
+        begins[1] / high / np.maximum(wide / high, 0.3),
+    ]
+    area = np.bincount(row, size[chosen])
+    solid, thick, holes, steps, dark, *crossed = (
+        np.bincount(row, values[chosen] * size[chosen]) / area for values in of_pieces
     )
-    spread = np.sqrt(np.maximum((xx + 1 / 12) * (yy + 1 / 12) - xy * xy, 1e-9))
-    return size / (12 * spread)
+    logarithms = np.log(thick + 0.02), np.log(holes + 0.3), np.log(steps + 4)
+    return np.stack([np.log2(np.bincount(row)), solid, *logarithms, dark, *crossed], axis=1)
+
+
+def _holes(pieces: Int32[np.ndarray, "r c"], count: int) -> Float64[np.ndarray, "n"]:
+    """Return the number of holes in each piece, by its squares of four pixels.
+
+    Source: Gray, Local properties of binary images in two dimensions, IEEE Trans. Computers 20, 1971.
+    """
+    padded = np.pad(pieces, 1)
+    corners = np.stack([padded[:-1, :-1], padded[:-1, 1:], padded[1:, :-1], padded[1:, 1:]])
+    inked, of = corners > 0, corners.max(axis=0).reshape(-1)
+    number = inked.sum(axis=0)
+    across = (number == 2) & (inked[0] == inked[3])
+    euler = (number == 1).astype(np.int8) - (number == 3) - 2 * across.astype(np.int8)
+    return np.maximum(1 - np.bincount(of, euler.reshape(-1), count) / 4, 0)

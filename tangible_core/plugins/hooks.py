@@ -85,8 +85,9 @@ class Specs:
 
     @hookspec
     def tangible_networks(self) -> Mapping[str, str]:  # pyright: ignore[reportReturnType]
-        """Return the functions that `look` at a photograph with networks, and tell the `identity` of those that are
-        here, for all tasks or for some, as 'package.module:function'; nothing is imported, and the first answer counts.
+        """Return the functions that `look` at a photograph with networks, `read` the texts of a picture, and tell the
+        `identity` of those that are here, for some tasks or for those of photographs, as 'package.module:function';
+        nothing is imported, and the first answer counts.
         """
 
     @hookspec

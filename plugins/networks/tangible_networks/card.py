@@ -14,15 +14,16 @@ from tangible_core.files.yaml import parse_source, read_text
 Three = tuple[float, float, float]
 """A number for each colour."""
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-Means = Literal["disparity-px", "inverse-depth", "depth", "depth-m", "figure", "borders", "faces"]
+Means = Literal["disparity-px", "inverse-depth", "depth", "depth-m", "figure", "borders", "faces", "text"]
 """Meaning of an output. `disparity-px`: pixels of the input picture. `inverse-depth`: larger is nearer, without a unit.
 `depth`: larger is farther, without a unit. `depth-m`: metres. `figure`, `borders`: from 0 to 1, how much a pixel
 belongs to what stands out from its ground, or to a border that people would draw. `faces`: places of faces, or points
-of one face."""
+of one face. `text`: letters, a class each, and how sure they are at each step along a row."""
 Runtime = Literal["opencv", "onnxruntime", "kornia"]
 """The libraries that run networks."""
-Task = Literal["depth", "figure", "borders", "faces"]
-"""The tasks of networks: depth of a picture or a pair, what stands out from its ground, borders, and faces."""
+Task = Literal["depth", "figure", "borders", "faces", "text"]
+"""The tasks of networks: depth of a picture or a pair, what stands out from its ground, borders, faces, and
+what texts say."""
 
 
 class _Part(BaseModel):

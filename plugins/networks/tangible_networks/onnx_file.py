@@ -8,20 +8,21 @@ fields are those of onnx.proto of ONNX 1.17.
 
 import math
 import mmap
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 from tangible_core.errors import ConfigError, quoted
 
 Shape: TypeAlias = tuple[int | None, ...]
 """Declared size of an input; None for a dimension of any size."""
 Value: TypeAlias = int | memoryview
+Read = TypeVar("Read")
 MAX_NUMBERS = 2**31
 """Largest number of numbers of one weight: more than the largest file holds."""
 
-GRAPH, WEIGHTS, INPUTS = 7, 5, 11
-"""Fields of a model (the first) and of a graph."""
+GRAPH, PAIRS, WEIGHTS, INPUTS = 7, 14, 5, 11
+"""Fields of a model (the first two) and of a graph."""
 MESSAGES: Mapping[str, tuple[set[int], Mapping[int, str]]] = {
     "model": ({2, 3, 4, 6}, {7: "graph", 8: "import", 14: "pair", 25: "function"}),
     "import": ({1}, {}),
@@ -56,13 +57,28 @@ def read_inputs(model: Path) -> Mapping[str, Shape]:
 
     Raises: ConfigError if it is damaged, or names weights that cannot be; OSError.
     """
+    return _read(model, lambda whole: _inputs(model, whole))
+
+
+def read_metadata(model: Path) -> Mapping[str, str]:
+    """Return the texts that a network's file brings with it, by name. Raises: ConfigError if it is damaged; OSError."""
+    return _read(model, _metadata)
+
+
+def _metadata(whole: memoryview) -> Mapping[str, str]:
+    pairs = ([*_parts(pair, 1), *_parts(pair, 2)] for pair in _parts(whole, PAIRS))
+    return {_text(pair[0]): _text(pair[1]) for pair in pairs if len(pair) == 2}
+
+
+def _read(model: Path, wanted: Callable[[memoryview], Read]) -> Read:
+    """Return what is wanted of a network's file. Raises: ConfigError if it is damaged; OSError."""
     damaged = ConfigError(f"model: {model} is not an ONNX file, or is damaged; fetch it again")
     if not model.stat().st_size:  # nothing can be mapped
         raise damaged
     with model.open("rb") as file:
         whole = memoryview(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ))
     try:
-        return _inputs(model, whole)
+        return wanted(whole)
     except (IndexError, ValueError, RecursionError) as error:
         raise damaged from error
 

@@ -15,6 +15,8 @@ log: logging.Logger = logging.getLogger(__name__)
 VARIABLE = "TANGIBLE_MODELS_DIR"
 """The environment variable of the folder of networks."""
 TASKS: tuple[Task, ...] = get_args(Task)
+PHOTOGRAPH: tuple[Task, ...] = ("figure", "borders", "faces")
+"""The tasks of networks that look at a photograph."""
 State = Literal["here", "absent", "damaged"]
 
 
@@ -121,5 +123,5 @@ def identity_here(*tasks: Task) -> str:
 
     Their files are not read: a file that was changed by hand has another time.
     """
-    present = (network for task in tasks or TASKS if tasks or task != "depth" for network in networks_here(task))
+    present = (network for task in tasks or PHOTOGRAPH for network in networks_here(task))
     return " ".join(f"{network.name}:{network.card.sha256}:{network.path.stat().st_mtime_ns}" for network in present)

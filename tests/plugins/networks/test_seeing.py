@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import cv2
 import numpy as np
 import onnx
 import pytest
@@ -10,11 +11,13 @@ from onnx import TensorProto, helper, numpy_helper
 import tangible_networks.faces as faces
 import tangible_networks.seeing as seeing
 from onnx_models import mono
+from tangible_core.data import PictureText
 from tangible_core.errors import ConfigError
 from tangible_networks.card import Card
 from tangible_networks.faces import ANCHORS, find_faces
 from tangible_networks.hed import BLOCKS, hed_to_onnx
 from tangible_networks.onnx_writing import network, node
+from tangible_networks.reading import read_texts
 from tangible_networks.seeing import look
 from tangible_networks.store import KnownNetwork
 
@@ -192,3 +195,40 @@ class TestBorders:
             del each.attribute[:]
             each.attribute.extend(attributes)
         assert parsed == theirs
+
+
+class TestTexts:
+    @pytest.fixture
+    def reader(self, models: Path) -> None:
+        """A network that reads dark columns as `b` and light ones as nothing."""
+        names = [helper.make_tensor_value_info("x", TensorProto.FLOAT, [1, 3, 48, "w"])]
+        out = [helper.make_tensor_value_info("steps", TensorProto.FLOAT, [1, "w", 3])]
+        light = helper.make_node("ReduceMean", ["x"], ["light"], axes=[1, 2], keepdims=0)
+        last = helper.make_node("Unsqueeze", ["light", "axis"], ["column"])
+        classes = helper.make_node("MatMul", ["column", "weights"], ["product"])
+        biased = helper.make_node("Add", ["product", "bias"], ["steps"])
+        given = {"axis": np.array([2]), "weights": np.array([[1, 0, -1]], np.float32), "bias": np.float32([0, 0, 1])}
+        weights = [numpy_helper.from_array(each, name) for name, each in given.items()]
+        graph = helper.make_graph([light, last, classes, biased], "reader", names, out, weights)
+        model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 13)], ir_version=8)
+        helper.set_model_props(model, {"character": "a\nb"})
+        onnx.save(model, models / "own.onnx")
+        (models / "own.yaml").write_text("task: text\noutput: {means: text}\n")
+
+    @pytest.mark.parametrize("turn_deg", [0, 12])
+    def test_text_is_read_along_its_direction(self, reader: None, turn_deg: float) -> None:
+        picture = np.full((300, 400, 3), 255, np.uint8)
+        for left in (100, 160, 220, 280):
+            picture[140:160, left : left + 20] = 0
+        turn = cv2.getRotationMatrix2D((199.5, 149.5), turn_deg, 1)
+        picture = cv2.warpAffine(picture, turn, (400, 300), borderValue=(255, 255, 255))
+        rows, columns = np.nonzero(picture[..., 0] < 128)
+        box = columns.min() / 400, rows.min() / 300, (columns.max() + 1) / 400, (rows.max() + 1) / 300
+        given = PictureText("", tuple(map(float, box)), turn_deg)
+        (read,) = read_texts(picture, [given])
+        assert (read.content, read.box) == ("bbbb", given.box)
+        assert read_texts(picture // 2 + 127, [given])[0].content == "", "faint bars are no letters"
+
+    def test_without_a_network_texts_stay_as_they_are(self, models: Path) -> None:
+        given = PictureText("", (0.1, 0.1, 0.4, 0.2))
+        assert read_texts(bright_square(), [given]) == (given,)

@@ -5,8 +5,11 @@ from tangible_core.plugins import hookimpl
 
 @hookimpl
 def tangible_networks() -> dict[str, str]:
-    """Name what looks at a photograph, and what tells which networks are here."""
-    return {"look": "tangible_networks.seeing:look", "identity": "tangible_networks.store:identity_here"}
+    """Name what looks at a photograph, what reads texts, and what tells which networks are here."""
+    return {
+        "look": "tangible_networks.seeing:look", "read": "tangible_networks.reading:read_texts",
+        "identity": "tangible_networks.store:identity_here",
+    }  # fmt: skip
 
 
 @hookimpl

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 app: typer.Typer = typer.Typer(name="networks", rich_markup_mode=None, add_completion=False)
 Names = Annotated[
     list[str],
-    typer.Argument(metavar="NAME...", help="Names of networks, or tasks: figure, borders, faces, depth.",
+    typer.Argument(metavar="NAME...", help="Names of networks, or tasks: figure, borders, faces, text, depth.",
                    show_default=False),
 ]  # fmt: skip
 COLOURS = {"here": "green", "absent": "dim", "damaged": "bold red"}
@@ -30,8 +30,8 @@ COLOURS = {"here": "green", "absent": "dim", "damaged": "bold red"}
 def networks(context: typer.Context, as_json: Json = False) -> None:
     """List the networks that the program can use; add or remove them.
 
-    A network finds faces, borders, depth, or what stands out from its ground, in one photograph. None is needed, and
-    none is part of the program: only `tangible networks add` fetches them.
+    A network finds faces, borders, depth, or what stands out from its ground, in one photograph, or reads the labels of
+    a drawing. None is needed, and none is part of the program: only `tangible networks add` fetches them.
     """
     if not is_listing("networks", context.invoked_subcommand, as_json):
         return

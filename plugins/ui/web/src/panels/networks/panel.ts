@@ -6,7 +6,7 @@ import { decimal, language } from "kit/words/words";
 import { sendFile } from "../open/upload";
 import { t } from "./words";
 
-const TASKS = ["figure", "borders", "faces", "depth"] as const;
+const TASKS = ["figure", "borders", "faces", "text", "depth"] as const;
 
 interface Network {
   name: string;
@@ -86,7 +86,7 @@ export function build(page: Page, root: HTMLElement): Promise<void> {
 
   /** The button for all that a photograph needs, where some of it is not here. */
   function everything(networks: Network[]): HTMLElement[] {
-    const absent = networks.filter(({ task, state, recommended }) => recommended && task !== "depth" && state !== "here");
+    const absent = networks.filter(({ task, state, recommended }) => recommended && task !== "depth" && task !== "text" && state !== "here");
     const whole = absent.reduce((sum, { bytes }) => sum + bytes, 0);
     const names = absent.map(({ name }) => name);
     return absent.length ? [button(t("addThese", { size: size(whole) }), () => add(names), { id: "networks-add" })] : [];

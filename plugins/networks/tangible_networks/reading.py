@@ -1,0 +1,92 @@
+"""What texts in a picture say, by a network that reads one row of letters at a time."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float32
+
+from tangible_core.data import PictureText, to_rgb
+from tangible_core.runtime import plain_opencv
+
+from .fitting import Colours, fit_size, tensor
+from .onnx_file import read_metadata
+from .runtimes import run
+from .store import networks_here
+
+ROW_PX = 48
+"""The height of the rows that the network was trained with, px."""
+MARGIN = 0.3
+"""The space around a text, as a share of its height."""
+LEAST = 0.3
+"""The least height of a row in a tilted box, as a share of the box's height."""
+SURE = 0.5
+"""The least mean sureness of the letters of a text that counts as read."""
+MAX_WIDE = 40
+"""The greatest width of a row by its height; a longer one is seen narrower."""
+
+
+def read_texts(picture: np.ndarray, texts: Sequence[PictureText]) -> tuple[PictureText, ...]:
+    """Return the texts of a picture with what they say; "" where that is not sure, or without a network.
+
+    picture: uint8, uint16 or float (h, w), (h, w, 3) or (h, w, 4).
+    Raises: ConfigError for a network that cannot run.
+
+    Source: Li et al., PP-OCRv3: more attempts for the improvement of ultra lightweight OCR system, 2022; letters by the
+    best class of each step, Graves et al., Connectionist temporal classification, ICML 2006.
+    """
+    networks = networks_here("text")
+    if not texts or not networks:
+        return tuple(texts)
+    network, colours = networks[0], to_rgb(np.nan_to_num(picture))
+    card, letters = network.card, _letters(network.path, network.path.stat().st_mtime_ns)
+    read = list[PictureText]()
+    for text in texts:
+        row = _upright_row(colours, text)
+        given = tensor(row, card.input, fit_size((row.shape[0], row.shape[1]), card.input, row.size))
+        steps = run(network.path, card.runtime or "opencv", {card.input.left: given}, [card.output.name])[0]
+        read.append(replace(text, content=_content(steps.reshape(-1, steps.shape[-1]), letters)))
+    return tuple(read)
+
+
+@lru_cache(maxsize=2)
+def _letters(path: Path, changed_ns: int) -> tuple[str, ...]:
+    """Return the letter of each class: none, those that the file lists, a line each, and the space."""
+    return ("", *read_metadata(path).get("character", "").split("\n"), " ")
+
+
+def _upright_row(colours: Colours, text: PictureText) -> Float32[np.ndarray, "48 columns 3"]:
+    """Return a text turned so that it is read from left to right, in the height that the network takes."""
+    import cv2
+
+    rows, columns = colours.shape[:2]
+    left, top, right, bottom = text.box * np.array([columns, rows, columns, rows])
+    turn = np.radians(text.direction_deg)
+    wide, high = max(right - left, 1), max(bottom - top, 1)
+    high = max((high - wide * abs(np.sin(turn))) / np.cos(turn), LEAST * high)
+    scale = high * (1 + 2 * MARGIN) / ROW_PX
+    count = round(min((wide + 2 * MARGIN * high) / scale, MAX_WIDE * ROW_PX))
+    across = (wide + 2 * MARGIN * high) / max(count, 1)
+    turned = np.array([[across * np.cos(turn), scale * np.sin(turn)], [-across * np.sin(turn), scale * np.cos(turn)]])
+    corner = np.array([left + right - 1, top + bottom - 1]) / 2 - turned @ [(count - 1) / 2, (ROW_PX - 1) / 2]
+    low = np.maximum(np.array([left, top], np.int64) - int(2 * high), 0)
+    colours, corner = colours[low[1] : int(bottom + 2 * high), low[0] : int(right + 2 * high)], corner - low
+    with plain_opencv():
+        if scale > 1:  # averaging first: no pixel of a large text is left out
+            colours = np.asarray(cv2.GaussianBlur(colours, (0, 0), scale / 2))
+        size, flags = (count, ROW_PX), cv2.WARP_INVERSE_MAP | cv2.INTER_CUBIC
+        row = cv2.warpAffine(
+            colours, np.column_stack([turned, corner]), size, flags=flags, borderMode=cv2.BORDER_REPLICATE
+        )
+    return np.clip(np.asarray(row, np.float32), 0, 1)
+
+
+def _content(steps: Float32[np.ndarray, "steps classes"], letters: tuple[str, ...]) -> str:
+    """Return the best letter of each step, once where it lasts, without the class of none; "" where it is not sure."""
+    best = steps.argmax(axis=1)
+    new = (best > 0) & (best < len(letters)) & np.concatenate([[True], best[1:] != best[:-1]])
+    if not new.any() or steps.max(axis=1)[new].mean() < SURE:
+        return ""
+    return "".join(letters[place] for place in best[new]).strip()

@@ -14,10 +14,13 @@ import cv2
 import numpy as np
 
 from tangible_core import Pipeline, Scene
-from tangible_core.data import Views
+from tangible_core.data import SegmentMap, Views
 from tangible_core.drawing import find_areas, find_ink, find_lines, find_texts, picture_kind
+from tangible_core.drawing.labels import texts_in, tie_texts
+from tangible_core.parts import find_parts
 from tangible_core.relief import ReliefChoice, edge_relief, line_relief
 from tangible_core.scene.workspace import Workspace
+from tangible_networks.reading import read_texts
 
 from .drawings_made import Made, made_drawings
 from .figures import Figure, judged, part
@@ -44,6 +47,7 @@ def section() -> str:
         *part("areas", lambda: list(_areas())),
         *part("lines", lambda: list(_lines())),
         *part("texts", lambda: list(_texts())),
+        *part("labels", lambda: list(_labels())),
     ]
     return "\n".join([head, "", *judged(figures)])
 
@@ -169,6 +173,48 @@ def _texts() -> Iterator[Figure]:
             count, boxes = count + len(made.texts), boxes + len(texts.boxes)
     yield Figure("labels found", ">= 0.95", f"{found / count:.3f}", found / count >= 0.95)
     yield Figure("places taken for a text without one", "<= 0.02", f"{false / boxes:.3f}", false / boxes <= 0.02)
+
+
+def _labels() -> Iterator[Figure]:
+    right = named = wrong = tied = missed = letters = 0
+    for made in made_drawings("told", "drawing", FEW):
+        parts = find_parts(SegmentMap(find_areas(made.picture).labels)).labels
+        ink = find_ink(made.picture)
+        texts = texts_in(ink)
+        size = np.tile(made.picture.shape[1::-1], 2)
+        for read, part_number in zip(read_texts(made.picture, texts), tie_texts(ink, texts, parts), strict=True):
+            (column, row), at = read.middle * size[:2], np.array(made.texts).reshape(-1, 4)
+            own = np.flatnonzero((at[:, 0] <= column) & (at[:, 2] >= column) & (at[:, 1] <= row) & (at[:, 3] >= row))
+            if not own.size:
+                continue
+            if read.content:
+                missed += _edits(read.content, made.words[own[0]])
+                letters += len(made.words[own[0]])
+            area = -1 if part_number is None else _area(made.labels[parts == part_number])
+            named, right = named + (made.names[own[0]] >= 0), right + (made.names[own[0]] == area >= 0)
+            tied, wrong = tied + (area >= 0), wrong + (made.names[own[0]] != area >= 0)
+    yield Figure("labels tied to their part", ">= 0.95", f"{right / named:.3f}", right / named >= 0.95)
+    yield Figure("ties to another part", "<= 0.02", f"{wrong / tied:.3f}", wrong / tied <= 0.02)
+    if letters:
+        share = 1 - missed / letters
+        yield Figure("characters read right, by the network", ">= 0.97", f"{share:.3f}", share >= 0.97)
+
+
+def _area(labels: np.ndarray) -> int:
+    """Return the commonest area, -1 without one."""
+    counts = np.bincount(labels[labels >= 0], minlength=1)
+    return int(counts.argmax()) if counts.any() else -1
+
+
+def _edits(one: str, other: str) -> int:
+    """Return the least number of letters to put in, take out or change; Levenshtein, 1966."""
+    before = list(range(len(other) + 1))
+    for row, letter in enumerate(one, 1):
+        now = [row]
+        for column, wanted in enumerate(other, 1):
+            now.append(min(now[-1] + 1, before[column] + 1, before[column - 1] + (letter != wanted)))
+        before = now
+    return before[-1]
 
 
 def pictures(folder: Path) -> None:

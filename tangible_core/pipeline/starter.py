@@ -32,6 +32,7 @@ from ..scene.scene_files import SceneFiles
 from .config.model import PipelineConfig
 from .config.parsing import config_of, parse_config
 from .engine.networks import networks_identity
+from .part_names import read_part_names
 
 SIDE_MM = 80
 """The longer side of the surface, mm: the reach of a small desktop device."""
@@ -63,6 +64,7 @@ the force down."""
 MIN_MM = 2.0
 MAX_MM: Mapping[str, float] = {"photo": 8.0, "heights": 15.0}
 """The greatest height of the relief by kind of scene, mm; less for photos, as their brightness is not a depth."""
+READ = "as read in the picture; correct what is wrong"
 CELLS = 400
 """The cells along the longer side, at which slopes are measured."""
 
@@ -125,7 +127,18 @@ def _text(scene: Scene, values: Mapping[str, str]) -> str:
     kind: Kind = "heights" if scene.views is None else "pair" if scene.views.right is not None else "photo"
     template = "measured" if scene.own_size else kind
     text = files("tangible_core.pipeline").joinpath(f"starter_{template}.yaml").read_text(encoding="utf-8")
-    return Template(text).substitute(values, **_size(scene, kind))
+    size = _size(scene, kind)
+    whole = Template(text).substitute(values, **size)
+    if kind != "photo" or size["named"] or not _is_drawing(scene):
+        return whole
+    registry = default_registry()
+    names = read_part_names(config_of(scene, registry, **_settings(whole)), registry)
+    return Template(text).substitute(values, **size | {"named": _part_lines(names, READ)})
+
+
+def _settings(text: str) -> dict[str, Any]:
+    """Return the values of a pipeline file but its scene."""
+    return {name: value for name, value in plain_tree(text, Path()).items() if name != "scene"}
 
 
 def suited_config(pictures: Sequence[Any], registry: Registry, overrides: Sequence[str] = ()) -> PipelineConfig:
@@ -136,8 +149,8 @@ def suited_config(pictures: Sequence[Any], registry: Registry, overrides: Sequen
     if len(pictures) in (1, 2) and not all(isinstance(picture, str | PathLike) for picture in pictures):
         of_arrays = Scene.photo if len(pictures) == 1 else Scene.pair
         scene = pictures[0] if isinstance(pictures[0], Scene) else of_arrays(*pictures)
-        values = plain_tree(_text(scene, {"scene": scene.name, "name": "", "file": ""}), Path())
-        return config_of(scene, registry, **{name: value for name, value in values.items() if name != "scene"})
+        text = _text(scene, {"scene": scene.name, "name": "", "file": ""})
+        return config_of(scene, registry, **_settings(text))
     files = [as_path(picture, "picture") for picture in pictures]
     file = files[0] if files else Path()
     text, scene = starter(files, file)
@@ -199,21 +212,28 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
 
 
 def _names_text(scene: Scene) -> str:
-    """Return the lines with the title and the names of the parts that the picture states; "" without any.
-
-    No two parts have one name: the second one of a name is followed by 2.
-    """
+    """Return the lines with the title and the names of the parts that the picture states; "" without any."""
     title = f"title: {on_one_line(scene.title)}\n" if scene.title else ""
     if scene.segments is None or not any(scene.segment_names):
         return title
+    names = {label: scene.segment_names[segment] for label, segment in enumerate(find_parts(scene.segments).segments)}
+    return title + _part_lines(names, "as the drawing names them")
+
+
+def _part_lines(names: Mapping[int, str], comment: str) -> str:
+    """Return the lines with the names of parts by label; "" without any.
+
+    No two parts have one name: the second one of a name is followed by 2.
+    """
     lines, numbers = list[str](), Counter[str]()
-    for label, segment in enumerate(find_parts(scene.segments).segments):
-        name = plain_line(scene.segment_names[segment])[: MOST_QUOTED - 5].strip()
+    for label, given in names.items():
+        name = plain_line(given)[: MOST_QUOTED - 5].strip()
         if name and not name.isdecimal():  # a number would be taken for that of a part
             numbers[name.casefold()] += 1
             again = numbers[name.casefold()]
-            lines.append(f"  {shown_number(label)}: {on_one_line(f'{name} {again}' if again > 1 else name)}\n")
-    return f"{title}parts:                             # as the drawing names them\n{''.join(lines)}"
+            text = on_one_line(f"{name} {again}" if again > 1 else name)
+            lines.append(f"  {shown_number(label)}: {text}\n")
+    return f"parts:                             # {comment}\n{''.join(lines)}" if lines else ""
 
 
 def _is_drawing(scene: Scene) -> bool:

@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 
-from ...data import Figure
+from ...data import Figure, PictureText
 from ...plugins.registry import Registry
 from ..config.model import PipelineConfig
 from .hooked import hooked_point, load_hooked
 
-HOOK, LOOK = "tangible_networks", "look at a photograph"
+HOOK, LOOK, READ = "tangible_networks", "look at a photograph", "read texts"
 
 
 def look_function(registry: Registry) -> Callable[..., Figure]:
@@ -25,6 +25,14 @@ def networks_identity(registry: Registry, *tasks: str) -> str:
     """
     purpose = "tell which networks are here"
     return load_hooked(hooked_point(registry, HOOK, "identity", purpose), purpose)(*tasks)
+
+
+def read_function(registry: Registry) -> Callable[..., tuple[PictureText, ...]]:
+    """Import the function that returns the texts of a picture, its second argument, with what they say.
+
+    Raises: BrokenMethod.
+    """
+    return load_hooked(hooked_point(registry, HOOK, "read", READ), READ)
 
 
 def has_figure(config: PipelineConfig, registry: Registry) -> bool:

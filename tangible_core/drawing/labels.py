@@ -1,0 +1,131 @@
+"""The parts that the texts of a drawing name: those in which they lie, or in which their leader lines end."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from jaxtyping import Bool, Float64, Int32
+
+from ..data import PictureText
+from ..runtime.opencv import plain_opencv
+from .ink import Ink
+from .lines import Lines, find_lines
+from .text import find_texts
+
+STEP_PX, WIDE_DEG = 3.0, 18.0
+"""The step along a leader line, px, and the greatest turn at a step, degrees."""
+SHORT, LONG = 1.5, 6.0
+"""The least length of a leader line, and the greatest distance from its end to its text, by the text's height."""
+AROUND = 0.6
+"""The space around a text at which a leader line points, by the text's height."""
+ALONG = 5
+"""The steps from the end of a line that give its direction."""
+INSIDE = 0.5
+"""The least share of a text that lies in the part that it names."""
+PAPER = 0.5
+"""The least share of the picture's rim that the paper of a drawing has."""
+
+
+def texts_in(ink: Ink) -> tuple[PictureText, ...]:
+    """Return the places of the texts in ink; nobody has read them yet."""
+    return tuple(PictureText("", text[:4], text.direction_deg) for text in find_texts(ink).boxes)
+
+
+def tie_texts(ink: Ink, texts: Sequence[PictureText], parts: Int32[np.ndarray, "h w"]) -> tuple[int | None, ...]:
+    """Return for each text the number of the part that it names; None for a text on the paper without a leader line.
+
+    A leader line has its end near the text, points at it, and runs on without a sharp turn to the part that it names,
+    across whatever lies between. parts: a number for each pixel of the same picture, in any size.
+    """
+    rows, columns = parts.shape
+    paper = _paper(parts)
+    boxes = np.array([text.box for text in texts], np.float64).reshape(-1, 4)
+    tied: list[int | None] = []
+    for left, top, right, bottom in boxes * np.array([columns, rows, columns, rows]):
+        inside = parts[int(top) : max(int(top) + 1, round(bottom)), int(left) : max(int(left) + 1, round(right))]
+        numbers, counts = np.unique(inside, return_counts=True)
+        most = int(counts.argmax())
+        names = counts[most] >= INSIDE * inside.size and numbers[most] != paper
+        tied.append(int(numbers[most]) if names else None)
+    shape = ink.mask.shape
+    on_ink = boxes * np.tile(np.array(shape[::-1]), 2)
+    nearest = np.full(len(boxes), np.inf)
+    for path in _paths(find_lines(ink, find_texts(ink).ink)):
+        number, distance = _pointed_at(path, on_ink)
+        if number is None or distance >= nearest[number]:
+            continue
+        ahead = path[-1] + 2 * (path[-1] - path[-2])  # an end on an outline touches the part behind it
+        for column, row in (path[-1], ahead) if parts[_at(path[-1], shape, parts)] == paper else (path[-1],):
+            part = int(parts[_at(np.array([column, row]), shape, parts)])
+            if part != paper:
+                nearest[number], tied[number] = distance, part
+    return tuple(tied)
+
+
+def _at(place: Float64[np.ndarray, "2"], shape: tuple[int, ...], parts: np.ndarray) -> tuple[int, int]:
+    """Return the row and the column of a place on the ink in the map of parts."""
+    column, row = (place[::-1] + 0.5) / shape * parts.shape
+    return int(np.clip(column, 0, parts.shape[0] - 1)), int(np.clip(row, 0, parts.shape[1] - 1))
+
+
+def _paper(parts: Int32[np.ndarray, "h w"]) -> int | None:
+    """Return the part that has most of the rim; None without one."""
+    numbers, counts = np.unique(np.concatenate([parts[0], parts[-1], parts[:, 0], parts[:, -1]]), return_counts=True)
+    return int(numbers[counts.argmax()]) if counts.max() >= PAPER * counts.sum() else None
+
+
+def _pointed_at(path: Float64[np.ndarray, "n 2"], boxes: Float64[np.ndarray, "m 4"]) -> tuple[int | None, float]:
+    """Return the text at which the beginning of a path points, and its distance by its height."""
+    away = path[0] - path[min(ALONG, len(path) - 1)]
+    away /= max(float(np.hypot(*away)), 1e-9)
+    best: tuple[int | None, float] = None, np.inf
+    length = STEP_PX * (len(path) - 1)
+    for number, (left, top, right, bottom) in enumerate(boxes):
+        high = max(bottom - top, 1.0)
+        if length < SHORT * high:
+            continue
+        reach = path[0] + away * np.arange(0, LONG * high, 1.0)[:, None]
+        near = AROUND * high
+        hit = (
+            (reach[:, 0] >= left - near)
+            & (reach[:, 0] <= right + near)
+            & (reach[:, 1] >= top - near)
+            & (reach[:, 1] <= bottom + near)
+        )
+        if hit.any() and (distance := float(hit.argmax()) / high) < best[1]:
+            best = number, distance
+    return best
+
+
+def _paths(lines: Lines) -> Iterator[Float64[np.ndarray, "n 2"]]:
+    """Yield the ways from loose ends of lines on, as long as no turn is sharp, and back; column and row."""
+    import cv2
+
+    with plain_opencv():
+        near = np.asarray(cv2.dilate(lines.centre.astype(np.uint8), np.ones((3, 3), np.uint8))) > 0
+        count = np.asarray(cv2.filter2D(lines.centre.astype(np.uint8), -1, np.ones((3, 3)), borderType=0))
+    for row, column in np.argwhere(lines.centre & (count == 2)):
+        path = _follow(near, lines.centre, np.array([column, row], np.float64))
+        if len(path) > 1:
+            yield path
+            yield path[::-1]  # its other end may be loose without looking so, a pixel thick
+
+
+def _follow(near: Bool[np.ndarray, "r c"], centre: Bool[np.ndarray, "r c"], start: np.ndarray) -> np.ndarray:
+    """Return the places on the way from a loose end, STEP_PX apart."""
+    rows, columns = near.shape
+    turns = np.radians(np.array(sorted(np.linspace(-WIDE_DEG, WIDE_DEG, 13), key=abs)))
+    path, heading, all_round = [start], 0.0, np.linspace(-np.pi, np.pi, 48, endpoint=False)
+    while len(path) < rows + columns:
+        ways = heading + turns if len(path) > 1 else all_round
+        ends = path[-1] + STEP_PX * np.stack([np.cos(ways), np.sin(ways)], axis=1)
+        at = np.rint(ends).astype(np.int64)
+        inside = (at >= 0).all(axis=1) & (at[:, 0] < columns) & (at[:, 1] < rows)
+        at = np.where(inside[:, None], at, 0)
+        on = inside & near[at[:, 1], at[:, 0]]
+        if not on.any():
+            break
+        best = int(np.argmax(on + (on & centre[at[:, 1], at[:, 0]])))
+        path.append(ends[best])
+        back = path[max(0, len(path) - 1 - ALONG)]
+        heading = float(np.arctan2(*(path[-1] - back)[::-1]))
+    return np.array(path)

@@ -1,0 +1,32 @@
+"""The names of parts that are read in the picture: their labels, and the labels that point to them."""
+
+from ..data import PartMap
+from ..drawing import find_ink
+from ..drawing.labels import texts_in, tie_texts
+from ..plugins.registry import Registry
+from .config.model import PipelineConfig
+from .engine.cache import Cache
+from .engine.engine import Engine
+from .engine.networks import networks_identity, read_function
+
+
+def read_part_names(config: PipelineConfig, registry: Registry) -> dict[int, str]:
+    """Return the names of parts by label, as a network reads them in the picture; none without one.
+
+    Of several texts that name one part, the highest letters count.
+    Raises: TangibleError as `Engine.make`.
+    """
+    if not networks_identity(registry, "text"):
+        return {}
+    engine = Engine(config, registry, Cache())
+    views = engine.scene.views
+    if views is None:
+        return {}
+    ink = find_ink(views.left)
+    texts = read_function(registry)(views.left, texts_in(ink))
+    parts = engine.make_on_grid("parts") if any(text.content for text in texts) else None
+    if not isinstance(parts, PartMap):
+        return {}
+    tied = zip(texts, tie_texts(ink, texts, parts.labels), strict=True)
+    by_height = sorted(tied, key=lambda pair: pair[0].box[3] - pair[0].box[1])
+    return dict(sorted({part: text.content for text, part in by_height if part is not None and text.content}.items()))

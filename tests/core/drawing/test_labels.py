@@ -1,0 +1,67 @@
+"""Texts name the parts in which they lie or to which they point; else a cell's nucleus is called its wall."""
+
+import cv2
+import numpy as np
+import pytest
+
+from tangible_core import Scene
+from tangible_core.data import PictureText
+from tangible_core.drawing import find_ink
+from tangible_core.drawing.labels import texts_in, tie_texts
+from tangible_core.pipeline import part_names
+from tangible_core.pipeline.starter import suited_config
+from tangible_core.plugins.registry import default_registry
+
+PAPER, CELL, NUCLEUS = range(3)
+
+
+def cell(turn_deg: float = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Return a cell with `wall` in it, `core` beside it with a leader line, and `note` on the paper; and its parts."""
+    picture = np.full((400, 700, 3), 255, np.uint8)
+    parts = np.zeros((400, 700), np.int32)
+    for number, radius, colour in ((CELL, 150, (150, 210, 240)), (NUCLEUS, 50, (240, 160, 90))):
+        for target, value in ((picture, colour), (parts, number)):
+            cv2.circle(target, (250, 200), radius, value, -1)
+        cv2.circle(picture, (250, 200), radius, (20, 20, 20), 2)
+    cv2.line(picture, (250, 200), (510, 190), (20, 20, 20), 2)
+    for word, at in (("wall", (215, 310)), ("core", (525, 197)), ("note", (560, 370))):
+        cv2.putText(picture, word, at, cv2.FONT_HERSHEY_SIMPLEX, 0.7, (20, 20, 20), 2, cv2.LINE_AA)
+    turn = cv2.getRotationMatrix2D((350, 200), turn_deg, 1)
+    parts = cv2.warpAffine(parts, turn, (700, 400), flags=cv2.INTER_NEAREST)
+    return cv2.warpAffine(picture, turn, (700, 400), borderValue=(255, 255, 255)), parts
+
+
+@pytest.mark.parametrize("turn_deg", [0, 6])
+def test_text_names_the_part_around_it_or_at_the_end_of_its_leader_line(turn_deg):
+    picture, parts = cell(turn_deg)
+    ink = find_ink(picture)
+    texts = texts_in(ink)
+    tied = dict(zip((text.middle for text in texts), tie_texts(ink, texts, parts), strict=True))
+    assert [tied[place] for place in sorted(tied, key=lambda place: place[0])] == [CELL, NUCLEUS, None]
+    assert all(abs(text.direction_deg - turn_deg) < 8 for text in texts if text.direction_deg)
+
+
+def test_leader_line_that_stops_at_an_outline_names_what_is_behind_it():
+    picture, parts = cell()
+    picture[:, 403:][parts[:, 403:] == PAPER] = 255
+    picture[:, 100:400] = np.where(parts[:, 100:400, None] == PAPER, 255, picture[:, 100:400])
+    cv2.line(picture, (402, 200), (510, 200), (20, 20, 20), 2)
+    cv2.putText(picture, "cell", (525, 207), cv2.FONT_HERSHEY_SIMPLEX, 0.7, (20, 20, 20), 2, cv2.LINE_AA)
+    ink = find_ink(picture)
+    texts = [text for text in texts_in(ink) if text.middle[0] > 0.7]
+    assert tie_texts(ink, texts, parts) == (CELL,)
+
+
+def test_starter_names_parts_as_a_network_reads_them(monkeypatch):
+    def read(picture: np.ndarray, texts: list[PictureText]) -> list[PictureText]:
+        words = {"wall": 0.36, "core": 0.79, "note": 0.84}
+        near = [min(words, key=lambda word: abs(words[word] - text.middle[0])) for text in texts]
+        return [PictureText(word, text.box) for word, text in zip(near, texts, strict=True)]
+
+    registry, picture = default_registry(), cell()[0]
+    scene = Scene.photo(picture, kind="drawing")
+    assert not suited_config([scene], registry).parts, "nobody reads"
+    monkeypatch.setattr(part_names, "networks_identity", lambda registry, task: task)
+    monkeypatch.setattr(part_names, "read_function", lambda registry: read)
+    assert set(suited_config([scene], registry).part_names.values()) == {"wall", "core"}
+    assert not suited_config([Scene.photo(picture, kind="photograph")], registry).parts

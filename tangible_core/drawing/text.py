@@ -22,19 +22,21 @@ MAX_PIECES = 12_000
 """The most pieces that are looked at: more are a texture."""
 
 
-CONSTANTS: tuple[float, float] = (-0.35, 0.33)
+CONSTANTS: tuple[float, float] = (-1.68, -0.55)
 MEASURES: Float64[np.ndarray, "measures 4"] = np.array([
-    (0.53, 1.18, 1.54, -0.19),
-    (0.80, 0.19, -4.66, -1.19),
-    (-0.60, 0.45, 1.45, -0.28),
-    (-1.06, 0.43, -1.43, 0.25),
-    (2.68, 1.18, -1.87, -1.13),
-    (0.38, 0.24, 2.26, -2.40),
-    (1.13, 0.25, -0.26, 0.19),
-    (1.45, 0.76, 2.48, -0.37),
+    (0.51, 1.17, 1.35, -0.13),
+    (0.81, 0.19, -4.60, -1.20),
+    (-0.61, 0.46, 1.56, -0.49),
+    (-1.07, 0.42, -1.50, 0.26),
+    (2.60, 1.19, -1.52, -1.30),
+    (0.26, 0.10, 2.66, -0.14),
+    (1.13, 0.25, -0.06, 0.15),
+    (1.45, 0.77, 2.69, -0.56),
 ])  # fmt: skip
 """The constants of a score that is above 0 for text, for a row of one piece and of more; and for each measure of
 `_measure_rows` its mean and spread, and the weights of its deviation and of the square of that."""
+DARK = 0.35
+"""The darkness from which on ink is as dark as letters are; bold ones are darker."""
 FAR = 4.0
 """The greatest deviation of a measure that counts, in spreads."""
 TILTED = 3.0
@@ -178,7 +180,7 @@ def _measure_rows(
         np.bincount(row, values[chosen] * size[chosen]) / area for values in of_pieces
     )
     logarithms = np.log(thick + 0.02), np.log(holes + 0.3), np.log(steps + 4)
-    return np.stack([np.log2(np.bincount(row)), solid, *logarithms, dark, *crossed], axis=1)
+    return np.stack([np.log2(np.bincount(row)), solid, *logarithms, np.minimum(dark, DARK), *crossed], axis=1)
 
 
 def _holes(pieces: Int32[np.ndarray, "r c"], count: int) -> Float64[np.ndarray, "n"]:

@@ -11,5 +11,7 @@ from .kind import kind_sentence as kind_sentence
 from .kind import picture_kind as picture_kind
 from .lines import Lines as Lines
 from .lines import find_lines as find_lines
+from .marks import Marks as Marks
+from .marks import find_marks as find_marks
 from .text import Text as Text
 from .text import find_texts as find_texts

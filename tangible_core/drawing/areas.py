@@ -6,7 +6,8 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int32
 
 from ..runtime.opencv import plain_opencv
-from .ink import eight_bits, find_ink, noise_level
+from .ink import eight_bits, noise_level
+from .marks import find_marks
 
 ALIKE = 9.0
 """The greatest difference within an area from a pixel to its neighbours, of 255: more than the noise of JPEG."""
@@ -49,7 +50,9 @@ def find_areas(picture: np.ndarray) -> Areas:
         calm = np.asarray(cv2.GaussianBlur(colours, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE))
         window = np.ones((3, 3), np.uint8)
         change = np.asarray(cv2.dilate(calm, window) - cv2.erode(calm, window)).max(axis=2)
-        ink = cv2.resize(find_ink(colours).mask.astype(np.uint8), colours.shape[1::-1], interpolation=cv2.INTER_NEAREST)
+        ink = cv2.resize(
+            find_marks(picture).ink.mask.astype(np.uint8), colours.shape[1::-1], interpolation=cv2.INTER_NEAREST
+        )
         stroke = np.asarray(cv2.dilate(ink, np.ones((5, 5), np.uint8))) > 0
         inside: Bool[np.ndarray, "h w"] = (change <= max(ALIKE, NOISY * noise / sigma)) & ~stroke
         _, found, about, _ = cv2.connectedComponentsWithStats(np.asarray(inside, np.uint8), connectivity=4)

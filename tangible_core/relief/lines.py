@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int32
 
 from ..data import Relief, Views
-from ..drawing import Areas, find_areas, find_ink, find_lines, find_texts
+from ..drawing import Areas, find_areas, find_marks
 from ..runtime.opencv import plain_opencv
 from ..scene import geometry, scaling
 from ..scene.workspace import FeltSize
@@ -27,9 +27,8 @@ def line_relief(views: Views, size: FeltSize, choice: ReliefChoice, *, areas: bo
     factor = scaling.felt_factor(views.shape[1], size.width_m, CELL_M)
     picture = scaling.reduce_views(Views(views.left), factor).left
     pitch_m = size.width_m / picture.shape[1]
-    ink = find_ink(picture)
-    texts = find_texts(ink)
-    lines = find_lines(ink, texts.ink)
+    marks = find_marks(picture)
+    lines = marks.lines
     base_m = np.zeros(picture.shape[:2], np.float32)
     if areas:
         colour_areas = find_areas(picture)
@@ -41,7 +40,7 @@ def line_relief(views: Views, size: FeltSize, choice: ReliefChoice, *, areas: bo
     ridges_m = _ridges(lines.centre, lines.width_px * line_pitch_m, line_pitch_m, size.relief_m, choice.slope)
     height_m = np.maximum(_enlarge(ridges_m, views.shape), _enlarge(base_m, views.shape))
     relief = Relief(np.maximum(height_m, np.float32(0)), geometry.surface_extent(views.shape, size.width_m))
-    return geometry.smooth(relief, size.smooth_m), len(texts.boxes)
+    return geometry.smooth(relief, size.smooth_m), len(marks.texts.boxes)
 
 
 def _ridges(

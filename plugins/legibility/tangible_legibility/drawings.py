@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from tangible_core.data import PartMap
-from tangible_core.drawing import DrawnPicture, Lines, PictureKind, find_ink, find_lines, find_texts
+from tangible_core.data import PartMap, border_pixels
+from tangible_core.drawing import DrawnPicture, Lines, PictureKind, find_marks
 from tangible_core.preflight import Verdict, check_bound
 
 from .rules import GRAPHICS, OURS, Profile
@@ -32,9 +32,9 @@ def judge_drawing(
             cure="write it in braille, or have it read aloud; `scene: {kind: drawing}` if it is another picture",
         )  # fmt: skip
         return
-    ink = find_ink(drawing.picture)
-    texts = find_texts(ink)
-    yield from _judge_lines(drawing, find_lines(ink, texts.ink), profile, parts, width_m)
+    marks = find_marks(drawing.picture)
+    texts = marks.texts
+    yield from _judge_lines(drawing, marks.lines, profile, parts, width_m)
     if drawing.whole is not None and parts is not None:
         yield from _judge_parts(drawing.whole, parts, names)
     middles = [((box.left + box.right) / 2, (box.top + box.bottom) / 2) for box in texts.boxes]
@@ -75,9 +75,7 @@ def _share_away(lines: Lines, parts: PartMap, reach: float) -> float:
 
     labels, rows = parts.labels, np.nonzero(lines.centre)
     at = [n * new // old for n, new, old in zip(rows, labels.shape, lines.centre.shape, strict=True)]
-    border = np.zeros(labels.shape, np.bool_)
-    border[:-1] |= labels[1:] != labels[:-1]
-    border[:, :-1] |= labels[:, 1:] != labels[:, :-1]
+    border = border_pixels(labels)
     if not border.any():
         return 1.0
     away = np.asarray(distance_transform_edt(~border))[at[0], at[1]]

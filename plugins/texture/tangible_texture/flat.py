@@ -34,5 +34,6 @@ class Flat(Segmenter, Skippable):
         first, rest = areas.colours[: self.segments], areas.colours[self.segments :]
         nearest = np.abs(rest[:, None] - first).sum(axis=2).argmin(axis=1)
         numbers = np.concatenate([np.arange(len(first)), nearest])
-        _, labels = np.unique(numbers[areas.labels], return_inverse=True)
-        return SegmentMap(labels.reshape(areas.labels.shape).astype(np.int32))
+        labels = numbers[areas.labels]
+        used = np.bincount(labels.reshape(-1)) > 0
+        return SegmentMap((np.cumsum(used) - 1).astype(np.int32)[labels])

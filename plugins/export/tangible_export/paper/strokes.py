@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from jaxtyping import Bool, Float64
 
-from tangible_core.drawing import find_ink, find_lines, find_texts
+from tangible_core.drawing import find_marks
 
 from .sheet import LINE_MM, Sheet
 from .smoothing import NEAR_MM, blur
@@ -26,9 +26,8 @@ def strokes_on(picture: np.ndarray, sheet: Sheet, outlines: Any = None) -> tuple
 
     Strokes end at junctions, so that these stay. outlines: lines on the page that are drawn anyway; None for none.
     """
-    ink = find_ink(picture)
-    texts = find_texts(ink)
-    centre = find_lines(ink, texts.ink).centre
+    marks = find_marks(picture)
+    centre = marks.lines.centre
     rows, columns = centre.shape
     to_mm = np.divide(sheet.picture_mm, (columns, rows))
     lines = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(_links(centre))))
@@ -44,7 +43,7 @@ def strokes_on(picture: np.ndarray, sheet: Sheet, outlines: Any = None) -> tuple
             strokes.append(stroke)
     if outlines is not None and strokes:
         strokes = _apart(strokes, outlines)
-    return tuple(strokes), len(texts.boxes)
+    return tuple(strokes), len(marks.texts.boxes)
 
 
 def _links(centre: Bool[np.ndarray, "r c"]) -> Float64[np.ndarray, "n 2 2"]:

@@ -91,7 +91,7 @@ def _areas() -> Iterator[Figure]:
 
 
 def score_areas(made: Made) -> np.ndarray:
-    """Return areas found and all, true and all found ones, and pixels on a wrong side of edges and all along edges."""
+    """Return areas found and all, true and all found ones, pixels beyond edges, and the edges' length."""
     known = made.labels >= 0
     unknown, by_pixel = (~known).astype(np.uint8), cv2.DIST_LABEL_PIXEL
     _, nearest = cv2.distanceTransformWithLabels(unknown, cv2.DIST_L2, 5, labelType=by_pixel)
@@ -103,13 +103,16 @@ def score_areas(made: Made) -> np.ndarray:
     both = np.zeros((true.max() + 1, found.max() + 1))
     np.add.at(both, (true[known], found[known]), 1)
     overlap = (both / np.maximum(both.sum(1, keepdims=True) + both.sum(0, keepdims=True) - both, 1))[1:, 1:] > OVERLAP
-    change = truth[:, 1:] != truth[:, :-1]
-    bare = known[:, 1:] & known[:, :-1] & change  # an edge without a line on it
+    bare, length = np.zeros(known.shape, np.uint8), 0.0  # edges without a line on them
+    for first, second in ((np.s_[:, 1:], np.s_[:, :-1]), (np.s_[1:], np.s_[:-1])):
+        change = known[first] & known[second] & (truth[first] != truth[second])
+        bare[second] |= change
+        length += np.pi / 4 * change.sum()  # by Crofton: crossings of a grid in two directions
     matched = np.argmax(both, axis=1)[true]
-    near = cv2.dilate(np.pad(bare, ((0, 0), (0, 1))).astype(np.uint8), np.ones((1, 9))) > 0
+    near = cv2.dilate(bare, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (9, 9))) > 0
     wrong = near & known & (matched != found) & np.isin(true, 1 + np.flatnonzero(overlap.any(1)))
     matches = overlap.any(1).sum(), len(overlap), overlap.any(0).sum(), overlap.shape[1]
-    return np.array([*matches, wrong.sum(), bare.sum()])
+    return np.array([*matches, wrong.sum(), length])
 
 
 def _pieces(labels: np.ndarray) -> np.ndarray:

@@ -3,7 +3,7 @@ import pytest
 
 from drawings import COLOURS, countries, house, page, scanned
 from tangible_core import Scene
-from tangible_core.drawing import PictureKind, find_areas, find_ink, find_lines, find_texts, picture_kind
+from tangible_core.drawing import PictureKind, find_areas, find_ink, find_lines, find_marks, find_texts, picture_kind
 
 PICTURES = {"lines": house()[0], "drawing": countries()[0], "text": page()}
 
@@ -66,7 +66,7 @@ def test_texts_places_and_nothing_else():
 
 
 @pytest.mark.parametrize(
-    ("copy", "off"), [(None, 0.3), ({"shadow": 0}, 0.5), ({"noise": 1, "shadow": 0, "quality": 70}, 0.5)]
+    ("copy", "off"), [(None, 0.1), ({"shadow": 0}, 0.2), ({"noise": 0, "shadow": 0, "quality": 50}, 0.2)]
 )
 def test_areas_are_colours_with_edges_in_place(copy, off):
     picture, truth = countries()
@@ -76,3 +76,10 @@ def test_areas_are_colours_with_edges_in_place(copy, off):
         match = areas.labels == np.abs(areas.colours - colour).sum(axis=1).argmin()
         rim = np.count_nonzero(truth[:, 1:] != truth[:, :-1])
         assert np.count_nonzero(match != (truth == number)) < 2 * off * rim
+
+
+def test_marks_are_found_once_for_equal_pictures():
+    picture, _ = house()
+    assert find_marks(picture).lines is find_marks(picture.copy()).lines
+    picture[100:104, 10:90] = 0
+    assert find_marks(picture).lines.mask[102, 50]

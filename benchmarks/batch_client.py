@@ -9,7 +9,7 @@ from pathlib import Path
 import psutil
 
 from tangible_batch.job_maker import BatchOptions
-from tangible_batch.manifest import rows_of
+from tangible_batch.manifest import find_rows
 from tangible_batch.results import last_rows, write_gallery, write_index
 from tangible_batch.running import Workforce, run_batch
 
@@ -22,7 +22,7 @@ def main(config: Path, manifest: Path, out: Path, workers: int, first: int) -> N
     client_mb, worker_mb, reached, failed = [], [], [], 0
     since_s = half_s = time.monotonic()
     from_s = 0
-    rows = run_batch(text, config, rows_of(str(manifest)), out, who, BatchOptions())
+    rows = run_batch(text, config, find_rows(str(manifest)), out, who, BatchOptions())
     total = manifest.read_text().count("\n") - 1
     for seen, row in enumerate(rows, 1):
         failed += row["outcome"] != "ok"
@@ -34,7 +34,7 @@ def main(config: Path, manifest: Path, out: Path, workers: int, first: int) -> N
             worker_mb.append(max(each.memory_info().rss for each in own.children(recursive=True)) / 1e6)
     end_s = time.monotonic()
     used = time.process_time()
-    names = [scene.id for scene in rows_of(str(manifest))]
+    names = [scene.id for scene in find_rows(str(manifest))]
     write_index(out, names)
     write_gallery(out, names)
     times, peak = resource.getrusage(resource.RUSAGE_CHILDREN), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

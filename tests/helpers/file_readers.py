@@ -430,9 +430,9 @@ def _make_batch(folder: Path) -> None:
 
 
 def _batch(path: Path) -> object:
-    from tangible_batch.manifest import rows_of
+    from tangible_batch.manifest import find_rows
 
-    return list(rows_of(str(path)))
+    return list(find_rows(str(path)))
 
 
 def _batch_rows(path: Path) -> object:

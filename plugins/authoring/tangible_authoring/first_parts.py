@@ -28,7 +28,7 @@ from tangible_networks.store import networks_here
 from tangible_report.numbered_parts import numbered_parts
 
 from .listed_parts import ListedPart, list_rows
-from .parts_starter import RELIEF_MM, parts_starter, title_of
+from .parts_starter import RELIEF_MM, make_title, parts_starter
 
 LABELS, NUMBERED = "parts.png", "parts-numbered.png"
 MAX_PARTS = 12
@@ -109,14 +109,14 @@ def first_parts(
     assert scene.views is not None
     heights = proposed_heights(pipeline, parts)
     front = _figure(pipeline).front_parts(parts)
-    named = {number: PartChoice(name=THE_FIGURE) for number in front if len(front) == 1}
-    rows, title = list_rows(parts, heights, named), title_of(pictures[0])
+    choices = {number: PartChoice(name=THE_FIGURE) for number in front if len(front) == 1}
+    rows, title = list_rows(parts, heights, choices), make_title(pictures[0])
     text = parts_starter(pipeline, file, LABELS, NUMBERED, title, rows)
-    labels, numbered, _ = files_beside(file)
-    shown = numbered_parts(scene.views.left, parts)
-    contents = {labels: label_picture(parts.labels), numbered: shown, file: text.encode()}
-    chosen = pipeline.config.texture
-    return FirstParts(scene, parts, rows, title, chosen.name if chosen else "", contents)
+    labels, numbers_path, _ = files_beside(file)
+    numbered_png = numbered_parts(scene.views.left, parts)
+    contents = {labels: label_picture(parts.labels), numbers_path: numbered_png, file: text.encode()}
+    texture = pipeline.config.texture
+    return FirstParts(scene, parts, rows, title, texture.name if texture else "", contents)
 
 
 def proposed_parts(pipeline: Pipeline, most: int = MAX_PARTS, smallest_mm: float = SMALLEST_MM) -> PartMap:
@@ -156,13 +156,13 @@ def _pipeline(
     """Make the pipeline of the starter file, with another texture method, or with more segments."""
     if method:
         registry.find("texture", method)
-    if other := next((each for each in overrides if not each.lstrip().startswith("texture.")), None):
+    if other := next((override for override in overrides if not override.lstrip().startswith("texture.")), None):
         raise ConfigError(f"--set {other}: sets options of the texture method, such as texture.segments=8; edit {file}")
     if maps := [picture for picture in pictures if file_kind(picture) == "heights"]:
         raise ConfigError(f"{maps[0]}: is a map of heights, which are felt as they are; parts are those of a picture")
     template = starter(pictures, file)
-    chosen = f"texture={{use: {on_one_line(method)}}}" if method else f"texture.segments={segments_for(most)}"
-    config = parse_config(template.text, file, registry, [chosen, *overrides])
+    setting = f"texture={{use: {on_one_line(method)}}}" if method else f"texture.segments={segments_for(most)}"
+    config = parse_config(template.text, file, registry, [setting, *overrides])
     return Pipeline.from_config(config.with_values(scene=template.scene), registry, cache)
 
 
@@ -175,12 +175,12 @@ def proposed_heights(pipeline: Pipeline, parts: PartMap, top_m: float | None = N
     disparity = pipeline.make("disparity") if scene.disparity is not None or two_views else None
     by_depth = choice.model_copy(update={"by": "depth"})
     by, picture = choice if disparity is None else by_depth, scene.views.left if scene.views else None
-    found = heights_of(parts, by, top_m, {}, disparity, scene.shown, picture)
+    proposal = heights_of(parts, by, top_m, {}, disparity, scene.shown, picture)
     front = _figure(pipeline).front_parts(parts) if disparity is None else ()
     share, lift_m = (GROUND, GROUND * top_m) if front else (1.0, 0.0)
-    heights = (share * height_m + lift_m * (number in front) for number, height_m in enumerate(found.heights_m))
-    rounded = (floor(height_m * STEPS_PER_M + 1e-6) / STEPS_PER_M for height_m in heights)
-    return PartHeights(tuple(rounded), found.reasons)
+    heights = (share * height_m + lift_m * (number in front) for number, height_m in enumerate(proposal.heights_m))
+    in_steps = (floor(height_m * STEPS_PER_M + 1e-6) / STEPS_PER_M for height_m in heights)
+    return PartHeights(tuple(in_steps), proposal.reasons)
 
 
 @contextmanager

@@ -41,15 +41,15 @@ class Cured(NamedTuple):
     pipeline: Pipeline
 
 
-def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, cached: bool = True) -> Fixed:
+def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, with_cache: bool = True) -> Fixed:
     """Apply the cures of preflight, the unsafe first, until none remains; nothing is written. Raises: TangibleError."""
     pipeline = Pipeline.from_yaml(path, sets := list(sets))
-    if not cached:
+    if not with_cache:
         pipeline.engine.cache = None
-    cured = cure(with_overrides(read_text(path), path, sets), path, pipeline, hand, loop)
-    changes = {key: change.value for key, change in cured.changes.items()}
-    text = relocate_text(cured.text, path, cured.pipeline.config, out)
-    return Fixed(changes, losses(pipeline.config, cured.changes), cured.flight, cured.verdicts, text)
+    result = cure(with_overrides(read_text(path), path, sets), path, pipeline, hand, loop)
+    changes = {key: change.value for key, change in result.changes.items()}
+    text = relocate_text(result.text, path, result.pipeline.config, out)
+    return Fixed(changes, losses(pipeline.config, result.changes), result.flight, result.verdicts, text)
 
 
 def cure(
@@ -64,26 +64,26 @@ def cure(
     """Apply the cures of preflight to a text, and return it with its pipeline. lateness: of a running loop."""
     flight = Feeling(pipeline).flight(hand=hand, loop=loop)
     flight = replace(flight, lateness=(lateness := lateness or flight.lateness))
-    done: dict[str, Change] = {}
+    changes: dict[str, Change] = {}
     for _ in range(ROUNDS):
-        if (change := _next(judge(flight), done)) is None:
+        if (change := _next(judge(flight), changes)) is None:
             break
         text = edit_text(text, path, {change.key: change.setting})
-        done[change.key] = change
+        changes[change.key] = change
         pipeline = Pipeline.from_config(parse_config(text, path, pipeline.engine.registry, sets), like=pipeline)
         flight = Feeling(pipeline).flight(hand=hand, loop=replace(loop, seconds=AT_ONCE))
         flight = replace(flight, lateness=lateness)
-    return Cured(done, flight, judge(flight), text, pipeline)
+    return Cured(changes, flight, judge(flight), text, pipeline)
 
 
-def _next(verdicts: Preflight, done: Mapping[str, Change]) -> Change | None:
+def _next(verdicts: Preflight, changes: Mapping[str, Change]) -> Change | None:
     """Return the first change of the worst verdict that was not made yet."""
-    worst_first = sorted(verdicts, key=lambda each: each.verdict != "unsafe")
-    return next((change for each in worst_first for change in each.changes[:1] if _is_new(change, done)), None)
+    worst_first = sorted(verdicts, key=lambda verdict: verdict.verdict != "unsafe")
+    return next((change for verdict in worst_first for change in verdict.changes[:1] if _is_new(change, changes)), None)
 
 
-def _is_new(change: Change, done: Mapping[str, Change]) -> bool:
-    before = done.get(change.key)
+def _is_new(change: Change, changes: Mapping[str, Change]) -> bool:
+    before = changes.get(change.key)
     if before is None:
         return True
     return before.towards == change.towards != "is" and before.stricter(change).value != before.value
@@ -112,15 +112,15 @@ def losses(config: PipelineConfig, changes: Mapping[str, Change]) -> list[str]:
 
 
 def _loss(config: PipelineConfig, key: str, new: Any) -> str:
-    written = f"`{key}: {_in_words(key, new)}`"
+    setting = f"`{key}: {_in_words(key, new)}`"
     if key not in LOSSES or not isinstance(new, int | float):
-        return f"{WORDS.get(key, 'is changed')} ({written})"
+        return f"{WORDS.get(key, 'is changed')} ({setting})"
     (more, less), before = LOSSES[key], _value(config, key)
     if before is None:
-        return f"{less.format(times='less', new=f'{new:g}')} ({written})"
+        return f"{less.format(times='less', new=f'{new:g}')} ({setting})"
     loss = more if new > before else less
     text = loss.format(times=_ratio(new / before), new=f"{new:g}") if before else "blurs what was sharp"
-    return f"{text} ({written} in place of {_in_words(key, before)})"
+    return f"{text} ({setting} in place of {_in_words(key, before)})"
 
 
 def _value(config: PipelineConfig, key: str) -> float | None:

@@ -43,9 +43,9 @@ class ListedPart(NamedTuple):
 class ListedParts(NamedTuple):
     """The parts of a pipeline's picture, and the mistakes in its `parts:`."""
 
-    found: PartMap
+    part_map: PartMap
     parts: tuple[ListedPart, ...]
-    numbered: bytes
+    numbers_png: bytes
     """The picture with their borders, numbers and names, as PNG."""
     scene_name: str
     wrong: ConfigError | None
@@ -55,10 +55,10 @@ class ListedParts(NamedTuple):
 def list_rows(parts: PartMap, heights: PartHeights | None, choices: Mapping[int, PartChoice]) -> tuple[ListedPart, ...]:
     """Make a row for every part. heights: of the parts, if they have some. choices: of the file, by label."""
     step = -(-max(parts.labels.shape) // MAX_CELLS)
-    shown, sizes = parts.labels[::step, ::step], part_sizes(parts)
+    small, sizes = parts.labels[::step, ::step], part_sizes(parts)
 
     def row(number: int) -> ListedPart:
-        choice, there = choices.get(number, PartChoice()), shown == number
+        choice, there = choices.get(number, PartChoice()), small == number
         return ListedPart(
             number,
             choice.name.strip(),
@@ -92,9 +92,9 @@ def list_parts(pipeline: Pipeline) -> ListedParts:
         picture = scene.views.left
         heights = heights_of(parts, config.heights, config.top_m, given_m, disparity, scene.shown, picture)
     rows = list_rows(parts, heights, config.choices)
-    names = [each.name for each in rows]
-    numbered = numbered_parts(scene.views.left, parts, names)
-    return ListedParts(parts, rows, numbered, scene.name, _wrong(config, parts))
+    names = [row.name for row in rows]
+    numbers_png = numbered_parts(scene.views.left, parts, names)
+    return ListedParts(parts, rows, numbers_png, scene.name, _wrong(config, parts))
 
 
 def _wrong(config: PipelineConfig, parts: PartMap) -> ConfigError | None:

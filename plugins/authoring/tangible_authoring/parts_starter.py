@@ -23,32 +23,32 @@ MEASURED = "`tangible parts` wrote the median of the depth over the part."
 
 
 def parts_starter(
-    pipeline: Pipeline, file: Path, labels: str, numbered: str, title: str, listed: Sequence[ListedPart]
+    pipeline: Pipeline, file: Path, labels: str, numbered: str, title: str, rows_of_parts: Sequence[ListedPart]
 ) -> str:
     """Write a pipeline file at `file` for these parts, with pictures of these names next to it."""
     scene, heights = pipeline.scene, HeightChoice(by="given")
     rows, columns = scene.shape
     longer = max(rows, columns)
-    guessed = all("guess" in each.why for each in listed)
+    is_guess = all("guess" in part.why for part in rows_of_parts)
     depth = pipeline.config.depth
     values = {
         "name": plain_line(Path(scene.name).name), "file": plain_line(str(file)), "columns": columns, "rows": rows,
-        "count": f"{len(listed)} part{'s' * (len(listed) != 1)}",
+        "count": f"{len(rows_of_parts)} part{'s' * (len(rows_of_parts) != 1)}",
         "labels": labels, "numbered": numbered, "scene": _scene_in_yaml(scene, file.parent, labels),
-        "title": on_one_line(title), "heights": GUESSED if guessed else MEASURED, "parts": _lines(listed),
+        "title": on_one_line(title), "heights": GUESSED if is_guess else MEASURED, "parts": _lines(rows_of_parts),
         "round_mm": f"{1000 * heights.round_m:g}", "bulge_mm": f"{1000 * heights.bulge_m:g}",
         "detail_mm": f"{1000 * heights.detail_m:g}", "relief_mm": f"{RELIEF_MM:g}",
         "width_mm": f"{SIDE_MM * columns / longer:.3g}",
-        "depth": f"depth: {{use: {depth.name}}}" if depth and not guessed else "",
+        "depth": f"depth: {{use: {depth.name}}}" if depth and not is_guess else "",
     }  # fmt: skip
     text = files("tangible_core.pipeline").joinpath("starter_parts.yaml").read_text(encoding="utf-8")
     return re.sub(r"\n{3,}", "\n\n", Template(text).substitute(values))
 
 
-def title_of(picture: Path) -> str:
+def make_title(picture: Path) -> str:
     """Make a title of the name of a file: words, the first letter large.
 
-    >>> title_of(Path("old/girl_with-a pearl.jpg")), title_of(Path("IMG_2041.JPG"))
+    >>> make_title(Path("old/girl_with-a pearl.jpg")), make_title(Path("IMG_2041.JPG"))
     ('Girl with a pearl', 'IMG 2041')
     """
     stem = plain_line(picture.stem)
@@ -56,28 +56,28 @@ def title_of(picture: Path) -> str:
     return words[:1].upper() + words[1:]
 
 
-def _lines(listed: Sequence[ListedPart]) -> str:
+def _lines(rows_of_parts: Sequence[ListedPart]) -> str:
     """Write a line for each part, with its number and place, which stay true when the height changes."""
     parts = {
         shown_number(part.number): {"name": part.name, "height_m": f"{1000 * (part.height_m or 0):.1f} mm"}
-        for part in listed
+        for part in rows_of_parts
     }
-    comments = {shown_number(part.number): f"{name_part(part.number)}: {part.where}" for part in listed}
+    comments = {shown_number(part.number): f"{name_part(part.number)}: {part.where}" for part in rows_of_parts}
     return part_lines(parts, comments).removesuffix("\n")
 
 
 def _scene_in_yaml(scene: Scene, folder: Path, labels: str) -> str:
     """Write the scene's files, with the label picture, relative to this folder."""
-    installed = isinstance(scene.files, str)  # a builtin scene's files never move with the pipeline file
+    is_builtin = isinstance(scene.files, str)  # a builtin scene's files never move with the pipeline file
     paths = builtin_files(scene.files) if isinstance(scene.files, str) else scene.files
     assert paths is not None
     defaults = {name: field.default for name, field in SceneFiles.model_fields.items()}
-    named = {name: value for name, value in paths if value != defaults[name]}
-    written = {
-        name: _relative(value, folder) if isinstance(value, Path) and not installed else f"{value}"
-        for name, value in named.items()
+    fields = {name: value for name, value in paths if value != defaults[name]}
+    texts = {
+        name: _relative(value, folder) if isinstance(value, Path) and not is_builtin else f"{value}"
+        for name, value in fields.items()
     }
-    return on_one_line({**written, "segments": labels})
+    return on_one_line({**texts, "segments": labels})
 
 
 def _relative(path: Path, folder: Path) -> str:

@@ -33,12 +33,12 @@ class Moved(NamedTuple):
 class Numbers(NamedTuple):
     """The parts of a pipeline file, their numbers when they were last drawn, and the files written since."""
 
-    listed: ListedParts
+    parts: ListedParts
     before: tuple[Before, ...] | None
     """The earlier number of each part; None where the earlier numbers are unknown."""
-    moved: list[Moved]
+    moves: list[Moved]
     title: str
-    written: tuple[Path, ...]
+    files: tuple[Path, ...]
     wrong: ConfigError | None
     """The mistakes that are left, with the cure."""
 
@@ -50,41 +50,41 @@ def draw_numbers(
     *,
     renumber: bool = False,
     force: bool = False,
-    cached: bool = True,
+    with_cache: bool = True,
 ) -> Numbers:
     """List the parts of a pipeline file, and draw their numbers and names at `numbered`. Raises: OutputError."""
-    drawn = as_drawn(numbered)
-    if drawn is None:
+    earlier = as_drawn(numbered)
+    if earlier is None:
         check_free([numbered], force=force)
-    text, cache = read_text(file), Cache() if cached else None
+    text, cache = read_text(file), Cache() if with_cache else None
     config = parse_config(text, file, default_registry(), overrides)
-    listed = list_parts(Pipeline.from_config(config, default_registry(), cache))
-    before = drawn.before(listed.found) if drawn else None
+    parts = list_parts(Pipeline.from_config(config, default_registry(), cache))
+    before = earlier.before(parts.part_map) if earlier else None
     by_rules = {label_of_number(rule.part): "" for rule in config.materials.rules if isinstance(rule.part, int)}
-    moved = moves({**by_rules, **parts_in(text, file)}, before or ())
-    title = config.title or Path(listed.scene_name).name
-    if moved and not (renumber or force):
+    moves_there = moves({**by_rules, **parts_in(text, file)}, before or ())
+    title = config.title or Path(parts.scene_name).name
+    if moves_there and not (renumber or force):
         wrong = ConfigError(
-            f"{file}: {in_words(moved)}, since {numbered} was drawn; --renumber lets what the file says of them "
+            f"{file}: {in_words(moves_there)}, since {numbered} was drawn; --renumber lets what the file says of them "
             "follow, --force draws the numbers alone"
         )
-        return Numbers(listed, before, moved, title, (), wrong)
-    contents = {numbered: listed.numbered}
-    if moved and renumber and before:
-        _check_rules(file, by_rules, moved)
-        text = renumber_parts(text, file, before, listed.parts)
+        return Numbers(parts, before, moves_there, title, (), wrong)
+    contents = {numbered: parts.numbers_png}
+    if moves_there and renumber and before:
+        _check_rules(file, by_rules, moves_there)
+        text = renumber_parts(text, file, before, parts.parts)
         config = parse_config(text, file, default_registry(), overrides)
-        listed = list_parts(Pipeline.from_config(config, default_registry(), cache))
-        contents = {numbered: listed.numbered, file: text.encode()}
+        parts = list_parts(Pipeline.from_config(config, default_registry(), cache))
+        contents = {numbered: parts.numbers_png, file: text.encode()}
     _write_together(contents)
-    return Numbers(listed, before, moved, title, tuple(contents), listed.wrong)
+    return Numbers(parts, before, moves_there, title, tuple(contents), parts.wrong)
 
 
-def _check_rules(file: Path, by_rules: Collection[int], moved: Iterable[Moved]) -> None:
+def _check_rules(file: Path, by_rules: Collection[int], all_moves: Iterable[Moved]) -> None:
     """Refuse rules for parts by numbers that have changed. Raises: ConfigError."""
-    if each := next((each for each in moved if each.before in by_rules), None):
+    if move := next((move for move in all_moves if move.before in by_rules), None):
         raise ConfigError(
-            f"{file}: a rule of materials.rules is for {name_part(each.before)} by its number, which has "
+            f"{file}: a rule of materials.rules is for {name_part(move.before)} by its number, which has "
             "changed; give the part a name, and write that into the rule"
         )
 
@@ -98,27 +98,27 @@ def _write_together(contents: Mapping[Path, bytes]) -> None:
             file.flush()
 
 
-def moves(written: Mapping[int, Any], before: Sequence[Before]) -> list[Moved]:
+def moves(choices: Mapping[int, Any], before: Sequence[Before]) -> list[Moved]:
     """Find the parts of the file that have another number now, or are gone. before: the earlier number of each part."""
-    now = {each.number: number for number, each in enumerate(before) if each.number is not None}
-    found = (
-        Moved(number, now.get(number), str(_block(choice).get("name") or "")) for number, choice in written.items()
+    now = {part.number: number for number, part in enumerate(before) if part.number is not None}
+    all_moves = (
+        Moved(number, now.get(number), str(_block(choice).get("name") or "")) for number, choice in choices.items()
     )
-    return [each for each in found if before and each.now != each.before]
+    return [part for part in all_moves if before and part.now != part.before]
 
 
-def in_words(moved: Sequence[Moved]) -> str:
+def in_words(all_moves: Sequence[Moved]) -> str:
     """Name the parts whose numbers have changed.
 
     >>> in_words([Moved(2, 3, "head"), Moved(3, None, "")])
     'numbers of parts have changed: 3 (head) is now 4, 4 is no more'
     """
     changes = (
-        f"{shown_number(each.before)}{each.name and f' ({each.name})'} is "
-        f"{'no more' if each.now is None else f'now {shown_number(each.now)}'}"
-        for each in moved[:MAX_NAMED]
+        f"{shown_number(move.before)}{move.name and f' ({move.name})'} is "
+        f"{'no more' if move.now is None else f'now {shown_number(move.now)}'}"
+        for move in all_moves[:MAX_NAMED]
     )
-    more = [f"and {len(moved) - MAX_NAMED} more"] if len(moved) > MAX_NAMED else []
+    more = [f"and {len(all_moves) - MAX_NAMED} more"] if len(all_moves) > MAX_NAMED else []
     return f"numbers of parts have changed: {', '.join([*changes, *more])}"
 
 
@@ -129,21 +129,21 @@ def parts_in(text: str, path: Path) -> dict[int, Any]:
     return {label_of_number(number): entry for number, entry in entries.items()}
 
 
-def renumber_parts(text: str, path: Path, before: Sequence[Before], found: Sequence[ListedPart]) -> str:
+def renumber_parts(text: str, path: Path, before: Sequence[Before], rows: Sequence[ListedPart]) -> str:
     """Return the text with a line for each part, as that of its earlier number. Raises: ConfigError."""
-    written = parts_in(text, path)
-    parts = {number: _choice_of(written, earlier) for number, earlier in enumerate(before, 1)}
-    comments = {shown_number(part.number): _comment(was, part) for was, part in zip(before, found, strict=True)}
+    choices = parts_in(text, path)
+    parts = {number: _earlier_choice(choices, earlier) for number, earlier in enumerate(before, 1)}
+    comments = {shown_number(part.number): _comment(was, part) for was, part in zip(before, rows, strict=True)}
     try:
         return with_parts(text, path, parts, comments)
     except ConfigError as error:
         raise ConfigError(f"{error}; number them by hand, as the table says") from error
 
 
-def _choice_of(written: Mapping[int, Any], before: Before) -> Any:
+def _earlier_choice(choices: Mapping[int, Any], before: Before) -> Any:
     if before.number is not None:
-        return written.get(before.number, {"name": ""})
-    height = _block(written.get(before.cut_from)).get("height_m")
+        return choices.get(before.number, {"name": ""})
+    height = _block(choices.get(before.cut_from)).get("height_m")
     return {"name": ""} if height is None else {"name": "", "height_m": height}
 
 

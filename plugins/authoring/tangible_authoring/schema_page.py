@@ -37,7 +37,7 @@ def _forms(node: Mapping[str, Any]) -> list[dict[str, Any]]:
         return [dict(node)]
     below = [*node.get("anyOf", ()), *node.get("patternProperties", {}).values()]
     below += [node["items"]] if "items" in node else []
-    return [form for each in below for form in _forms(each)]
+    return [form for node_below in below for form in _forms(node_below)]
 
 
 def _tables(forms: Iterable[dict[str, Any]], blocks: Mapping[str, Any]) -> Iterator[str]:

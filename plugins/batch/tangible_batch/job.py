@@ -57,7 +57,7 @@ class Job:
 
 def make_scene(job: Job) -> Row:
     """Make the scene, write its files, and return its row, with the error if anything fails."""
-    start_s, row = perf_counter(), row_of(job, "ok")
+    start_s, row = perf_counter(), empty_row(job, "ok")
     try:
         with limited_threads(job.threads), naming_scene(job.id):
             row |= _make(job)
@@ -94,7 +94,7 @@ def naming_scene(name: str) -> Generator[None]:
 _scene: ContextVar[str] = ContextVar("tangible_scene", default="")
 
 
-def row_of(job: Job, outcome: str, error: str | None = None) -> Row:
+def empty_row(job: Job, outcome: str, error: str | None = None) -> Row:
     """Return the row of a scene without figures, as it is for one whose worker died."""
     return {"id": job.id, "key": job.key, "outcome": outcome, "error": error, "seconds": None, "folder": job.folder}
 
@@ -138,10 +138,10 @@ def _export(pipeline: Pipeline, folder: Path) -> list[str]:
     """Run the exporters of the pipeline file, and return their files. Raises: OutputError if one of them fails."""
     if not pipeline.config.export:
         return []
-    done = pipeline.export(folder, force=True)
-    if failed := [outcome for outcome in done.outcomes if outcome.outcome != "ran"]:
-        raise OutputError("; ".join(f"export {each.product}: {each.why}" for each in failed))
-    return [path.relative_to(folder).as_posix() for paths in done.files.values() for path in paths]
+    exports = pipeline.export(folder, force=True)
+    if failures := [outcome for outcome in exports.outcomes if outcome.outcome != "ran"]:
+        raise OutputError("; ".join(f"export {outcome.product}: {outcome.why}" for outcome in failures))
+    return [path.relative_to(folder).as_posix() for paths in exports.files.values() for path in paths]
 
 
 def _figures(pipeline: Pipeline) -> dict[str, Any]:
@@ -158,7 +158,7 @@ def _size(pipeline: Pipeline) -> dict[str, Any]:
     width_m, length_m = surface.extent_m
     size = {"width_mm": 1e3 * width_m, "length_mm": 1e3 * length_m, "height_mm": 1e3 * float(surface.height_m.max())}
     segments = 0 if surface.labels is None else int(surface.labels.max()) + 1
-    return {"surface": {**{name: round(each, 3) for name, each in size.items()}, "segments": segments}}
+    return {"surface": {**{name: round(length, 3) for name, length in size.items()}, "segments": segments}}
 
 
 def _plain(figures: Mapping[Any, Any]) -> dict[str, Any]:
@@ -199,10 +199,10 @@ def write_card(pipeline: Pipeline, folder: Path) -> str:
     for part in parts:
         whole[: part.shape[0], at : at + part.shape[1]] = part
         at += part.shape[1]
-    packed = io.BytesIO()
-    Image.fromarray(whole).save(packed, "JPEG", quality=80)
+    jpeg = io.BytesIO()
+    Image.fromarray(whole).save(jpeg, "JPEG", quality=80)
     with atomic_write(folder / CARD) as file:
-        file.write(packed.getvalue())
+        file.write(jpeg.getvalue())
     return CARD
 
 
@@ -221,9 +221,9 @@ def _draw_product(pipeline: Pipeline) -> UInt8[np.ndarray, "r c 3"]:
 def _grey(values: np.ndarray) -> UInt8[np.ndarray, "r c 3"]:
     """Draw values in grey, from black for the lowest (and for unknown) to white for the highest."""
     values = np.asarray(values, np.float32)
-    known = np.isfinite(values)
-    low, high = (float(values[known].min()), float(values[known].max())) if known.any() else (0.0, 0.0)
-    share = np.where(known, (values - low) / max(high - low, 1e-9), 0).astype(np.float32)
+    valid_mask = np.isfinite(values)
+    low, high = (float(values[valid_mask].min()), float(values[valid_mask].max())) if valid_mask.any() else (0.0, 0.0)
+    share = np.where(valid_mask, (values - low) / max(high - low, 1e-9), 0).astype(np.float32)
     return np.repeat(np.rint(255 * np.clip(_resize(share), 0, 1)).astype(np.uint8)[..., None], 3, axis=2)
 
 
@@ -239,9 +239,9 @@ def _resize(picture: np.ndarray) -> np.ndarray:
 def _shade(height_m: np.ndarray, pitch_m: tuple[float, float]) -> UInt8[np.ndarray, "r c 3"]:
     """Shade heights as lit from the upper left."""
     small = _resize(np.asarray(height_m, np.float32))
-    enlarged = height_m.shape[1] / small.shape[1]
+    scale = height_m.shape[1] / small.shape[1]
     down, right = (
-        np.gradient(small, axis=axis) / (pitch * enlarged) if small.shape[axis] > 1 else np.zeros_like(small)
+        np.gradient(small, axis=axis) / (pitch * scale) if small.shape[axis] > 1 else np.zeros_like(small)
         for axis, pitch in ((0, pitch_m[1]), (1, pitch_m[0]))
     )
     shade = (-right * LIGHT[0] + down * LIGHT[1] + LIGHT[2]) / np.sqrt(1 + right**2 + down**2) / np.linalg.norm(LIGHT)

@@ -14,7 +14,7 @@ from tangible_core.plugins.registry import default_registry
 
 from .farm import LONGEST_S
 from .job import Job
-from .manifest import FILES, SceneRow, file_of
+from .manifest import FILES, SceneRow, setting_file
 
 SCENES = "scenes"
 SAFE = re.compile(r"[^\w.+-]")
@@ -51,8 +51,8 @@ class JobMaker:
     def __call__(self, row: SceneRow) -> Job:
         """Return the job of a row."""
         key = self._head.copy()
-        for each in row.sets:
-            key.update(f"{each}\n{_state(file_of(each))}".encode(errors="surrogateescape"))
+        for setting in row.sets:
+            key.update(f"{setting}\n{_state(setting_file(setting))}".encode(errors="surrogateescape"))
         has_scene = _has_scene(row)
         for own in () if has_scene else self._own:
             key.update(_state(own).encode())
@@ -66,8 +66,8 @@ class JobMaker:
         """Check the file itself. Raises: ConfigError for mistakes that all scenes share."""
         text = self._other if _has_scene(row) else self._text
         here = _complaints(text, self._path, row.sets)
-        if shared := [line for place, line in _complaints(self._text, self._path, ()).items() if place in here]:
-            raise ConfigError(*shared)
+        if in_common := [line for place, line in _complaints(self._text, self._path, ()).items() if place in here]:
+            raise ConfigError(*in_common)
 
 
 def folder_name(name: str) -> str:
@@ -82,7 +82,7 @@ def folder_name(name: str) -> str:
 
 
 def _has_scene(row: SceneRow) -> bool:
-    return any(each.startswith("scene.") for each in row.sets)
+    return any(setting.startswith("scene.") for setting in row.sets)
 
 
 def _complaints(text: str, path: Path, sets: tuple[str, ...]) -> dict[object, str]:
@@ -113,8 +113,8 @@ def _scene(text: str, path: Path) -> dict[str, Any]:
 
 
 def _own_files(text: str, path: Path) -> list[Path]:
-    named = {f"scene.{name}": value for name, value in _scene(text, path).items()}
-    return [path.parent / value for key, value in named.items() if key in FILES and isinstance(value, str)]
+    options = {f"scene.{name}": value for name, value in _scene(text, path).items()}
+    return [path.parent / value for key, value in options.items() if key in FILES and isinstance(value, str)]
 
 
 def _without_files(text: str, path: Path) -> str:

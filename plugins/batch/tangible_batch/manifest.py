@@ -41,7 +41,7 @@ class SceneRow(NamedTuple):
     """The changes, `key.key=value` each, as for `--set`."""
 
 
-def rows_of(over: str | Sequence[str], besides: Path | None = None) -> Iterator[SceneRow]:
+def find_rows(over: str | Sequence[str], besides: Path | None = None) -> Iterator[SceneRow]:
     """Yield the rows of a .csv or .parquet file, or one for each picture or pair of a folder or a glob, in order.
 
     over: a file, a folder or a glob; or the pictures that a shell has made of a glob. besides: a folder to leave out.
@@ -56,15 +56,15 @@ def rows_of(over: str | Sequence[str], besides: Path | None = None) -> Iterator[
         yield from _check_names(_pictures(_existing_pictures(several), base), "--over: ")
         return
     path = as_path(over, "--over")
-    known = next((place for place in (path, *path.parents) if place.exists()), path)
+    existing = next((place for place in (path, *path.parents) if place.exists()), path)
     if path.suffix.lower() in MANIFESTS:
         rows = _read_manifest(path)
     elif path.is_dir():
         rows = _pictures(_files(path.rglob("*"), besides), path)
     else:  # a folder that is there may have brackets in its name, which are no pattern
-        pattern = str(Path(glob.escape(str(known)), path.relative_to(known)))
+        pattern = str(Path(glob.escape(str(existing)), path.relative_to(existing)))
         names = map(Path, glob.glob(pattern, recursive=True))  # noqa: PTH207 - pathlib refuses absolute patterns
-        rows = _pictures(_files(names, besides), known if known.is_dir() else known.parent)
+        rows = _pictures(_files(names, besides), existing if existing.is_dir() else existing.parent)
     empty = True
     for row in _check_names(rows, f"{over}: "):
         empty = False
@@ -90,18 +90,18 @@ def rows_from(rows: Iterable[Mapping[str, Any]], base: Path) -> Iterator[SceneRo
     return _check_names(_rows(rows, base), "")
 
 
-def file_of(setting: str) -> Path | None:
+def setting_file(setting: str) -> Path | None:
     """Return the file of a row's setting; None if its value is not a file."""
     key, _, value = setting.partition("=")
     return Path(json.loads(value)) if key in FILES else None
 
 
 def _check_names(rows: Iterable[SceneRow], over: str) -> Iterator[SceneRow]:
-    seen: set[str] = set()
+    names: set[str] = set()
     for row in rows:
-        if row.id in seen:
+        if row.id in names:
             raise BatchError(f"{over}two rows are called {quoted(row.id)}; give each its own `id`")
-        seen.add(row.id)
+        names.add(row.id)
         yield row
 
 
@@ -165,13 +165,13 @@ def _pictures(files: list[Path], base: Path) -> Iterator[SceneRow]:
     """Yield a row for each picture or pair, or without any for each video; two of one name keep their suffixes."""
     kinds = {file: file_kind(file) for file in files if not file.name.startswith(BESIDE_FILE)}
     arrays = {file for file in kinds if file.suffix.lower() in MAPS}  # labels and other maps lie beside pictures
-    scenes = list(_scenes_of(sorted(file for file, kind in kinds.items() if kind in STILL and file not in arrays)))
+    scenes = list(_scene_files(sorted(file for file, kind in kinds.items() if kind in STILL and file not in arrays)))
     if not scenes:  # phones save a short film of the same name next to each photo
         scenes = [(file, "", {"scene.video": file}) for file, kind in kinds.items() if kind == "video"]
     if not scenes:
         scenes = [(file, "", {"scene.height": file}) for file, kind in kinds.items() if kind == "heights"]
-    taken = {path for _, _, parts in scenes for path in parts.values()}
-    if scenes and (others := [shown(file.name) for file in files if file not in taken]):
+    used_files = {path for _, _, parts in scenes for path in parts.values()}
+    if scenes and (others := [shown(file.name) for file in files if file not in used_files]):
         more = f" and {len(others) - MAX_NAMED} more" if len(others) > MAX_NAMED else ""
         log.warning("%s: left out: %s", base, ", ".join(others[:MAX_NAMED]) + more)
     names = [_name(file, base).removesuffix(end) for file, end, _ in scenes]
@@ -181,11 +181,11 @@ def _pictures(files: list[Path], base: Path) -> Iterator[SceneRow]:
         yield SceneRow(whole, tuple(f"{key}={_file_text(path)}" for key, path in parts.items()))
 
 
-def _scenes_of(pictures: list[Path]) -> Iterator[tuple[Path, str, dict[str, Path]]]:
+def _scene_files(pictures: list[Path]) -> Iterator[tuple[Path, str, dict[str, Path]]]:
     """Yield the first picture of each scene, the end of its name as a left view, and the scene's files by key."""
-    rights = {right for file in pictures if (right := _right_of(file)) in pictures}
+    rights = {right for file in pictures if (right := _right_view(file)) in pictures}
     for left in (file for file in pictures if file not in rights):
-        right = _right_of(left)
+        right = _right_view(left)
         if right in rights:
             end = next(end for end, _ in SIDES if left.stem.endswith(end))
             yield left, end, {"scene.left": left, "scene.right": right}
@@ -199,7 +199,7 @@ def _name(file: Path, base: Path) -> str:
     return str((file.relative_to(base) if file.is_relative_to(base) else Path(file.name)).with_suffix(""))
 
 
-def _right_of(left: Path) -> Path | None:
+def _right_view(left: Path) -> Path | None:
     """Return the path of the right view if this is a left one."""
     ends = next((ends for ends in SIDES if left.stem.endswith(ends[0])), None)
     return left.with_name(left.stem.removesuffix(ends[0]) + ends[1] + left.suffix) if ends else None

@@ -91,9 +91,9 @@ def last_rows(out: Path) -> dict[str, Row]:
 
 def rows_of_scenes(out: Path, names: Iterable[str]) -> Iterator[Row]:
     """Return the last row of each of these scenes, in the order of the file; one at a time, as there may be many."""
-    wanted = set(names)
+    scenes = set(names)
     last = {str(row.get("id")): number for number, row in read_rows(out / ROWS)}
-    lines = {number for name, number in last.items() if name in wanted}
+    lines = {number for name, number in last.items() if name in scenes}
     return (row for number, row in read_rows(out / ROWS) if number in lines)
 
 
@@ -138,8 +138,8 @@ def write_gallery(out: Path, names: Iterable[str]) -> tuple[Path, ...]:
 def _flatten(name: str, value: Any) -> Iterator[tuple[str, Any]]:
     """Yield columns with dotted names, such as `figures.disparity.bad2`; lists become text."""
     if isinstance(value, Mapping):
-        for key, each in cast("Mapping[str, Any]", value).items():
-            yield from _flatten(printable(f"{name}.{key}" if name else key), each)
+        for key, item in cast("Mapping[str, Any]", value).items():
+            yield from _flatten(printable(f"{name}.{key}" if name else key), item)
     elif isinstance(value, list):
         yield name, printable("; ".join(map(str, cast("list[Any]", value))))
     elif isinstance(value, str):
@@ -168,7 +168,7 @@ def _page(title: str, rows: Iterable[Row], pages: Iterable[Path], own: Path) -> 
 
 def _figure(row: Row) -> str:
     name, scene = escape(printable(row["id"])), escape(printable(without_folders(row.get("scene") or "")))
-    folder, found = quote(printable(row["folder"])), escape(printable(_summary(row)))
+    folder, summary = quote(printable(row["folder"])), escape(printable(_summary(row)))
     shows = escape(localise(f"{printable(row['id'])}: the picture, and the {_product(row)} made of it"))
     image = ""
     if card := row.get("card"):
@@ -180,7 +180,7 @@ def _figure(row: Row) -> str:
     caption = f'<a href="{folder}/">{name}</a>' if image else name
     pages = [printable(file) for file in row.get("files", ()) if file.endswith(".html")]
     caption += "".join(f' · <a href="{folder}/{quote(page)}">{escape(page)}</a>' for page in pages)
-    line = f"<em>{found}</em>" if row["outcome"] != "ok" else found
+    line = f"<em>{summary}</em>" if row["outcome"] != "ok" else summary
     return f'<figure class="{row["outcome"]}">{image}<figcaption>{caption} <br>{line}</figcaption></figure>'
 
 
@@ -204,7 +204,7 @@ def _summary(row: Row) -> str:
         parts.append(f"{segments} segments")
     if force := figures.get("force"):
         parts.append(f"felt with up to {force['peak_force_n']:.1f} N")
-    warnings = (f"{localise('warning')}: {localise(each)}" for each in row.get("notes", ()))
+    warnings = (f"{localise('warning')}: {localise(note)}" for note in row.get("notes", ()))
     return "; ".join([*map(localise, parts), *warnings])
 
 

@@ -14,7 +14,7 @@ from tangible_core.runtime.system import processors
 
 from .extra import need_all
 from .farm import LONGEST_S, Farm
-from .job import FULL, Job, Row, make_scene, row_of
+from .job import FULL, Job, Row, empty_row, make_scene
 from .job_maker import BatchOptions, JobMaker
 from .manifest import SceneRow, rows_from
 from .results import ROWS, last_rows
@@ -139,6 +139,6 @@ def _make_rows(jobs: list[Job], workforce: Workforce, options: BatchOptions) -> 
     workers = min(workforce.workers_here, len(jobs))
     with Farm(workers, workforce.threads_each or 1, workforce.scheduler) as farm:
         chunk = max(1, min(options.chunk, len(jobs) // (4 * farm.workers)))
-        for done in farm.map(make_scene, jobs, chunk, options.timeout_s):
+        for ended_job in farm.map(make_scene, jobs, chunk, options.timeout_s):
             check_stopped()
-            yield done.result or row_of(done.job, "failed", done.death)
+            yield ended_job.result or empty_row(ended_job.job, "failed", ended_job.death)

@@ -39,10 +39,10 @@ def numbered_parts(picture: np.ndarray, parts: PartMap, names: Sequence[str] = (
     from PIL import Image, ImageDraw
     from PIL.PngImagePlugin import PngInfo
 
-    shown, labels = _resize(to_rgb8(picture), parts.labels)
+    canvas, labels = _resize(to_rgb8(picture), parts.labels)
     longer = max(labels.shape)
-    _draw_borders(shown, labels, max(1, round(longer / 800)))
-    image = Image.fromarray(shown)
+    _draw_borders(canvas, labels, max(1, round(longer / 800)))
+    image = Image.fromarray(canvas)
     draw = ImageDraw.Draw(image)
     for number in range(parts.count):
         name = names[number] if number < len(names) else ""
@@ -128,12 +128,12 @@ def _resize(
     scale = -(-SHORTEST_PX // longer) if longer < SHORTEST_PX else min(1.0, LONGEST_PX / longer)
     rows, columns = (max(1, round(scale * side)) for side in labels.shape)
     with plain_opencv():
-        shown = cv2.resize(picture, (columns, rows), interpolation=cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR)
+        resized = cv2.resize(picture, (columns, rows), interpolation=cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR)
         nearest = cv2.resize(labels, (columns, rows), interpolation=cv2.INTER_NEAREST)
-    return np.array(shown, np.uint8), np.array(nearest, np.int32)
+    return np.array(resized, np.uint8), np.array(nearest, np.int32)
 
 
-def _draw_borders(shown: UInt8[np.ndarray, "h w 3"], labels: Int32[np.ndarray, "h w"], width_px: int) -> None:
+def _draw_borders(canvas: UInt8[np.ndarray, "h w 3"], labels: Int32[np.ndarray, "h w"], width_px: int) -> None:
     """Draw dark lines with light ones on both sides, which are visible on any picture."""
     import cv2
 
@@ -141,7 +141,7 @@ def _draw_borders(shown: UInt8[np.ndarray, "h w 3"], labels: Int32[np.ndarray, "
     border[:, 1:] |= labels[:, 1:] != labels[:, :-1]
     border[1:] |= labels[1:] != labels[:-1]
     for colour, width in ((HALO, 3 * width_px), (INK, width_px)):
-        shown[cv2.dilate(border, np.ones((width, width), np.uint8)) > 0] = colour
+        canvas[cv2.dilate(border, np.ones((width, width), np.uint8)) > 0] = colour
 
 
 def _write(draw: ImageDraw, disc: Disc | None, texts: Sequence[str], longer: int) -> None:

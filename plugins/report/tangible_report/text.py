@@ -56,8 +56,8 @@ class Text(Exporter):
         language = self.language or spoken_language(work.language, log)
         parts, kind = self._parts(work), None if work.picture is not None else "heights"
         surface = work.surface if self.materials else replace(work.surface, materials=None)
-        seen: Figure | None = work.extras.get("figure")
-        content = surface, work.title, language, parts, kind, 0 if seen is None else seen.people
+        figure: Figure | None = work.extras.get("figure")
+        content = surface, work.title, language, parts, kind, 0 if figure is None else figure.people
         lines = describe_at_length(*content)
         texts = {
             ".txt": "".join(f"{line}\n" for line in lines),
@@ -73,14 +73,14 @@ class Text(Exporter):
 
     def _parts(self, work: Work) -> tuple[PartFacts, ...]:
         """Return the parts of the surface if one has a name; otherwise, the parts that fingers can read."""
-        surface, simplified = work.surface, work.simplified
+        surface, simpler = work.surface, work.simplified
         if any(surface.names or ()):
             parts = facts(surface, work.materials)
-        elif simplified is None:
+        elif simpler is None:
             return ()
         else:
             note(log, "no part has a name, so parts are described by number; `tangible parts` shows them for naming")
-            parts = facts(surface, work.materials, simplified, work.names)
+            parts = facts(surface, work.materials, simpler, work.names)
         return parts if self.materials else tuple(part._replace(material="") for part in parts)
 
     def _emboss(self, lines: Sequence[str], language: str) -> str:

@@ -34,19 +34,19 @@ PLAIN = Material("", 800.0, 0.0, 0.0, 0.0)
 """What `proxy` takes for a surface without materials."""
 
 
-def pack(sent: SentSurface, work: Work) -> dict[str, Any]:
+def pack(spline: SentSurface, work: Work) -> dict[str, Any]:
     """Return the data of the page, without the picture."""
-    surface = _surface_in_words(sent, work)
+    surface = _surface_in_words(spline, work)
     materials, kinds = distinct_materials(surface.materials or ())
-    digest = digest_of((sent.numbers, sent.labels, work.title, work.names))
+    digest = digest_of((spline.numbers, spline.labels, work.title, work.names))
     return {
-        "meta": _meta(sent, surface, work, materials, digest),
-        "low_m": sent.low_m,
-        "step_m": sent.step_m,
-        "heights": deflate(sent.numbers),
-        "labels": "" if sent.labels is None else deflate(sent.labels),
+        "meta": _meta(spline, surface, work, materials, digest),
+        "low_m": spline.low_m,
+        "step_m": spline.step_m,
+        "heights": deflate(spline.numbers),
+        "labels": "" if spline.labels is None else deflate(spline.labels),
         "kinds": kinds.tolist(),
-        "rows": _rows(work.surface.materials if sent.labels is not None else None),
+        "rows": _rows(work.surface.materials if spline.labels is not None else None),
         "photo": "",
         **_words(surface, work),
     }
@@ -68,15 +68,15 @@ def deflate(numbers: Shaped[np.ndarray, "h w"]) -> str:
     return b64encode(zlib.compress(low.tobytes() + high.tobytes(), 9)).decode()
 
 
-def _surface_in_words(sent: SentSurface, work: Work) -> HapticSurface:
+def _surface_in_words(spline: SentSurface, work: Work) -> HapticSurface:
     """Return the surface that is described: with the materials of the work where the force law has none."""
-    relief = Relief(np.maximum(sent.height_m, np.float32(0)), sent.extent_m)
+    relief = Relief(np.maximum(spline.height_m, np.float32(0)), spline.extent_m)
     materials = work.surface.materials
     if materials is None and work.materials is not None:
         materials = work.materials.materials
-    if sent.labels is None or materials is None or int(sent.labels.max()) >= len(materials):
+    if spline.labels is None or materials is None or int(spline.labels.max()) >= len(materials):
         materials = work.surface.materials
-    return HapticSurface(relief, sent.labels, materials, work.surface.names)
+    return HapticSurface(relief, spline.labels, materials, work.surface.names)
 
 
 def _rows(materials: Sequence[Material] | None) -> list[tuple[float, float, float, float]]:
@@ -89,7 +89,7 @@ def _rows(materials: Sequence[Material] | None) -> list[tuple[float, float, floa
 
 
 def _meta(
-    sent: SentSurface, surface: HapticSurface, work: Work, materials: Sequence[Material], digest: str
+    spline: SentSurface, surface: HapticSurface, work: Work, materials: Sequence[Material], digest: str
 ) -> dict[str, Any]:
     rows, columns = surface.height_m.shape
     return {
@@ -98,10 +98,10 @@ def _meta(
         "shows": "surface",
         "rows": rows,
         "columns": columns,
-        "extent_m": list(sent.extent_m),
+        "extent_m": list(spline.extent_m),
         "height_m": [float(surface.height_m.min()), float(surface.height_m.max())],
         "levels": [{"step": 1, "rows": rows, "columns": columns}],
-        "labels": 0 if sent.labels is None else int(sent.labels.max()) + 1,
+        "labels": 0 if spline.labels is None else int(spline.labels.max()) + 1,
         "label_bytes": 2,
         "materials": [{**asdict(material), "name": one_line(material.name)} for material in materials],
         "parts": None if surface.names is None else [one_line(name) for name in surface.names],
@@ -113,20 +113,20 @@ def _meta(
 
 def _words(surface: HapticSurface, work: Work) -> dict[str, Any]:
     return {
-        "describes": {each: description(surface, work, each) for each in LANGUAGES},
-        "says": {each: describe(surface, one_line(work.title), each) for each in LANGUAGES},
+        "describes": {language: description(surface, work, language) for language in LANGUAGES},
+        "says": {language: describe(surface, one_line(work.title), language) for language in LANGUAGES},
     }
 
 
 def description(surface: HapticSurface, work: Work, language: Language) -> dict[str, Any]:
     """Return the long description as texts."""
     kind = None if work.picture is not None else "heights"
-    told = tell(surface, work.title, language, facts(surface), kind)
+    texts = tell(surface, work.title, language, facts(surface), kind)
     return {
-        "overview": " ".join((*told.overview, *[Words(language)("first frame")] * work.film)),
-        "heading": told.heading,
-        "parts": [[part.label, " ".join(part.sentences)] for part in told.parts],
-        "left_out": told.left_out,
+        "overview": " ".join((*texts.overview, *[Words(language)("first frame")] * work.film)),
+        "heading": texts.heading,
+        "parts": [[part.label, " ".join(part.sentences)] for part in texts.parts],
+        "left_out": texts.left_out,
     }
 
 
@@ -138,21 +138,21 @@ def photo(picture: np.ndarray, most_bytes: int) -> str:
         size = tuple(max(1, round(share * side)) for side in image.size)
         small = image.resize((size[0], size[1]), Image.Resampling.BOX, reducing_gap=2.0)
         for quality in QUALITIES:
-            packed = io.BytesIO()
-            small.save(packed, "JPEG", quality=quality, optimize=True)
-            if 4 * -(-packed.tell() // 3) <= most_bytes or max(size) <= 16:
-                return b64encode(packed.getvalue()).decode()
+            jpeg = io.BytesIO()
+            small.save(jpeg, "JPEG", quality=quality, optimize=True)
+            if 4 * -(-jpeg.tell() // 3) <= most_bytes or max(size) <= 16:
+                return b64encode(jpeg.getvalue()).decode()
         share *= SMALLER
 
 
-def page_of(
+def make_page(
     title: str, language: Language, named_in: str, data: Mapping[str, Any], script: str, style: str, licences: str
 ) -> str:
     """Return the page. language: of its words; named_in: the tag of the language of title and names."""
     if "</script" in script.lower() or "</style" in style.lower():
         raise ValueError("script and style must not end their elements")
     name, say = escape(one_line(title)), Words(language)
-    described = data.get("describes", {}).get(language)
+    texts = data.get("describes", {}).get(language)
     return Template(files("tangible_send").joinpath("page.html").read_text(encoding="utf-8")).substitute(
         language=language,
         policy=_policy(script, style),
@@ -160,7 +160,7 @@ def page_of(
         style=style,
         named_in=escape(named_in) if name else language,
         no_script=say("no script"),
-        description=_describe(described) if described else "",
+        description=_describe(texts) if texts else "",
         licences=licences.replace("--", "- -"),
         data=as_json(data),
         script=script,
@@ -169,19 +169,19 @@ def page_of(
 
 def _policy(script: str, style: str) -> str:
     """Return the policy: only this script and this style, and no connection at all."""
-    scripts, styles = (b64encode(sha256(each.encode()).digest()).decode() for each in (script, style))
-    allowed = {
+    scripts, styles = (b64encode(sha256(text.encode()).digest()).decode() for text in (script, style))
+    rules = {
         "default-src": "'none'",
         "script-src": f"'sha256-{scripts}'",
         "style-src": f"'sha256-{styles}'",
         "base-uri": "'none'",
         "form-action": "'none'",
     }
-    return "; ".join(map(" ".join, allowed.items()))
+    return "; ".join(map(" ".join, rules.items()))
 
 
-def _describe(described: Mapping[str, Any]) -> str:
-    items = "".join(f"<li><bdi>{escape(label)}</bdi>. {escape(says)}</li>\n" for label, says in described["parts"])
-    listed = f"<h2>{escape(described['heading'])}</h2>\n<ul>\n{items}</ul>" if items else ""
-    left = f"<p>{escape(described['left_out'])}</p>" if described["left_out"] else ""
-    return f"<p>{escape(described['overview'])}</p>\n{listed}{left}"
+def _describe(texts: Mapping[str, Any]) -> str:
+    items = "".join(f"<li><bdi>{escape(label)}</bdi>. {escape(says)}</li>\n" for label, says in texts["parts"])
+    part_list = f"<h2>{escape(texts['heading'])}</h2>\n<ul>\n{items}</ul>" if items else ""
+    remark = f"<p>{escape(texts['left_out'])}</p>" if texts["left_out"] else ""
+    return f"<p>{escape(texts['overview'])}</p>\n{part_list}{remark}"

@@ -36,17 +36,17 @@ class Page(Exporter):
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
         """Write one file. Raises: ConfigError if the page was not built; OutputError if it cannot be small enough."""
-        from .packing import MIN_PHOTO, pack, page_of, photo
+        from .packing import MIN_PHOTO, make_page, pack, photo
         from .surface import fits, surface_to_send
 
         script, style, licences = map(page_file, ("send.js", "send.css", "LICENSES.txt"))
         language = spoken_language(work.language, log)
 
         def page(data: Mapping[str, Any]) -> str:
-            return page_of(work.title, language, work.language, data, script, style, licences)
+            return make_page(work.title, language, work.language, data, script, style, licences)
 
-        for sent in surface_to_send(work):
-            data = pack(sent, work)
+        for spline in surface_to_send(work):
+            data = pack(spline, work)
             room = self.most_bytes - len(page(data).encode())
             if room >= (0 if work.picture is None else MIN_PHOTO):
                 break
@@ -54,8 +54,8 @@ class Page(Exporter):
             raise OutputError(f"this picture does not fit into {self.most_bytes} bytes; make `most_bytes` larger")
         if work.picture is not None:
             data["photo"] = photo(work.picture, room)
-        if said := fits(work, sent):
-            note(log, said)
+        if remark := fits(work, spline):
+            note(log, remark)
         if work.film:
             note(log, "the page shows the first frame of the film")
         path = stem.with_name(f"{stem.name}-page.html")

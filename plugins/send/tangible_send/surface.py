@@ -54,12 +54,12 @@ def surface_to_send(work: Work) -> Iterator[SentSurface]:
             yield _quantise(small, step_m)
 
 
-def fits(work: Work, sent: SentSurface) -> str:
+def fits(work: Work, spline: SentSurface) -> str:
     """Return a sentence on what was made coarser for the page; empty if nothing was."""
-    rows, columns = (side - 4 for side in sent.numbers.shape)
+    rows, columns = (side - 4 for side in spline.numbers.shape)
     wide, cells = work.surface.height_m.shape[1], f"{columns} x {rows} cells"
     coarse = f"the surface has {cells}, of {wide} x {work.surface.height_m.shape[0]}" if columns < wide else ""
-    steps = f"heights are in steps of {1e6 * sent.step_m:.3g} um" if sent.step_m > 1.01 * STEPS_M[0] else ""
+    steps = f"heights are in steps of {1e6 * spline.step_m:.3g} um" if spline.step_m > 1.01 * STEPS_M[0] else ""
     return "; ".join(filter(None, (coarse, steps)))
 
 

@@ -10,7 +10,7 @@ import pytest
 import tifffile
 from PIL import Image
 
-from tangible_batch.manifest import file_of, rows_from, rows_of
+from tangible_batch.manifest import find_rows, rows_from, setting_file
 from tangible_core.errors import BatchError
 from tangible_core.files.yaml.source import parse_override
 from videos import greys
@@ -23,7 +23,7 @@ def touch(folder: Path, *names: str) -> None:
 
 
 def scenes(over: Path | str) -> dict[str, tuple[str, ...]]:
-    return {row.id: row.sets for row in rows_of(str(over))}
+    return {row.id: row.sets for row in find_rows(str(over))}
 
 
 @pytest.mark.parametrize("ends", [("_left", "_right"), ("_l", "_r"), ("-left", "-right"), ("_L", "_R")])
@@ -60,8 +60,8 @@ def test_row_without_a_name_has_its_number_and_a_cell_of_zero_counts(tmp_path: P
 def test_pictures_of_a_shell_are_in_order_and_named_from_the_folder_that_holds_all(tmp_path: Path):
     touch(tmp_path, "a/two.png", "a/one_left.png", "a/one_right.png", "b/c/film.png")
     given = [str(tmp_path / name) for name in ("b/c/film.png", "a/two.png", "a/one_right.png", "a/one_left.png")]
-    assert [(row.id, len(row.sets)) for row in rows_of(given)] == [("a/one", 2), ("a/two", 1), ("b/c/film", 1)]
-    assert [row.id for row in rows_of(given[1:])] == ["one", "two"]
+    assert [(row.id, len(row.sets)) for row in find_rows(given)] == [("a/one", 2), ("a/two", 1), ("b/c/film", 1)]
+    assert [row.id for row in find_rows(given[1:])] == ["one", "two"]
 
 
 @pytest.mark.parametrize("name", ["a\n\x1b\x7f\x85\u2028\uffff.png", "caf\udce9.png", "🙂 ä.png"], ids=ascii)
@@ -69,7 +69,7 @@ def test_picture_of_any_name_is_read_back_from_its_setting(tmp_path: Path, name:
     touch(tmp_path, name)
     ((setting,),) = scenes(tmp_path).values()
     assert parse_override(setting) == (("scene", "photo"), str(tmp_path / name))
-    assert file_of(setting) == tmp_path / name
+    assert setting_file(setting) == tmp_path / name
     assert next(rows_from([{"scene.photo": name}], tmp_path)).sets == (setting,)
 
 
@@ -107,7 +107,7 @@ def test_damaged_table_is_refused_with_its_name(tmp_path: Path):
 def test_parquet_gives_all_rows_and_names_the_column_of_a_value_that_no_file_can_hold(tmp_path: Path):
     wide = [0.05 if number % 2 else None for number in range(5000)]
     pq.write_table(pa.table({"workspace.width_m": wide, "title": ["ä"] * 5000}), tmp_path / "rows.parquet")
-    found = [tuple(row) for row in rows_of(str(tmp_path / "rows.parquet"))]
+    found = [tuple(row) for row in find_rows(str(tmp_path / "rows.parquet"))]
     given = (("workspace.width_m=0.05",) if number % 2 else () for number in range(5000))
     assert found == [(str(number), (*sets, "title=ä")) for number, sets in enumerate(given)]
     pq.write_table(pa.table({"want": [datetime(2026, 1, 1)]}), tmp_path / "rows.parquet")

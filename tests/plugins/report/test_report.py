@@ -42,7 +42,7 @@ from tangible_report.drawing.sheet import DPI, WIDTH_IN, draw_figure, draw_sheet
 from tangible_report.material_sheet import draw_material, spectra
 from tangible_report.panels import PANELS
 from tangible_report.panels.force import heights_under, round_number, spread
-from tangible_report.panels.relief import points_of
+from tangible_report.panels.relief import cell_points
 from tangible_report.style import colours
 
 NAN = np.nan
@@ -131,7 +131,7 @@ class TestLayout:
 
 class TestPoints:
     def test_points_are_the_cells_centres_at_their_heights(self) -> None:
-        points_m = points_of(Relief(np.float32([[1, 2]]), (0.4, 0.1)))
+        points_m = cell_points(Relief(np.float32([[1, 2]]), (0.4, 0.1)))
         np.testing.assert_allclose(points_m, [[[-0.1, 0, 1], [0.1, 0, 2]]])
 
     def test_heights_under_points_are_those_of_cells(self) -> None:

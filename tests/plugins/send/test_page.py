@@ -22,7 +22,7 @@ from tangible_core.plugins.notes import collect_notes
 from tangible_depth import Luminance
 from tangible_legibility.words.languages import Language, Words, one_line
 from tangible_render.surface.coefficients import spline_coefficients
-from tangible_send.packing import MIN_PHOTO, deflate, page_of
+from tangible_send.packing import MIN_PHOTO, deflate, make_page
 from tangible_send.page import Page
 from tangible_send.surface import MAX_CELLS, surface_to_send
 from videos import write_video
@@ -194,7 +194,7 @@ def test_labels_of_a_reduced_surface_are_where_its_parts_are():
 def test_script_that_would_end_its_element_is_refused():
     for script, style in (("a</SCRIPT>", ""), ("", "a</style")):
         with pytest.raises(ValueError, match="must not end their elements"):
-            page_of("title", "en", "en", {}, script, style, "")
+            make_page("title", "en", "en", {}, script, style, "")
 
 
 def test_film_is_sent_by_its_first_frame(tmp_path: Path):

@@ -73,7 +73,7 @@ def _divide(
 
     file = folder / f"{pictures[0].stem}.yaml"
     check_free(files_beside(file), pictures, force)  # before the work, which takes time
-    found = first_parts(
+    first = first_parts(
         pictures,
         file,
         method=method,
@@ -82,15 +82,15 @@ def _divide(
         smallest_mm=smallest,
         cache=None if no_cache else Cache(),
     )
-    files = found.write(force)
+    files = first.write(force)
     if as_json:
-        summary = {"title": found.title, "method": found.method, "parts": [each._asdict() for each in found.listed]}
+        summary = {"title": first.title, "method": first.method, "parts": [part._asdict() for part in first.listed]}
         show.print_json({**summary, "files": [str(path) for path in files]})
         return
     if is_quiet():
         return
-    show.sentence(_summary(" and ".join(each.name for each in pictures), len(found.listed)))
-    _print(found.listed)
+    show.sentence(_summary(" and ".join(picture.name for picture in pictures), len(first.listed)))
+    _print(first.listed)
     for path in files:
         show.plain(f"written: {path}")
     show.plain(NEXT.format(labels=files[0], numbered=files[1], file=files[2]))
@@ -123,32 +123,32 @@ def _list(
         raise ConfigError(f"{', '.join(map(str, files))}: name one picture, left and right, or one pipeline file")
     (file,) = files
     path = (file.parent if out is None else out) / NUMBERED
-    done = draw_numbers(file, path, sets, renumber=renumber, force=force, cached=not no_cache)
-    found = done.listed.parts
+    result = draw_numbers(file, path, sets, renumber=renumber, force=force, with_cache=not no_cache)
+    parts = result.parts.parts
     if as_json:
-        rows = [{**each._asdict(), "was": was and was.number} for each, was in _with_earlier(found, done.before)]
-        show.print_json({"title": done.title, "parts": rows, "files": [str(each) for each in done.written]})
+        rows = [{**path._asdict(), "was": was and was.number} for path, was in _with_earlier(parts, result.before)]
+        show.print_json({"title": result.title, "parts": rows, "files": [str(path) for path in result.files]})
     elif not is_quiet():
-        show.sentence(_summary(done.title, len(found)))
-        _print(found, done.before if done.moved else None)
-        for each in done.written:
-            show.plain(f"written: {each}")
-    if done.wrong is not None:
+        show.sentence(_summary(result.title, len(parts)))
+        _print(parts, result.before if result.moves else None)
+        for path in result.files:
+            show.plain(f"written: {path}")
+    if result.wrong is not None:
         show.flush()
-        raise done.wrong
+        raise result.wrong
 
 
 def _with_earlier(
-    found: Sequence[ListedPart], before: Sequence[Before] | None
+    parts: Sequence[ListedPart], before: Sequence[Before] | None
 ) -> Iterable[tuple[ListedPart, Before | None]]:
-    return zip(found, before or [None] * len(found), strict=True)
+    return zip(parts, before or [None] * len(parts), strict=True)
 
 
 def _summary(name: str, parts: int) -> str:
     return f"{name} is one part." if parts == 1 else f"{name} is divided into {parts} parts."
 
 
-def _print(found: Sequence[ListedPart], before: Sequence[Before] | None = None) -> None:
+def _print(parts: Sequence[ListedPart], before: Sequence[Before] | None = None) -> None:
     from rich.markup import escape
 
     from tangible_core.cli import show
@@ -156,15 +156,15 @@ def _print(found: Sequence[ListedPart], before: Sequence[Before] | None = None) 
 
     rows = [
         (
-            str(shown_number(each.number)),
+            str(shown_number(part.number)),
             *([] if was is None else ["new" if was.number is None else str(shown_number(was.number))]),
-            escape(each.name),
-            each.place,
-            f"{100 * each.share:.1f}",
-            "" if each.height_m is None else f"{1000 * each.height_m:.1f}",
-            escape(each.material),
+            escape(part.name),
+            part.place,
+            f"{100 * part.share:.1f}",
+            "" if part.height_m is None else f"{1000 * part.height_m:.1f}",
+            escape(part.material),
         )
-        for each, was in _with_earlier(found, before)
+        for part, was in _with_earlier(parts, before)
     ]
     numbers = ("part", "was") if before else ("part",)
     show.table((*numbers, "name", "place", "% of the picture", "height mm", "material"), rows)

@@ -54,11 +54,11 @@ def preflight(
     device = device_of(pipeline)
     if fix is None:
         flight = Feeling(pipeline).flight(hand=hand, loop=loop)
-        verdicts, fixed = judge(flight), {}
+        verdicts, changes = judge(flight), {}
     else:
-        flight, verdicts, fixed = _fix(config, sets or [], hand, loop, fix, not no_cache, as_json)
+        flight, verdicts, changes = _fix(config, sets or [], hand, loop, fix, not no_cache, as_json)
     if as_json:
-        _print_json(pipeline.scene.name, device.name, flight, verdicts, fixed)
+        _print_json(pipeline.scene.name, device.name, flight, verdicts, changes)
     else:
         _print(without_folders(pipeline.scene.name), device.name, verdicts, verbose)
     if not verdicts.safe:
@@ -66,7 +66,7 @@ def preflight(
 
 
 def _fix(
-    config: Path, sets: Sequence[str], hand: Hand, loop: Loop, out: Path, cached: bool, as_json: bool
+    config: Path, sets: Sequence[str], hand: Hand, loop: Loop, out: Path, with_cache: bool, as_json: bool
 ) -> tuple[Flight, Preflight, dict[str, Any]]:
     """Try the cures and write the file if they are enough; return the state after them, and the file and changes."""
     from tangible_core.cli import show
@@ -74,22 +74,26 @@ def _fix(
 
     from ..fixing import fix
 
-    found = fix(config, sets, hand, loop, out, cached)
-    if found.verdicts.safe:
-        write_text(out, found.text)
+    result = fix(config, sets, hand, loop, out, with_cache)
+    if result.verdicts.safe:
+        write_text(out, result.text)
     if not as_json:
-        show.plain(_heading_of_fix(out, found))
-        for loss in found.losses:
+        show.plain(_heading_of_fix(out, result))
+        for loss in result.losses:
             show.plain(f"  {loss}")
         show.plain("")
-    return found.flight, found.verdicts, {"file": str(out) if found.verdicts.safe else None, "changes": found.changes}
+    return (
+        result.flight,
+        result.verdicts,
+        {"file": str(out) if result.verdicts.safe else None, "changes": result.changes},
+    )
 
 
-def _heading_of_fix(out: Path, found: Fixed) -> str:
+def _heading_of_fix(out: Path, result: Fixed) -> str:
     """Return whether a file was written, and what leads to the list of what it changes."""
-    if found.verdicts.safe:
-        return f"Written: {out}, in which the surface" if found.losses else f"Written: {out}; nothing had to change"
-    return "Nothing was written: no cure is enough" + (", not even a surface that" if found.losses else "")
+    if result.verdicts.safe:
+        return f"Written: {out}, in which the surface" if result.losses else f"Written: {out}; nothing had to change"
+    return "Nothing was written: no cure is enough" + (", not even a surface that" if result.losses else "")
 
 
 def _print(scene: str, device: str, verdicts: Preflight, verbose: bool) -> None:
@@ -101,14 +105,16 @@ def _print(scene: str, device: str, verdicts: Preflight, verbose: bool) -> None:
     show.verdicts(f"{escape(scene)} on {escape(device)}: {sentence}", verdicts, COLOURS, WIDTHS, verbose)
 
 
-def _print_json(scene: str, device: str, flight: Flight, verdicts: Preflight, fixed: Mapping[str, Any]) -> None:
+def _print_json(scene: str, device: str, flight: Flight, verdicts: Preflight, changes: Mapping[str, Any]) -> None:
     from dataclasses import asdict
 
     from tangible_core.cli import show
 
     head = {"scene": scene, "device": device, "sentence": verdicts.sentence, "grade": verdicts.grade}
-    rows = [{**asdict(each), "changes": {change.key: change.value for change in each.changes}} for each in verdicts]
-    show.print_json({**head, **fixed, **_figures(flight), "verdicts": rows})
+    rows = [
+        {**asdict(verdict), "changes": {change.key: change.value for change in verdict.changes}} for verdict in verdicts
+    ]
+    show.print_json({**head, **changes, **_figures(flight), "verdicts": rows})
 
 
 def _figures(flight: Flight) -> dict[str, Any]:

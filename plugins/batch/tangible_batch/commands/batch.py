@@ -68,7 +68,7 @@ def batch(
 
     from ..farm import LONGEST_S
     from ..job_maker import BatchOptions
-    from ..manifest import rows_of
+    from ..manifest import find_rows
     from ..results import ROWS, write_gallery, write_index
     from ..running import Tally, Workforce, run_batch
 
@@ -80,8 +80,8 @@ def batch(
     text = with_overrides(text, config, sets or [])
     tally, workforce = Tally(), Workforce(workers, threads, scheduler)
     options = BatchOptions(retry, sheets, cache, chunk, timeout_s)
-    scenes = list(rows_of(pictures, besides=place))
-    wanted = [scene.id for scene in scenes]
+    scenes = list(find_rows(pictures, besides=place))
+    names = [scene.id for scene in scenes]
     rows = run_batch(text, config.absolute(), scenes, place, workforce, options, tally)
     try:
         for row in _show_progress(rows, tally, name):
@@ -90,8 +90,8 @@ def batch(
     except KeyboardInterrupt:
         show.note(f"interrupted; all finished scenes are kept in {place}, and the same command continues from there")
         raise
-    written = [place / ROWS, write_index(place, wanted), *write_gallery(place, wanted)]
-    _print(tally, [str(path) for path in written], as_json)
+    files_there = [place / ROWS, write_index(place, names), *write_gallery(place, names)]
+    _print(tally, [str(path) for path in files_there], as_json)
     if tally.failed:
         raise typer.Exit(FAILED)
 
@@ -125,8 +125,8 @@ def _show_progress(rows: Iterator[Row], tally: Tally, name: str) -> Iterator[Row
             if tally.made:
                 left_s = (monotonic() - since_s) / tally.made * (tally.wanted - tally.kept - tally.made)
                 count = f"{tally.kept + tally.made} of {tally.wanted} scenes"
-                done = f"{count} ({tally.failed} failed, {approximately(left_s)} left)"
-                hooks.tell(plugins, "tangible_stage_started", product=done, method=name)
+                progress = f"{count} ({tally.failed} failed, {approximately(left_s)} left)"
+                hooks.tell(plugins, "tangible_stage_started", product=progress, method=name)
             yield row
     finally:
         hooks.tell(plugins, "tangible_stage_finished", outcome=Outcome("scenes", "ran", "", name))
@@ -141,9 +141,9 @@ def _print(tally: Tally, files: Sequence[str], as_json: bool) -> None:
         show.print_json({**asdict(tally), "files": files})
     elif not is_quiet():
         good = tally.wanted - tally.failed
-        kept = f", {tally.kept} of them before" if tally.kept else ""
+        remark = f", {tally.kept} of them before" if tally.kept else ""
         again = f"; {tally.failed} failed: --retry repeats these" if tally.failed else ""
-        show.sentence(f"{good} of {tally.wanted} scenes are made{kept}{again}.")
+        show.sentence(f"{good} of {tally.wanted} scenes are made{remark}{again}.")
         for path in files[:MAX_FILES]:
             show.plain(f"written: {path}")
 

@@ -16,7 +16,7 @@ def describe(config: ConfigOrPictures, sets: Sets = None, no_cache: NoCache = Fa
 
     pipeline = open_pipeline(config, [f"export.text.language={language()}", *(sets or [])], not no_cache)
     with TemporaryDirectory() as folder:
-        (done,) = pipeline.export(folder, ["text"]).exports
-        if not done.files:
-            raise ConfigError(done.outcome.why)
-        plain(next(Path(file) for file in done.files if file.suffix == ".txt").read_text(encoding="utf-8").rstrip())
+        (exported,) = pipeline.export(folder, ["text"]).exports
+        if not exported.files:
+            raise ConfigError(exported.outcome.why)
+        plain(next(Path(file) for file in exported.files if file.suffix == ".txt").read_text(encoding="utf-8").rstrip())

@@ -41,29 +41,29 @@ def materials(context: typer.Context, library: Library = None, as_json: Json = F
     from tangible_core.cli import show
     from tangible_core.materials import load_library
 
-    known = load_library(library)
+    library_there = load_library(library)
     if as_json:
-        show.print_json({name: asdict(material) for name, material in known.items()})
+        show.print_json({name: asdict(material) for name, material in library_there.items()})
         return
-    show.sentence(f"{len(known)} materials; `tangible materials show NAME` explains the values of one.")
+    show.sentence(f"{len(library_there)} materials; `tangible materials show NAME` explains the values of one.")
     rows = [
         (
-            each.name,
-            f"{each.stiffness_n_per_m:g}",
-            f"{each.damping_n_s_per_m:g}",
-            f"{each.static_friction:g}",
-            f"{each.dynamic_friction:g}",
-            each.texture,
-            f"{1e6 * each.roughness_m:g}",
-            f"{1e3 * each.grain_m:g}",
+            row.name,
+            f"{row.stiffness_n_per_m:g}",
+            f"{row.damping_n_s_per_m:g}",
+            f"{row.static_friction:g}",
+            f"{row.dynamic_friction:g}",
+            row.texture,
+            f"{1e6 * row.roughness_m:g}",
+            f"{1e3 * row.grain_m:g}",
         )
-        for each in known.values()
+        for row in library_there.values()
     ]
     headings = ("material", "N/m", "N s/m", "static", "dynamic friction", "texture", "roughness um", "grain mm")
     show.table(headings, rows, named=True)
     show.say("\n[bold]sources[/]")
-    for each in known.values():
-        show.say(f"  {each.name}: {each.source}")
+    for row in library_there.values():
+        show.say(f"  {row.name}: {row.source}")
 
 
 @app.command("show")
@@ -125,10 +125,10 @@ def draw(
 
     from ..material_sheet import draw_material
 
-    known = load_library(library)
-    chosen = [find(name, known) for name in names or ()] or list(known.values())
+    materials = load_library(library)
+    choice = [find(name, materials) for name in names or ()] or list(materials.values())
     files: list[Any] = []
-    for material in chosen:
+    for material in choice:
         draw_material(out / f"{material.name}.png", material)
         files.append(out / f"{material.name}.png")
         if not as_json:

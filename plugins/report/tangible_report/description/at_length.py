@@ -61,12 +61,12 @@ def describe_at_length(
     >>> describe_at_length(HapticSurface.from_heights(np.zeros((8, 8))), "A plate")
     ('A plate', '', 'A surface 80 mm wide and 80 mm long. It is flat everywhere.')
     """
-    told = tell(surface, title, language, parts, kind, people)
-    lines = [told.title, "", " ".join(told.overview)]
-    if told.parts:
-        lines += ["", told.heading]
-    lines += [f"- {end_sentence(part.label)} {' '.join(part.sentences)}" for part in told.parts]
-    return (*lines, told.left_out) if told.left_out else tuple(lines)
+    description = tell(surface, title, language, parts, kind, people)
+    lines = [description.title, "", " ".join(description.overview)]
+    if description.parts:
+        lines += ["", description.heading]
+    lines += [f"- {end_sentence(part.label)} {' '.join(part.sentences)}" for part in description.parts]
+    return (*lines, description.left_out) if description.left_out else tuple(lines)
 
 
 def page_of(
@@ -81,19 +81,20 @@ def page_of(
 ) -> str:
     """Return `describe_at_length` as accessible HTML. named_in: language of title and names, if another."""
     other = named_in if named_in and named_in != language else ""
-    told = tell(surface, title, language, parts, kind, people, lambda text: _quote(text, other))
+    description = tell(surface, title, language, parts, kind, people, lambda text: _quote(text, other))
     items = "".join(
-        f"<li><strong>{end_sentence(part.label)}</strong> {' '.join(part.sentences)}</li>\n" for part in told.parts
+        f"<li><strong>{end_sentence(part.label)}</strong> {' '.join(part.sentences)}</li>\n"
+        for part in description.parts
     )
-    listed = f"<h2>{told.heading}</h2>\n<ul>\n{items}</ul>\n" if told.parts else ""
-    left = f"<p>{told.left_out}</p>\n" if told.left_out else ""
+    part_list = f"<h2>{description.heading}</h2>\n<ul>\n{items}</ul>\n" if description.parts else ""
+    remark = f"<p>{description.left_out}</p>\n" if description.left_out else ""
     page = files("tangible_report.description").joinpath("page.html").read_text(encoding="utf-8")
     return Template(page).substitute(
         language=language,
-        name=escape(one_line(title)) or told.title,
-        title=told.title,
-        overview=" ".join(told.overview),
-        parts=f"{listed}{left}",
+        name=escape(one_line(title)) or description.title,
+        title=description.title,
+        overview=" ".join(description.overview),
+        parts=f"{part_list}{remark}",
     )
 
 
@@ -104,25 +105,25 @@ def tell(
     parts: Sequence[PartFacts],
     kind: SceneKind | None,
     people: int = 0,
-    given: Callable[[str], str] = one_line,
+    name_as: Callable[[str], str] = one_line,
 ) -> Told:
     """Return a long description. given: formats custom names, which are those of the title, of parts and materials."""
     say = Words(language)
     largest = _largest(parts)
     labels = {
-        part.number: given(part.name) if part.name else say("part number", number=shown_number(part.number))
+        part.number: name_as(part.name) if part.name else say("part number", number=shown_number(part.number))
         for part in parts
     }
-    left = [part for part in parts if part not in largest]
-    share = _percent(sum(each.share for each in left), say)
-    left_out = say("small part" if len(left) == 1 else "small parts", count=len(left), share=share) if left else ""
-    materials = "" if any(each.material for each in largest) else materials_in_words(surface, say)
+    small = [part for part in parts if part not in largest]
+    share = _percent(sum(part.share for part in small), say)
+    left_out = say("small part" if len(small) == 1 else "small parts", count=len(small), share=share) if small else ""
+    materials = "" if any(part.material for part in largest) else materials_in_words(surface, say)
     whole = _size(surface, say), people_in_words(people, say), heights_in_words(surface, say), materials
     return Told(
-        given(title) if title.strip() else say("nameless"),
+        name_as(title) if title.strip() else say("nameless"),
         tuple(filter(None, whole)),
         say("part list heights" if kind == "heights" else "part list") if largest else "",
-        tuple(ToldPart(labels[each.number], _sentences(each, labels, say, given)) for each in largest),
+        tuple(ToldPart(labels[part.number], _sentences(part, labels, say, name_as)) for part in largest),
         left_out,
     )
 
@@ -130,28 +131,28 @@ def tell(
 def _largest(parts: Sequence[PartFacts]) -> list[PartFacts]:
     """Return the named parts and then the largest, up to MAX_PARTS, in their old order."""
     large = [part for part in parts if part.name or part.share >= MIN_SHARE]
-    ranked = sorted(large, key=lambda each: (not each.name, -each.share))
-    chosen = {each.number for each in ranked[:MAX_PARTS]}
-    return [part for part in parts if part.number in chosen]
+    by_size = sorted(large, key=lambda part: (not part.name, -part.share))
+    numbers = {part.number for part in by_size[:MAX_PARTS]}
+    return [part for part in parts if part.number in numbers]
 
 
 def _size(surface: HapticSurface, say: Words) -> str:
-    width, length = (say.number(1000 * each) for each in surface.extent_m)
+    width, length = (say.number(1000 * side_m) for side_m in surface.extent_m)
     relief_m = float(np.ptp(surface.height_m))
     high = say("high", relief=say.number(1000 * relief_m)) if relief_m > FLAT_M else ""
     return say("length size", width=width, length=length, high=high)
 
 
-def _sentences(part: PartFacts, labels: dict[int, str], say: Words, given: Callable[[str], str]) -> tuple[str, ...]:
+def _sentences(part: PartFacts, labels: dict[int, str], say: Words, name_as: Callable[[str], str]) -> tuple[str, ...]:
     """Return sentences on the place, size, height, material and neighbours of a part."""
-    width, length = (say.number(1000 * each) for each in part.size_m)
+    width, length = (say.number(1000 * side_m) for side_m in part.size_m)
     share = say(f"part share {next(round(100 * least) for least in SHARES if part.share >= least)}")
     high = say("part size high", height=say.number(1000 * part.height_m)) if part.height_m >= MIN_HIGH_M else ""
     size = say("part size", share=share, percent=_percent(part.share, say), width=width, length=length, high=high)
     place = say(part.place) if part.place != NOWHERE else ""
     sentences = [end_sentence(f"{place[:1].upper()}{place[1:]}") if place else "", size]
     if part.material:
-        sentences.append(say("part feels alone", material=say.material_after_like(part.material, given)))
+        sentences.append(say("part feels alone", material=say.material_after_like(part.material, name_as)))
     if neighbours := [labels[neighbour] for neighbour in part.neighbours[:MAX_NEIGHBOURS]]:
         sentences.append(say("part beside", parts=", ".join(neighbours)))
     return tuple(filter(None, sentences))

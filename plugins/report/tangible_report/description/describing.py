@@ -51,8 +51,8 @@ def facts(
     """
     if (whole := surface.labels if parts is None else parts.labels) is None:
         return ()
-    named = (surface.names or ()) if parts is None else names
-    step = step_of(whole)
+    part_names = (surface.names or ()) if parts is None else names
+    step = grid_step(whole)
     labels = whole[::step, ::step]
     unique, dense = np.unique(labels, return_inverse=True)
     numbers: list[int] = unique.tolist()
@@ -62,23 +62,23 @@ def facts(
     share = np.bincount(dense.ravel()) / dense.size
     down, across = _count_cells(dense, count, 0), _count_cells(dense, count, 1)
     material_of, neighbours_of = _materials(surface, materials, dense, count), _neighbours(dense, count)
-    unsorted = [
+    all_facts = [
         PartFacts(
             number,
-            named[number].strip() if number < len(named) else "",
-            place_of_counts(down[each], across[each]),
-            float(share[each]),
-            (surface.extent_m[0] * _span(across[each]), surface.extent_m[1] * _span(down[each])),
-            float(height_m[each]),
-            material_of[each],
-            tuple(numbers[other] for other in neighbours_of[each]),
+            part_names[number].strip() if number < len(part_names) else "",
+            place_of_counts(down[index], across[index]),
+            float(share[index]),
+            (surface.extent_m[0] * _span(across[index]), surface.extent_m[1] * _span(down[index])),
+            float(height_m[index]),
+            material_of[index],
+            tuple(numbers[other] for other in neighbours_of[index]),
         )
-        for each, number in enumerate(numbers)
+        for index, number in enumerate(numbers)
     ]
-    return tuple(sorted(unsorted, key=lambda part: (-part.height_m, part.number)))
+    return tuple(sorted(all_facts, key=lambda part: (-part.height_m, part.number)))
 
 
-def step_of(cells: np.ndarray) -> int:
+def grid_step(cells: np.ndarray) -> int:
     """Return the n such that every n-th row and column have at most MAX_CELLS cells a side."""
     return math.ceil(max(cells.shape) / MAX_CELLS)
 
@@ -102,30 +102,30 @@ def _count_cells(dense: Int32[np.ndarray, "h w"], count: int, axis: int) -> Int6
 
 def _span(counts: Int64[np.ndarray, " k"]) -> float:
     """Return the distance from the first row or column with a cell to the last, as a share of all."""
-    used = np.flatnonzero(counts)
-    return int(used[-1] - used[0] + 1) / counts.size
+    places = np.flatnonzero(counts)
+    return int(places[-1] - places[0] + 1) / counts.size
 
 
 def _materials(
     surface: HapticSurface, materials: MaterialMap | None, dense: Int32[np.ndarray, "h w"], count: int
 ) -> list[str]:
     """Return the name of the material of most of each part; empty if none is known."""
-    known = surface.materials or (materials.materials if materials else ())
-    if surface.labels is None or int(surface.labels.max()) >= len(known):
+    palette = surface.materials or (materials.materials if materials else ())
+    if surface.labels is None or int(surface.labels.max()) >= len(palette):
         return [""] * count
     label = resampled(surface.labels, dense.shape)
-    pairs, cells = np.unique(dense.astype(np.int64) * len(known) + label, return_counts=True)
+    pairs, cells = np.unique(dense.astype(np.int64) * len(palette) + label, return_counts=True)
     by_size = pairs[np.argsort(cells, kind="stable")].tolist()
-    most: dict[int, int] = dict(divmod(pair, len(known)) for pair in by_size)  # the last pair stays: the largest
-    return [known[most[each]].name for each in range(count)]
+    most: dict[int, int] = dict(divmod(pair, len(palette)) for pair in by_size)  # the last pair stays: the largest
+    return [palette[most[part]].name for part in range(count)]
 
 
 def _neighbours(dense: Int32[np.ndarray, "h w"], count: int) -> list[list[int]]:
     """Return the neighbours of each part, the longest border first."""
     borders = neighbours(PartMap(dense, tuple(range(count))))
     neighbours_of: list[list[int]] = [[] for _ in range(count)]
-    for each in np.argsort(-borders.sides, kind="stable").tolist():
-        low, high = int(borders.low[each]), int(borders.high[each])
+    for border in np.argsort(-borders.sides, kind="stable").tolist():
+        low, high = int(borders.low[border]), int(borders.high[border])
         neighbours_of[low].append(high)
         neighbours_of[high].append(low)
     return neighbours_of
@@ -172,7 +172,7 @@ def people_in_words(people: int, say: Words) -> str:
 
 
 def _size(surface: HapticSurface, name: str, kind: SceneKind | None, say: Words) -> str:
-    width, length = (say.number(100 * each) for each in surface.extent_m)
+    width, length = (say.number(100 * side_m) for side_m in surface.extent_m)
     relief_m = float(np.ptp(surface.height_m))
     name = shown(name.removeprefix("builtin/"))
     what = say(kind or "surface", name=name) if name else say("nameless")
@@ -185,7 +185,7 @@ def heights_in_words(surface: HapticSurface, say: Words) -> str:
     lowest_m, highest_m = float(surface.height_m.min()), float(surface.height_m.max())
     if highest_m - lowest_m <= FLAT_M:
         return say("all flat")
-    step = step_of(surface.height_m)
+    step = grid_step(surface.height_m)
     height_m = surface.height_m[::step, ::step].astype(np.float64)
     low_m, high_m = np.percentile(height_m, (1, 99)).tolist()
     if high_m - low_m < (highest_m - lowest_m) / 2:  # the raised part is small, but not a stray pixel
@@ -204,7 +204,7 @@ def heights_in_words(surface: HapticSurface, say: Words) -> str:
 def _flat(surface: HapticSurface, height_m: np.ndarray, step: int, say: Words) -> str:
     if min(height_m.shape) < 2:
         return ""
-    across_m, along_m = (step * each for each in surface.relief.pitch_m)
+    across_m, along_m = (step * pitch_m for pitch_m in surface.relief.pitch_m)
     down, right = np.gradient(height_m, along_m, across_m)
     level = np.hypot(down, right) <= LEVEL_SLOPE
     share = float(level.mean())
@@ -219,21 +219,21 @@ def materials_in_words(surface: HapticSurface, say: Words) -> str:
     """Return a sentence on the materials, their shares and places; segments of one material count together."""
     if surface.labels is None or not surface.materials:
         return ""
-    step = step_of(surface.height_m)
+    step = grid_step(surface.height_m)
     labels = surface.labels[::step, ::step]
     names = [material.name for material in surface.materials]
     parts = {
-        name: np.isin(labels, [i for i, each in enumerate(names) if each == name]) for name in dict.fromkeys(names)
+        name: np.isin(labels, [i for i, other in enumerate(names) if other == name]) for name in dict.fromkeys(names)
     }
     shares = {name: float(part.mean()) for name, part in parts.items() if part.any()}
     if len(shares) == 1:
         return say("one material", material=say.material_after_like(next(iter(shares))))
-    ranked = sorted(shares, key=lambda name: (-shares[name], name))
+    by_share = sorted(shares, key=lambda name: (-shares[name], name))
     phrases = [
         say("part", material=say.material(name), share=percent(shares[name]), where=_place(parts[name], " ({})", say))
-        for name in ranked[:MAX_NAMED]
+        for name in by_share[:MAX_NAMED]
     ]
-    if others := ranked[MAX_NAMED:]:
+    if others := by_share[MAX_NAMED:]:
         key = "another" if len(others) == 1 else "others"
         phrases.append(say(key, count=len(others), share=percent(sum(shares[name] for name in others))))
     return say("materials", count=len(shares), parts=say.join(phrases))
@@ -241,16 +241,16 @@ def materials_in_words(surface: HapticSurface, say: Words) -> str:
 
 def _parts(surface: HapticSurface, say: Words) -> str:
     """Return a sentence on the named parts, the highest first, as it is the nearest: place, height and material."""
-    names, step = surface.names or (), step_of(surface.height_m)
+    names, step = surface.names or (), grid_step(surface.height_m)
     assert surface.labels is not None
     labels = surface.labels[::step, ::step]
     height_m = median_heights_m(labels, surface.height_m[::step, ::step], len(names))
     present = np.flatnonzero(np.isfinite(height_m))
-    named = [number for number in present[np.argsort(-height_m[present], kind="stable")].tolist() if names[number]]
-    phrases = [_part(surface, labels == number, number, float(height_m[number]), say) for number in named[:MAX_PARTS]]
-    left, unnamed = len(named) - len(phrases), len(present) - len(named)
-    phrases += [say("part left" if left == 1 else "parts left", count=left)] if left else []
-    phrases += [say("unnamed" if unnamed == 1 else "all unnamed", count=unnamed)] if unnamed else []
+    numbers = [number for number in present[np.argsort(-height_m[present], kind="stable")].tolist() if names[number]]
+    phrases = [_part(surface, labels == number, number, float(height_m[number]), say) for number in numbers[:MAX_PARTS]]
+    more, nameless = len(numbers) - len(phrases), len(present) - len(numbers)
+    phrases += [say("part left" if more == 1 else "parts left", count=more)] if more else []
+    phrases += [say("unnamed" if nameless == 1 else "all unnamed", count=nameless)] if nameless else []
     return say("one part" if len(phrases) == 1 else "parts", parts=say.join(phrases)) if phrases else ""
 
 

@@ -29,7 +29,7 @@ def describe_sheet(figure: Figure) -> str:
     for headline, axes in zip(texts[1::2], figure.axes, strict=False):
         legend = axes.get_legend()
         caption = [] if len(axes.get_xticks()) else [axes.get_xlabel()]
-        parts = [*caption, *(each.get_text() for each in (legend.get_texts() if legend else ()))]
+        parts = [*caption, *(text.get_text() for text in (legend.get_texts() if legend else ()))]
         panels.append(": ".join(filter(None, (headline, "; ".join(filter(None, parts))))))
     pictures = "one picture" if len(panels) == 1 else f"{len(panels)} pictures"
     return f"A sheet of {pictures} of {title or 'a run'}. {'. '.join(panels)}."
@@ -60,9 +60,9 @@ def _svg(figure: Figure, file: IO[bytes], title: str, says: str) -> None:
     """Write an SVG with <title> and <desc> at the top, for screen readers."""
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
-    drawn = BytesIO()
-    FigureCanvasSVG(figure).print_svg(drawn, metadata={"Date": None})
-    head, start, rest = drawn.getvalue().decode().partition("<svg ")
+    content = BytesIO()
+    FigureCanvasSVG(figure).print_svg(content, metadata={"Date": None})
+    head, start, rest = content.getvalue().decode().partition("<svg ")
     attributes, end, body = rest.partition(">")
     words = f"\n <title>{escape(title)}</title>\n <desc>{escape(says)}</desc>"
     file.write(f'{head}{start}role="img" {attributes}{end}{words}{body}'.encode())
@@ -71,9 +71,9 @@ def _svg(figure: Figure, file: IO[bytes], title: str, says: str) -> None:
 def _pdf(figure: Figure, file: IO[bytes], title: str, says: str) -> None:
     from matplotlib.backends.backend_pdf import FigureCanvasPdf
 
-    drawn = BytesIO()  # on a full disk, the backend raises an error of zlib
-    FigureCanvasPdf(figure).print_pdf(drawn, metadata={"Title": title, "Subject": says, "CreationDate": None})
-    file.write(drawn.getvalue())
+    content = BytesIO()  # on a full disk, the backend raises an error of zlib
+    FigureCanvasPdf(figure).print_pdf(content, metadata={"Title": title, "Subject": says, "CreationDate": None})
+    file.write(content.getvalue())
 
 
 WRITERS: dict[str, Write] = {".png": _png, ".svg": _svg, ".pdf": _pdf}

@@ -91,7 +91,7 @@ def draw_sheet(
     """
     from ..panels import PANELS, draw_segments
 
-    given = {
+    products = {
         "views": views,
         "truth": truth if disparity is not None and disparity.unit == "px" else None,
         "disparity": disparity,
@@ -103,7 +103,7 @@ def draw_sheet(
         "recording": recording if recording is not None and len(recording.time_s) else None,
         **others,
     }
-    run = {name: value for name, value in given.items() if value is not None}
+    run = {name: value for name, value in products.items() if value is not None}
     panels = [panel for panel in PANELS if parts is None or panel.draw is not draw_segments]
     return write_sheet(path, run, title, (*panels, *added_panels()), language)
 
@@ -137,8 +137,15 @@ def draw_figure(run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> 
         raise OutputError(f"{title}: there is nothing to draw; request a product that can be drawn")
     boxes, width_in, height_in = arrange(
         [
-            Cell(panel_aspect(each, run), each.left_in, each.right_in, each.bottom_in, HEADLINE_IN, each.least_in)
-            for each in panels
+            Cell(
+                panel_aspect(drawing, run),
+                drawing.left_in,
+                drawing.right_in,
+                drawing.bottom_in,
+                HEADLINE_IN,
+                drawing.least_in,
+            )
+            for drawing in panels
         ],
         WIDTH_IN,
     )
@@ -180,11 +187,11 @@ def scene_aspect(run: Mapping[str, Any]) -> float:
 
 def panel_aspect(panel: Panel, run: Mapping[str, Any]) -> float:
     """Return width over height of a panel of this run."""
-    own = panel.aspect(**_products_of(panel, run)) if callable(panel.aspect) else panel.aspect
+    own = panel.aspect(**_panel_products(panel, run)) if callable(panel.aspect) else panel.aspect
     return own or scene_aspect(run)
 
 
-def _products_of(panel: Panel, run: Mapping[str, Any]) -> dict[str, Any]:
+def _panel_products(panel: Panel, run: Mapping[str, Any]) -> dict[str, Any]:
     return {name: run[name] for name in (*panel.needs, *panel.likes) if name in run}
 
 
@@ -194,7 +201,7 @@ def _draw_panel(figure: Figure, panel: Panel, box: Box, run: Mapping[str, Any], 
     left, top = box.left_in / width_in, top_in / height_in
     place = (left, top - box.height_in / height_in, box.width_in / width_in, box.height_in / height_in)
     axes = figure.add_axes(place)
-    headline = panel.draw(axes, **_products_of(panel, run))
+    headline = panel.draw(axes, **_panel_products(panel, run))
     line = top + 0.1 / height_in
     figure.text(left, line, letter, fontsize=11, weight="bold")
     figure.text(left + 0.18 / width_in, line, headline, fontsize=10)
@@ -238,14 +245,14 @@ def show(product: Record, axes: Axes | None = None, **others: Any) -> Axes:
 
     name = PANEL_OF.get(type(product))
     if name is None:
-        known = ", ".join(each.__name__ for each in PANEL_OF)
-        raise OutputError(f"a {type(product).__name__} has no picture of its own; these have one: {known}")
+        names = ", ".join(record.__name__ for record in PANEL_OF)
+        raise OutputError(f"a {type(product).__name__} has no picture of its own; these have one: {names}")
     run = {**others, name: product.relief if isinstance(product, HapticSurface) else product}
-    panel = next(each for each in PANELS if set(each.needs) == {name})
+    panel = next(candidate for candidate in PANELS if set(candidate.needs) == {name})
     with style.context(STYLE):
-        drawn = _new_axes(panel, run) if axes is None else axes
-        drawn.set_title(panel.draw(drawn, **_products_of(panel, run)))
-    return drawn
+        target = _new_axes(panel, run) if axes is None else axes
+        target.set_title(panel.draw(target, **_panel_products(panel, run)))
+    return target
 
 
 def _new_axes(panel: Panel, run: Mapping[str, Any]) -> Axes:

@@ -31,9 +31,9 @@ def draw_force_map(axes: Axes, relief: Relief, recording: Recording) -> str:
 
 
 def _draw_heights(axes: Axes, relief: Relief) -> None:
-    shown = drawn_size(relief, 600)
-    width_m, length_m = shown.pitch_m
-    light = LightSource(azdeg=315, altdeg=50).hillshade(np.pad(shown.height_m, 1, "edge"), dx=width_m, dy=length_m)
+    small = drawn_size(relief, 600)
+    width_m, length_m = small.pitch_m
+    light = LightSource(azdeg=315, altdeg=50).hillshade(np.pad(small.height_m, 1, "edge"), dx=width_m, dy=length_m)
     right_mm, far_mm = (500 * extent for extent in relief.extent_m)
     axes.imshow(light[1:-1, 1:-1], cmap="gray", vmin=-2, vmax=1, extent=(-right_mm, right_mm, -far_mm, far_mm))
     axes.autoscale(False)
@@ -97,9 +97,9 @@ def draw_force_time(axes: Axes, recording: Recording, relief: Relief | None = No
     upper, lower = axes.inset_axes((0, 0.54, 1, 0.46)), axes.inset_axes((0, 0, 1, 0.46))
     lower.sharex(upper)
     force_n = np.linalg.norm(recording.force_n, axis=1)
-    for each in (upper, lower):
-        _shade(each, recording.time_s, force_n > 0)
-        each.margins(x=0)
+    for part in (upper, lower):
+        _shade(part, recording.time_s, force_n > 0)
+        part.margins(x=0)
     upper.plot(recording.time_s, force_n, color=FORCE, linewidth=0.9, label="force")
     upper.set(ylabel="force [N]", ylim=(0, None))
     upper.tick_params(labelbottom=False)
@@ -130,7 +130,7 @@ def _shade(axes: Axes, time_s: Float64[np.ndarray, " n"], touching: Bool[np.ndar
 
 def _draw_legend(upper: Axes, lower: Axes) -> None:
     """Draw one legend for both axes, right of the headline."""
-    keys = {label: key for each in (upper, lower) for key, label in zip(*each.get_legend_handles_labels(), strict=True)}
+    keys = {label: key for part in (upper, lower) for key, label in zip(*part.get_legend_handles_labels(), strict=True)}
     upper.legend(
         keys.values(), keys.keys(), ncols=len(keys), loc="lower right", bbox_to_anchor=(1.0, 0.97), borderaxespad=0.2
     )

@@ -35,7 +35,7 @@ def drawn_size(relief: Relief, most: int) -> Relief:
     return resample(relief, (max(1, round(rows * scale)), max(1, round(columns * scale))))
 
 
-def points_of(relief: Relief) -> Float64[np.ndarray, "h w 3"]:
+def cell_points(relief: Relief) -> Float64[np.ndarray, "h w 3"]:
     """Return the cell centres at their heights, in the workspace frame."""
     row, column = np.indices(relief.height_m.shape, np.float64)
     x_m, y_m = picture_to_workspace(column, row, relief.height_m.shape, relief.extent_m)
@@ -44,13 +44,13 @@ def points_of(relief: Relief) -> Float64[np.ndarray, "h w 3"]:
 
 def draw_relief(axes: Axes, relief: Relief) -> str:
     """Draw heights from above, lit low from the upper left, with the horizontal parts of some normals; in mm."""
-    shown = drawn_size(relief, PIXELS)
-    heights_mm = np.float32(1000) * shown.height_m
+    small = drawn_size(relief, PIXELS)
+    heights_mm = np.float32(1000) * small.height_m
     heights = ScalarMappable(Normalize(0, max(float(heights_mm.max()), 1000 * FLAT_M)), VIRIDIS)
-    width_m, length_m = shown.pitch_m
-    framed = np.pad(shown.height_m, 1, "edge")  # matplotlib shades with the differences of neighbours
+    width_m, length_m = small.pitch_m
+    with_frame = np.pad(small.height_m, 1, "edge")  # matplotlib shades with the differences of neighbours
     paint = heights.to_rgba(np.pad(heights_mm, 1, "edge"))[..., :3]
-    lit = LOW_LIGHT.shade_rgb(paint, framed, blend_mode=_tint, dx=width_m, dy=length_m)[1:-1, 1:-1]
+    lit = LOW_LIGHT.shade_rgb(paint, with_frame, blend_mode=_tint, dx=width_m, dy=length_m)[1:-1, 1:-1]
     right_mm, far_mm = (500 * extent for extent in relief.extent_m)
     axes.imshow(np.clip(lit, 0, 1), extent=(-right_mm, right_mm, -far_mm, far_mm))
     axes.autoscale(False)
@@ -62,12 +62,12 @@ def draw_relief(axes: Axes, relief: Relief) -> str:
 
 def draw_surface(axes: Axes, relief: Relief) -> str:
     """Draw the relief as a block without normals, for a fine texture; low heights are multiplied until they show."""
-    shown = drawn_size(relief, CELLS)
-    highest_m, (width_m, length_m) = float(shown.height_m.max()), shown.extent_m
+    small = drawn_size(relief, CELLS)
+    highest_m, (width_m, length_m) = float(small.height_m.max()), small.extent_m
     stretch = max(1, round(max(width_m, length_m) / 6 / highest_m)) if highest_m > FLAT_M else 1
     heights = ScalarMappable(Normalize(0, 1000 * max(highest_m, FLAT_M)), VIRIDIS)
-    x_mm, y_mm, z_mm = 1000 * np.moveaxis(points_of(shown), -1, 0)
-    pitch_mm = {"dx": 1000 * shown.pitch_m[0], "dy": 1000 * shown.pitch_m[1]}
+    x_mm, y_mm, z_mm = 1000 * np.moveaxis(cell_points(small), -1, 0)
+    pitch_mm = {"dx": 1000 * small.pitch_m[0], "dy": 1000 * small.pitch_m[1]}
     lit = LIGHT.shade_rgb(heights.to_rgba(z_mm)[..., :3], stretch * z_mm, blend_mode=_dim, **pitch_mm)
     axes.set_axis_off()
     block: Any = axes.inset_axes((0, 0, 1, 1), projection="3d")
@@ -94,7 +94,7 @@ def _draw_normals(axes: Axes, relief: Relief) -> None:
     """Draw the horizontal parts of normals as arrows: where it is level, a point."""
     step = max(1, max(relief.height_m.shape) // NORMALS)
     some = np.s_[step // 2 :: step, step // 2 :: step]
-    base_mm, normal = 1000 * points_of(relief)[some].reshape(-1, 3), normals(relief)[some].reshape(-1, 3)
+    base_mm, normal = 1000 * cell_points(relief)[some].reshape(-1, 3), normals(relief)[some].reshape(-1, 3)
     axes.quiver(
         *base_mm[:, :2].T, *normal[:, :2].T, units="inches", width=0.012, minlength=0.6,
         angles="xy", scale_units="xy", scale=1 / (1000 * ARROW * max(relief.extent_m)), color=INK,

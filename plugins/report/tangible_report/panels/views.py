@@ -40,13 +40,13 @@ UNITS = {"px": ("Disparity", "disparity [px]"), "relative": ("Relative nearness"
 def draw_disparity(axes: Axes, disparity: DisparityMap) -> str:
     """Draw the map from far (dark) to near (bright); unknown pixels are hatched."""
     values = disparity.disparity_px
-    known = values[np.isfinite(values)]
-    low, high = np.percentile(known, (0.5, 99.5)) if known.size else (0.0, 1.0)
+    finite = values[np.isfinite(values)]
+    low, high = np.percentile(finite, (0.5, 99.5)) if finite.size else (0.0, 1.0)
     hatch(axes)
     image = axes.imshow(np.ma.masked_invalid(thin_out(values)), cmap=VIRIDIS, vmin=low, vmax=high)
     headline, label = UNITS[disparity.unit]
     colour_bar(axes, image, label, extend="both")
-    missing = 100 * (1 - known.size / values.size)
+    missing = 100 * (1 - finite.size / values.size)
     bare(axes, f"hatched: unknown, {missing:.1f} %" if missing else "known everywhere")
     return headline
 

@@ -580,7 +580,7 @@ FIRMWARE = np.array([0x08AA, *[0] * 8, 0, 0, 2, 0, 64, 1, 2, 3, 0, 80, 1, 2, 3, 
 
 
 def _draft(path: Path) -> object:
-    from tangible_ui.state import drafts
+    from tangible_ui.state import document as drafts
 
     return drafts._read(path)
 

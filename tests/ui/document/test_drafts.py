@@ -15,7 +15,7 @@ import pytest
 from tangible_core.errors import OutputError
 from tangible_ui import stale_files as left_behind
 from tangible_ui.stale_files import channel_of_this_process, folder_of_this_process, left_in
-from tangible_ui.state import drafts
+from tangible_ui.state import document as drafts
 from tangible_ui.state.document import MAX_LEFT, MAX_STEPS, Drafts, Text, Texts
 from tangible_ui.worker import jobs, process
 from tangible_ui.worker.messages import JobFailure, JobRequest

@@ -8,10 +8,9 @@ from pathlib import Path
 
 import psutil
 
-from tangible_batch.job_maker import BatchOptions
 from tangible_batch.manifest import find_rows
 from tangible_batch.results import last_rows, write_gallery, write_index
-from tangible_batch.running import Workforce, run_batch
+from tangible_batch.running import BatchOptions, Workforce, run_batch
 
 
 def main(config: Path, manifest: Path, out: Path, workers: int, first: int) -> None:

@@ -27,8 +27,7 @@ from tangible_legibility.simplifying.large import large_parts
 from tangible_networks.store import networks_here
 from tangible_report.numbered_parts import numbered_parts
 
-from .listed_parts import ListedPart, list_rows
-from .parts_starter import RELIEF_MM, make_title, parts_starter
+from .listed_parts import RELIEF_MM, ListedPart, list_rows, make_title, parts_starter
 
 LABELS, NUMBERED = "parts.png", "parts-numbered.png"
 MAX_PARTS = 12

@@ -36,8 +36,7 @@ class Page(Exporter):
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
         """Write one file. Raises: ConfigError if the page was not built; OutputError if it cannot be small enough."""
-        from .packing import MIN_PHOTO, make_page, pack, photo
-        from .surface import fits, surface_to_send
+        from .packing import MIN_PHOTO, fits, make_page, pack, photo, surface_to_send
 
         script, style, licences = map(page_file, ("send.js", "send.css", "LICENSES.txt"))
         language = spoken_language(work.language, log)

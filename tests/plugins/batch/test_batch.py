@@ -129,7 +129,7 @@ class TestScenes:
         assert pq.read_table(out / "index.parquet")["id"].to_pylist() == ["p1", "p2", "p3"]
         assert "p0" not in (out / "gallery.html").read_text()
         make("--set", "want=surface", "--sheets")
-        monkeypatch.setattr("tangible_batch.job_maker.metadata.version", lambda name: "1000.0")
+        monkeypatch.setattr("tangible_batch.running.metadata.version", lambda name: "1000.0")
         make("--set", "want=surface", "--sheets")
         assert tally == [4, 0, 1, 1, 3, 3, 3]
 

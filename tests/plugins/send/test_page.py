@@ -22,9 +22,8 @@ from tangible_core.plugins.notes import collect_notes
 from tangible_depth import Luminance
 from tangible_legibility.words.languages import Language, Words, one_line
 from tangible_render.surface.coefficients import spline_coefficients
-from tangible_send.packing import MIN_PHOTO, deflate, make_page
+from tangible_send.packing import MAX_CELLS, MIN_PHOTO, deflate, make_page, surface_to_send
 from tangible_send.page import Page
-from tangible_send.surface import MAX_CELLS, surface_to_send
 from videos import write_video
 
 pytestmark = pytest.mark.usefixtures("built")

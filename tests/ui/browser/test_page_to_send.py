@@ -13,8 +13,8 @@ from firefox import firefox
 from page_files import built_page
 from sent_pages import HOSTILE, MATERIALS, picture_to_send, touches
 from tangible_legibility.words.languages import one_line
+from tangible_send.packing import surface_to_send
 from tangible_send.page import Page
-from tangible_send.surface import surface_to_send
 from waiting import until
 
 if TYPE_CHECKING:

@@ -19,11 +19,11 @@ from tangible_core.files.reading import MAX_BYTES
 from tangible_ui.serving import routes
 from tangible_ui.serving.routes import WRONG_KEY
 from tangible_web import connection, server
-from tangible_web.access import HEADERS
 from tangible_web.address import Address, new_key
 from tangible_web.connection import AT_ONCE_BYTES, MAX_STRANGERS
 from tangible_web.framing import ACK, ACK_FRAME, POINTER, POINTER_FRAME
 from tangible_web.live import IN_FLIGHT, MAX_ASKS
+from tangible_web.server import HEADERS
 from waiting import LONGEST_S, until
 
 NAMES = {"digest": "abc", "name": "a.f32", "batch": "0" * 16, "folder": "export-1", "panel": "glove"}

@@ -67,10 +67,9 @@ def batch(
     from tangible_core.pipeline.output import default_name
 
     from ..farm import LONGEST_S
-    from ..job_maker import BatchOptions
     from ..manifest import find_rows
     from ..results import ROWS, write_gallery, write_index
-    from ..running import Tally, Workforce, run_batch
+    from ..running import BatchOptions, Tally, Workforce, run_batch
 
     config, text, pictures = _divide(files, over or [])
     timeout_s = LONGEST_S if timeout is None else timeout

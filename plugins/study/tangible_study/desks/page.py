@@ -28,6 +28,7 @@ from tangible_web.address import HOST, Address, static
 from tangible_web.connection import show_key
 from tangible_web.hand import Hand
 from tangible_web.live import LiveTab
+from tangible_web.materials import surface_facts
 from tangible_web.parsing import FindRequest
 from tangible_web.server import BuiltPage, ServerThread
 from tangible_web.state_frame import OtherLaw, frame_without_loop, newest_frame
@@ -263,25 +264,8 @@ def surface_for_page(surface: HapticSurface, number: int) -> dict[str, Any]:
     height_m = np.ascontiguousarray(reduced_map(surface.height_m, shape), "<f4")
     labels = None if surface.labels is None else middle_pixels(surface.labels, shape)
     materials = [{**asdict(material), "name": ""} for material in surface.materials or ()] if labels is not None else []
-    meta = {
-        "digest": str(number),
-        "name": "",
-        "shows": "surface",
-        "rows": shape[0],
-        "columns": shape[1],
-        "extent_m": list(surface.extent_m),
-        "height_m": [float(height_m.min()), float(height_m.max())],
-        "levels": [{"step": 1, "rows": shape[0], "columns": shape[1]}],
-        "labels": 0 if labels is None else int(labels.max()) + 1,
-        "label_bytes": 2,
-        "materials": materials,
-        "parts": None,
-        "photo": False,
-        "fine_photo": None,
-        "layers": {},
-    }
     return {
-        "meta": meta,
+        "meta": surface_facts(str(number), "", height_m, surface.extent_m, labels, materials),
         "heights": b64encode(height_m.tobytes()).decode(),
         "labels": "" if labels is None else b64encode(labels.astype("<u2").tobytes()).decode(),
         "kinds": list(range(len(materials))),

@@ -8,8 +8,18 @@ from typing import final
 import numpy as np
 
 from ..design import DIFFERENT, SAME, Comparison, Stimulus, Trial
-from .cells import Cell, asks, cell_stimuli, compared_cells, comparison_trial, in_rounds, without_levels
-from .procedure import Course, Listed, Procedure
+from .procedure import (
+    Cell,
+    Course,
+    Listed,
+    Procedure,
+    asks,
+    cell_stimuli,
+    compared_cells,
+    comparison_trial,
+    in_rounds,
+    without_levels,
+)
 
 
 class Pairs(Procedure):

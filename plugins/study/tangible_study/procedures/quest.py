@@ -10,9 +10,18 @@ from ..design import Comparison, Stimulus, Trial
 from ..extra import need
 from ..measures.functions import Function
 from ..questions import load_question
-from .cells import Cell, asks, cell_stimuli, compared_cells, comparison_trial, without_levels
 from .pairs import odd_one, standard_among_levels
-from .procedure import Course, Procedure, score
+from .procedure import (
+    Cell,
+    Course,
+    Procedure,
+    asks,
+    cell_stimuli,
+    compared_cells,
+    comparison_trial,
+    score,
+    without_levels,
+)
 
 
 @final

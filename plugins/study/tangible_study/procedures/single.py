@@ -7,8 +7,7 @@ from typing import final
 import numpy as np
 
 from ..design import Comparison, Stimulus, Trial
-from .cells import asks, in_rounds
-from .procedure import Course, Listed, Procedure
+from .procedure import Course, Listed, Procedure, asks, in_rounds
 
 
 class Single(Procedure):

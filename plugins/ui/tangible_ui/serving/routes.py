@@ -16,14 +16,13 @@ from starlette.websockets import WebSocket
 from tangible_core.errors import TangibleError
 from tangible_core.files import MAX_BYTES, in_words
 from tangible_core.translation import translate
-from tangible_web.access import Guarded
 from tangible_web.address import static
 from tangible_web.connection import show_key
 from tangible_web.framing import RECORDING
 from tangible_web.hand import Hand
 from tangible_web.live import LiveTab
 from tangible_web.parsing import Request as TabRequest
-from tangible_web.server import ASK_AGAIN, BuiltPage
+from tangible_web.server import ASK_AGAIN, BuiltPage, Guarded
 
 from ..requests import feeling, find_request
 from ..state.session import Session

@@ -16,9 +16,9 @@ from PIL import Image
 
 from tangible_core.data import to_rgb8
 from tangible_core.errors import OutputError
-from tangible_web.materials import distinct_materials
+from tangible_web.materials import distinct_materials, surface_facts
 
-from .surface_view import SurfaceView
+from .surface_view import Layer, SurfaceView
 
 KEPT = 3
 """Folders that are kept: tabs may still fetch from the one before."""
@@ -79,32 +79,26 @@ def label_type(labels: np.ndarray) -> str:
 def _about(view: SurfaceView) -> dict[str, Any]:
     rows, columns = view.relief.height_m.shape
     steps = [2**level for level in range(count_levels((rows, columns)))]
-    return {
-        "digest": view.digest,
-        "name": view.name,
-        "shows": view.shows,
-        "rows": rows,
-        "columns": columns,
-        "extent_m": list(view.relief.extent_m),
-        "height_m": [float(view.relief.height_m.min()), float(view.relief.height_m.max())],
-        "levels": [{"step": step, "rows": -(-rows // step), "columns": -(-columns // step)} for step in steps],
-        "labels": 0 if view.labels is None else int(view.labels.max()) + 1,
-        "label_bytes": 2 if view.labels is None else np.dtype(label_type(view.labels)).itemsize,
-        "materials": [asdict(distinct_material) for distinct_material in distinct_materials(view.materials)[0]],
-        "parts": None if view.names is None else list(view.names),
-        "photo": view.picture is not None,
-        "fine_photo": None if view.picture is None else _fine_size(view.picture),
-        "layers": {
-            name: {
-                "unit": layer.unit,
-                "low": layer.low,
-                "high": layer.high,
-                "rows": layer.values.shape[0],
-                "columns": layer.values.shape[1],
-            }
-            for name, layer in view.layers.items()
-        },
-    }
+    return surface_facts(
+        view.digest,
+        view.name,
+        view.relief.height_m,
+        view.relief.extent_m,
+        view.labels,
+        [asdict(material) for material in distinct_materials(view.materials)[0]],
+        shows=view.shows,
+        levels=[{"step": step, "rows": -(-rows // step), "columns": -(-columns // step)} for step in steps],
+        label_bytes=2 if view.labels is None else np.dtype(label_type(view.labels)).itemsize,
+        parts=None if view.names is None else list(view.names),
+        photo=view.picture is not None,
+        fine_photo=None if view.picture is None else _fine_size(view.picture),
+        layers={name: _layer_facts(layer) for name, layer in view.layers.items()},
+    )
+
+
+def _layer_facts(layer: Layer) -> dict[str, Any]:
+    rows, columns = layer.values.shape
+    return {"unit": layer.unit, "low": layer.low, "high": layer.high, "rows": rows, "columns": columns}
 
 
 def _write(view: SurfaceView, about: dict[str, Any], part: Path) -> None:

@@ -61,23 +61,23 @@ def draw_numbers(
     parts = list_parts(Pipeline.from_config(config, default_registry(), cache))
     before = earlier.before(parts.part_map) if earlier else None
     by_rules = {label_of_number(rule.part): "" for rule in config.materials.rules if isinstance(rule.part, int)}
-    moves_there = moves({**by_rules, **parts_in(text, file)}, before or ())
+    part_moves = moves({**by_rules, **parts_in(text, file)}, before or ())
     title = config.title or Path(parts.scene_name).name
-    if moves_there and not (renumber or force):
+    if part_moves and not (renumber or force):
         wrong = ConfigError(
-            f"{file}: {in_words(moves_there)}, since {numbered} was drawn; --renumber lets what the file says of them "
+            f"{file}: {in_words(part_moves)}, since {numbered} was drawn; --renumber lets what the file says of them "
             "follow, --force draws the numbers alone"
         )
-        return Numbers(parts, before, moves_there, title, (), wrong)
+        return Numbers(parts, before, part_moves, title, (), wrong)
     contents = {numbered: parts.numbers_png}
-    if moves_there and renumber and before:
-        _check_rules(file, by_rules, moves_there)
+    if part_moves and renumber and before:
+        _check_rules(file, by_rules, part_moves)
         text = renumber_parts(text, file, before, parts.parts)
         config = parse_config(text, file, default_registry(), overrides)
         parts = list_parts(Pipeline.from_config(config, default_registry(), cache))
         contents = {numbered: parts.numbers_png, file: text.encode()}
     _write_together(contents)
-    return Numbers(parts, before, moves_there, title, tuple(contents), parts.wrong)
+    return Numbers(parts, before, part_moves, title, tuple(contents), parts.wrong)
 
 
 def _check_rules(file: Path, by_rules: Collection[int], all_moves: Iterable[Moved]) -> None:

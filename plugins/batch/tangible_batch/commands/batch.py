@@ -89,8 +89,8 @@ def batch(
     except KeyboardInterrupt:
         show.note(f"interrupted; all finished scenes are kept in {place}, and the same command continues from there")
         raise
-    files_there = [place / ROWS, write_index(place, names), *write_gallery(place, names)]
-    _print(tally, [str(path) for path in files_there], as_json)
+    result_files = [place / ROWS, write_index(place, names), *write_gallery(place, names)]
+    _print(tally, [str(path) for path in result_files], as_json)
     if tally.failed:
         raise typer.Exit(FAILED)
 

@@ -38,7 +38,7 @@ def folders(root: Path) -> Iterator[Folder]:
         below, files = list[str](), list[str]()
         try:
             state = os.stat(path)  # noqa: PTH116 - pathlib would take most of the time
-            if (state.st_dev, state.st_ino) in visited_inodes:
+            if (state.st_dev, state.st_ino) in visited_inodes:  # links may form a ring
                 continue
             visited_inodes.add((state.st_dev, state.st_ino))
             with os.scandir(path) as entries:

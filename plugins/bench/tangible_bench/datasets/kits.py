@@ -147,13 +147,9 @@ def _kitti_pairs(root: Path, layouts: tuple[_Layout, ...]) -> Iterator[StandardP
         if layout is None:
             continue
         names = files_in[part / layout.left] & files_in[part / layout.right]
-        for name in sorted(name_there for name_there in names if name_there.endswith(KITTI_END)):
+        for name in sorted(picture for picture in names if picture.endswith(KITTI_END)):
             maps = (layout.occ, layout.noc, "obj_map")
-            paths = {
-                name_there: part / name_there / name
-                for name_there in maps
-                if name in files_in.get(part / name_there, ())
-            }
+            paths = {folder: part / folder / name for folder in maps if name in files_in.get(part / folder, ())}
             text = name.removesuffix(KITTI_END) + ".txt"
             truth = paths.get(layout.occ)
             yield StandardPair(

@@ -41,11 +41,11 @@ def materials(context: typer.Context, library: Library = None, as_json: Json = F
     from tangible_core.cli import show
     from tangible_core.materials import load_library
 
-    library_there = load_library(library)
+    materials = load_library(library)
     if as_json:
-        show.print_json({name: asdict(material) for name, material in library_there.items()})
+        show.print_json({name: asdict(material) for name, material in materials.items()})
         return
-    show.sentence(f"{len(library_there)} materials; `tangible materials show NAME` explains the values of one.")
+    show.sentence(f"{len(materials)} materials; `tangible materials show NAME` explains the values of one.")
     rows = [
         (
             row.name,
@@ -57,12 +57,12 @@ def materials(context: typer.Context, library: Library = None, as_json: Json = F
             f"{1e6 * row.roughness_m:g}",
             f"{1e3 * row.grain_m:g}",
         )
-        for row in library_there.values()
+        for row in materials.values()
     ]
     headings = ("material", "N/m", "N s/m", "static", "dynamic friction", "texture", "roughness um", "grain mm")
     show.table(headings, rows, named=True)
     show.say("\n[bold]sources[/]")
-    for row in library_there.values():
+    for row in materials.values():
         show.say(f"  {row.name}: {row.source}")
 
 

@@ -90,14 +90,14 @@ class Stimuli:
             names = self.file.study.comparison(comparison).names
             if not (names and load_question(self.file.study.comparison(comparison).question).names_parts):
                 continue
-            there = self._pipelines[recipe].surface.names or ()
+            part_names = self._pipelines[recipe].surface.names or ()
             for name in names:
-                if name not in there:
+                if name not in part_names:
                     index = [entry.name for entry in self.file.study.comparisons].index(comparison)
-                    names_there = ", ".join(filter(None, there)) or "none"
+                    listing = ", ".join(filter(None, part_names)) or "none"
                     where = ("comparisons", index, "names", names.index(name))
                     self.file.source.complain(
-                        where, f"{stimulus.condition} has no part named {name!r}; it has: {names_there} (see `parts:`)"
+                        where, f"{stimulus.condition} has no part named {name!r}; it has: {listing} (see `parts:`)"
                     )
 
 

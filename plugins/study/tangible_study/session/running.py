@@ -100,7 +100,7 @@ class Session:
     def _run_trial(self, trial: Trial, number: int, trials: int) -> Answer:
         """Present a trial until it is answered; a device or a disk that fails makes it begin again."""
         while True:
-            repeat = self.place.runs(number)
+            repeat = self.place.runs(number)  # the recording of a run that failed stays, and counts
             path = self.place.recording(number, repeat + 1)
             self.desk.say(f"Trial {number} of {trials}.")
             try:

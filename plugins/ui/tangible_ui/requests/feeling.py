@@ -45,9 +45,9 @@ async def beacon(session: Session, tab: Tab | None, part: int | None) -> dict[st
     if not session.feeling.running:
         raise DeviceError("nothing is felt, so nothing can be pulled; make and feel a surface first")
     packed_beacon = await session.worker.quick("beacon", **session.document.arguments(session.felt_sets()), part=part)
-    beacon_there: Beacon = await asyncio.to_thread(parcel.unpack, Path(packed_beacon["parcel"]))
-    await asyncio.to_thread(session.feeling.pull_to, beacon_there)
-    return _tell(session, beacon_there.part, part_label(beacon_there.part, beacon_there.name))
+    target: Beacon = await asyncio.to_thread(parcel.unpack, Path(packed_beacon["parcel"]))
+    await asyncio.to_thread(session.feeling.pull_to, target)
+    return _tell(session, target.part, part_label(target.part, target.name))
 
 
 def _tell(session: Session, part: int | None, name: str) -> dict[str, Any]:

@@ -74,6 +74,7 @@ def solve(rows, right):
 def forward(first, second, third, x, y, z):
     """Find the tip for three angles by Newton's method; return (x, y, z, True), or the last tip and False."""
     from_x, from_y, from_z = x, y, z
+    # negated comparisons, here and below: NaN has to fail them too
     if not (min(first, second, third) >= LOW_RAD and max(first, second, third) <= HIGH_RAD):
         return x, y, z, False
     cos = math.cos(first), math.cos(second), math.cos(third)

@@ -191,7 +191,7 @@ def read(answer, packet, counts, held, history, arms, frame, state):
         return 0
     angles = arms[0, 0] + RAD_PER_COUNT * first, arms[1, 0] + RAD_PER_COUNT * second, arms[2, 0] + RAD_PER_COUNT * third
     x, y, z, is_found = forward(*angles, held[TIP], held[TIP + 1], held[TIP + 2])
-    if not is_found:
+    if not is_found:  # angles that no tip has
         counts[REFUSED] += 1
         let_go(counts, held, packet)
         return 0

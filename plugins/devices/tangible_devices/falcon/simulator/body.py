@@ -45,7 +45,7 @@ def move(tip, torque, target, feel, steps, period_s):
             from_centre = tip[i] - (CENTRE_M if i == 2 else 0.0)
             away += from_centre * from_centre
             outward += from_centre * tip[3 + i]
-        if away > REACH_M * REACH_M:
+        if away > REACH_M * REACH_M:  # back onto the ball, and without the velocity outwards
             back = REACH_M / math.sqrt(away)
             for i in range(3):
                 centre = CENTRE_M if i == 2 else 0.0

@@ -128,8 +128,7 @@ def folder(state: WorkerState, path: str = "") -> dict[str, Any]:
     place = as_path(path).absolute()
     try:
         entries = [
-            (path_there.name, "folder" if path_there.is_dir() else KINDS.get(path_there.suffix.lower()))
-            for path_there in place.iterdir()
+            (entry.name, "folder" if entry.is_dir() else KINDS.get(entry.suffix.lower())) for entry in place.iterdir()
         ]
     except OSError as error:
         raise ConfigError(f"{place}: {error.strerror or error}; name a folder of this machine") from error

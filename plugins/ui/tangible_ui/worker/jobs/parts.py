@@ -153,8 +153,8 @@ def parts_save(
     file = path if saving.is_in_file(path, opened) else saving.new_file(pipeline.config, path, drawn, beside)
     picture = as_png(saving.undo_framing(part_map.labels, pipeline.config), file.name)
     place = saving.place_next_to(file)
-    text_there = relocate_text(text, path, parse_config(text, path, state.registry), file)
-    new_text = saving.document_with_parts(text_there, file, place, choices, heights, words)
+    relocated_text = relocate_text(text, path, parse_config(text, path, state.registry), file)
+    new_text = saving.document_with_parts(relocated_text, file, place, choices, heights, words)
     if pipeline.config.materials.by == "roughness":
         new_text = edit_text(new_text, file, {("materials", "by"): "rules"})  # parts are of what they are said to be of
     config = parse_config(new_text, file, state.registry, sets)

@@ -101,7 +101,7 @@ MIN_PHOTO = 200_000
 QUALITIES = (88, 80, 70, 60)
 SMALLER = 0.8
 PLAIN = Material("", 800.0, 0.0, 0.0, 0.0)
-"""What `proxy` takes for a surface without materials."""
+"""Values that `proxy` takes for a surface without materials."""
 
 
 def pack(spline: SentSurface, work: Work) -> dict[str, Any]:

@@ -35,7 +35,7 @@ MAX_ASKS = 32
 
 
 class Program(Protocol):
-    """What the tabs of a page show and move; used in the event loop's thread alone."""
+    """Views and pointers of the tabs of a page; used in the event loop's thread alone."""
 
     def find_request(self, name: str, /) -> Request | None:
         """Return what answers a request of this name; None if nothing does."""

@@ -13,7 +13,7 @@ from tangible_core.errors import ConfigError, TangibleError, quoted, shown
 Request = Callable[..., Awaitable[Any]]
 """A request's function: called with the program's state, the tab, and the tab's arguments by name."""
 FindRequest = Callable[[str], Request | None]
-"""What finds a request by its name; None if there is none."""
+"""A finder of requests by name; None if there is none."""
 
 
 class BadRequest(TangibleError):

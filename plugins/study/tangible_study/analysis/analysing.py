@@ -141,7 +141,7 @@ class Analysis:
 
     @property
     def sentences(self) -> dict[str, list[str]]:
-        """What was found, by comparison."""
+        """Results by comparison."""
         return {result.comparison: sentences(result) for result in self.results}
 
     def document(self) -> dict[str, Any]:

@@ -19,7 +19,7 @@ ByParticipant = Mapping[str, Sequence[Answer]]
 
 
 class What(NamedTuple):
-    """What a row is about."""
+    """The subject of a row."""
 
     measure: str
     condition: str
@@ -58,7 +58,7 @@ class Result:
     """Fitted functions by participant and condition, joined by a slash."""
     blocks: Mapping[str, Blocks] = field(default_factory=dict[str, Blocks])
     notes: Sequence[str] = ()
-    """What a reader should know, as sentences."""
+    """Remarks for a reader, as sentences."""
 
     def of_all(self, measure: str) -> list[Row]:
         """Return the rows of a measure about all participants; those of the only participant if there is one."""

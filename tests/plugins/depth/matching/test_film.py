@@ -8,7 +8,7 @@ from stereo_scenes import slanted, step
 from tangible_core.data import Views
 from tangible_core.plugins.interfaces import Following
 from tangible_depth import SemiGlobal, Ssd, Zncc
-from tangible_depth.matching import chain as film
+from tangible_depth.matching import chain
 from tangible_depth.matching.chain import SEARCH_EVERY, FilmMatcher
 from tangible_depth.rectify import rectification
 from tangible_depth.search import disparity_range
@@ -50,13 +50,13 @@ def test_nearer_object_widens_the_range_at_the_next_search():
 
 
 def test_range_ignores_empty_frames_and_forgets_old_searches(monkeypatch):
-    monkeypatch.setattr(film, "SEARCH_EVERY", 1)
+    monkeypatch.setattr(chain, "SEARCH_EVERY", 1)
     near, far, dark = slanted(offset=40.0)[0], slanted(offset=6.0)[0], np.zeros((96, 160), np.uint8)
     estimate = SemiGlobal(resolution="half", skip_identical=False).follow(near)
     wide = estimate._span
     estimate(Views(dark, dark))
     assert estimate._span == wide
-    for _ in range(film.SEARCHES):
+    for _ in range(chain.SEARCHES):
         estimate(far)
     assert estimate._span.high < wide.high
 
@@ -78,13 +78,13 @@ def test_unrectified_film_is_rectified_by_its_first_frame(monkeypatch):
     rolled = [
         Views(each.left, cv2.warpAffine(each.right, roll, (240, 180), borderMode=cv2.BORDER_REFLECT)) for each in frames
     ]
+    alone = [SemiGlobal().estimate(each).disparity_px for each in rolled]
     counted = []
     rectify = rectification.rectify
-    monkeypatch.setattr(film, "rectify", lambda *given, **named: counted.append(1) or rectify(*given, **named))
+    monkeypatch.setattr(chain, "rectify", lambda *given, **named: counted.append(1) or rectify(*given, **named))
     estimate = SemiGlobal().follow(rolled[0])
-    for each in rolled:
-        alone = SemiGlobal().estimate(each).disparity_px
-        apart = np.abs(estimate(each).disparity_px - alone)
+    for each, expected in zip(rolled, alone, strict=True):
+        apart = np.abs(estimate(each).disparity_px - expected)
         assert np.mean(apart < 0.5) > 0.98
     assert counted == [1]
 

@@ -1,9 +1,4 @@
-"""A background process that compiles kernels while this process compiles others.
-
-numba compiles one kernel at a time in a process. The background process fills numba's disk cache with kernels that will
-be needed later, and reports each one that is ready. It is started when a kernel is compiled here, so not if all kernels
-are on disk, and it never outlives this process. This module does not import numba.
-"""
+"""A background process that fills numba's disk cache with later kernels while this one compiles others."""
 
 import gc
 import logging
@@ -57,10 +52,7 @@ def wait_for(what: str) -> None:
 
 @final
 class BackgroundCompiler:
-    """A block with a process that compiles in the background, from the first kernel compiled in it to its end.
-
-    Only time depends on it: if the process cannot be started, or fails, kernels are compiled here.
-    """
+    """A block with a process that compiles in the background, from the first kernel compiled in it to its end."""
 
     def __init__(self, work: Callable[[], Work | None]) -> None:
         """Prepare the block; work: called when the process starts, returns None if there is nothing to do."""
@@ -110,11 +102,7 @@ class BackgroundCompiler:
             self._listener.start()
 
     def wait(self, what: str) -> None:
-        """Wait until the process has compiled this; return at once if it is not running or does not compile this.
-
-        A process that stands still is waited for no longer than `LONGEST_S`: then this is compiled here.
-        Raises: Stopped if the current work shall end.
-        """
+        """Wait until the process has compiled this; return at once if it is not running or does not compile this."""
         with self._progress:
             until_s = time.monotonic() + LONGEST_S
             while what in self._due and time.monotonic() < until_s:

@@ -1,7 +1,4 @@
-"""Options for compiling kernels, and a notice while they are compiled, which takes seconds, once on a machine.
-
-Every room of kernels imports this module.
-"""
+"""Options for compiling kernels, and a notice while they are compiled, which takes seconds, once on a machine."""
 
 import gc
 import logging
@@ -104,10 +101,7 @@ def _function(event: Any) -> Any:
 
 
 class _GarbageCollectionPause(event.Listener):
-    """A listener that pauses garbage collection while a kernel is compiled, which saves a fifteenth of the time.
-
-    numba holds a lock while it compiles, so that only one compilation runs at a time.
-    """
+    """A listener that pauses garbage collection while a kernel is compiled, which saves a fifteenth of the time."""
 
     def __init__(self) -> None:
         self._depth = 0

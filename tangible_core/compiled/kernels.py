@@ -73,10 +73,7 @@ def _revive(module: str, name: str, signature: Any) -> Address:
 
 @njit(**KERNEL)
 def step_velocity(positions_m, period_s, i):
-    """Return the velocity with which the path reached position i, one period after the position before it.
-
-    0 at the first position, and where it is not finite.
-    """
+    """Return the velocity with which the path reached position i; 0 at the first, and where it is not finite."""
     if i == 0:
         return 0.0, 0.0, 0.0
     vx = (positions_m[i, 0] - positions_m[i - 1, 0]) / period_s

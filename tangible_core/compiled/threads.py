@@ -52,10 +52,7 @@ def in_blocks(length: int, work: Callable[[int, int], Any], at_least: int = 16) 
 
 
 def in_turns(tasks: list[T], work: Callable[[Iterable[T]], Any], most: int | None = None) -> None:
-    """Run work(share) in up to `most` threads; each share takes the next task in order whenever it has finished one.
-
-    Raises: Stopped between two tasks if the caller's work shall end.
-    """
+    """Run work(share) in up to `most` threads; each share takes the next task in order whenever it has finished one."""
     parts = min(thread_count(), len(tasks), len(tasks) if most is None else most)
     if parts:
         left = deque(tasks)

@@ -59,10 +59,7 @@ class CompiledTouch(Touch):
         return Force(*self.tick(*self.fixed, *state.position_m, *state.velocity_m_per_s))
 
     def path(self, positions_m: Float64[np.ndarray, "n 3"], period_s: float = 0.001) -> Float64[np.ndarray, "n 3"]:
-        """Return the forces along positions one period apart.
-
-        Raises: GeometryError if the positions are not (n, 3), or the period is not above 0.
-        """
+        """Return the forces along positions one period apart."""
         from . import kernels
 
         positions, forces = path_arrays(positions_m, period_s)
@@ -119,9 +116,6 @@ class CompiledLink(Link):
 
     @final
     def exchange(self) -> None:
-        """Send the written data and fetch the data to read; once in a tick.
-
-        Raises: DeviceError if the device stopped answering or the link is closed.
-        """
+        """Send the written data and fetch the data to read; once in a tick."""
         self._check_open()
         self._exchange()

@@ -1,7 +1,4 @@
-"""Conversion of arguments to the types that records and methods need, with one clear sentence where it fails.
-
-A list becomes an array; numbers change their type if no value changes by more than rounding.
-"""
+"""Conversion of arguments to the types that records and methods need, with one clear sentence where it fails."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -23,10 +20,7 @@ READERS = "; Scene and numpy.load read files"
 
 
 def named_options(function: F) -> F:
-    """Wrap a function so that an unknown option is an ArgumentError with the name that was probably meant.
-
-    The options of `**options: Unpack[...]` are in the function's signature by name, for `help` and completion.
-    """
+    """Wrap a function so that an unknown option is an ArgumentError with the name that was probably meant."""
     plain = signature(function)
     parameters = [option for parameter in plain.parameters.values() for option in _unpack(parameter)]
     known = [each.name for each in parameters if each.kind in _BY_NAME and each.name not in ("self", "cls")]
@@ -86,10 +80,7 @@ _BY_NAME = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
 
 
 def as_array(name: str, value: object, dtype: str | None = None) -> np.ndarray:
-    """Return an array of numbers of this type; without a type, an array is returned as it is.
-
-    Raises: ArgumentError for a value that does not hold numbers, or numbers that the type cannot hold.
-    """
+    """Return an array of numbers of this type, or of its own without one. Raises: ArgumentError."""
     if isinstance(value, np.ndarray) and dtype is None:
         return cast(np.ndarray, value)
     given = _plain_array(name, cast(Any, value))
@@ -124,10 +115,7 @@ def _not_an_array(name: str, value: object) -> ArgumentError:
 
 
 def as_picture(name: str, value: Any) -> np.ndarray:
-    """Return an array that may be a picture; whole numbers of a list get the smallest unsigned type that holds them.
-
-    Raises: ArgumentError as `as_array`.
-    """
+    """Return an array that may be a picture; whole numbers of a list get the smallest unsigned type that holds them."""
     array = as_array(name, value)
     if isinstance(value, list | tuple) and array.dtype.kind == "i" and array.size and array.min() >= 0:
         return array.astype(np.min_scalar_type(array.max()))

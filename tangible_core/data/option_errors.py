@@ -27,11 +27,7 @@ _WANTED = "Input should be "
 
 
 def plain_errors(error: ValidationError, block: Any) -> list[dict[str, Any]]:
-    """Return pydantic's errors with plain messages and locations that the block has.
-
-    Of an option that may have several forms, only the errors of the form that fits best are kept. Errors at one
-    location become one: `Input should be greater than 0, or 'auto'`.
-    """
+    """Return pydantic's errors with plain messages and locations that the block has."""
     errors: list[dict[str, Any]] = [{**each, "loc": _location_in(block, each["loc"])} for each in error.errors()]
     locations: list[Location] = [each["loc"] for each in errors]
     deepest = [each for each in errors if not any(_is_within(other, each["loc"]) for other in locations)]
@@ -48,10 +44,7 @@ def plain_errors(error: ValidationError, block: Any) -> list[dict[str, Any]]:
 def sentences_about(
     error: ValidationError, model: type[BaseModel], block: Any, location: Location = ()
 ) -> list[tuple[Location, str]]:
-    """Return pydantic's errors about the options of a model as sentences, each with its place.
-
-    location: that of the block, which the sentences name too.
-    """
+    """Return pydantic's errors about the options of a model as sentences, each with its place."""
     return [_sentence(plain_error, model, location) for plain_error in plain_errors(error, block)]
 
 

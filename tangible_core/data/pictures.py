@@ -73,10 +73,7 @@ def check_finite(values: np.ndarray, name: str) -> None:
 
 
 def fill_non_finite(picture: np.ndarray) -> tuple[np.ndarray, Bool[np.ndarray, "h w"]]:
-    """Return the picture with each NaN or infinite pixel replaced by the nearest finite one, and the finite mask.
-
-    Raises: PictureError if no pixel is finite.
-    """
+    """Return the picture with each NaN or infinite pixel replaced by the nearest finite one, and the finite mask."""
     known: np.ndarray = np.all(np.isfinite(np.atleast_3d(picture)), axis=2)
     if not known.any():
         raise PictureError(f"none of the {known.size} pixels is finite; use a picture with finite pixels")
@@ -106,10 +103,7 @@ def is_opaque(alpha: np.ndarray) -> Bool[np.ndarray, "h w"]:
 
 
 def full_scale(picture: np.ndarray, *others: np.ndarray) -> float:
-    """Return the value of white: 1, 255 or 65535; of a float picture that fits none of these, its largest magnitude.
-
-    others: further pictures with the same white.
-    """
+    """Return the value of white: 1, 255 or 65535; of a float picture that fits none of these, its largest magnitude."""
     if picture.dtype.kind == "f":
         largest = max(float(np.max(np.abs(values))) for values in (picture, *others))
         return next((white for white in (255.0, float(MOST)) if BRIGHTEST < largest <= white), max(1.0, largest))

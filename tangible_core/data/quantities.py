@@ -23,11 +23,7 @@ _QUANTITY = re.compile(rf"\s*((?>{_DIGITS}))\s*(\D.*?)\s*")
 
 
 class _Blocks(type(BaseModel)):
-    """The class of all blocks of options: what is wrong with the options of a new one is an OptionError.
-
-    Only a call of the class is caught, so that a file's reader gets pydantic's errors with their places. `__doc__`, and
-    so `help`, ends with the options.
-    """
+    """The class of all blocks of options: what is wrong with the options of a new one is an OptionError."""
 
     @property
     def __doc__(cls) -> str | None:  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -72,10 +68,7 @@ class Quantities(BaseModel, metaclass=_Blocks):
     @field_validator("*", mode="before")
     @classmethod
     def _number_of(cls, value: Any, info: ValidationInfo) -> Any:
-        """Convert text with a unit to a number. Raises: ValueError for text that is not such a quantity, and for true.
-
-        True is 1 to pydantic, but `max_force_n: true` is a mistake.
-        """
+        """Convert text with a unit to a number; true, which is 1 to pydantic, is not one. Raises: ValueError."""
         name = info.field_name or ""
         if isinstance(value, bool):
             kinds = _kinds(cls.model_fields[name].annotation)

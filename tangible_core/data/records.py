@@ -86,10 +86,7 @@ Convert = Callable[[str, Any], Any]
 
 
 def settle(record: Any) -> None:
-    """Convert each field of a frozen dataclass to the type of its annotation.
-
-    Raises: ArgumentError with the field, the value it was given and the value it needs.
-    """
+    """Convert each field of a frozen dataclass to the type of its annotation."""
     for name, convert in _converters(cast(Any, type(record))):
         given = getattr(record, name)
         if (value := convert(name, given)) is not given:

@@ -23,10 +23,7 @@ _MAX_SHARE = 0.4
 
 @final
 class Archive:
-    """The arrays of an .npz file by name; other members are ignored.
-
-    Raises: ValueError with a message for people if the file is not such an archive.
-    """
+    """The arrays of an .npz file by name; other members are ignored."""
 
     def __init__(self, file: IO[bytes]) -> None:
         with _plain_errors():
@@ -40,11 +37,7 @@ class Archive:
         return tuple(self._members)
 
     def read(self, names: Collection[str]) -> dict[str, np.ndarray]:
-        """Read the arrays of these names.
-
-        Raises: TooLargeError if they hold more than `MAX_BYTES` together; ValueError with a message for people if an
-        array is missing, is damaged, or holds neither numbers nor text.
-        """
+        """Read the arrays of these names."""
         if missing := [name for name in names if name not in self._members]:
             raise ValueError(f"it holds no {shown(', '.join(missing))}")
         wanted = {name: self._members[name] for name in names}
@@ -61,10 +54,7 @@ class Archive:
 
 
 def write_arrays(file: IO[bytes], arrays: Mapping[str, np.ndarray]) -> None:
-    """Write an .npz file; arrays that shrink a lot are compressed.
-
-    Labels and constants shrink; heights hardly do, and would take several times as long to write and to read.
-    """
+    """Write an .npz file; arrays that shrink a lot, such as labels, are compressed: heights hardly shrink."""
     with ZipFile(file, "w", compresslevel=1) as archive:
         for name, array in arrays.items():
             archive.compression = ZIP_DEFLATED if _is_compressible(array) else ZIP_STORED
@@ -83,10 +73,7 @@ def _is_compressible(array: np.ndarray) -> bool:
 
 
 def read_array(file: IO[bytes]) -> np.ndarray:
-    """Read the array of an .npy file, or the only array of an .npz file, whatever the file's name.
-
-    Raises: TooLargeError or ValueError, with a message for people, if there is no such array.
-    """
+    """Read the array of an .npy file, or the only array of an .npz file, whatever the file's name."""
     zipped = file.read(len(_ZIP)) == _ZIP
     size = file.seek(0, 2)
     file.seek(0)

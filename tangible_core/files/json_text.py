@@ -13,11 +13,7 @@ from .writing import write_text
 
 
 def write_figures(path: Path, data: Mapping[str, Any]) -> None:
-    """Write the figures of a run as JSON, whole or not at all; numbers that are not finite become null.
-
-    data: strings, numbers, paths, numpy scalars and arrays, records, and mappings and sequences of these.
-    Raises: OutputError if the file cannot be written, TypeError for a value that JSON cannot express.
-    """
+    """Write the figures of a run as JSON, whole or not at all; numbers that are not finite become null."""
     write_text(path, as_json(data) + "\n")
 
 

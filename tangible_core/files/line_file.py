@@ -97,10 +97,7 @@ class LineFile:
 
 
 def read_lines(path: Path) -> Iterator[tuple[int, str]]:
-    """Yield the number of each line, from 1, and the line, without empty lines and an incomplete last line.
-
-    Raises: OSError, UnicodeDecodeError.
-    """
+    """Yield the number of each line, from 1, and the line, without empty lines and an incomplete last line."""
     check_file(path)
     with path.open("rb") as file:
         for number, line in enumerate(file, 1):
@@ -117,11 +114,7 @@ class JsonLines(LineFile):
     """A JSON Lines file, open for appending."""
 
     def __init__(self, path: Path, sync_every_s: float = SYNC_EVERY_S, alone: bool = False) -> None:
-        """Open the file; missing parent folders are created.
-
-        sync_every_s: the longest time until a row is on the disk. alone: lock the file against other processes.
-        Raises: OutputError if the file cannot be written, or another process holds it.
-        """
+        """Open the file; sync_every_s: the longest time until a row is on the disk. alone: lock it."""
         super().__init__(path, sync_every_s=sync_every_s, in_use=IN_USE if alone else "")
 
     def add_row(self, row: Mapping[str, Any]) -> None:
@@ -130,10 +123,7 @@ class JsonLines(LineFile):
 
 
 def read_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Yield the number of each line, from 1, and its row; nothing if the file does not exist.
-
-    Raises: ResultsError if the file cannot be read or a line in it is damaged.
-    """
+    """Yield the number of each line, from 1, and its row; nothing if the file does not exist."""
     try:
         for number, line in read_lines(path):
             yield number, _row(path, number, line)

@@ -40,11 +40,7 @@ def check_bytes(count: int) -> None:
 
 
 def check_file(path: Path, most: int = MAX_BYTES) -> None:
-    """Check that a path leads to a regular file of at most this many bytes.
-
-    A device or a pipe may have no end, or block its reader.
-    Raises: OSError with an strerror for people if there is no such file, it is a folder or a device, or is too large.
-    """
+    """Check that a path leads to a regular file of at most this many bytes: a device may have no end."""
     try:
         state = path.stat()
     except ValueError as error:
@@ -72,10 +68,7 @@ def in_words(count: int) -> str:
 
 
 def content_digest(path: Path) -> str:
-    """Return the XXH3-128 of a file's content; "" if the file does not exist or cannot be read.
-
-    A file with the same size and modification time as before is not read again.
-    """
+    """Return the XXH3-128 of a file's content; "" if the file does not exist or cannot be read."""
     try:
         state = path.stat()
         return _digest(path, state.st_mtime_ns, state.st_size, state.st_ino) if path.is_file() else ""

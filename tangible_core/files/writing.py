@@ -110,10 +110,7 @@ def sweep(folder: Path) -> None:
 
 
 def leftovers(folder: Path, age_s: float = LEFT_S) -> Generator[Path]:
-    """Yield the temporary files and folders that killed processes left in a folder, to be deleted at once.
-
-    age_s: the least age. A new file may be one that its writer is about to lock.
-    """
+    """Yield the temporary files and folders of at least this age that killed processes left in a folder."""
     for path in temporary_paths(folder):
         with suppress(OSError):
             if time.time() - path.lstat().st_mtime > age_s:
@@ -133,12 +130,7 @@ def write_text(path: Path, text: str, *, private: bool = False) -> None:
 
 
 def open_alone(path: Path, *, private: bool = False) -> FileIO:
-    """Open an empty, unbuffered binary file that no other call can open until it is closed or this process has ended.
-
-    Missing parent folders are created. Earlier content is lost, unless another process holds the file. private: for
-    this user alone, if the file is new.
-    Raises: OutputError if the file cannot be written, or another process holds it.
-    """
+    """Open an empty, unbuffered binary file that no other call can open until it is closed or this process ends."""
     try:
         file = FileIO(_create(path, os.O_RDWR, private), "r+")
     except OSError as error:

@@ -1,7 +1,4 @@
-"""The measured times and errors of all methods, which come with the program.
-
-Only `python -m benchmarks methods` writes them.
-"""
+"""The measured times and errors of all methods, which come with the program."""
 
 from collections.abc import Mapping
 from functools import cache

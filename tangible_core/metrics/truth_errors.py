@@ -35,10 +35,7 @@ def disparity_errors(disparity_px: Float[np.ndarray, "h w"], truth_px: Float[np.
 def absolute_error(
     disparity_px: Float[np.ndarray, "h w"], truth_px: Float[np.ndarray, "h w"]
 ) -> Float[np.ndarray, "h w"]:
-    """Return |estimate - truth| in px, float64 (h, w), NaN where either is unknown.
-
-    Raises: PictureError if the two differ in size.
-    """
+    """Return |estimate - truth| in px, float64 (h, w), NaN where either is unknown."""
     if disparity_px.shape != truth_px.shape:
         raise PictureError(
             f"the disparity map is {disparity_px.shape} and its truth {truth_px.shape}; crop or scale one of them"

@@ -1,7 +1,4 @@
-"""The interfaces of plugins, the registry of installed ones, and the hooks.
-
-Authors of plugins need the names below; each is imported when first used.
-"""
+"""The interfaces of plugins, the registry of installed ones, and the hooks."""
 
 import lazy_loader  # pyright: ignore[reportMissingTypeStubs]
 

@@ -64,10 +64,7 @@ class Verb(NamedTuple):
 
 
 def guard_verb(cls: type, verb: Verb) -> None:
-    """Wrap the verb that a class defines, if it does: arguments are converted, and the result's type is checked.
-
-    A result of another type raises a BrokenMethod that names the plugin.
-    """
+    """Wrap the verb that a class defines, if it does: arguments are converted, and the result's type is checked."""
     own = cls.__dict__.get(verb.name)
     if own is None or getattr(own, "__isabstractmethod__", False):
         return

@@ -30,10 +30,7 @@ class Origin(NamedTuple):
 
 @cache
 def origin(distribution: Distribution | None) -> Origin:
-    """Return the name and version of a distribution.
-
-    Both are in the head of its metadata, all of which `Distribution.name` would parse as an e-mail.
-    """
+    """Return the name and version of a distribution."""
     if distribution is None:
         return Origin("computed by a hook", "")
     text = distribution.read_text("METADATA") or distribution.read_text("PKG-INFO") or ""
@@ -42,11 +39,7 @@ def origin(distribution: Distribution | None) -> Origin:
 
 
 def plugin_name(kind: str, module: str, owner: str) -> str:
-    """Name the plugin of a class, or with no owner of a function: `depth method zncc (tangible-images 0.1)`.
-
-    The plugin is the class itself, or the only one of its kind in the module or in its package. Where there are
-    several, the class and the distribution are named.
-    """
+    """Name the plugin of a class, or with no owner of a function: `depth method zncc (tangible-images 0.1)`."""
     of_kind = [point for point in points() if kind in ("", _kind(point))]
     exact = [each for each in of_kind if each.value == f"{module}:{owner}"]
     in_module = [each for each in of_kind if each.module == module]

@@ -78,10 +78,7 @@ class Registry:
         return [each.name if short.count(each.name) == 1 else f"{each.distribution}/{each.name}" for each in of_kind]
 
     def find(self, kind: str, name: str) -> Listing:
-        """Find the listing of this name.
-
-        Raises: UnknownMethod if there is none, BrokenMethod if two distributions offer it and none is named.
-        """
+        """Find the listing of this name."""
         if kind not in KIND_NAMES:
             raise UnknownName("kind of methods", kind, KIND_NAMES)
         distribution, _, short = str(name).rpartition("/")
@@ -110,10 +107,7 @@ class Registry:
         return next((each.name for each in of_kind if pattern.search(each.summary)), "")
 
     def load(self, kind: str, name: str) -> type[Method]:
-        """Import the class of a method.
-
-        Raises: UnknownMethod, BrokenMethod if it cannot be imported or is not a method of this kind.
-        """
+        """Import the class of a method."""
         from .interfaces import KINDS
 
         each = self.find(kind, name)

@@ -81,10 +81,7 @@ class PlainTouch(Touch):
 def path_arrays(
     positions_m: np.ndarray, period_s: float
 ) -> tuple[Float64[np.ndarray, "n 3"], Float64[np.ndarray, "n 3"]]:
-    """Return the positions in the layout of the kernels, and an array for the forces.
-
-    Raises: GeometryError if the positions are not (n, 3), or the period is not positive and finite.
-    """
+    """Return the positions in the layout of the kernels, and an array for the forces."""
     positions = np.ascontiguousarray(positions_m, np.float64)
     if positions.ndim != 2 or positions.shape[1] != 3:
         raise GeometryError(f"a path is (n, 3) positions in metres, not {positions.shape}")

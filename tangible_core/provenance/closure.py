@@ -40,19 +40,13 @@ class Import(NamedTuple):
 
 
 def imports(source: bytes) -> list[Import]:
-    """Return every import in a text, including those in functions and for type checkers, without computed names.
-
-    Raises: SyntaxError, ValueError for a text that is not Python.
-    """
+    """Return every import in a text, including those in functions and for type checkers, without computed names."""
     called = [Import(name.decode(), level=len(dots)) for dots, name in _CALL.findall(source)]
     return called + [each for node in _statements(source) for each in _imports_of(node)]
 
 
 def definitions(source: bytes) -> frozenset[str]:
-    """Return the names that a text defines by an assignment, a function or a class, at any depth.
-
-    Raises: SyntaxError, ValueError for a text that is not Python.
-    """
+    """Return the names that a text defines by an assignment, a function or a class, at any depth."""
     return frozenset(name for node in ast.walk(ast.parse(source)) if (name := _defined_name(node)))
 
 
@@ -186,10 +180,7 @@ class _Walk:
 
 
 def _only_reexports(package: Place) -> bool:
-    """Return True if a package's own file only re-exports names, so that its imports do not affect modules in it.
-
-    This holds for Tangible Images, and for a package with `__getattr__`, which imports its names on first use.
-    """
+    """Return True if a package's own file only re-exports names, so that its imports do not affect modules in it."""
     return package.is_package and (package.top == HOME or "__getattr__" in _definitions(package))
 
 

@@ -46,10 +46,7 @@ def requirements() -> dict[str, str]:
 
 
 def find(name: str, signature: Any, hashes: Any) -> bytes | None:
-    """Return what numba pickled of the kernel of this name for a signature and its hashes; None if nothing fits.
-
-    name: of the kernel with the digest of its sources. A file that was changed is reported, and not read.
-    """
+    """Return what numba pickled of the kernel of this name for a signature and its hashes; None if nothing fits."""
     files = _digests()
     if name + INDEX not in files:
         return None

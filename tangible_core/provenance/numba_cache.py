@@ -24,11 +24,7 @@ KEPT = 4
 
 
 def extend(caching: Any) -> None:
-    """Make each cache of `numba.core.caching`, in whichever folder, check closures.
-
-    A kernel whose closure is unknown, or changed since this process began, is compiled anew and not saved. One that is
-    not in the cache is looked for in the wheel.
-    """
+    """Make each cache of `numba.core.caching`, in whichever folder, check closures."""
     numba_init, numba_load, numba_save = (
         getattr(caching.Cache, name) for name in ("__init__", "_load_overload", "save_overload")
     )

@@ -1,7 +1,4 @@
-"""Versions of the libraries below the code, and the list of libraries that change results.
-
-A module counts by its text or by its distribution's version, as its source's location tells.
-"""
+"""Versions of the libraries below the code, and the list of libraries that change results."""
 
 import re
 import sys

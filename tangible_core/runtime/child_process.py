@@ -1,9 +1,4 @@
-"""Child processes of Python that run the same code as this process, found in the same files.
-
-A child starts with `-P` and takes over this `sys.path` before it imports anything, so that it does not import files of
-the current folder. `dumps` sends with each class and function the file that it comes from here; a child whose import
-finds another file refuses it.
-"""
+"""Child processes of Python that run the same code as this process, found in the same files."""
 
 import io
 import os
@@ -88,10 +83,7 @@ def _file(module: ModuleType | None) -> str:
 
 
 def import_from(module: str, name: str, file: str) -> Any:
-    """Import the object of a place.
-
-    Raises: BrokenMethod if there is no such object here, or the module is another file than in the sending process.
-    """
+    """Import the object of a place."""
     try:
         here = import_module(module)
         value = attrgetter(name)(here)
@@ -115,10 +107,7 @@ def _cure(module: str) -> str:
 
 
 def dumps(thing: Any, keep: Callable[[pickle.PickleBuffer], Any] | None = None) -> bytes:
-    """Pickle an object for a child, whose `pickle.loads` then refuses modules of other files than here.
-
-    keep: takes the large buffers, which are then not part of the pickle. Raises: the errors of pickle.
-    """
+    """Pickle an object for a child, which refuses modules of other files; `keep` takes the large buffers."""
     file = io.BytesIO()
     _Pickler(file, 5, buffer_callback=keep).dump(thing)
     return file.getvalue()

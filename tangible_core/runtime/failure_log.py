@@ -25,10 +25,7 @@ def log_folder() -> Path:
 
 
 def keep(error: BaseException) -> Path:
-    """Append an error's traceback with the time and the command, and return the file, which is this user's alone.
-
-    Raises: OutputError if it cannot be written.
-    """
+    """Append an error's traceback with the time and the command, and return the file, which is this user's alone."""
     path = log_folder() / NAME
     when = datetime.now().astimezone().isoformat(timespec="seconds")
     text = f"{when} {shlex.join(sys.argv)}\n{''.join(traceback.format_exception(error))}\n"

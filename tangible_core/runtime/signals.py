@@ -13,11 +13,7 @@ _received: list[signal.Signals] = []
 
 @contextmanager
 def end_as_ctrl_c() -> Generator[None]:
-    """Raise KeyboardInterrupt at the first of these signals in this block; further ones do nothing.
-
-    A signal that was ignored before, as by nohup, or has another handler, is left alone. Only the main thread of a
-    process receives signals: in another thread nothing is changed.
-    """
+    """Raise KeyboardInterrupt at the first of these signals in this block; further ones do nothing."""
     _received.clear()
     here = threading.current_thread() is threading.main_thread()
     over = threading.Event()

@@ -1,7 +1,4 @@
-"""Protection of standard output: while a command runs, output of plugins goes to standard error.
-
-This includes libraries in C, which write to file 1, and processes that a plugin starts.
-"""
+"""Protection of standard output: while a command runs, output of plugins goes to standard error."""
 
 import io
 import os
@@ -24,11 +21,7 @@ def stream() -> TextIO | None:
 
 @contextmanager
 def protect() -> Generator[None]:
-    """Lead only `stream()` to standard output in this block, and all else to standard error.
-
-    If `sys.stdout` is not the process's own, as in a notebook, only it is changed. A reader that goes away is not an
-    error: later output is discarded. Raises: OutputError if the output cannot be written.
-    """
+    """Lead only `stream()` to standard output in this block, and all else to standard error."""
     if _own:
         yield
         return

@@ -15,11 +15,7 @@ _limit: ContextVar[int | None] = ContextVar("tangible_threads", default=None)
 
 @contextmanager
 def limited_threads(most: int | None = None) -> Generator[None]:
-    """Limit the threads in this block; None keeps the limit of an outer block, or of `TANGIBLE_THREADS`.
-
-    Results do not depend on the limit. Raises: ArgumentError if it is not a number of threads, ConfigError as
-    `thread_limit`.
-    """
+    """Limit the threads in this block; None keeps the limit of an outer block, or of `TANGIBLE_THREADS`."""
     check_threads(most)
     limit = thread_limit() if most is None else most
     if limit is None or limit == _limit.get():
@@ -42,10 +38,7 @@ def check_threads(most: object) -> None:
 
 
 def thread_limit() -> int | None:
-    """Return the limit on threads in this block, or of `TANGIBLE_THREADS`; None without a limit.
-
-    Raises: ConfigError if that variable is not a number of threads.
-    """
+    """Return the limit on threads in this block, or of `TANGIBLE_THREADS`; None without a limit."""
     if (limit := _limit.get()) is not None:
         return limit
     text = os.environ.get(VARIABLE, "").strip()

@@ -20,10 +20,7 @@ _own_threads = 0
 
 
 def need(name: str) -> ModuleType:
-    """Import `torch` or `kornia`, or a module of theirs.
-
-    Raises: BrokenMethod with the way to install them.
-    """
+    """Import `torch` or `kornia`, or a module of theirs."""
     global _own_threads
     fresh = "torch" not in sys.modules
     try:

@@ -142,10 +142,7 @@ class BeaconMemory:
 
 
 def part_number(surface: HapticSurface, part: str | int) -> int:
-    """Return the label of a part. part: its label, or as text its name or the number that people know it by, from 1.
-
-    Raises: ConfigError, with all parts, if there is none.
-    """
+    """Return the label of a part, given by its label, or as text by its name or its number from 1."""
     names = surface.names
     if names is None or surface.labels is None:
         raise ConfigError("a beacon pulls to a part, and this surface has no parts; add `parts:` or `heights:`")
@@ -167,10 +164,7 @@ def part_number(surface: HapticSurface, part: str | int) -> int:
 
 
 def beacon_to(surface: HapticSurface, part: str | int) -> Beacon:
-    """Return a beacon to a part of a surface, given as in `part_number`.
-
-    Raises: ConfigError if there is no such part, GeometryError if the part has no cell on this surface.
-    """
+    """Return a beacon to a part of a surface, given as in `part_number`."""
     number = part_number(surface, part)
     assert surface.labels is not None and surface.names is not None
     cells = surface.labels == number
@@ -207,10 +201,7 @@ def _margin(pitch_m: float) -> int:
 
 
 def _coarsen(cells: np.ndarray, step: int, pitch_m: tuple[float, float]) -> tuple[np.ndarray, int, int]:
-    """Return the part in blocks of step x step cells, with a margin, and the margins above and to the left.
-
-    A block belongs to the part if one of its cells does.
-    """
+    """Return the part in blocks of step x step cells, with a margin, and the margins above and to the left."""
     across, down = (_margin(step * pitch) for pitch in pitch_m)
     rows, columns = cells.shape
     filled = np.pad(cells, ((0, -rows % step), (0, -columns % step)))

@@ -83,10 +83,7 @@ def _settle(numbers, memory, x, y, u, elapsed_s):
 
 @njit(int64(INTEGERS, WRITTEN, FIELD, WRITTEN, *[float64] * 5, int64), **KERNEL)
 def pull(words, numbers, field, memory, period_s, x, y, vx, vy, buttons):
-    """Write the beacon's force at a fresh position into the guard's memory, zero if no beacon is on; return the flags.
-
-    Called once a tick, before the guard, with the place for the force law and the buttons of the device.
-    """
+    """Write the beacon's force at a fresh position into the guard's memory, before the guard; return the flags."""
     pressed = buttons & ~words[at.HELD]
     words[at.HELD] = buttons
     memory[layout.PULL] = memory[layout.PULL + 1] = memory[layout.PULL_STIFFNESS] = 0.0

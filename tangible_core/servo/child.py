@@ -1,8 +1,4 @@
-"""The process of a force loop, which takes its commands from standard input.
-
-The loop runs in its own thread, so that the main thread can take commands and signals while compiled code runs without
-Python's lock.
-"""
+"""The process of a force loop, whose main thread takes commands from standard input while a thread ticks."""
 
 import gc
 import logging

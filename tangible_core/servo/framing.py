@@ -1,8 +1,4 @@
-"""Messages between the host and the loop's process, and their framing: pickles, each after its length, over a pipe.
-
-The request to end a loop is not a message but a word in the ring, which the loop reads at every tick, whatever messages
-are under way.
-"""
+"""Messages between the host and the loop's process, and their framing: pickles, each after its length."""
 
 import pickle
 import traceback

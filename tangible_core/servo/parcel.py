@@ -1,9 +1,4 @@
-"""Parcels: objects with large arrays, passed to another process through shared memory without a copy there.
-
-A packed touch is made in one process, passed on by the host, and read only in the loop's process. The process that
-makes the touch may take long, and may end at any moment. The host imports no kernels, and so spends neither time nor
-memory on them: of the touch it has the name of a file and a stiffness.
-"""
+"""Parcels: objects with large arrays, passed to another process through shared memory without a copy there."""
 
 import pickle
 from pathlib import Path
@@ -20,10 +15,7 @@ from .ring import ALIGN
 
 
 def pack(thing: Any) -> Path:
-    """Write an object to shared memory, which `unpack` removes again; return its name, a path.
-
-    Raises: DeviceError if there is no room, or if the object cannot be sent to another process.
-    """
+    """Write an object to shared memory, which `unpack` removes again; return its name, a path."""
     buffers: list[pickle.PickleBuffer] = []
     try:
         small = dumps(thing, buffers.append)
@@ -41,10 +33,7 @@ def pack(thing: Any) -> Path:
 
 
 def adopt(path: Path) -> Path:
-    """Take over the memory of `pack`, and return its name here: it lasts as long as this process, not its maker.
-
-    Raises: DeviceError if the memory does not exist any more, or is not a parcel.
-    """
+    """Take over the memory of `pack`, and return its name here: it lasts as long as this process, not its maker."""
     named = NAME.fullmatch(path.name)
     if named is None or named[2] != "parcel":
         raise DeviceError(f"{path}: is not the file of a packed scene; give the file that `pack_touch` made")
@@ -55,10 +44,7 @@ def adopt(path: Path) -> Path:
 
 
 def unpack(path: Path) -> Any:
-    """Load the object from the memory of `pack` and remove its name; the memory lasts as long as the arrays in it.
-
-    Raises: OSError if there is no such memory any more.
-    """
+    """Load the object from the memory of `pack` and remove its name; the memory lasts as long as the arrays in it."""
     mapped = shared_memory.attach(path)
     shared_memory.remove(path)
     return _load(mapped)

@@ -63,10 +63,7 @@ class LoopTotals(NamedTuple):
 
 
 def report(ring: Ring, stopped: str = "", before: LoopTotals | None = None, since_s: float = 0.0) -> ServoReport:
-    """Return a report of the loop that writes to this ring.
-
-    before: totals of the loops before it in the same session, which began since_s before this loop's clock.
-    """
+    """Return a report of the loop that writes to this ring; before: totals of the loops before it in the session."""
     rows, _ = ring.since(ring.count - 1)
     rows[:, AT["time_s"]] += since_s
     totals = LoopTotals.of(ring)

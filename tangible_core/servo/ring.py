@@ -117,10 +117,7 @@ class Ring:
         return cls(path, mapped, slots)
 
     def allocate_beacon(self) -> None:
-        """Allocate memory for the field: otherwise a process that writes there while memory is full would be killed.
-
-        Raises: DeviceError if there is no room, or the loop has ended.
-        """
+        """Allocate memory for the field: otherwise a process that writes there while memory is full would be killed."""
         size = self.beacon.field.nbytes
         try:
             shared_memory.make_room(self.path, _size(len(self.stamps)) - size, size)
@@ -158,10 +155,7 @@ class Ring:
         return row if self.stamps[slot] == number else None  # as in `since`, reading the stamp afterwards is enough
 
     def since(self, first: int) -> tuple[Float64[np.ndarray, "n c"], int]:
-        """Return the ticks from number `first` on that still exist, and the number of the next tick.
-
-        If the loop has overwritten some of the ticks, there are fewer rows than numbers.
-        """
+        """Return the ticks from number `first` on that still exist, and the number of the next tick."""
         count = self.count
         numbers = np.arange(max(first, count - len(self.stamps), 0), count)
         slots = numbers % len(self.stamps)

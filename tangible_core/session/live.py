@@ -90,11 +90,7 @@ def watch_loop(
     on_start: Callable[[Servo], None],
     look: Callable[[], str] = str,
 ) -> ServoReport:
-    """Start a loop, record and report it until something ends it, and leave no force.
-
-    look: called twenty times a second for other work; returns why the loop must end, if so.
-    Raises: as `run_in_real_time`.
-    """
+    """Start a loop, record and report it until something ends it, or `look` says why it must end; leave no force."""
     with ThreadPoolExecutor(1) as background, servo:  # in this order, the force ends first
         on_start(servo)
         drain, next_s, ended = RingDrain(servo, keep), time.monotonic(), ""
@@ -120,11 +116,7 @@ def ignore(_: Any) -> None:
 
 @contextmanager
 def keeping(path: Path, about: About) -> Generator[Writer]:
-    """Open a writer to a recording of any suffix.
-
-    Appended ticks are safe at once, in a .nc file; for another suffix, that file is converted at the end and deleted.
-    Raises: OutputError as `Writer` and `Recording.save`.
-    """
+    """Open a writer to a recording of any suffix; one other than .nc is converted from a .nc file at the end."""
     growing = path if path.suffix == ".nc" else path.with_name(f"{path.name}.nc")
     with Writer(growing, about) as writer:
         yield writer

@@ -10,11 +10,7 @@ LONG = 9
 
 
 class Template:
-    """An English text with placeholders such as `{name}`, and its translation.
-
-    In the translation the placeholders may stand in another order; `{name!s}` and those between backticks take what
-    stands in the text as it is, such as a number that goes into a file.
-    """
+    """An English text with placeholders such as `{name}`, and its translation."""
 
     def __init__(self, english: str, translation: str) -> None:
         self.english = english
@@ -34,10 +30,7 @@ class Template:
         return times == 1 or (times > 1 and len(self.longest) < LONG)
 
     def match(self, text: str) -> Mapping[str, str] | None:
-        """Return what stands in place of each placeholder if a text was made of this template.
-
-        Each literal is looked for as early as possible, and the last one at the end: linear in the text's length.
-        """
+        """Return what stands in place of each placeholder if a text was made of this template."""
         first, *middle, last = self.literals
         if not (text.startswith(first) and text.endswith(last)) or len(text) < len(first) + len(last):
             return None

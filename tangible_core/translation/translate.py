@@ -9,10 +9,7 @@ MARKS = re.compile(r"((?<!\\)\[/?[a-z][a-z0-9_ #]*\]|(?<!\\)\[/\])")
 
 
 def translate(text: str, to: str) -> str:
-    """Return an English text of the program in another language; a text without a translation stays as it is.
-
-    Arguments in a text are translated if they are texts of the program too, and numbers get the language's notation.
-    """
+    """Return an English text of the program in another language; a text without a translation stays as it is."""
     if to == LANGUAGES[0] or not text:
         return text
     from .catalogue import catalogue  # read only where it is needed

@@ -46,11 +46,7 @@ class _Count:
 
 
 def check_events(events: Iterable[Any]) -> None:
-    """Check the events of a parser one after the other, before a tree is built from them.
-
-    Raises: MarkedYAMLError with the place of a block that is too deep or too large, of an alias inside its own anchor,
-    of a block as a key, whose hash takes time that doubles with each level, or of a value with a tag.
-    """
+    """Check the events of a parser one after the other, before a tree is built from them."""
     count = _Count()
     for event in events:
         kind, tag = type(event).__name__, getattr(event, "tag", None)

@@ -27,11 +27,7 @@ def part_lines(parts: Mapping[int, Any], comments: Mapping[int, str] | None = No
 
 
 def with_parts(text: str, path: Path, parts: Mapping[int, Any], comments: Mapping[int, str] | None = None) -> str:
-    """Return the text with a line for each part in place of the lines of `parts:`, or at its end if it has none.
-
-    path: the file's name in complaints.
-    Raises: ConfigError where `parts:` does not stand in lines of its own, or the text is not a mapping in YAML.
-    """
+    """Return the text with a line for each part in place of the lines of `parts:`, or at its end if it has none."""
     block = f"parts:\n{part_lines(parts, comments)}"
     before = f"{text}\n" if text and not text.endswith("\n") else text
     after, times = BLOCK.subn(lambda _: block, before, count=1)

@@ -54,10 +54,7 @@ class Source:
     """The texts of overrides, by location."""
 
     def override(self, text: str, shorthand: Shorthand = no_shorthand, place: Location = ()) -> None:
-        """Apply `key.key=value`; a block with another `use` starts without the options of the method before.
-
-        place: the location, if it leads through an entry of a list; the index of the entry is then an int.
-        """
+        """Apply `key.key=value`; a block with another `use` starts without the options of the method before."""
         keys, loaded = parse_override(text)
         parts: Location = place or keys
         node: Any = self.tree
@@ -171,11 +168,7 @@ def parse_source(
     *,
     empty: bool = False,
 ) -> Source:
-    """Parse a YAML text into a source that is ready to be checked.
-
-    what: the complaint if the text is not a mapping. empty: accept an empty text as an empty mapping.
-    Raises: ConfigError if the text is not YAML, or not a mapping.
-    """
+    """Parse a YAML text into a source that is ready to be checked."""
     try:
         tree = parse_value(text)
     except YAMLError as error:
@@ -285,8 +278,5 @@ def plain(node: Any) -> Any:
 
 
 def plain_tree(text: str, path: Path) -> dict[Any, Any]:
-    """Return a YAML text as plain values; an empty text is an empty mapping.
-
-    path: the file's name in complaints. Raises: ConfigError if the text is not YAML, or not a mapping.
-    """
+    """Return a YAML text as plain values; an empty text is an empty mapping."""
     return plain(parse_source(text, path, "it is a mapping", empty=True).tree)

@@ -101,10 +101,7 @@ def with_overrides(text: str, path: Path, overrides: Iterable[str]) -> str:
 
 
 def read_values(text: str, path: Path) -> dict[str, Any]:
-    """Read a pipeline file as plain values that JSON has, whether they are right or wrong.
-
-    Raises: ConfigError if it is not YAML, or not a mapping.
-    """
+    """Read a pipeline file as plain values that JSON has, whether they are right or wrong."""
     source = parse_source(text, path, EXPECTED, empty=True)
     return _as_json(plain(source.tree))
 
@@ -121,10 +118,7 @@ def _as_json(node: Any) -> Any:
 
 
 def relocate_text(text: str, path: Path, config: PipelineConfig, out: Path) -> str:
-    """Return a pipeline file's text for another place, from which its relative paths lead to the same files.
-
-    config: the configuration of the text at `path`.
-    """
+    """Return a pipeline file's text for another place, from which its relative paths lead to the same files."""
     if out.parent.absolute() == path.parent.absolute():
         return text
     blocks = {place: each for name, key in KEYS.items() for place, each in key.models(getattr(config, name)).items()}

@@ -48,10 +48,7 @@ def choose(source: Source, location: Location, kind: str, block: Any, registry: 
 
 
 def named_method(kind: str, method: M, registry: Registry) -> NamedMethod[M]:
-    """Find the name by which a file would name this method; without a plugin, that of its class, and no origin.
-
-    Raises: ConfigError if the method is not of this kind.
-    """
+    """Find the name by which a file would name this method; without a plugin, that of its class, and no origin."""
     check_kind(kind, method)
     cls = type(method)
     target = f"{cls.__module__}:{cls.__qualname__}"

@@ -1,8 +1,4 @@
-"""The pipeline file: every key that it may have, with its type, bounds, default and description.
-
-A key stands here and nowhere else: reading, completion, the completed file, JSON Schema, the reference page and the
-page's form are derived from the fields of `PipelineConfig`.
-"""
+"""The pipeline file: every key with its type, bounds, default and description, from which all else is derived."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import replace

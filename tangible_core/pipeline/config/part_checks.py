@@ -80,10 +80,7 @@ def _wrong_materials(parts: Mapping[int, PartChoice], library: Mapping[str, Mate
 
 
 def _wrong_rules(rules: Iterable[int | str | None], parts: Mapping[int, PartChoice] | None) -> Iterator[Wrong]:
-    """Find rules for parts that have no such name.
-
-    rules: the part of each rule. parts: None where nothing is by parts.
-    """
+    """Find rules for parts that have no such name; `parts` is None where nothing is by parts."""
     names = numbers_of(parts or {})
     for number, part in enumerate(rules):
         place = ("materials", "rules", number, "part")

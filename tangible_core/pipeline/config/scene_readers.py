@@ -21,10 +21,7 @@ def scene_reader_points() -> Mapping[str, EntryPoint]:
 
 
 def scene_reader_of(block: Any) -> type[SceneReader] | None:
-    """Find the reader of a block `scene:` by its keys; None for a block of files.
-
-    Raises: BrokenMethod for a reader that cannot be imported, or is not a SceneReader.
-    """
+    """Find the reader of a block `scene:` by its keys; None for a block of files."""
     if not isinstance(block, dict):
         return None
     return next((_load(point) for key, point in scene_reader_points().items() if key in block), None)
@@ -44,9 +41,6 @@ def _load(point: EntryPoint) -> type[SceneReader]:
 
 
 def scene_readers(distribution: str | None = None) -> list[type[SceneReader]]:
-    """Load the readers of a distribution, or of all that are installed, in the order of their keys.
-
-    Raises: BrokenMethod as `scene_reader_of`.
-    """
+    """Load the readers of a distribution, or of all that are installed, in the order of their keys."""
     points = sorted(scene_reader_points().items())
     return [_load(each) for _, each in points if distribution is None or (each.dist and each.dist.name == distribution)]

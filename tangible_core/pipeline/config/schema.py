@@ -15,11 +15,7 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def json_schema(registry: Registry | None = None, distribution: str | None = "tangible-images") -> dict[str, Any]:
-    """Return one schema for the whole file. A form has in it a `title` in words and the `unit` of every option.
-
-    It takes the import of every method: see `stage_schema` and `method_schema`.
-    distribution: only methods of this one, or of all that are installed when None. A broken plugin is left out.
-    """
+    """Return one schema for the whole file; `distribution` limits it to methods of this one."""
     forms = Forms(registry or default_registry(), distribution)
     return {
         "$schema": DIALECT,
@@ -35,10 +31,7 @@ def json_schema(registry: Registry | None = None, distribution: str | None = "ta
 def stage_schema(
     kind: str, registry: Registry | None = None, distribution: str | None = "tangible-images"
 ) -> dict[str, Any]:
-    """Return the schema of one stage alone (depth, texture, render, device), or of the list of exporters (export).
-
-    Raises: UnknownName for an unknown stage.
-    """
+    """Return the schema of one stage alone (depth, texture, render, device), or of the list of exporters (export)."""
     if kind not in (known := [name for name, key in KEYS.items() if isinstance(key, MethodBlock | MethodList)]):
         raise UnknownName("stage", kind, known)
     forms = Forms(registry or default_registry(), distribution)
@@ -51,10 +44,7 @@ def stage_schema(
 
 
 def method_schema(kind: str, name: str, registry: Registry | None = None) -> dict[str, Any]:
-    """Return the schema of one method's block alone; no other method is imported.
-
-    Raises: UnknownMethod or BrokenMethod.
-    """
+    """Return the schema of one method's block alone; no other method is imported."""
     forms = Forms(registry or default_registry(), None)
     form = forms.of_method(name, forms.registry.load(kind, name))
     return {"$schema": DIALECT, **form, "$defs": forms.definitions}

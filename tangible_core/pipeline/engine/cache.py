@@ -1,10 +1,4 @@
-"""The cache: records on disk by the keys of their making.
-
-An entry is a file `<key>.npz`, readable by numpy.load and checked by the archive's CRC when it is read. It holds the
-record, and the notes on it and on all products that it was made from. Files appear whole (written next to their place
-and renamed), so processes can share a folder; a damaged entry is deleted and made again. A tally of their bytes lies
-in the folder, so that the folder is listed only where it may be full.
-"""
+"""The cache: records on disk by the keys of their making, an entry `<key>.npz` each, which appears whole."""
 
 import json
 import logging
@@ -68,10 +62,7 @@ class Tally:
         self.path = path
 
     def add(self, size: int) -> int | None:
-        """Add a size and return the sum; None where it is unknown, and the folder must be counted.
-
-        Raises: OSError if the file cannot be read or written.
-        """
+        """Add a size and return the sum; None where it is unknown, and the folder must be counted."""
         try:
             file = os.open(self.path, os.O_RDWR | os.O_APPEND | BINARY)
         except FileNotFoundError:
@@ -158,10 +149,7 @@ class Cache:
         return len(sizes), sum(sizes)
 
     def clear(self) -> tuple[int, int]:
-        """Delete every result, and nothing else, and return their number and bytes; what is being written stays.
-
-        Raises: OutputError for a result that cannot be deleted.
-        """
+        """Delete every result, and nothing else, and return their number and bytes; what is being written stays."""
         freed: list[int] = []
         for path in chain(self._results(), leftovers(self.folder, age_s=-inf)):
             size = _use_and_size(path)[1]
@@ -203,10 +191,7 @@ def default_folder() -> Path:
 
 
 def write_record(path: Path, record: Record, notes: Notes | None = None) -> None:
-    """Write a record as an .npz: its arrays by name, and the rest in `record` and `notes` as JSON.
-
-    Raises: OutputError if the place cannot be written.
-    """
+    """Write a record as an .npz: its arrays by name, and the rest in `record` and `notes` as JSON."""
     arrays: dict[str, np.ndarray] = {}
     texts = {"record": _pack(record, "", arrays)}
     if notes is not None:

@@ -92,10 +92,7 @@ def reliefs_of(config: PipelineConfig, scene: Scene) -> Reliefs:
 
 
 def film_of(engine: Engine, device: HapticDevice | None, period_s: float) -> Film:
-    """Return the force law as a film that begins at the first frame. device: limits the materials; None does not.
-
-    Raises: ConfigError for a scene that does not move, or a law that cannot render a moving surface.
-    """
+    """Return the force law as a film that begins at the first frame. device: limits the materials; None does not."""
     config, scene = engine.config, engine.scene
     law = _filming(config, engine.registry)
     reliefs_of(config, scene)

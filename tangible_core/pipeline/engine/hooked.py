@@ -1,7 +1,4 @@
-"""Functions that other packages name by a hook, imported when they are called for.
-
-Those that judge and simplify parts for fingers are named by the hook `tangible_legibility`.
-"""
+"""Functions that other packages name by a hook, imported when they are called for."""
 
 from collections.abc import Callable
 from importlib.metadata import EntryPoint
@@ -16,10 +13,7 @@ from ...runtime.failure_log import where_kept
 
 
 def hooked_point(registry: Registry, hook: str, name: str, purpose: str) -> EntryPoint:
-    """Find the function that a hook names, without importing it; the first of several. Raises: BrokenMethod for none.
-
-    purpose: what the function does, a verb with its object, for the message.
-    """
+    """Find the function that a hook names, without importing it; `purpose` is for the message."""
     for answer in hooks.tell(registry.plugins, hook):
         if isinstance(answer, dict) and isinstance(value := answer.get(name), str):  # pyright: ignore[reportUnknownMemberType, reportUnknownVariableType]
             return EntryPoint(name, value, hook)

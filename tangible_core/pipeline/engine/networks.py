@@ -11,18 +11,12 @@ HOOK, LOOK, READ = "tangible_networks", "look at a photograph", "read texts"
 
 
 def look_function(registry: Registry) -> Callable[..., Figure]:
-    """Import the function that returns what networks see in a picture; tasks, if not all, are its second argument.
-
-    Raises: BrokenMethod.
-    """
+    """Import the function that returns what networks see in a picture; tasks, if not all, are its second argument."""
     return load_hooked(hooked_point(registry, HOOK, "look", LOOK), LOOK)
 
 
 def networks_identity(registry: Registry, *tasks: str) -> str:
-    """Return a text that differs wherever networks for these tasks, or for any, may see something else; "" without one.
-
-    Raises: BrokenMethod.
-    """
+    """Return a text that differs wherever networks for these tasks may see something else; "" without one."""
     purpose = "tell which networks are here"
     return load_hooked(hooked_point(registry, HOOK, "identity", purpose), purpose)(*tasks)
 

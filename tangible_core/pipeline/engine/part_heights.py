@@ -29,11 +29,7 @@ def heights_of(
     shown: Bool[np.ndarray, "h w"] | None = None,
     picture: np.ndarray | None = None,
 ) -> PartHeights:
-    """Return the height of each part with its reason: the given heights, and computed ones for the other parts.
-
-    top_m: the greatest computed height. disparity: on the grid of the parts; None without depth.
-    shown: True where the picture is opaque; transparent parts lie at 0. picture: in whose colours a guess sees holes.
-    """
+    """Return the height of each part with its reason: the given heights, and computed ones up to top_m."""
     computed = _compute(parts, heights, max(0.0, top_m), disparity, picture)
     heights_m = {number: min(round(each, FINEST_DIGITS), top_m) for number, each in enumerate(computed.heights_m)}
     reasons = dict(enumerate(computed.reasons))

@@ -58,10 +58,7 @@ def _pixels(count: int) -> str:
 
 
 def place_of(parts: PartMap, number: int, scale: float = 1.0) -> str:
-    """Return a pixel in a part, in the middle of its middle row, as text: [x, y].
-
-    scale: pixels of the picture for a pixel of the map.
-    """
+    """Return a pixel in a part, in the middle of its middle row, as text: [x, y]."""
     rows, columns = np.nonzero(parts.labels == number)
     if not rows.size:
         return "no pixel"
@@ -72,10 +69,7 @@ def place_of(parts: PartMap, number: int, scale: float = 1.0) -> str:
 
 
 def check_parts(config: PipelineConfig, parts: PartMap, columns: int) -> None:
-    """Refuse numbers of parts that do not exist, and heights over the workspace.
-
-    columns: of the picture, in whose pixels messages give places. Raises: ConfigError with every complaint.
-    """
+    """Refuse numbers of parts that do not exist, and heights over the workspace."""
     if wrong := [*_wrong_numbers(config, parts.count), *_wrong_heights(config, parts, columns)]:
         raise config.error_at(*wrong)
 

@@ -50,11 +50,7 @@ def config_heights(config: PipelineConfig) -> HeightChoice:
 
 
 def preview_config(config: PipelineConfig, heights: Mapping[str, Any] | None, shape: tuple[int, int]) -> PipelineConfig:
-    """Return the configuration of a preview: heights that are all given, on a grid of about MAX_CELLS at most.
-
-    heights: options in place of the document's. shape: (h, w) of the pictures.
-    Raises: ConfigError for invalid options, wrong entries of parts, and a document without a force law.
-    """
+    """Return the configuration of a preview: heights that are all given, on a grid of about MAX_CELLS at most."""
     if config.render is None:
         raise config.missing("render")
     choice = {**config_heights(config).model_dump(), **(heights or {}), "by": "given"}
@@ -80,11 +76,7 @@ class PartHeightPreview:
     """Everything that is the same for all heights of one document's parts."""
 
     def __init__(self, engine: Engine, before: "PartHeightPreview | None" = None) -> None:
-        """Make what does not depend on heights.
-
-        engine: of a configuration by `preview_config`, without entries by `without_entries`. before: a preview whose
-        layers are taken over if the parts are the same. Raises: as `Engine.make`.
-        """
+        """Make what does not depend on heights; the layers of `before` are taken over if the parts are the same."""
         self.engine: Engine = engine
         config = engine.config
         self.grid: WorkingGrid = WorkingGrid(engine.scene, config.size)

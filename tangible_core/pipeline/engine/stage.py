@@ -1,8 +1,4 @@
-"""The base of all stages: each makes one product from a scene by a configuration.
-
-A stage stands in `stages/PRODUCT.py`, as the class `ProductStage`; the table `tangible_core.data.products.PRODUCTS`
-names the product. What a result depends on is in its key, one text or digest.
-"""
+"""The base of all stages: each makes one product from a scene by a configuration."""
 
 import hashlib
 from abc import ABC, abstractmethod

@@ -1,8 +1,4 @@
-"""The warm-up: the stages after the depth, run on a crop in a background process, so that their kernels are compiled.
-
-Its results are discarded. Only the types of its arrays must be those of the pipeline, as kernels are compiled for
-types.
-"""
+"""The warm-up: the stages after the depth, run on a crop in the background to compile their kernels."""
 
 from collections.abc import Iterator
 

@@ -94,10 +94,7 @@ def relief_of_layers(
 
 
 def parts_on_grid(parts: PartMap, shape: tuple[int, int], product: Literal["parts", "simplified"]) -> PartMap:
-    """Return the parts on a grid of (h, w), with the same numbers.
-
-    Each of the picture's own parts keeps at least one cell; a part that was simplified away has none.
-    """
+    """Return the parts on a grid of (h, w), with the same numbers; each keeps at least one cell."""
     return reduced_parts(parts, shape) if product == "parts" else scaling.enlarged_parts(parts, shape)
 
 

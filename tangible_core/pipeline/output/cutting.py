@@ -13,10 +13,7 @@ from ..engine.networks import networks_identity
 
 
 def remove_ground(engine: Engine, products: Mapping[str, Record | None]) -> dict[str, Record | None]:
-    """Return the products of an engine without their ground, which has no height, and is the last part.
-
-    Raises: ModelAbsent without a network for figures, PictureError where it sees none.
-    """
+    """Return the products of an engine without their ground, which has no height, and is the last part."""
     seen: Figure = engine.make_on_grid("figure") if networks_identity(engine.registry) else Figure()
     if seen.figure is None:
         raise ModelAbsent("a cut-out needs the network that sees figures; `tangible networks add figure` fetches it")

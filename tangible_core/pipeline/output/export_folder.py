@@ -1,8 +1,4 @@
-"""The folder of exports: the files of an exporter move there once all are complete, and no other file is lost.
-
-A list names the exported files with their digests, so that a later export of the same pipeline replaces these, and no
-other files.
-"""
+"""The folder of exports: a list of digests names the files that a later export of the same pipeline may replace."""
 
 import json
 import os
@@ -39,10 +35,7 @@ def check_writable(folder: Path) -> None:
 
 
 def check_written(written: Sequence[object], place: Path, who: str) -> tuple[Path, ...]:
-    """Check the paths that an exporter returned. place: its `stem`. who: the exporter's name for messages.
-
-    Raises: BrokenMethod for a path that is not a file in the folder of the stem, or does not begin with the stem.
-    """
+    """Check the paths that an exporter returned. place: its `stem`. who: the exporter's name for messages."""
     if not written:
         raise BrokenMethod(f"{who}: write returned no path; it must return those of all files that it wrote")
     for each in written:
@@ -56,10 +49,7 @@ def check_written(written: Sequence[object], place: Path, who: str) -> tuple[Pat
 
 
 def move(written: Sequence[Path], folder: Path, source: str, exporter: str, force: bool) -> tuple[Path, ...]:
-    """Move files to their place. force: overwrites files that are not an earlier export of the same source, too.
-
-    Raises: OutputError for a file that would be overwritten, before any is moved.
-    """
+    """Move files to their place, all or none; `force` overwrites files that are not an earlier export."""
     with folder_lock(folder):
         return _replace(written, folder, source, exporter, force)
 

@@ -50,11 +50,7 @@ NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
 def chosen_exporters(
     config: PipelineConfig, to: Sequence[str | Exporter] | None, registry: Registry
 ) -> tuple[NamedMethod[Exporter], ...]:
-    """Return the named exporters with their configured options; without names, all that the configuration lists.
-
-    Raises: ConfigError if there are none; ArgumentError for what is neither name nor exporter; UnknownMethod,
-    BrokenMethod; ConfigError for an exporter whose options have no defaults.
-    """
+    """Return the named exporters with their configured options; without names, all that the configuration lists."""
     if to is None:
         chosen = config.export
     else:
@@ -93,12 +89,7 @@ def export(
     force: bool = False,
     cut: bool = False,
 ) -> Export:
-    """Write the files of each exporter into a folder. An exporter that fails does not stop the others.
-
-    cut: leave the ground of a photograph away.
-    Raises: OutputError if the folder cannot be written, or another process exports files of this name into it;
-    TangibleError for a scene that cannot be read; Stopped.
-    """
+    """Write the files of each exporter into a folder; one that fails does not stop the others."""
     stem = stem_of(engine.config, engine.scene)
     check_writable(folder)
     run, done, names = (
@@ -196,11 +187,7 @@ def _full_name(exporter: Exporter) -> str:
 
 
 def work_for(engine: Engine, exporter: Exporter, *, cut: bool = False) -> Work:
-    """Make the work for an exporter: the products that it needs, on the working grid.
-
-    cut: leave the ground of a photograph away.
-    Raises: BrokenMethod for a product that nothing makes; TangibleError as `Engine.make`.
-    """
+    """Make the work for an exporter: the products that it needs, on the working grid."""
     if odd := [need for need in exporter.needs if need not in EXPORTABLE]:
         name = _full_name(exporter)
         raise BrokenMethod(f"{name}: needs {quoted(odd[0])}; an exporter may need {', '.join(EXPORTABLE)}")

@@ -30,10 +30,7 @@ JUDGED: Mapping[Medium, tuple[str, ...]] = {"print": ("relief",), "force": ("rel
 
 
 def legible(engine: Engine, medium: Medium, width_m: float | None = None) -> Legibility:
-    """Judge the engine's parts at the width that export draws, or at another one.
-
-    Raises: ConfigError for an unknown medium or width; as `Engine.make`.
-    """
+    """Judge the engine's parts at the width that export draws, or at another one."""
     if medium not in (media := get_args(Medium)):
         raise ConfigError(f"medium: is {quoted(medium)}{did_you_mean(str(medium), media)}; it is {', '.join(media)}")
     exporter = exporter_for(engine, medium)
@@ -125,10 +122,7 @@ def _drawing(engine: Engine, medium: Medium, parts: PartMap | None) -> DrawnPict
 
 
 def with_width(engine: Engine, width_m: float | None) -> Engine:
-    """Return an engine for another width; the grid gets no finer, so that the same parts are found.
-
-    width_m: None for the same width. Raises: ConfigError for a width out of bounds.
-    """
+    """Return an engine for another width; the grid gets no finer, so that the same parts are found."""
     config = engine.config
     if width_m is None or width_m == config.size.width_m:
         return engine

@@ -25,10 +25,7 @@ SOURCES = {
 
 
 def part_heights(engine: Engine) -> PartHeights | None:
-    """Return the height of each part in the relief, with its reason; None for a relief that is not made of parts.
-
-    Raises: TangibleError as `Engine.make`.
-    """
+    """Return the height of each part in the relief, with its reason; None for a relief that is not made of parts."""
     config = engine.config
     if config.heights is None:
         return None
@@ -38,11 +35,7 @@ def part_heights(engine: Engine) -> PartHeights | None:
 
 
 def to_correct(engine: Engine) -> str:
-    """Write a pipeline file with the present height of every part, to be corrected; it runs as it is.
-
-    A configuration that no file can have, such as a scene of arrays, leaves only the parts and `heights:`.
-    Raises: ConfigError for a relief that is not made of parts; TangibleError as `Engine.make`.
-    """
+    """Write a pipeline file with the present height of every part, to be corrected; it runs as it is."""
     config, heights = engine.config, part_heights(engine)
     if config.heights is None or heights is None:
         raise ConfigError("no part has a height: the relief is not made of parts; choose how: heights={'by': ...}")

@@ -137,11 +137,7 @@ def _own(folder: Path) -> dict[str, str]:
 
 @contextmanager
 def rewriting(folder: Path, source: Path | None) -> Generator[Callable[[str], Path]]:
-    """Delete the files of earlier runs, and keep a manifest of the files that are written in this block.
-
-    Exports into the folder wait meanwhile. Yields: a function from the name of a file to its path. Raises: OutputError
-    for a file that is not a run's, or cannot be written or removed.
-    """
+    """Delete the files of earlier runs, and keep a manifest of the files that are written in this block."""
     with folder_lock(folder):
         _check_files(folder, source)
         yield from _rewrite(folder, source)

@@ -100,13 +100,7 @@ def make_run(
     seconds: float,
     sheet: Sheet = "png",
 ) -> Run:
-    """Make the wanted product, and write the results and their report into a folder in place of an earlier run's.
-
-    A refused product, or a folder that cannot be written, stops the run before it starts. A touch is run on a simulated
-    device for these seconds of its time; a real device is not moved.
-    Raises: OutputError if the folder cannot be written, or another run is writing into it; TangibleError as
-    `Engine.make` and `run_simulated`.
-    """
+    """Make the wanted product, and write the results and their report into a folder in place of an earlier run's."""
     if sheet not in (kinds := get_args(Sheet)):
         raise wrong_argument("sheet", sheet, f"one of {', '.join(kinds)}{did_you_mean(str(sheet), kinds)}")
     engine.check(want)

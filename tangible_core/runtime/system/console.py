@@ -46,11 +46,7 @@ else:
 
 
 def end_before_console(end: Callable[[], object], over: threading.Event, ignore_ctrl_c: bool) -> Callable[[], None]:
-    """Call `end` when the console is closed or the user logs off, and keep the process until `over` is set.
-
-    ignore_ctrl_c: Ctrl-C does nothing, and Ctrl-Break acts as the end of the console.
-    Returns: a function that undoes it.
-    """
+    """Call `end` when the console is closed, and keep the process until `over` is set; return the undoing."""
 
     def handle(message: int) -> bool:
         if message == CTRL_C:

@@ -80,10 +80,7 @@ def processors() -> int:
 
 
 def lower_priority(threads: set[int] | None = None, niceness: int = 10) -> None:
-    """Give threads of this process a niceness; all of them if None. Only in Linux each thread has its own.
-
-    Elsewhere the priority stays: a niceness would lower the whole process, also what somebody waits for.
-    """
+    """Give threads of this process a niceness; all of them if None. Only in Linux each thread has its own."""
     if sys.platform == "linux":
         for thread in all_threads() if threads is None else threads:
             with suppress(OSError):  # the thread has ended
@@ -97,10 +94,7 @@ def all_threads() -> set[int]:
 
 
 def exit_with_parent(parent: int, pipe: IO[bytes], code: int = 0) -> None:
-    """End this process as soon as its parent is gone; a thread in the background waits for that.
-
-    parent: its process. pipe: of which the parent holds the other end; nothing more may be read from it.
-    """
+    """End this process as soon as its parent is gone; a thread in the background waits for that."""
 
     def leave() -> None:
         _wait_for_end(parent, pipe)
@@ -110,10 +104,7 @@ def exit_with_parent(parent: int, pipe: IO[bytes], code: int = 0) -> None:
 
 
 def library_names(name: str, version: int) -> tuple[str, ...]:
-    """Return the file names under which a library may be installed; `find_library` would start a compiler.
-
-    version: of its binary interface.
-    """
+    """Return the file names under which a library may be installed; `find_library` would start a compiler."""
     if sys.platform == "win32":
         return (f"lib{name}.dll", f"{name}.dll")
     if sys.platform == "darwin":

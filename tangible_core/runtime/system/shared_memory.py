@@ -1,8 +1,4 @@
-"""Memory that processes share by a name: files in memory, and on Windows sections of the paging file.
-
-The name contains the number of the process to which the memory belongs. Memory that is removed has no name any more,
-and stays for those who have mapped it.
-"""
+"""Memory that processes share by a name: files in memory, and on Windows sections of the paging file."""
 
 import mmap
 import os

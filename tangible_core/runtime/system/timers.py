@@ -1,7 +1,4 @@
-"""The clock of the force loop, and the functions of the system by which compiled code reads it and sleeps.
-
-The clock is the monotonic one of the system with the finest steps, the same in all processes.
-"""
+"""The clock of the force loop, and the functions of the system by which compiled code reads it and sleeps."""
 
 import ctypes
 import sys

@@ -51,10 +51,7 @@ def _lead_tool(settings, memory, elapsed_s, place, velocity):
 
 @njit(types.UniTuple(float64, 6)(READ, WRITTEN, *[float64] * 7), **KERNEL)
 def couple(settings, memory, period_s, x, y, z, vx, vy, vz):
-    """Return the state for the force law: that of the tool, or of the device if there is no coupling.
-
-    period_s: as for `guard`, which runs after the force law.
-    """
+    """Return the state for the force law: that of the tool, or of the device if there is no coupling."""
     if settings[at.COUPLING] <= 0.0:
         return x, y, z, vx, vy, vz
     elapsed_s = memory[at.AGE_S] + period_s

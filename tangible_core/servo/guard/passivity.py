@@ -44,10 +44,7 @@ def _limit_work(memory, work, may_j):
 
 @inner(forceinline=True)
 def _observe(settings, memory, elapsed_s, rise, x, y, z):
-    """Update the passivity observer: the force held on the way to this place did the work F.dx on the hand, exactly.
-
-    The work of the surface on the law meanwhile is not the loop's own.
-    """
+    """Update the passivity observer: the force held on the way to this place did the work F.dx on the hand, exactly."""
     slot = at.HELD + 3 * int(memory[at.SLOT])
     dx, dy, dz = x - memory[at.PLACE], y - memory[at.PLACE + 1], z - memory[at.PLACE + 2]
     way = dx * dx + dy * dy + dz * dz
@@ -62,10 +59,7 @@ def _observe(settings, memory, elapsed_s, rise, x, y, z):
 
 @inner(forceinline=True)
 def _brake(settings, memory, elapsed_s, surface_j, vx, vy, vz, fx, fy, fz):
-    """Return the passivity controller's damping, alpha = -E / (T v^2) where the energy E, this tick included, is < 0.
-
-    surface_j: the predicted work of the surface, if it goes on moving as it did.
-    """
+    """Return the passivity controller's damping, alpha = -E / (T v^2) where the energy E with this tick is < 0."""
     v2 = vx * vx + vy * vy + vz * vz
     if not SLOWEST_M_PER_S**2 < v2 < FASTEST_M_PER_S**2:
         return 0.0
@@ -77,10 +71,7 @@ def _brake(settings, memory, elapsed_s, surface_j, vx, vy, vz, fx, fy, fz):
 
 @inner(forceinline=True)
 def make_passive(settings, memory, elapsed_s, touching, surface_n, x, y, z, vx, vy, vz, fx, fy, fz):
-    """Return the force, damped where the loop would give more energy than it received, and whether it was damped.
-
-    surface_n: the law's part along z of this force, by which a moving surface does work.
-    """
+    """Return the force, damped where the loop would give more energy than it received, and whether it was damped."""
     rise = rise_m(memory, elapsed_s)
     _observe(settings, memory, elapsed_s, rise, x, y, z)
     if not touching and memory[at.FORCE] == 0.0 and memory[at.FORCE + 1] == 0.0 and memory[at.FORCE + 2] == 0.0:

@@ -77,10 +77,7 @@ def _measure(touch: Touch, spec: DeviceSpec) -> Stiffness:
 
 
 def slopes(touch: Touch, spec: DeviceSpec) -> Iterator[float]:
-    """Yield the steepest slope of the force, N/m, at each probed place and depth that has one.
-
-    Computes at most PLACES (LAYERS + HALVINGS + 14 len(DEPTHS_M)) forces, all of a hand at rest and at time 0.
-    """
+    """Yield the steepest slope of the force, N/m, at each probed place and depth that has one."""
     top_m = spec.workspace_m[2]
     for x, y in _places(spec):
         height_m = _surface_height(touch, x, y, top_m)

@@ -1,7 +1,4 @@
-"""The clock of `runtime.system.timers`, and sleeping until a time on it, for compiled code. Imports numba.
-
-Where compiled code cannot sleep, a loop calls Python to sleep.
-"""
+"""The clock of `runtime.system.timers`, and sleeping until a time on it, for compiled code. Imports numba."""
 
 # pyright: basic
 
@@ -64,10 +61,7 @@ def posix_now_ns(clock):
 
 @njit(**KERNEL)
 def posix_wait_ns(clock, deadline_ns, lead_ns):
-    """Sleep until lead_ns before the deadline, then spin; return the time of the clock, nanoseconds.
-
-    If a signal ends the sleep early, the rest is slept.
-    """
+    """Sleep until lead_ns before the deadline, then spin; return the time of the clock, nanoseconds."""
     words, _, sleep = clock
     wake_ns = deadline_ns - lead_ns
     at_ns = posix_now_ns(clock)
@@ -114,10 +108,7 @@ def windows_now_ns(clock):
 
 @njit(**KERNEL)
 def windows_wait_ns(clock, deadline_ns, lead_ns):
-    """Sleep until lead_ns before the deadline, then spin; return the time of the clock, nanoseconds.
-
-    The timer takes steps of 100 ns; a negative number of them is a time from now.
-    """
+    """Sleep until lead_ns before the deadline, then spin; return the time of the clock, nanoseconds."""
     words, _, start, wait = clock
     wake_ns = deadline_ns - lead_ns
     at_ns = windows_now_ns(clock)

@@ -1,8 +1,4 @@
-"""The tick of a force loop, and the loop that keeps time, compiled. Imports numba.
-
-A tick reads the tip's position, computes the law's force, limits it by the guard, writes it to the device, and records
-all of it in the ring.
-"""
+"""The tick of a force loop, and the loop that keeps time, compiled. Imports numba."""
 
 # pyright: basic, reportCallIssue=false
 

@@ -141,10 +141,7 @@ def _plain_tick(
     shared: Sections,
     row: np.ndarray,
 ) -> tuple[Timed, Kernel]:
-    """Return a tick for a device or a force law that is not a kernel.
-
-    The law computes one force in free air now, so that whatever it compiles is compiled before the first tick.
-    """
+    """Return a tick for a device or a force law that is not a kernel."""
     from . import cycle
 
     proxy, moving = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan), moving_of(touch)

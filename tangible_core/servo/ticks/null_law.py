@@ -8,10 +8,7 @@ from ...plugins.touch import PlainTouch
 
 
 def null_touch() -> Touch:
-    """Return a touch without force, to start a `Servo` with and `swap` a scene in later; imports no numba.
-
-    In the loop's process it is a kernel, so that no tick waits for Python while the scene is prepared there.
-    """
+    """Return a touch without force, to start a `Servo` with and `swap` a scene in later; imports no numba."""
     return _NullTouch()
 
 

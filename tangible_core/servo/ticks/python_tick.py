@@ -19,10 +19,7 @@ HeldForce = Callable[[float], tuple[Force, int]]
 def guard_touch(
     touch: Touch, settings: np.ndarray, memory: np.ndarray, beacon: tuple[np.ndarray, ...] | None = None
 ) -> GuardedForce:
-    """Return a function that asks the touch for its force and passes on what the guard allows.
-
-    settings, memory: arrays of `Safety.arrays`. beacon: arrays of a `BeaconMemory`, whose pull is added to the force.
-    """
+    """Return a function that asks the touch for its force and passes on what the guard allows."""
     from ..guard import guard
 
     couple, allow = cast(Any, guard).couple, cast(Any, guard).guard

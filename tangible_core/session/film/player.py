@@ -73,10 +73,7 @@ class _Screen:
 
 @final
 class Player:
-    """A thread that plays a film to a loop in real time: the latest frame wins.
-
-    When the source ends, or its frames are damaged, the surface stands still. One processor is left to the loop.
-    """
+    """A thread that plays a film to a loop in real time: the latest frame wins."""
 
     def __init__(self, reliefs: Reliefs, film: Film, threads: int | None = None) -> None:
         """Prepare the thread. threads: greatest number of threads that work at once, as `Pipeline.threads`."""
@@ -183,10 +180,7 @@ class Player:
 
 @final
 class ByClock:
-    """A function that plays a film to a loop in simulated time: each frame when it is due by the loop's clock.
-
-    It is called before each tick, with the time since the first one, and leaves no frame out.
-    """
+    """A function that plays a film to a loop in simulated time: each frame when it is due by the loop's clock."""
 
     def __init__(self, reliefs: Reliefs, film: Film) -> None:
         """Read the first frame. reliefs: already open. Raises: TangibleError as `Reliefs`."""

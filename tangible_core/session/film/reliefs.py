@@ -58,10 +58,7 @@ class Scale:
         self._time_s = time_s
 
     def look(self, seen: ReliefScale, time_s: float) -> None:
-        """Follow the scale of a frame at this time of the film; the first that is not empty is adopted at once.
-
-        That is for films that begin in the dark.
-        """
+        """Follow the scale of a frame at this time of the film; the first that is not empty is adopted at once."""
         share = 1 - math.exp(-max(0.0, time_s - self._time_s) / ADAPTS_S)
         self._time_s = time_s
         if not self.current.spans.low < self.current.spans.high:

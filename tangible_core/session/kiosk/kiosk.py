@@ -1,7 +1,4 @@
-"""A kiosk: scenes in rotation on one device, for as long as an exhibition; the device may be unplugged and return.
-
-An unplugged device is searched for less and less often, and each reason is reported once.
-"""
+"""A kiosk: scenes in rotation on one device, for as long as an exhibition; the device may be unplugged and return."""
 
 import math
 import time
@@ -211,10 +208,7 @@ class _Kiosk:
         self.on_start(servo)
 
     def _look(self, servo: Servo, background: ThreadPoolExecutor) -> str:
-        """Rotate the scenes.
-
-        Returns: OVER at the end of the time, in loops after the first, which counts its own ticks; else "".
-        """
+        """Rotate the scenes; return OVER at the end of the time, in loops after the first, else ""."""
         self.rotation.look(servo, background)
         return self._end_reason() if self.totals.since_s else ""
 

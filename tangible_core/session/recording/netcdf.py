@@ -28,10 +28,7 @@ class Variable(NamedTuple):
 
 
 def header(dimension: str, attributes: Attributes, variables: Mapping[str, Variable], records: int) -> bytes:
-    """Return all bytes before the records; a record is one number of each variable, in this order, without padding.
-
-    dtypes: ">i4", ">f4" and ">f8", whose sizes are multiples of four bytes, so that nothing needs padding.
-    """
+    """Return all bytes before the records; a record is one number of each variable, in this order, without padding."""
     start = b"CDF\x02" + integer(records) + _list(DIMENSION, [_text(dimension) + integer(0)]) + _attributes(attributes)
     begin = len(start) + len(_variables(variables, 0))  # offset of the first record
     return start + _variables(variables, begin)

@@ -1,7 +1,4 @@
-"""The file of a recording: netCDF, a variable for each of TICK_COLUMNS, a record a tick (docs/recordings.md).
-
-Written during a session, appended ticks can be read, however the program ends.
-"""
+"""The file of a recording: netCDF, a variable for each of TICK_COLUMNS, a record a tick (docs/recordings.md)."""
 
 import platform
 from collections.abc import Iterator, Mapping
@@ -114,10 +111,7 @@ def pack(rows: Float64[np.ndarray, "n columns"]) -> bytes:
 
 
 def read(path: Path) -> tuple[Float64[np.ndarray, "n columns"], str, About]:
-    """Read rows of `TICK_COLUMNS`, the reason of the end, and the information about the session.
-
-    Raises: OSError, and whatever scipy raises for a file that is damaged or not netCDF.
-    """
+    """Read rows of `TICK_COLUMNS`, the reason of the end, and the information about the session."""
     from scipy.io import netcdf_file  # pyright: ignore[reportMissingTypeStubs]
 
     with netcdf_file(path, "r", mmap=True) as opened:
@@ -168,10 +162,7 @@ def unknown_rows(count: int) -> Float64[np.ndarray, "n columns"]:
 
 
 def join_arrays(arrays: Mapping[str, np.ndarray]) -> Float64[np.ndarray, "n columns"]:
-    """Join `ARRAYS`, by name, to rows of `TICK_COLUMNS`; arrays that are not `NEEDED` may be left out as unknown.
-
-    Raises: OutputError if the arrays differ in length, KeyError if a name is missing or unknown.
-    """
+    """Join `ARRAYS`, by name, to rows of `TICK_COLUMNS`; arrays that are not `NEEDED` may be left out as unknown."""
     rows = unknown_rows(arrays["time_s"].size)
     for name in (*NEEDED, *(arrays.keys() - NEEDED)):
         part = rows[:, ARRAYS[name]]

@@ -68,11 +68,7 @@ class Forms:
 
 @dataclass(frozen=True)
 class Key(ABC):
-    """A key of the pipeline file: the marker of a field of `PipelineConfig`, which names and describes it.
-
-    Everything about a key is derived from its field and its kind: reading a file and arguments, the completed file,
-    completion in a shell, JSON Schema and the reference page.
-    """
+    """A key of the pipeline file: the marker of a field of `PipelineConfig`, which names and describes it."""
 
     note: str = ""
     """A sentence in Markdown that follows the description on the reference page."""

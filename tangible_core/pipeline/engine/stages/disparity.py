@@ -76,10 +76,7 @@ class DisparityStage(MethodStage):
         return pair_checks.view_order(estimate, views.left, offset_px and offset_px / self.grid.factor)
 
     def in_picture_pixels(self, estimate: DisparityMap, exchanged: bool) -> DisparityMap:
-        """Return the map on the working grid in pixels of the pictures, unknown where the pictures are.
-
-        exchanged: True corrects a map of exchanged views.
-        """
+        """Return the map on the working grid in pixels of the pictures, unknown where the pictures are."""
         ordered = pair_checks.correct_exchanged(estimate) if exchanged else estimate
         return known_disparity(scaling.to_picture_pixels(ordered, self.context.scene.shape[1]), self.grid.known_mask)
 

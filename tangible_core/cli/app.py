@@ -152,7 +152,7 @@ def _report_unexpected(error: BaseException) -> int:
         return _report(plain.rstrip(), MISTAKE)
     from ..plugins import failures
 
-    explained = failures.place_of(error) or failures.missing_package(error) or failures.lacks_memory(error)
+    explained = failures.find_place(error) or failures.missing_package(error) or failures.lacks_memory(error)
     return _report(failures.sentence(error), MISTAKE if explained else FAILED)
 
 

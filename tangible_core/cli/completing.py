@@ -63,7 +63,7 @@ def _scene_keys(words: Sequence[str], incomplete: str) -> list[str]:
     """Return the keys of scene readers; after `=`, the values that a reader suggests by earlier words of `--set`."""
     from ..errors import TangibleError
     from ..files.yaml.source import parse_source, plain
-    from ..pipeline.config.scene_readers import scene_reader_of, scene_readers
+    from ..pipeline.config.scene_readers import find_scene_reader, scene_readers
 
     key, equals, _ = incomplete.removeprefix("scene.").partition("=")
     try:
@@ -73,7 +73,7 @@ def _scene_keys(words: Sequence[str], incomplete: str) -> list[str]:
         source = parse_source("{}", Path("here.yaml"), "", [word for word in words if word.startswith("scene")])
         block = plain(source.tree.get("scene"))
         block = cast("dict[str, Any]", block) if isinstance(block, dict) else {}
-        reader = scene_reader_of({key: "", **block})
+        reader = find_scene_reader({key: "", **block})
         values = reader.suggest(key, block) if reader else ()
         return _matching((f"scene.{key}={value}" for value in values), incomplete)
     except TangibleError:  # the earlier words are not finished, or the reader is broken

@@ -40,14 +40,14 @@ _waiting: "list[BackgroundCompiler]" = []
 
 def start_waiting() -> None:
     """Start the waiting background compilers; called when a kernel is compiled in this process."""
-    for each in tuple(_waiting):
-        each.begin()
+    for compiler in tuple(_waiting):
+        compiler.begin()
 
 
 def wait_for(what: str) -> None:
     """Wait until this is compiled wherever a background process compiles it. Raises: Stopped."""
-    for each in tuple(_waiting):
-        each.wait(what)
+    for compiler in tuple(_waiting):
+        compiler.wait(what)
 
 
 @final

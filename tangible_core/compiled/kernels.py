@@ -34,8 +34,8 @@ class Address:
         if signature is None:
             (signature,) = self._kernel.nopython_signatures
         self.signature: Any = signature
-        compiled = self._kernel.get_compile_result(signature)
-        self.address: int = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
+        result = self._kernel.get_compile_result(signature)
+        self.address: int = result.library.get_pointer_to_function(result.fndesc.llvm_func_name)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _revive, (self._kernel.py_func.__module__, self._kernel.py_func.__qualname__, self.signature)
@@ -45,7 +45,7 @@ register_model(KernelType)(FunctionModel)
 
 
 @typeof_impl.register(Address)
-def _type_of(address: Address, _context: Any) -> KernelType:
+def _numba_type(address: Address, _context: Any) -> KernelType:
     return KernelType(address.signature)
 
 

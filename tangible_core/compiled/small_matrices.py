@@ -50,16 +50,16 @@ def _tridiagonal(matrix):
         square = _dot(mirror, mirror)
         if square == 0:
             continue
-        turned, mixed = np.zeros(mirror.size), np.zeros(size)
+        reflection, vector_reflection = np.zeros(mirror.size), np.zeros(size)
         for i in range(mirror.size):
-            _add(turned, mirror[i], rest[k + 1 + i, k + 1 :])
-            _add(mixed, mirror[i], vectors[k + 1 + i])
-        turned *= 2 / square
-        _add(turned, -_dot(turned, mirror) / square, mirror)
+            _add(reflection, mirror[i], rest[k + 1 + i, k + 1 :])
+            _add(vector_reflection, mirror[i], vectors[k + 1 + i])
+        reflection *= 2 / square
+        _add(reflection, -_dot(reflection, mirror) / square, mirror)
         for i in range(mirror.size):
-            _add(rest[k + 1 + i, k + 1 :], -mirror[i], turned)
-            _add(rest[k + 1 + i, k + 1 :], -turned[i], mirror)
-            _add(vectors[k + 1 + i], -2 / square * mirror[i], mixed)
+            _add(rest[k + 1 + i, k + 1 :], -mirror[i], reflection)
+            _add(rest[k + 1 + i, k + 1 :], -reflection[i], mirror)
+            _add(vectors[k + 1 + i], -2 / square * mirror[i], vector_reflection)
     if size > 1:
         off[size - 2] = rest[size - 2, size - 1]
     return np.diag(rest).copy(), off, vectors

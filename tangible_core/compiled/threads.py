@@ -35,13 +35,13 @@ def run_all(jobs: Iterable[Callable[[], Any]]) -> None:
     """
     check_stopped()
     first, *rest = jobs
-    waiting = [_pool(os.getpid()).submit(copy_context().run, each) for each in rest]
+    waiting = [_pool(os.getpid()).submit(copy_context().run, job) for job in rest]
     try:
         first()
     finally:
         wait(waiting)
-    for each in waiting:
-        each.result()
+    for job in waiting:
+        job.result()
 
 
 def in_blocks(length: int, work: Callable[[int, int], Any], at_least: int = 16) -> None:
@@ -55,16 +55,16 @@ def in_turns(tasks: list[T], work: Callable[[Iterable[T]], Any], most: int | Non
     """Run work(share) in up to `most` threads; each share takes the next task in order whenever it has finished one."""
     parts = min(thread_count(), len(tasks), len(tasks) if most is None else most)
     if parts:
-        left = deque(tasks)
-        run_all([lambda: work(_take(left)) for _ in range(parts)])
+        remaining = deque(tasks)
+        run_all([lambda: work(_take(remaining)) for _ in range(parts)])
 
 
-def _take(left: deque[T]) -> Iterator[T]:
+def _take(remaining: deque[T]) -> Iterator[T]:
     """Yield tasks until none is left; another thread may take the last one between the check and the removal."""
     with suppress(IndexError):
-        while left:
+        while remaining:
             check_stopped()
-            yield left.popleft()
+            yield remaining.popleft()
 
 
 @cache

@@ -79,7 +79,7 @@ def _still() -> Float64[np.ndarray, "2"]:
     return np.array([0.0, np.nan])
 
 
-def moving_of(touch: Touch) -> Float64[np.ndarray, "2"]:
+def motion_array(touch: Touch) -> Float64[np.ndarray, "2"]:
     """Return the motion of a touch's surface; that of a static surface if the touch has none."""
     return touch.moving if isinstance(touch, CompiledTouch) else _still()
 

@@ -50,7 +50,7 @@ from .ticks import ServoReport as ServoReport
 from .ticks import Spread as Spread
 from .ticks import TickFlag as TickFlag
 from .ticks import beacon_part as beacon_part
-from .units import unit_of as unit_of
+from .units import option_unit as option_unit
 from .views import Calibration as Calibration
 from .views import DisparityMap as DisparityMap
 from .views import PartMap as PartMap

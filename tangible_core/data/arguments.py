@@ -23,14 +23,14 @@ def named_options(function: F) -> F:
     """Wrap a function so that an unknown option is an ArgumentError with the name that was probably meant."""
     plain = signature(function)
     parameters = [option for parameter in plain.parameters.values() for option in _unpack(parameter)]
-    known = [each.name for each in parameters if each.kind in _BY_NAME and each.name not in ("self", "cls")]
+    names = [each.name for each in parameters if each.kind in _BY_NAME and each.name not in ("self", "cls")]
 
     @wraps(function)
     def call(*arguments: Any, **options: Any) -> Any:
         for name in options:
-            if name not in known:
-                near = did_you_mean(name, known)
-                raise ArgumentError(f"{function.__qualname__}: {name}: unknown option{near}; known: {', '.join(known)}")
+            if name not in names:
+                near = did_you_mean(name, names)
+                raise ArgumentError(f"{function.__qualname__}: {name}: unknown option{near}; known: {', '.join(names)}")
         return function(*arguments, **options)
 
     cast(Any, call).__signature__ = plain.replace(parameters=parameters)
@@ -49,31 +49,31 @@ def named_fields(cls: C) -> C:
     """Let a dataclass raise an ArgumentError, with its fields, for one that is unknown, missing or given twice."""
     build = cast(Any, cls).__init__
     takes = signature(build)
-    known = list(takes.parameters)[1:]
+    names = list(takes.parameters)[1:]
 
     @wraps(build)
     def init(self: object, *values: Any, **fields: Any) -> None:
         try:
             takes.bind(self, *values, **fields)
         except TypeError as error:
-            what = _field_mistake(takes, known, len(values), fields)
-            raise ArgumentError(f"{cls.__name__}: {what}; its fields: {', '.join(known)}") from error
+            what = _field_mistake(takes, names, len(values), fields)
+            raise ArgumentError(f"{cls.__name__}: {what}; its fields: {', '.join(names)}") from error
         build(self, *values, **fields)
 
     cast(Any, cls).__init__ = init
     return cls
 
 
-def _field_mistake(takes: Signature, known: Sequence[str], values: int, fields: Mapping[str, Any]) -> str:
+def _field_mistake(takes: Signature, names: Sequence[str], values: int, fields: Mapping[str, Any]) -> str:
     """Return what is wrong with the arguments of a dataclass, of which `values` are given by place."""
-    if unknown := next((name for name in fields if name not in known), None):
-        return f"{unknown}: unknown field{did_you_mean(unknown, known)}"
-    if values > len(known):
+    if unknown := next((name for name in fields if name not in names), None):
+        return f"{unknown}: unknown field{did_you_mean(unknown, names)}"
+    if values > len(names):
         return f"is given {values} values"
-    if twice := next((name for name in known[:values] if name in fields), None):
+    if twice := next((name for name in names[:values] if name in fields), None):
         return f"{twice}: is given twice"
-    needed = [name for name in known[values:] if takes.parameters[name].default is Parameter.empty]
-    return f"{next(name for name in needed if name not in fields)}: is missing"
+    without_default = [name for name in names[values:] if takes.parameters[name].default is Parameter.empty]
+    return f"{next(name for name in without_default if name not in fields)}: is missing"
 
 
 _BY_NAME = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
@@ -83,15 +83,15 @@ def as_array(name: str, value: object, dtype: str | None = None) -> np.ndarray:
     """Return an array of numbers of this type, or of its own without one. Raises: ArgumentError."""
     if isinstance(value, np.ndarray) and dtype is None:
         return cast(np.ndarray, value)
-    given = _plain_array(name, cast(Any, value))
-    if dtype is None or given.dtype == dtype:
-        return given
+    array = _plain_array(name, cast(Any, value))
+    if dtype is None or array.dtype == dtype:
+        return array
     with np.errstate(all="ignore"):
-        converted = given.astype(dtype)
-        fits = converted.dtype.kind == "f" or bool(np.all(converted == given))
+        result = array.astype(dtype)
+        fits = result.dtype.kind == "f" or bool(np.all(result == array))
     if not fits:
-        raise wrong_argument(name, given, f"an array of {dtype}, which cannot hold some of its {given.dtype} numbers")
-    return converted
+        raise wrong_argument(name, array, f"an array of {dtype}, which cannot hold some of its {array.dtype} numbers")
+    return result
 
 
 def _plain_array(name: str, value: object) -> np.ndarray:

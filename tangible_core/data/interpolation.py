@@ -29,15 +29,15 @@ def bilinear(
         both = np.broadcast_arrays(x_m, y_m)
     except ValueError as error:
         raise ArgumentError(f"x_m and y_m: shapes {x_m.shape} and {y_m.shape} do not go together") from error
-    x, y = (np.ravel(each) for each in both)
+    x, y = (np.ravel(axis) for axis in both)
     (rows, columns), (width_m, length_m) = height_m.shape, extent_m
     left, right, across = _between(x * (columns / width_m) + 0.5 * (columns - 1), columns)
     far, near, down = _between(0.5 * (rows - 1) - y * (rows / length_m), rows)
     far_left, far_right = height_m[far, left].astype(np.float64), height_m[far, right].astype(np.float64)
     near_left, near_right = height_m[near, left].astype(np.float64), height_m[near, right].astype(np.float64)
     over = (np.abs(x) <= 0.5 * width_m) & (np.abs(y) <= 0.5 * length_m)
-    found = _blend((far_left, far_right), (near_left, near_right), across, down, (columns / width_m, rows / length_m))
-    height, across_slope, along_slope = (np.where(over, value, np.nan).reshape(both[0].shape) for value in found)
+    values = _blend((far_left, far_right), (near_left, near_right), across, down, (columns / width_m, rows / length_m))
+    height, across_slope, along_slope = (np.where(over, value, np.nan).reshape(both[0].shape) for value in values)
     return height, across_slope, along_slope
 
 

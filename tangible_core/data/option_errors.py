@@ -28,17 +28,17 @@ _WANTED = "Input should be "
 
 def plain_errors(error: ValidationError, block: Any) -> list[dict[str, Any]]:
     """Return pydantic's errors with plain messages and locations that the block has."""
-    errors: list[dict[str, Any]] = [{**each, "loc": _location_in(block, each["loc"])} for each in error.errors()]
-    locations: list[Location] = [each["loc"] for each in errors]
-    deepest = [each for each in errors if not any(_is_within(other, each["loc"]) for other in locations)]
-    joined = dict[tuple[Location, str], dict[str, Any]]()
-    for each in deepest:
-        text = str(PLAIN_WORDS.get(each["type"]) or each["msg"].removeprefix("Value error, "))
-        key = (each["loc"], "" if text.startswith(_WANTED) else text)
-        if key in joined and key[1] == "":
-            text = f"{joined[key]['msg']}, or {text.removeprefix(_WANTED)}"
-        joined[key] = {**each, "msg": text}
-    return list(joined.values())
+    errors: list[dict[str, Any]] = [{**item, "loc": _location_in(block, item["loc"])} for item in error.errors()]
+    locations: list[Location] = [item["loc"] for item in errors]
+    deepest = [item for item in errors if not any(_is_within(other, item["loc"]) for other in locations)]
+    by_place = dict[tuple[Location, str], dict[str, Any]]()
+    for item in deepest:
+        text = str(PLAIN_WORDS.get(item["type"]) or item["msg"].removeprefix("Value error, "))
+        key = (item["loc"], "" if text.startswith(_WANTED) else text)
+        if key in by_place and key[1] == "":
+            text = f"{by_place[key]['msg']}, or {text.removeprefix(_WANTED)}"
+        by_place[key] = {**item, "msg": text}
+    return list(by_place.values())
 
 
 def sentences_about(
@@ -56,17 +56,17 @@ def _sentence(error: dict[str, Any], model: type[BaseModel], location: Location)
     name = shown(".".join(str(part) for part in where))
     if is_key:
         options = list(model_at(model, error["loc"][:-1]).model_fields)
-        known = f"; known: {', '.join(options)}" if options else "; there are no options"
-        return where, f"{name}: unknown option{did_you_mean(str(where[-1]), options)}{known}"
+        options_text = f"; known: {', '.join(options)}" if options else "; there are no options"
+        return where, f"{name}: unknown option{did_you_mean(str(where[-1]), options)}{options_text}"
     is_clear = isinstance(error["input"], dict) or error["type"] == "missing"
-    given, hint = "" if is_clear else f", not {quoted(error['input'])}", ""
+    value_text, hint = "" if is_clear else f", not {quoted(error['input'])}", ""
     if isinstance(error["input"], str) and DECIMAL_COMMA.match(error["input"]):
         hint = f"; with a decimal point it is {shown(error['input'].replace(',', '.'))}"
     if name.endswith("_m") and error["type"].startswith("less_than"):
         hint = f"; for millimetres write {cast(float, error['input']):g} mm"
     if error["type"] == "literal_error":
         hint = did_you_mean(f"{error['input']}", re.findall(r"'([^']*)'", error["msg"]))
-    return where, f"{name}: {error['msg']}{given}{hint}".removeprefix(": ")
+    return where, f"{name}: {error['msg']}{value_text}{hint}".removeprefix(": ")
 
 
 def _is_within(inner: Location, outer: Location) -> bool:

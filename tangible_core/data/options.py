@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, cast
 
 from pydantic import BaseModel
 
-from .units import unit_of
+from .units import option_unit
 
 BOUNDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
 
@@ -27,12 +27,12 @@ class Option(NamedTuple):
         return ", ".join(filter(None, (self.unit, self.values)))
 
 
-def options_of(model: type[BaseModel]) -> list[Option]:
+def describe_options(model: type[BaseModel]) -> list[Option]:
     """Describe all options of a method, those of a block below it as `block.option`."""
     form = model.model_json_schema(ref_template="#/$defs/{model}")
     return [
         Option(
-            name, unit_of(name), values_in_code(option).replace("`", ""), default_in_code(option).strip("`"),
+            name, option_unit(name), values_in_code(option).replace("`", ""), default_in_code(option).strip("`"),
             " ".join(option.get("description", "").split()),
         )
         for name, option in options_in(form, form.get("$defs", {}))
@@ -41,7 +41,7 @@ def options_of(model: type[BaseModel]) -> list[Option]:
 
 def options_as_text(model: type[BaseModel]) -> str:
     """Return a paragraph for each option, with its default, unit, bounds and meaning; empty without options."""
-    options = options_of(model)
+    options = describe_options(model)
     heads = (f"{option.name} = {option.default or None}   ({option.bounds})" for option in options)
     lines = (
         f"{head}\n{fill(option.meaning, 100, initial_indent='    ', subsequent_indent='    ')}"

@@ -48,13 +48,13 @@ class Outcomes(list[Outcome]):
     @property
     def doubts(self) -> list[Note]:
         """The notes that say why the result is hardly worth feeling; [] if it is."""
-        return [note for each in self for note in each.notes if note.kind == "doubt"]
+        return [note for outcome in self for note in outcome.notes if note.kind == "doubt"]
 
     def __repr__(self) -> str:
-        return text_table(HEADINGS, [each.row() for each in self])
+        return text_table(HEADINGS, [outcome.row() for outcome in self])
 
     def _repr_html_(self) -> str:
-        return html_table(HEADINGS, [each.row() for each in self])
+        return html_table(HEADINGS, [outcome.row() for outcome in self])
 
 
 @dataclass(frozen=True, repr=False)
@@ -91,8 +91,8 @@ def text_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """
     lines = [headings, *rows]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    shown = ("  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)) for line in lines)
-    return "\n".join(line.rstrip() for line in shown)
+    padded_lines = ("  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)) for line in lines)
+    return "\n".join(line.rstrip() for line in padded_lines)
 
 
 def html_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

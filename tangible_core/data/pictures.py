@@ -74,17 +74,17 @@ def check_finite(values: np.ndarray, name: str) -> None:
 
 def fill_non_finite(picture: np.ndarray) -> tuple[np.ndarray, Bool[np.ndarray, "h w"]]:
     """Return the picture with each NaN or infinite pixel replaced by the nearest finite one, and the finite mask."""
-    known: np.ndarray = np.all(np.isfinite(np.atleast_3d(picture)), axis=2)
-    if not known.any():
-        raise PictureError(f"none of the {known.size} pixels is finite; use a picture with finite pixels")
-    return fill_from_nearest(picture, known), known
+    finite: np.ndarray = np.all(np.isfinite(np.atleast_3d(picture)), axis=2)
+    if not finite.any():
+        raise PictureError(f"none of the {finite.size} pixels is finite; use a picture with finite pixels")
+    return fill_from_nearest(picture, finite), finite
 
 
-def fill_from_nearest(picture: np.ndarray, known: Bool[np.ndarray, "h w"]) -> np.ndarray:
-    """Return the picture with each unknown pixel replaced by the nearest known one; at least one must be known."""
+def fill_from_nearest(picture: np.ndarray, valid_mask: Bool[np.ndarray, "h w"]) -> np.ndarray:
+    """Return the picture with each unknown pixel replaced by the nearest valid one; at least one must be valid."""
     from scipy import ndimage  # pyright: ignore[reportMissingTypeStubs]
 
-    nearest = cast(Any, ndimage).distance_transform_edt(~known, return_distances=False, return_indices=True)
+    nearest = cast(Any, ndimage).distance_transform_edt(~valid_mask, return_distances=False, return_indices=True)
     return picture[nearest[0], nearest[1]]
 
 

@@ -16,7 +16,7 @@ from pydantic_core import CoreSchema
 from ..errors import OptionError
 from .option_errors import sentences_about
 from .options import options_as_text
-from .units import title_of, unit_of, units_of
+from .units import option_title, option_unit, option_units
 
 _DIGITS = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITY = re.compile(rf"\s*((?>{_DIGITS}))\s*(\D.*?)\s*")
@@ -67,16 +67,16 @@ class Quantities(BaseModel, metaclass=_Blocks):
 
     @field_validator("*", mode="before")
     @classmethod
-    def _number_of(cls, value: Any, info: ValidationInfo) -> Any:
+    def _parse_number(cls, value: Any, info: ValidationInfo) -> Any:
         """Convert text with a unit to a number; true, which is 1 to pydantic, is not one. Raises: ValueError."""
         name = info.field_name or ""
         if isinstance(value, bool):
             kinds = _kinds(cls.model_fields[name].annotation)
             if {float, int} & kinds and not {bool, Path} & kinds:  # what may be a file as well has a check of its own
                 raise ValueError("Input should be a valid number")
-        units = units_of(name)
+        units = option_units(name)
         if units and isinstance(value, list | tuple):
-            return [_as_number(each, units) for each in cast("list[Any]", value)]
+            return [_as_number(number, units) for number in cast("list[Any]", value)]
         return _as_number(value, units)
 
     @classmethod
@@ -85,12 +85,12 @@ class Quantities(BaseModel, metaclass=_Blocks):
         block = handler.resolve_ref_schema(schema)
         if text := vars(cls).get("__doc__"):
             block["description"] = cleandoc(text)
-        block["title"] = title_of(re.sub(r"(?<=[a-z])(?=[A-Z])", "_", cls.__name__).lower())
+        block["title"] = option_title(re.sub(r"(?<=[a-z])(?=[A-Z])", "_", cls.__name__).lower())
         for name, option in block.get("properties", {}).items():
-            option["title"] = title_of(name)
-            if unit := unit_of(name):
+            option["title"] = option_title(name)
+            if unit := option_unit(name):
                 option["unit"] = unit
-            if units := units_of(name):
+            if units := option_units(name):
                 _allow_text(option, units)
         return schema
 
@@ -110,7 +110,7 @@ def _as_number(value: Any, units: Mapping[str, Decimal]) -> Any:
     match = _QUANTITY.fullmatch(value) if units and isinstance(value, str) else None
     if match is None:
         return value
-    worth = next((each for unit, each in units.items() if _plain(unit) == _plain(match[2])), None)
+    worth = next((factor for unit, factor in units.items() if _plain(unit) == _plain(match[2])), None)
     if worth is None:
         raise ValueError(f"write a number in {next(iter(units))}, or with one of the units {', '.join(units)}")
     try:
@@ -119,16 +119,16 @@ def _as_number(value: Any, units: Mapping[str, Decimal]) -> Any:
         raise ValueError("this number is too large") from error
 
 
-def in_unit_of(name: str, text: object, value: object) -> object:
+def in_same_unit(name: str, text: object, value: object) -> object:
     """Return a number as text in the unit in which an option was written before; anything else as it is.
 
-    >>> in_unit_of("relief_m", "6 mm", 0.0045), in_unit_of("relief_m", 0.006, 0.0045)
+    >>> in_same_unit("relief_m", "6 mm", 0.0045), in_same_unit("relief_m", 0.006, 0.0045)
     ('4.5 mm', 0.0045)
     """
     match = _QUANTITY.fullmatch(text) if isinstance(text, str) else None
     if match is None or isinstance(value, bool) or not isinstance(value, int | float):
         return value
-    worth = next((each for unit, each in units_of(name).items() if _plain(unit) == _plain(match[2])), None)
+    worth = next((factor for unit, factor in option_units(name).items() if _plain(unit) == _plain(match[2])), None)
     if worth is None or not isfinite(value):
         return value
     return f"{(Decimal(repr(value)) / Decimal(worth)).normalize():f} {match[2]}"
@@ -143,7 +143,7 @@ def _allow_text(schema: dict[str, Any], units: Mapping[str, Decimal]) -> None:
     """Allow text with a unit for each number in the schema of an option."""
     for part in ("anyOf", "prefixItems"):
         if part in schema:
-            schema[part] = [form for each in schema[part] for form in _forms(each, units, nested=part != "anyOf")]
+            schema[part] = [form for option in schema[part] for form in _forms(option, units, nested=part != "anyOf")]
     if schema.get("type") == "number":
         schema["anyOf"] = _forms({key: schema.pop(key) for key in _OF_NUMBERS if key in schema}, units)
 

@@ -30,7 +30,7 @@ class Record:
 
     def __post_init__(self) -> None:
         settle(self)
-        for name, value in items_of(self):
+        for name, value in named_values(self):
             if isinstance(value, np.ndarray):
                 object.__setattr__(self, name, as_read_only(cast(np.ndarray, value)))
 
@@ -65,7 +65,7 @@ def _feed(state: Any, value: Any) -> None:
         state.update(np.ascontiguousarray(array).data)
     elif is_dataclass(value):
         state.update(type(value).__name__.encode())
-        for name, part in items_of(value):
+        for name, part in named_values(value):
             state.update(f"/{name}=".encode())
             _feed(state, part)
     elif isinstance(value, tuple):
@@ -76,7 +76,7 @@ def _feed(state: Any, value: Any) -> None:
         state.update(f"{type(value).__name__}:{value!r};".encode())
 
 
-def items_of(record: Any) -> Iterator[tuple[str, Any]]:
+def named_values(record: Any) -> Iterator[tuple[str, Any]]:
     """Return the names and values of a record's fields, in order."""
     return ((f.name, getattr(record, f.name)) for f in fields(record))
 
@@ -88,8 +88,8 @@ Convert = Callable[[str, Any], Any]
 def settle(record: Any) -> None:
     """Convert each field of a frozen dataclass to the type of its annotation."""
     for name, convert in _converters(cast(Any, type(record))):
-        given = getattr(record, name)
-        if (value := convert(name, given)) is not given:
+        value_before = getattr(record, name)
+        if (value := convert(name, value_before)) is not value_before:
             object.__setattr__(record, name, value)
 
 
@@ -106,15 +106,15 @@ def _converter(hint: Any) -> Convert | None:
         inner = _converter(_parts(hint)[0])
         return inner and (lambda name, value: None if value is None else inner(name, value))
     if get_origin(hint) is Literal:
-        return _one_of(get_args(hint))
+        return _choice_converter(get_args(hint))
     if get_origin(hint) is tuple:
-        return _tuple_of(get_args(hint))
+        return _tuple_converter(get_args(hint))
     if hint is np.ndarray or hasattr(hint, "array_type"):
         dtypes = tuple(getattr(hint, "dtypes", ()))
         return as_picture if len(dtypes) != 1 else lambda name, value: as_array(name, value, dtypes[0])
     if hint is float:
         return as_number
-    return _instance_of(hint) if isinstance(hint, type) and (is_dataclass(hint) or hint is str) else None
+    return _instance_converter(hint) if isinstance(hint, type) and (is_dataclass(hint) or hint is str) else None
 
 
 def _parts(union: Any) -> list[Any]:
@@ -122,16 +122,16 @@ def _parts(union: Any) -> list[Any]:
     return [arg for arg in get_args(union) if arg is not NoneType]
 
 
-def _one_of(known: tuple[Any, ...]) -> Convert:
+def _choice_converter(choices: tuple[Any, ...]) -> Convert:
     def convert(name: str, value: Any) -> Any:
-        if value not in known:
-            raise wrong_argument(name, value, f"one of {', '.join(map(str, known))}")
+        if value not in choices:
+            raise wrong_argument(name, value, f"one of {', '.join(map(str, choices))}")
         return value
 
     return convert
 
 
-def _instance_of(cls: type) -> Convert:
+def _instance_converter(cls: type) -> Convert:
     def convert(name: str, value: Any) -> Any:
         if not isinstance(value, cls):
             raise wrong_argument(name, value, f"a {cls.__name__}")
@@ -140,15 +140,15 @@ def _instance_of(cls: type) -> Convert:
     return convert
 
 
-def _tuple_of(parts: tuple[Any, ...]) -> Convert:
+def _tuple_converter(parts: tuple[Any, ...]) -> Convert:
     one = parts[0] if len(parts) == 2 and parts[1] is ... else None
     each, count = _converter(one or parts[0]), "some" if one else str(len(parts))
-    wanted = f"{count} {'numbers' if parts[0] is float else f'objects of {parts[0].__name__}'}"
+    expected = f"{count} {'numbers' if parts[0] is float else f'objects of {parts[0].__name__}'}"
 
     def convert(name: str, value: Any) -> Any:
         items = _items(value)
         if items is None or (not one and len(items) != len(parts)):
-            raise wrong_argument(name, value, wanted)
+            raise wrong_argument(name, value, expected)
         for i, item in enumerate(items if each else ()):
             cast(Convert, each)(f"{name}[{i}]", item)
         return items
@@ -172,8 +172,8 @@ def short_repr(value: Any) -> str:
     >>> short_repr(DisparityMap(np.arange(6, dtype=np.float32).reshape(2, 3)))
     'DisparityMap(disparity_px=<float32 (2, 3), 0 to 5>, confidence=<float32 (2, 3), 1 to 1>)'
     """
-    shown = ((field.name, getattr(value, field.name)) for field in fields(value) if _differs(value, field))
-    return f"{type(value).__name__}({', '.join(f'{name}={_shown(part)}' for name, part in shown)})"
+    parts = ((field.name, getattr(value, field.name)) for field in fields(value) if _differs(value, field))
+    return f"{type(value).__name__}({', '.join(f'{name}={_shown(part)}' for name, part in parts)})"
 
 
 def _differs(value: Any, field: Any) -> bool:
@@ -185,15 +185,15 @@ def _shown(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return _in_brief(cast(np.ndarray, value))
     if isinstance(value, tuple):
-        return quoted(tuple(getattr(each, "name", each) for each in cast("tuple[Any, ...]", value)))
+        return quoted(tuple(getattr(part, "name", part) for part in cast("tuple[Any, ...]", value)))
     return repr(value) if is_dataclass(value) else quoted(value)
 
 
 def _in_brief(array: np.ndarray) -> str:
     """Return an array's type, shape and range; NaN and infinity are left out of the range."""
     text = f"{array.dtype} {array.shape}"
-    known = array[np.isfinite(array)] if array.dtype.kind in "fc" else array
-    if not known.size or array.dtype.kind not in "buif":
+    finite = array[np.isfinite(array)] if array.dtype.kind in "fc" else array
+    if not finite.size or array.dtype.kind not in "buif":
         return f"<{text}>"
-    unknown = ", some NaN" if known.size < array.size else ""
-    return f"<{text}, {known.min():g} to {known.max():g}{unknown}>"
+    unknown = ", some NaN" if finite.size < array.size else ""
+    return f"<{text}, {finite.min():g} to {finite.max():g}{unknown}>"

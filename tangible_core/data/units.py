@@ -21,10 +21,10 @@ UNITS: Mapping[str, Mapping[str, Decimal]] = {
 """The end of an option's name -> the units that may be written, each with its worth in the option's own unit."""
 
 
-def units_of(name: str) -> Mapping[str, Decimal]:
+def option_units(name: str) -> Mapping[str, Decimal]:
     """Return the units in which an option of this name may be written, its own first; {} if its name has no unit.
 
-    >>> list(units_of("stiffness_n_per_m")), list(units_of("segments"))
+    >>> list(option_units("stiffness_n_per_m")), list(option_units("segments"))
     (['N/m', 'N/cm', 'N/mm'], [])
     """
     return next((units for suffix, units in UNITS.items() if name.endswith(suffix)), _NONE)
@@ -33,27 +33,27 @@ def units_of(name: str) -> Mapping[str, Decimal]:
 _NONE: Mapping[str, Decimal] = {}
 
 
-def unit_of(name: str) -> str:
+def option_unit(name: str) -> str:
     """Return the unit of an option of this name; "" if it has none.
 
-    >>> unit_of("stiffness_n_per_m"), unit_of("window_px"), unit_of("segments")
+    >>> option_unit("stiffness_n_per_m"), option_unit("window_px"), option_unit("segments")
     ('N/m', 'px', '')
     """
-    return next((unit for suffix, unit in _UNIT_OF.items() if name.endswith(suffix)), "")
+    return next((unit for suffix, unit in _OPTION_UNITS.items() if name.endswith(suffix)), "")
 
 
-def title_of(name: str) -> str:
+def option_title(name: str) -> str:
     """Return an option's name in words, without its unit: the label of a field for it.
 
-    >>> title_of("stiffness_n_per_m"), title_of("least_contrast")
+    >>> option_title("stiffness_n_per_m"), option_title("least_contrast")
     ('Stiffness', 'Least contrast')
     """
-    suffix = next((suffix for suffix in _UNIT_OF if name.endswith(suffix)), "")
+    suffix = next((suffix for suffix in _OPTION_UNITS if name.endswith(suffix)), "")
     words = name.removesuffix(suffix).replace("_", " ").strip()
     return words[:1].upper() + words[1:]
 
 
-_UNIT_OF = {suffix: next(iter(units)) for suffix, units in UNITS.items()} | {
+_OPTION_UNITS = {suffix: next(iter(units)) for suffix, units in UNITS.items()} | {
     "_px": "px",
     "_mb": "MB",
     "_percent": "%",

@@ -138,11 +138,11 @@ class SegmentTree(Record):
         The confidence of a segment is the level at which it is joined; that of the whole picture is 1.
         """
         count = len(self.joins) + 1
-        joined = max(count - most, int(np.searchsorted(self.levels, level)))
-        roots, sure = np.arange(count + joined), np.ones(count + len(self.joins), np.float32)
-        for at in reversed(range(joined)):
+        joining_count = max(count - most, int(np.searchsorted(self.levels, level)))
+        roots, sure = np.arange(count + joining_count), np.ones(count + len(self.joins), np.float32)
+        for at in reversed(range(joining_count)):
             roots[self.joins[at]] = roots[count + at]
-        for at in range(joined, len(self.joins)):
+        for at in range(joining_count, len(self.joins)):
             sure[self.joins[at]] = self.levels[at]
         _, names = np.unique(roots[:count], return_inverse=True)
         return SegmentMap(names.astype(np.int32)[self.labels], sure[roots[:count]][self.labels])

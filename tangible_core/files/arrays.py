@@ -40,13 +40,13 @@ class Archive:
         """Read the arrays of these names."""
         if missing := [name for name in names if name not in self._members]:
             raise ValueError(f"it holds no {shown(', '.join(missing))}")
-        wanted = {name: self._members[name] for name in names}
-        check_bytes(sum(each.file_size for each in wanted.values()))
+        members = {name: self._members[name] for name in names}
+        check_bytes(sum(member.file_size for member in members.values()))
         with _plain_errors():
-            for each in wanted.values():  # a few bytes of others decode to gigabytes at once
-                if each.compress_type not in (ZIP_STORED, ZIP_DEFLATED):
+            for member in members.values():  # a few bytes of others decode to gigabytes at once
+                if member.compress_type not in (ZIP_STORED, ZIP_DEFLATED):
                     raise ValueError("its compression is not one that NumPy uses")
-            return {name: self._read(each.filename, each.file_size) for name, each in wanted.items()}
+            return {name: self._read(member.filename, member.file_size) for name, member in members.items()}
 
     def _read(self, member: str, size: int) -> np.ndarray:
         with self._zip.open(member) as file:
@@ -74,10 +74,10 @@ def _is_compressible(array: np.ndarray) -> bool:
 
 def read_array(file: IO[bytes]) -> np.ndarray:
     """Read the array of an .npy file, or the only array of an .npz file, whatever the file's name."""
-    zipped = file.read(len(_ZIP)) == _ZIP
+    is_zip = file.read(len(_ZIP)) == _ZIP
     size = file.seek(0, 2)
     file.seek(0)
-    if not zipped:
+    if not is_zip:
         with _plain_errors():
             return _parse_array(file, size)
     archive = Archive(file)
@@ -111,11 +111,11 @@ def _parse_array(file: IO[bytes], size: int) -> np.ndarray:
     if min(shape, default=0) < 0:
         raise ValueError(f"its header states the shape {shape}")
     check_size(shape, dtype.itemsize)
-    wanted = math.prod(shape) * dtype.itemsize
-    if (follow := size - file.tell()) != wanted:
-        raise ValueError(f"its header announces {wanted} bytes of numbers, but {follow} follow")
-    data = np.empty(wanted, np.uint8)
-    for start in range(0, wanted, _CHUNK):
+    size_bytes = math.prod(shape) * dtype.itemsize
+    if (follow := size - file.tell()) != size_bytes:
+        raise ValueError(f"its header announces {size_bytes} bytes of numbers, but {follow} follow")
+    data = np.empty(size_bytes, np.uint8)
+    for start in range(0, size_bytes, _CHUNK):
         part = data[start : start + _CHUNK]
         read = file.read(len(part))
         if len(read) != len(part):

@@ -24,7 +24,7 @@ def disparity_errors(disparity_px: Float[np.ndarray, "h w"], truth_px: Float[np.
     """
     error_px = absolute_error(disparity_px, truth_px)[np.isfinite(truth_px)]
     known_px = error_px[np.isfinite(error_px)]
-    bad = {f"bad{bound:g}": _percent(~(error_px <= bound)) for bound in BOUNDS_PX}
+    bad = {f"bad{limit_px:g}": _percent(~(error_px <= limit_px)) for limit_px in BOUNDS_PX}
     return bad | {
         "average_px": _mean(known_px),
         "rms_px": _rms(known_px),
@@ -40,9 +40,9 @@ def absolute_error(
         raise PictureError(
             f"the disparity map is {disparity_px.shape} and its truth {truth_px.shape}; crop or scale one of them"
         )
-    known = np.isfinite(disparity_px) & np.isfinite(truth_px)
+    valid_mask = np.isfinite(disparity_px) & np.isfinite(truth_px)
     error_px = np.full(truth_px.shape, np.nan)
-    error_px[known] = np.abs(disparity_px[known].astype(np.float64) - truth_px[known])
+    error_px[valid_mask] = np.abs(disparity_px[valid_mask].astype(np.float64) - truth_px[valid_mask])
     return error_px
 
 
@@ -74,8 +74,8 @@ def force_errors(force_n: Vectors, truth_n: Vectors) -> dict[str, float]:
     """
     if len(force_n) != len(truth_n):
         raise GeometryError(f"one has {len(force_n)} ticks and the other {len(truth_n)}; they must be of one path")
-    known = np.isfinite(truth_n).all(axis=1)
-    force, truth = force_n[known], truth_n[known]
+    valid_mask = np.isfinite(truth_n).all(axis=1)
+    force, truth = force_n[valid_mask], truth_n[valid_mask]
     size, true_size = np.linalg.norm(force, axis=1), np.linalg.norm(truth, axis=1)
     either, touching, both = (size > 0) | (true_size > 0), true_size > 0, (size > 0) & (true_size > 0)
     error_n = _rms(np.linalg.norm(force - truth, axis=1)[either])

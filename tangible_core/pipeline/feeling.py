@@ -24,7 +24,7 @@ from ..session import About, PartFelt, Recording, Slot, TrackingError
 from ..session.film import ByClock, Reliefs
 from .config.methods import check_kind, named_method
 from .engine.engine import Engine
-from .engine.film import film_of, reliefs_of
+from .engine.film import make_film, make_reliefs
 from .engine.stages.touch import fit_to_device
 from .feel_options import Felt
 from .output.legible import drawn_parts, drawn_width_m, exporter_for, legible
@@ -75,7 +75,7 @@ class Feeling:
         and `reliefs.made` makes its relief.
         Raises: ConfigError for a scene without a video, or a relief that is made of parts.
         """
-        return reliefs_of(self.engine.config, self.engine.scene)
+        return make_reliefs(self.engine.config, self.engine.scene)
 
     def film(self, period_s: float = 0.001) -> Film:
         """Make the touch of the video's first frame, as a film for the next ones.
@@ -85,7 +85,7 @@ class Feeling:
         Raises: ConfigError for a scene without a video, or a force law without films; TangibleError as `make`.
         """
         config = self.engine.config
-        return film_of(self.engine, config.felt_device if self.given is None else self.device, period_s)
+        return make_film(self.engine, config.felt_device if self.given is None else self.device, period_s)
 
     @named_options
     @naming_plugins()
@@ -123,14 +123,16 @@ class Feeling:
                 raise ConfigError(
                     "then, on_wait: are for a session in real time; leave them out, or in_real_time=False"
                 )
-            simulated = self._run_simulated(device, math.inf if seconds is None else seconds, listener, stop, beacon)
-            simulated = replace(simulated, about=about_session.with_versions())
+            recording = self._run_simulated(device, math.inf if seconds is None else seconds, listener, stop, beacon)
+            recording = replace(recording, about=about_session.with_versions())
             if file is not None:
-                simulated.save(file)
-            return simulated
+                recording.save(file)
+            return recording
 
-        turns = [self._turn(self, beacon), *(Feeling(each, self.given)._turn(self, beacon) for each in then)]
-        about_session = join_descriptions(about_session, [Feeling(each)._about() for each in (self.pipeline, *then)])
+        turns = [self._turn(self, beacon), *(Feeling(pipeline, self.given)._turn(self, beacon) for pipeline in then)]
+        about_session = join_descriptions(
+            about_session, [Feeling(pipeline)._about() for pipeline in (self.pipeline, *then)]
+        )
 
         def run(rows: Callable[[np.ndarray], None]) -> str:
             report = session.run_kiosk(
@@ -141,12 +143,12 @@ class Feeling:
 
         if file is not None:
             with session.keeping(file, about_session) as writer:
-                stopped = run(_both(writer.append, keep))
-                writer.close(stopped)
-            return Recording.load(file) if keep is None else Recording(NO_ROWS, stopped, about_session.with_versions())
+                reason = run(_both(writer.append, keep))
+                writer.close(reason)
+            return Recording.load(file) if keep is None else Recording(NO_ROWS, reason, about_session.with_versions())
         rows = [NO_ROWS]
-        stopped = run(keep or rows.append)
-        return Recording(np.concatenate(rows), stopped, about_session.with_versions())
+        reason = run(keep or rows.append)
+        return Recording(np.concatenate(rows), reason, about_session.with_versions())
 
     def _run_simulated(
         self,
@@ -175,16 +177,16 @@ class Feeling:
         about_replay = replace(about(self.engine), device=f"replay of {recording.about.device or 'a recording'}")
         return replace(session.replay(self.touch, recording), about=about_replay.with_versions())
 
-    def track(self, seen: Recording) -> TrackingError:
-        """Report how well the hand tracked the device's path, if it has one. seen: one of `session.EVERY` ticks."""
-        return path_tracking(self.engine, self.device, seen)
+    def track(self, ticks: Recording) -> TrackingError:
+        """Report how well the hand tracked the device's path, if it has one. ticks: one of `session.EVERY` ticks."""
+        return path_tracking(self.engine, self.device, ticks)
 
-    def parts_felt(self, seen: Recording) -> tuple[PartFelt, ...]:
+    def parts_felt(self, ticks: Recording) -> tuple[PartFelt, ...]:
         """Return how long and how hard each part was touched, the longest first; none without parts.
 
-        seen: the ticks, or one of `session.EVERY`. Raises: as `Pipeline.make`.
+        ticks: the ticks, or one of `session.EVERY`. Raises: as `Pipeline.make`.
         """
-        return session.parts_felt(seen, self.pipeline.make("surface"))
+        return session.parts_felt(ticks, self.pipeline.make("surface"))
 
     def legible(self, medium: Medium = "force", width_m: float | None = None) -> Legibility:
         """Check whether fingers can read the parts: on swell paper, as a print, on pins, or on a force device.
@@ -243,7 +245,7 @@ class Feeling:
         ours, theirs = self.engine.config, first.engine.config
         own = self.given is None and ours.device is not None
         if ours.mapping != theirs.mapping or (own and ours.felt_device != theirs.felt_device):
-            here, before = (each.engine.config.path or each.engine.scene.name for each in (self, first))
+            here, before = (feeling.engine.config.path or feeling.engine.scene.name for feeling in (self, first))
             raise ConfigError(
                 f"{here}: has another `device:` or `mapping:` than {before}, which comes before it; give both the "
                 "same, or leave `device:` out of all but the first"

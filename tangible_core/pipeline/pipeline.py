@@ -23,7 +23,7 @@ from ..servo import Safety
 from ..session import Recording
 from .config.material_choice import MaterialChoice
 from .config.model import PipelineConfig
-from .config.parsing import config_of, load_config
+from .config.parsing import load_config, make_config
 from .engine.cache import Cache
 from .engine.engine import Engine
 from .engine.stage import Progress
@@ -90,7 +90,7 @@ class Pipeline:
         Raises: ConfigError with every complaint about these; ArgumentError for an unknown key.
         """
         registry = default_registry()
-        config = config_of(
+        config = make_config(
             scene, registry, depth=depth, texture=texture, materials=materials, workspace=workspace, mapping=mapping,
             render=render, device=device, safety=safety, parts=parts, heights=heights, simplify=simplify, export=export,
             title=title, language=language, **others,
@@ -152,7 +152,7 @@ class Pipeline:
 
         Raises: as `Pipeline`.
         """
-        config = config_of(changes.pop("scene", None), self.engine.registry, self.config, **changes)
+        config = make_config(changes.pop("scene", None), self.engine.registry, self.config, **changes)
         return self.from_config(config, like=self)
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -266,8 +266,8 @@ class Pipeline:
         Raises: ConfigError without exporters; UnknownMethod, BrokenMethod; OutputError if the folder cannot be written;
         Stopped after `stop`.
         """
-        chosen = chosen_exporters(self.config, to, self.engine.registry)
-        return export(self.engine, as_path(out, "out"), chosen, progress, stop, force=force, cut=cut_out)
+        exporters = chosen_exporters(self.config, to, self.engine.registry)
+        return export(self.engine, as_path(out, "out"), exporters, progress, stop, force=force, cut=cut_out)
 
     def feel(
         self, device: HapticDevice | str | None = None, seconds: float | None = 8.0, **options: Unpack[FeelOptions]

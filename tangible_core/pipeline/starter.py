@@ -30,7 +30,7 @@ from ..scene.formats.rigs import find_rig
 from ..scene.scene import Scene
 from ..scene.scene_files import SceneFiles
 from .config.model import PipelineConfig
-from .config.parsing import config_of, parse_config
+from .config.parsing import make_config, parse_config
 from .engine.networks import networks_identity
 from .part_names import read_part_names
 
@@ -132,7 +132,7 @@ def _text(scene: Scene, values: Mapping[str, str]) -> str:
     if kind != "photo" or size["named"] or not _is_drawing(scene):
         return whole
     registry = default_registry()
-    names = read_part_names(config_of(scene, registry, **_settings(whole)), registry)
+    names = read_part_names(make_config(scene, registry, **_settings(whole)), registry)
     return Template(text).substitute(values, **size | {"named": _part_lines(names, READ)})
 
 
@@ -150,7 +150,7 @@ def suited_config(pictures: Sequence[Any], registry: Registry, overrides: Sequen
         of_arrays = Scene.photo if len(pictures) == 1 else Scene.pair
         scene = pictures[0] if isinstance(pictures[0], Scene) else of_arrays(*pictures)
         text = _text(scene, {"scene": scene.name, "name": "", "file": ""})
-        return config_of(scene, registry, **_settings(text))
+        return make_config(scene, registry, **_settings(text))
     files = [as_path(picture, "picture") for picture in pictures]
     file = files[0] if files else Path()
     text, scene = starter(files, file)
@@ -207,7 +207,7 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
         size["texture"] = TEXTURES[_is_drawing(scene)]
         size["kind"] = f"   # {kind_sentence(scene.kind)}" if _is_drawing(scene) else ""
         size["named"] = _names_text(scene)
-        size["relief"] = Template(PHOTOS[_felt_of(scene)]).substitute(size)
+        size["relief"] = Template(PHOTOS[_choose_photo_relief(scene)]).substitute(size)
     return size
 
 
@@ -240,7 +240,7 @@ def _is_drawing(scene: Scene) -> bool:
     return scene.kind.likely != PictureKind.photograph
 
 
-def _felt_of(scene: Scene) -> str:
+def _choose_photo_relief(scene: Scene) -> str:
     """Return the key of PHOTOS for one picture: a drawing's lines, what networks find, or edges; light if it moves."""
     if _is_drawing(scene):
         return "lines"
@@ -263,12 +263,12 @@ def _slope(values: Float32[np.ndarray, "h w"], smooth_mm: float) -> float:
     finite = np.isfinite(values)
     if not finite.any():
         return 0.0
-    known = np.where(finite, values, values[finite].min())
+    heights = np.where(finite, values, values[finite].min())
     with plain_opencv():
-        small = cv2.resize(known, (columns, rows), interpolation=cv2.INTER_AREA).astype(np.float64)
+        small = cv2.resize(heights, (columns, rows), interpolation=cv2.INTER_AREA).astype(np.float64)
         if sigma := smooth_mm / SIDE_MM * longer * scale:
             small = cv2.GaussianBlur(small, (0, 0), sigma)
-    span = np.ptp(known)
+    span = np.ptp(heights)
     if min(small.shape) < 2 or not span > 0:
         return 0.0
     steep = np.hypot(*np.gradient(small / span)) * longer * scale / SIDE_MM

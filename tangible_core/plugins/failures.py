@@ -44,10 +44,10 @@ class Place(NamedTuple):
     function: str
 
 
-def place_of(error: BaseException) -> Place | None:
+def find_place(error: BaseException) -> Place | None:
     """Find the innermost call of a plugin in an error's traceback; None without such a call."""
-    if isinstance(sent := getattr(error, _PLACE, None), Place):
-        return sent
+    if isinstance(place := getattr(error, _PLACE, None), Place):
+        return place
     frames = [frame for frame, _ in walk_tb(error.__traceback__)][::-1]
     return next(filter(None, map(_method, frames)), None) or _function(frames)
 
@@ -60,7 +60,7 @@ def naming_plugins() -> Generator[None]:
     except TangibleError:
         raise
     except Exception as error:
-        if place := place_of(error):
+        if place := find_place(error):
             text = f"{plugin_name(place.kind, place.module, place.owner)} failed in {place.function}"
             if text not in getattr(error, "__notes__", ()):
                 error.add_note(text)
@@ -69,13 +69,13 @@ def naming_plugins() -> Generator[None]:
 
 def remember_place(error: BaseException, trace: str) -> None:
     """Attach place and traceback to an error that is sent to another process, which cannot see its frames."""
-    setattr(error, _PLACE, place_of(error))
+    setattr(error, _PLACE, find_place(error))
     error.add_note(f"In the process that it came from:\n\n{trace}")
 
 
 def sentence(error: BaseException) -> str:
     """Describe an error in a sentence for a person, and write its traceback to a file."""
-    place, text = place_of(error), shown(str(error), MAX_IN_LINE // 2)
+    place, text = find_place(error), shown(str(error), MAX_IN_LINE // 2)
     if missing := missing_package(error):
         who = "tangible" if place is None else plugin_name(place.kind, place.module, place.owner)
         return f"{who} needs the package {missing}, which is not installed; pip install {missing}"
@@ -132,5 +132,5 @@ def _function(frames: list[FrameType]) -> Place | None:
 
 
 def _kind(thing: Any) -> str:
-    kinds: dict[type, str] = {wanted: kind for kind, wanted in KINDS.items()} | {Touch: "render", Link: "device"}
-    return next((kind for wanted, kind in kinds.items() if isinstance(thing, wanted)), "")
+    kinds: dict[type, str] = {cls: kind for kind, cls in KINDS.items()} | {Touch: "render", Link: "device"}
+    return next((kind for cls, kind in kinds.items() if isinstance(thing, cls)), "")

@@ -107,11 +107,11 @@ def manager() -> pluggy.PluginManager:
         except (Exception, SystemExit) as error:
             log.warning("hooks %s (%s) cannot be loaded and are left out: %r", point.name, point.value, error)
             log.debug("the import of %s", point.value, exc_info=True)
-    specified = [name for name in vars(Specs) if name.startswith("tangible_")]
+    specs = [name for name in vars(Specs) if name.startswith("tangible_")]
     for name, plugin in plugins.list_name_plugin():
         for hookcaller in plugins.get_hookcallers(plugin) or []:
-            if hookcaller.name not in specified:
-                near = did_you_mean(hookcaller.name, specified)
+            if hookcaller.name not in specs:
+                near = did_you_mean(hookcaller.name, specs)
                 log.warning("%s implements an unknown hook: %s%s", name, hookcaller.name, near)
     return plugins
 
@@ -128,10 +128,10 @@ def tell(plugins: pluggy.PluginManager, moment: str, **facts: Any) -> list[Any]:
 
 
 def _warn_of_failure(plugins: pluggy.PluginManager, name: str, moment: str, error: Exception) -> None:
-    known = _failed.setdefault(plugins, set())
-    if (name, moment) in known:
+    failures = _failed.setdefault(plugins, set())
+    if (name, moment) in failures:
         log.debug("observer %s failed in %s again", name, moment, exc_info=error)
         return
-    known.add((name, moment))
+    failures.add((name, moment))
     what = f"{type(error).__name__}: {shown(str(error), 500)}"
     log.warning("observer %s failed in %s and is ignored: %s; %s", name, moment, what, where_kept(error))

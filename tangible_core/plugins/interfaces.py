@@ -37,17 +37,17 @@ from .touch import Film as Film
 from .touch import Filming as Filming
 from .touch import PlainTouch as PlainTouch
 from .touch import Touch as Touch
-from .touch import touch_of as touch_of
+from .touch import as_touch as as_touch
 
 Convert = Callable[[Any], Any]
 
 
-def taking(name: str, wanted: type, hint: str = "") -> Convert:
+def taking(name: str, cls: type, hint: str = "") -> Convert:
     """Return a check of an argument's type. hint: how to make an object of it."""
 
     def convert(value: Any) -> Any:
-        if not isinstance(value, wanted):
-            raise wrong_argument(name, value, f"a {wanted.__name__}{hint}")
+        if not isinstance(value, cls):
+            raise wrong_argument(name, value, f"a {cls.__name__}{hint}")
         return value
 
     return convert
@@ -72,7 +72,7 @@ def guard_verb(cls: type, verb: Verb) -> None:
     @wraps(own)
     def call(self: Any, *args: Any, **by_name: Any) -> Any:
         if verb.take is not None:
-            args, by_name = tuple(map(verb.take, args)), {name: verb.take(each) for name, each in by_name.items()}
+            args, by_name = tuple(map(verb.take, args)), {name: verb.take(value) for name, value in by_name.items()}
         with limited_threads():
             result = own(self, *args, **by_name)
         if not isinstance(result, verb.returns):

@@ -26,7 +26,7 @@ class Link(ABC):
     def __init__(self, name: str, max_force_n: float) -> None:
         """Keep the name for messages, such as "the mock device", and the greatest force to send, in newtons."""
         self.__name, self.__max_force_n = name, max_force_n
-        self.__closed = ""
+        self.__end_reason = ""
         self.__newest_s, self.__fresh = -math.inf, False
 
     @abstractmethod
@@ -49,7 +49,7 @@ class Link(ABC):
     @final
     def read(self) -> HapticState:
         """Read the state of the tip. Raises: DeviceError if the device stopped answering or the link is closed."""
-        if self.__closed:
+        if self.__end_reason:
             raise self.__refusal()
         state = self._read()
         if type(state) is not HapticState:
@@ -74,7 +74,7 @@ class Link(ABC):
 
         Raises: DeviceError if the device stopped answering or the link is closed.
         """
-        if self.__closed:
+        if self.__end_reason:
             raise self.__refusal()
         if type(force) is not Force:
             force = _as_force(force)
@@ -106,22 +106,22 @@ class Link(ABC):
     @final
     def _check_open(self) -> None:
         """Refuse a closed link, in a driver's own methods. Raises: DeviceError if the link is closed."""
-        if self.__closed:
+        if self.__end_reason:
             raise self.__refusal()
 
     @final
     def _end(self, why: str) -> None:
         """Mark the link as closed, for a driver that released its device. why: such as "was closed after an error"."""
-        self.__closed = self.__closed or why
+        self.__end_reason = self.__end_reason or why
 
     def __release_once(self) -> None:
-        if self.__closed:
+        if self.__end_reason:
             return
         try:
             self._send(NO_FORCE)
         finally:
-            if not self.__closed:  # else the driver released it
-                self.__closed = "is closed"
+            if not self.__end_reason:  # else the driver released it
+                self.__end_reason = "is closed"
                 self._release()
 
     def __as_state(self, value: Any) -> HapticState:
@@ -133,10 +133,10 @@ class Link(ABC):
             ) from error
 
     def __refusal(self) -> DeviceError:
-        return DeviceError(f"{self.__name} {self.__closed}; open it again")
+        return DeviceError(f"{self.__name} {self.__end_reason}; open it again")
 
 
 def _as_force(force: Any) -> Force:
-    if (converted := as_force(force)) is None:
+    if (result := as_force(force)) is None:
         raise wrong_argument("force", force, "a Force, or three numbers: x, y and z in newtons")
-    return converted
+    return result

@@ -51,18 +51,18 @@ def plugin_name(kind: str, module: str, owner: str) -> str:
     return f"{owner or module} of {origin(near[0].dist)}"
 
 
-def wrong_result(giver: object, kind: str, verb: str, result: Any, wanted: type) -> BrokenMethod:
-    """Make the error for a plugin whose verb returned another type than `wanted`."""
+def wrong_result(giver: object, kind: str, verb: str, result: Any, cls: type) -> BrokenMethod:
+    """Make the error for a plugin whose verb returned another type than `cls`."""
     name = plugin_name(kind, type(giver).__module__, type(giver).__qualname__)
     return BrokenMethod(
-        f"{name}: {verb} gave {what_is(result)}; it must give a {wanted.__name__}, as `tangible check` tests"
+        f"{name}: {verb} gave {what_is(result)}; it must give a {cls.__name__}, as `tangible check` tests"
     )
 
 
 def points() -> list[EntryPoint]:
     """Return the entry points of all installed plugins."""
-    installed = entry_points()
-    return [each for kind in (*KIND_NAMES, "hooks") for each in installed.select(group=f"{GROUPS}{kind}")]
+    all_points = entry_points()
+    return [point for kind in (*KIND_NAMES, "hooks") for point in all_points.select(group=f"{GROUPS}{kind}")]
 
 
 def package(module: str) -> str:

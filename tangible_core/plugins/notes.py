@@ -71,6 +71,6 @@ def _listening(listener: Callable[[Note], None]) -> Generator[None]:
         _listener.reset(token)
 
 
-def _keep(kept: Note) -> None:
+def _keep(message: Note) -> None:
     if (listener := _listener.get()) is not None:
-        listener(kept)
+        listener(message)

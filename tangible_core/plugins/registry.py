@@ -63,11 +63,11 @@ class Registry:
     @cached_property
     def listings(self) -> tuple[Listing, ...]:
         """The installed methods, two of one name included, by kind and name."""
-        installed = entry_points()  # one walk over all distributions serves all kinds
+        all_points = entry_points()  # one walk over all distributions serves all kinds
         listings = [
             Listing(kind, point.name, point.value, str(origin(point.dist)), point)
             for kind in KIND_NAMES
-            for point in (*installed.select(group=f"tangible.{kind}"), *self._points_of_hooks(kind))
+            for point in (*all_points.select(group=f"tangible.{kind}"), *self._points_of_hooks(kind))
         ]
         return tuple(sorted(listings, key=lambda each: (KIND_NAMES.index(each.kind), each.name, each.origin)))
 
@@ -110,25 +110,27 @@ class Registry:
         """Import the class of a method."""
         from .interfaces import KINDS
 
-        each = self.find(kind, name)
+        listing = self.find(kind, name)
         try:
-            with warn_if_slow(log, f"importing {kind} method {name} ({each.target}, from {each.origin})"):
-                cls: Any = each.point.load()
+            with warn_if_slow(log, f"importing {kind} method {name} ({listing.target}, from {listing.origin})"):
+                cls: Any = listing.point.load()
         except (Exception, SystemExit) as error:
             from .failures import lacks_memory
 
             if lacks_memory(error):
                 raise
             raise BrokenMethod(
-                f"{kind} method {name!r} ({each.target}, from {each.origin}) cannot be loaded: "
-                f"{type(error).__name__}: {shown(str(error), 500)}; repair or remove {each.distribution}; "
+                f"{kind} method {name!r} ({listing.target}, from {listing.origin}) cannot be loaded: "
+                f"{type(error).__name__}: {shown(str(error), 500)}; repair or remove {listing.distribution}; "
                 f"{where_kept(error)}"
             ) from error
-        wanted = KINDS[each.kind]  # pyright: ignore[reportArgumentType]
-        if not (isinstance(cls, type) and issubclass(cls, wanted)):
-            raise BrokenMethod(f"{kind} method {name!r} ({each.target}, from {each.origin}) is not a {wanted.__name__}")
+        interface = KINDS[listing.kind]  # pyright: ignore[reportArgumentType]
+        if not (isinstance(cls, type) and issubclass(cls, interface)):
+            raise BrokenMethod(
+                f"{kind} method {name!r} ({listing.target}, from {listing.origin}) is not a {interface.__name__}"
+            )
         if missing := sorted(cls.__abstractmethods__):
-            raise BrokenMethod(f"{kind} method {name!r} ({each.target}) does not implement {', '.join(missing)}")
+            raise BrokenMethod(f"{kind} method {name!r} ({listing.target}) does not implement {', '.join(missing)}")
         return cls
 
     def _points_of_hooks(self, kind: str) -> list[EntryPoint]:

@@ -24,9 +24,9 @@ def guard_force(cls: type) -> None:
         result = own(self, state if type(state) is HapticState else as_state(state))
         if type(result) is Force:
             return result
-        if (converted := as_force(result)) is None:
+        if (checked_force := as_force(result)) is None:
             raise wrong_result(self, "render", "force", result, Force)
-        return converted
+        return checked_force
 
     setattr(cls, "force", force)  # noqa: B010 - the class is being made
 
@@ -122,7 +122,7 @@ class Film(ABC):
         """The number of frames that were replaced by a later one before the loop went to them."""
 
 
-def touch_of(touch: Touch | Film) -> Touch:
+def as_touch(touch: Touch | Film) -> Touch:
     """Return the touch of a still or moving surface."""
     return touch.touch if isinstance(touch, Film) else touch
 

@@ -23,7 +23,7 @@ from ..servo.guard.safety import (
     encoder_limit_n_per_m,
     stiffness_limit_n_per_m,
 )
-from ..servo.guard.stiffness import stiffness_of
+from ..servo.guard.stiffness import find_stiffness
 from .probes import Probes, probe
 from .strokes import Strokes, stroke
 from .timing import TICKS, Lateness, TickCost, measure_lateness, measure_ticks
@@ -207,7 +207,7 @@ def survey(
     """Gather facts of a surface and its touch under a force law, on a closed device. Raises: BrokenMethod."""
     settings, hand, loop = settings or Settings(), hand or Hand(), loop or Loop()
     period_s, spec = loop.period_s, device.spec()
-    stiffness = stiffness_of(touch, spec).n_per_m
+    stiffness = find_stiffness(touch, spec).n_per_m
     probes = probe(touch, surface, hand.press_n, stiffness, spec.workspace_m[2], period_s)
     values = (probes.force_n.sum(axis=1), probes.onset_n, probes.stiffness_n_per_m, probes.damping_n_s_per_m)
     broken = ~np.isfinite(values).all(axis=0)

@@ -41,8 +41,8 @@ class Import(NamedTuple):
 
 def imports(source: bytes) -> list[Import]:
     """Return every import in a text, including those in functions and for type checkers, without computed names."""
-    called = [Import(name.decode(), level=len(dots)) for dots, name in _CALL.findall(source)]
-    return called + [each for node in _statements(source) for each in _imports_of(node)]
+    call_imports = [Import(name.decode(), level=len(dots)) for dots, name in _CALL.findall(source)]
+    return call_imports + [statement for node in _statements(source) for statement in _node_imports(node)]
 
 
 def definitions(source: bytes) -> frozenset[str]:
@@ -72,7 +72,7 @@ def _select(nodes: Iterable[ast.AST]) -> list[ast.Import | ast.ImportFrom]:
     return [node for node in nodes if isinstance(node, ast.Import | ast.ImportFrom)]
 
 
-def _imports_of(node: ast.Import | ast.ImportFrom) -> list[Import]:
+def _node_imports(node: ast.Import | ast.ImportFrom) -> list[Import]:
     if isinstance(node, ast.Import):
         return [Import(name.name) for name in node.names]
     return [Import(node.module or "", name.name, name.asname or name.name, node.level) for name in node.names]
@@ -106,23 +106,23 @@ def closure(*modules: str, alone: tuple[str, ...] = ()) -> Closure:
 def closure_of_function(function: FunctionType) -> Closure | None:
     """Return the closure of a function's module; None for a function without a file, as in a notebook."""
     file = function.__code__.co_filename
-    name, package = (str(function.__globals__.get(each) or "") for each in ("__name__", "__package__"))
+    name, package = (str(function.__globals__.get(variable) or "") for variable in ("__name__", "__package__"))
     return _closure((Place(name, file, package),), ()) if Path(file).is_file() else None
 
 
 @cache
 def _closure(start: tuple[Place, ...], alone: tuple[str, ...]) -> Closure:
-    walk = _Walk({each.top for each in start})
+    walk = _Walk({here.top for here in start})
     walk.through(start)
-    texts = {each.name: _text(each) for each in (*walk.done, *walk.packages, *map(place, alone)) if each is not None}
+    texts = {here.name: _text(here) for here in (*walk.done, *walk.packages, *map(place, alone)) if here is not None}
     libraries = versions.of_imported(walk.libraries)
-    settled = all(text.settled for text in texts.values())
+    is_settled = all(text.settled for text in texts.values())
     sources = hashlib.sha256()
     for name in sorted(texts):
         sources.update(f"\0{name}\0{len(texts[name].content)}\0".encode() + texts[name].content)
-    below = hashlib.sha256(repr((sorted(libraries.items()), "" if settled else _OF_THIS_PROCESS)).encode())
+    below = hashlib.sha256(repr((sorted(libraries.items()), "" if is_settled else _OF_THIS_PROCESS)).encode())
     digest = sources.hexdigest()[:SOURCE_DIGITS] + below.hexdigest()[:VERSION_DIGITS]
-    return Closure(digest, tuple(sorted(texts)), libraries, settled)
+    return Closure(digest, tuple(sorted(texts)), libraries, is_settled)
 
 
 @dataclass
@@ -137,12 +137,12 @@ class _Walk:
     libraries: set[str] = field(default_factory=set[str])
 
     def through(self, start: Iterable[Place]) -> None:
-        waiting = [each for here in start for each in (*self._above(here.name), here)]
+        waiting = [statement for here in start for statement in (*self._above(here.name), here)]
         while waiting:
             here = waiting.pop()
             if here not in self.done:
                 self.done.add(here)
-                waiting += [module for each in _text(here).imports for module in self._resolve(each, here)]
+                waiting += [module for statement in _text(here).imports for module in self._resolve(statement, here)]
 
     def _resolve(self, each: Import, here: Place) -> Iterator[Place]:
         """Yield the modules that an import runs, down to the one that it names."""
@@ -160,8 +160,8 @@ class _Walk:
 
     def _origin(self, module: Place, name: str) -> Iterator[Place]:
         """Yield the modules from which a package re-exports a name; the module itself if it does more than that."""
-        imported = [each for each in _text(module).imports if each.bound == name]
-        sources = [each for each in imported if _absolute(each, module) != module.name]  # an example in its docstring
+        entries = [entry for entry in _text(module).imports if entry.bound == name]
+        sources = [entry for entry in entries if _absolute(entry, module) != module.name]  # an example in its docstring
         if name in ("", "*") or not sources or not _only_reexports(module) or name in _definitions(module):
             yield module
             return
@@ -214,17 +214,17 @@ def _text(here: Place) -> _Text:
     file, stub = Path(here.file), Path(here.file).with_suffix(".pyi")
     files = [file, stub] if here.is_package and stub.is_file() else [file]
     try:
-        settled = max(changed_ns(each.stat()) for each in files) < STARTED_NS
-        contents = [each.read_bytes() for each in files]
+        is_settled = max(changed_ns(path.stat()) for path in files) < STARTED_NS
+        contents = [path.read_bytes() for path in files]
     except OSError:  # in an archive, or gone: the running code is not known
         return _Text()
     content = b"\n".join(contents)
     if file.suffix != ".py":
-        return _Text(content, settled=settled)
+        return _Text(content, settled=is_settled)
     try:
-        return _Text(content, tuple(found for each in contents for found in imports(each)), settled)
+        return _Text(content, tuple(statement for path in contents for statement in imports(path)), is_settled)
     except (SyntaxError, ValueError):  # it cannot be imported either
-        return _Text(content, settled=settled)
+        return _Text(content, settled=is_settled)
 
 
 _WORD = re.compile(rb"\bimport\b")

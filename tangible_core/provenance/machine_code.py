@@ -34,14 +34,14 @@ CHOICES = ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES", "NUMBA_OPT", "NUMBA_DEBUGINFO
 
 def requirements() -> dict[str, str]:
     """Return what the code depends on: system, processor family, Python, and the versions of the compiler."""
-    known = versions.of_imported(("numba",))
+    library_versions = versions.of_imported(("numba",))
     return {
         "system": platform.system(),
         "machine": platform.machine(),
         "python": str(sys.implementation.cache_tag),
-        "numba": known["numba"],
-        "llvmlite": known["llvmlite"],
-        "numpy": ".".join(known["numpy"].split(".")[:2]),
+        "numba": library_versions["numba"],
+        "llvmlite": library_versions["llvmlite"],
+        "numpy": ".".join(library_versions["numpy"].split(".")[:2]),
     }
 
 
@@ -71,7 +71,7 @@ def _digests() -> Mapping[str, str]:
     """Return the SHA-256 of each file, by name; of none if there are none, or they do not fit this process."""
     try:
         manifest = json.loads((MACHINE_CODE / MANIFEST).read_bytes())
-        needed, lacking = manifest["requirements"], {*FEATURES[manifest["processor"]]} - _features()
+        wheel, lacking = manifest["requirements"], {*FEATURES[manifest["processor"]]} - _features()
         digests = dict[str, str](manifest["digests"])
     except FileNotFoundError:
         return {}
@@ -79,7 +79,7 @@ def _digests() -> Mapping[str, str]:
         log.warning("%s cannot be read (%s); kernels are compiled here", MACHINE_CODE / MANIFEST, error)
         return {}
     differences = [
-        f"{name} {here}, not {needed.get(name)}" for name, here in requirements().items() if needed.get(name) != here
+        f"{name} {here}, not {wheel.get(name)}" for name, here in requirements().items() if wheel.get(name) != here
     ]
     if differences or lacking or any(os.environ.get(name) for name in CHOICES):
         log.debug("machine code of the wheel is not used: %s", ", ".join([*differences, *sorted(lacking)]) or CHOICES)

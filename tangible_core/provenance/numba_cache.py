@@ -48,8 +48,8 @@ def extend(caching: Any) -> None:
         if compiled_here is not None or not self._enabled:
             return compiled_here
         _, _, hashes = self._index_key(sig, target_context.codegen())
-        shipped = machine_code.find(self.shipped_name, sig, hashes)
-        return None if shipped is None else self._impl.rebuild(target_context, pickle.loads(shipped))
+        code = machine_code.find(self.shipped_name, sig, hashes)
+        return None if code is None else self._impl.rebuild(target_context, pickle.loads(code))
 
     def save(self: Any, sig: Any, data: Any) -> None:
         numba_save(self, sig, data)

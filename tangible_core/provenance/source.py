@@ -34,11 +34,11 @@ class _UnknownContentError(Exception):
     """A reference to an object whose content cannot be digested."""
 
 
-def _contents(name: str, thing: Any, seen: set[int]) -> Iterator[tuple[str, str]]:
+def _contents(name: str, thing: Any, visited: set[int]) -> Iterator[tuple[str, str]]:
     """Yield the name and content of an object, and of everything that it refers to."""
-    if id(thing) in seen:
+    if id(thing) in visited:
         return
-    seen.add(id(thing))
+    visited.add(id(thing))
     thing = getattr(thing, "py_func", thing)  # of a kernel of numba
     if isinstance(thing, PLAIN):
         yield name, repr(thing)
@@ -51,7 +51,7 @@ def _contents(name: str, thing: Any, seen: set[int]) -> Iterator[tuple[str, str]
     elif isinstance(thing, type | FunctionType):
         yield name, _source(thing)
         for inner, value in _references(thing):
-            yield from _contents(inner, value, seen)
+            yield from _contents(inner, value, visited)
     else:
         raise _UnknownContentError(name)
 
@@ -86,9 +86,9 @@ def _source(thing: type | FunctionType) -> str:
         if (
             isinstance(node, ast.ClassDef)
             and node.name == thing.__name__
-            and (found := ast.get_source_segment(text, node))
+            and (segment := ast.get_source_segment(text, node))
         ):
-            return found
+            return segment
     raise OSError(f"the source of {thing.__name__} is not known")
 
 
@@ -100,8 +100,8 @@ def _cell(cls: type) -> str:
 
 
 def _functions(cls: type) -> Iterator[FunctionType]:
-    for each in vars(cls).values():
-        function = inspect.unwrap(getattr(each, "__func__", each))
+    for attribute in vars(cls).values():
+        function = inspect.unwrap(getattr(attribute, "__func__", attribute))
         if isinstance(function, FunctionType) and function.__module__ == cls.__module__:
             yield function
 

@@ -32,21 +32,21 @@ _VERSION = re.compile(r"^Version:\s*(\S+)", re.MULTILINE)
 
 def versions(*more: str) -> dict[str, str]:
     """Return the versions of Python, Tangible Images, LIBRARIES and more distributions, as far as installed."""
-    return _of(["tangible-images", *(name for names in LIBRARIES.values() for name in names), *more])
+    return _find_versions(["tangible-images", *(name for names in LIBRARIES.values() for name in names), *more])
 
 
 def of_imported(tops: Iterable[str]) -> dict[str, str]:
     """Return the versions of Python and of the distributions of these top packages, listed here or not."""
-    return _of([name for top in sorted(tops) for name in _distributions(top)])
+    return _find_versions([name for top in sorted(tops) for name in _distributions(top)])
 
 
 def is_plugin(top: str) -> bool:
     """Return True if the distribution of a package has plugins of Tangible Images."""
-    installed = (metadata.distribution(name) for name in _distributions(top) if _version(name))
-    return any(point.group.startswith("tangible.") for each in installed for point in each.entry_points)
+    distributions = (metadata.distribution(name) for name in _distributions(top) if _version(name))
+    return any(point.group.startswith("tangible.") for package in distributions for point in package.entry_points)
 
 
-def _of(distributions: Iterable[str]) -> dict[str, str]:
+def _find_versions(distributions: Iterable[str]) -> dict[str, str]:
     python = {"python": ".".join(map(str, sys.version_info[:3]))}
     return python | {name: version for name in dict.fromkeys(distributions) if (version := _version(name))}
 
@@ -55,8 +55,8 @@ def _of(distributions: Iterable[str]) -> dict[str, str]:
 def _distributions(top: str) -> tuple[str, ...]:
     if top in sys.stdlib_module_names:
         return ()
-    if listed := LIBRARIES.get(top) or _OTHERS.get(top):
-        return listed
+    if names := LIBRARIES.get(top) or _OTHERS.get(top):
+        return names
     if _version(top):
         return (top,)
     return tuple(sorted(set(metadata.packages_distributions().get(top, ()))))
@@ -101,7 +101,7 @@ class Place(NamedTuple):
 def place(name: str) -> Place | None:
     """Return the module of this name, as it was or would be imported; None if it is not a module."""
     module = sys.modules.get(name)
-    file, package = (getattr(module, each, None) for each in ("__file__", "__package__"))
+    file, package = (getattr(module, attribute, None) for attribute in ("__file__", "__package__"))
     if isinstance(file, str):
         return Place(name, file, package or "")
     spec = _spec(name)
@@ -119,7 +119,7 @@ def is_read(top: str) -> bool:
         return True
     spec = _spec(top)
     where = [] if spec is None else [*(spec.submodule_search_locations or ()), spec.origin or ""]
-    return not any(INSTALLED & set(Path(each).parts) for each in where) or is_plugin(top)
+    return not any(INSTALLED & set(Path(path).parts) for path in where) or is_plugin(top)
 
 
 @cache

@@ -12,7 +12,7 @@ def watch_numba() -> None:
     """Extend numba's cache by the dependencies of kernels, now or as soon as numba is imported."""
     if CACHING in sys.modules:
         _extend(sys.modules[CACHING])
-    elif not any(isinstance(each, _Watch) for each in sys.meta_path):
+    elif not any(isinstance(finder, _Watch) for finder in sys.meta_path):
         sys.meta_path.insert(0, _Watch())
 
 

@@ -17,8 +17,8 @@ MAX_BYTES = 1_000_000
 
 def log_folder() -> Path:
     """Return $TANGIBLE_LOG_DIR, or the user's folder for logs."""
-    if named := os.environ.get("TANGIBLE_LOG_DIR"):
-        return Path(os.path.expanduser(named))  # noqa: PTH111 - pathlib raises for an unknown home
+    if folder := os.environ.get("TANGIBLE_LOG_DIR"):
+        return Path(os.path.expanduser(folder))  # noqa: PTH111 - pathlib raises for an unknown home
     from platformdirs import user_log_path
 
     return user_log_path("tangible-images")

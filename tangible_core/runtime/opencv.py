@@ -88,6 +88,6 @@ limiters.append(opencv_at_most)
 
 def _switch(cv2: Any) -> None:
     """Set OpenCV to the strictest setting of all open blocks."""
-    optimised, threads = _before
-    cv2.setUseOptimized(optimised and not any(plain for _, plain in _blocks))
+    is_optimised, threads = _before
+    cv2.setUseOptimized(is_optimised and not any(plain for _, plain in _blocks))
     cv2.setNumThreads(min([threads, *(most for most, _ in _blocks)]))

@@ -18,14 +18,14 @@ def end_as_ctrl_c() -> Generator[None]:
     here = threading.current_thread() is threading.main_thread()
     over = threading.Event()
     undo = end_before_console(_interrupt, over, ignore_ctrl_c=False)
-    mine = [each for each in ENDING if here and signal.getsignal(each) == signal.SIG_DFL]
-    for each in mine:
-        signal.signal(each, _receive)
+    mine = [number for number in ENDING if here and signal.getsignal(number) == signal.SIG_DFL]
+    for number in mine:
+        signal.signal(number, _receive)
     try:
         yield
     finally:
-        for each in mine:
-            signal.signal(each, signal.SIG_DFL)
+        for number in mine:
+            signal.signal(number, signal.SIG_DFL)
         over.set()
         undo()
 

@@ -45,16 +45,16 @@ def torch_at_most(threads: int) -> Generator[None]:
     try:
         yield
     finally:
-        if (loaded := sys.modules.get("torch")) and (before or _own_threads):
-            loaded.set_num_threads(before or _own_threads)
+        if (torch_now := sys.modules.get("torch")) and (before or _own_threads):
+            torch_now.set_num_threads(before or _own_threads)
 
 
 limiters.append(torch_at_most)
 
 
-def pick_device(wanted: TorchDevice) -> "torch.device":
+def pick_device(choice: TorchDevice) -> "torch.device":
     """Return the device to compute on. Raises: BrokenMethod without torch, or without the requested GPU."""
     torch = need("torch")
-    if wanted == "cuda" and not torch.cuda.is_available():
+    if choice == "cuda" and not torch.cuda.is_available():
         raise BrokenMethod("torch_device is 'cuda', but torch finds no such GPU here; use 'auto' or 'cpu'")
-    return torch.device("cuda" if wanted != "cpu" and torch.cuda.is_available() else "cpu")
+    return torch.device("cuda" if choice != "cpu" and torch.cuda.is_available() else "cpu")

@@ -150,17 +150,17 @@ def part_number(surface: HapticSurface, part: str | int) -> int:
         if 0 <= part < min(len(names), MAX_BEACON_PARTS):
             return part
         raise ConfigError(f"there is no {name_part(part)}; the parts are {_list_parts(names)}")
-    wanted = part.strip()
-    numbers = [number for number, name in enumerate(names) if wanted and name == wanted]
+    text = part.strip()
+    numbers = [number for number, name in enumerate(names) if text and name == text]
     if len(numbers) > 1:
         choice = ", ".join(str(shown_number(each)) for each in numbers)
-        raise ConfigError(f"{len(numbers)} parts are called {quoted(wanted)}; choose one by its number: {choice}")
+        raise ConfigError(f"{len(numbers)} parts are called {quoted(text)}; choose one by its number: {choice}")
     if numbers:
         return part_number(surface, numbers[0])
-    if wanted.isdecimal():
-        return part_number(surface, label_of_number(int(wanted)))
-    hint = did_you_mean(wanted, [name for name in names if name])
-    raise ConfigError(f"no part is called {quoted(wanted)}{hint}; the parts are {_list_parts(names)}")
+    if text.isdecimal():
+        return part_number(surface, label_of_number(int(text)))
+    hint = did_you_mean(text, [name for name in names if name])
+    raise ConfigError(f"no part is called {quoted(text)}{hint}; the parts are {_list_parts(names)}")
 
 
 def beacon_to(surface: HapticSurface, part: str | int) -> Beacon:
@@ -204,8 +204,8 @@ def _coarsen(cells: np.ndarray, step: int, pitch_m: tuple[float, float]) -> tupl
     """Return the part in blocks of step x step cells, with a margin, and the margins above and to the left."""
     across, down = (_margin(step * pitch) for pitch in pitch_m)
     rows, columns = cells.shape
-    filled = np.pad(cells, ((0, -rows % step), (0, -columns % step)))
-    blocks = filled.reshape(filled.shape[0] // step, step, filled.shape[1] // step, step).any(axis=(1, 3))
+    grid = np.pad(cells, ((0, -rows % step), (0, -columns % step)))
+    blocks = grid.reshape(grid.shape[0] // step, step, grid.shape[1] // step, step).any(axis=(1, 3))
     return np.pad(blocks, ((down, down), (across, across))), down, across
 
 
@@ -226,11 +226,11 @@ def _distance(cells: np.ndarray, across_m: float, down_m: float) -> Float64[np.n
 
 def _list_parts(names: tuple[str, ...]) -> str:
     """Return the parts with their names, or their numbers alone; few enough for a line."""
-    named = [f"{shown_number(number)}: {quoted(name)}" for number, name in enumerate(names) if name]
-    if not named:
+    labels = [f"{shown_number(number)}: {quoted(name)}" for number, name in enumerate(names) if name]
+    if not labels:
         return f"1 to {len(names)}, none of which has a name"
-    more = f" and {len(named) - MAX_LISTED} others" if len(named) > MAX_LISTED else ""
-    return ", ".join(named[:MAX_LISTED]) + more
+    more = f" and {len(labels) - MAX_LISTED} others" if len(labels) > MAX_LISTED else ""
+    return ", ".join(labels[:MAX_LISTED]) + more
 
 
 MAX_LISTED = 20

@@ -24,8 +24,8 @@ FLAG, SHIFT = int(TickFlag.BEACON), BEACON_SHIFT
 @inner(forceinline=True)
 def _weights(t):
     """Return the three quadratic B-splines at t in -0.5..0.5 of the middle one, and their slopes."""
-    left, right = 0.5 - t, 0.5 + t
-    return 0.5 * left * left, 0.75 - t * t, 0.5 * right * right, -left, -2.0 * t, right
+    near, far = 0.5 - t, 0.5 + t
+    return 0.5 * near * near, 0.75 - t * t, 0.5 * far * far, -near, -2.0 * t, far
 
 
 @inner(forceinline=True)
@@ -59,13 +59,13 @@ def potential(words, numbers, field, x, y):
 
 
 @inner(forceinline=True)
-def _is_on(words, pressed):
+def _is_on(words, presses):
     """Return True if a beacon acts in this tick; a button that was pressed just now ends the request."""
     request = words[at.ASKED]
     if request == 0 or request == words[at.LET_GO]:
         words[at.SEEN] = 0
         return False
-    if pressed & words[at.BUTTONS]:
+    if presses & words[at.BUTTONS]:
         words[at.LET_GO], words[at.WHY], words[at.SEEN] = request, at.BY_BUTTON, 0
         return False
     return True
@@ -84,10 +84,10 @@ def _settle(numbers, memory, x, y, u, elapsed_s):
 @njit(int64(INTEGERS, WRITTEN, FIELD, WRITTEN, *[float64] * 5, int64), **KERNEL)
 def pull(words, numbers, field, memory, period_s, x, y, vx, vy, buttons):
     """Write the beacon's force at a fresh position into the guard's memory, before the guard; return the flags."""
-    pressed = buttons & ~words[at.HELD]
+    presses = buttons & ~words[at.HELD]
     words[at.HELD] = buttons
     memory[layout.PULL] = memory[layout.PULL + 1] = memory[layout.PULL_STIFFNESS] = 0.0
-    if not _is_on(words, pressed):
+    if not _is_on(words, presses):
         return 0
     words[at.TICKS] += 1
     flags = FLAG | words[at.PART] << SHIFT

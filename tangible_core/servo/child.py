@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import IO, final
 
 from ..errors import DeviceError
-from ..plugins.interfaces import Link, Touch, touch_of
+from ..plugins.interfaces import Link, Touch, as_touch
 from ..runtime.system import priority
 from ..runtime.system.console import ENDING, PAUSING, end_before_console, take_input
 from ..translation import translate
@@ -45,9 +45,9 @@ class Child:
     def __init__(self, commands: IO[bytes], replies: IO[bytes]) -> None:
         self._commands, self._replies = commands, replies
         self._ring: Ring | None = None
-        self._stopped = self._granted = ""
+        self._end_reason = self._rights = ""
         self._lock = threading.Lock()
-        self._taken = threading.Event()
+        self._scene_taken = threading.Event()
 
     def main(self) -> None:
         """Run until the host, a signal, the device or the end of the time stops the loop."""
@@ -59,16 +59,16 @@ class Child:
             failure = sendable(error)
             self._reply(End(str(failure) if isinstance(failure, DeviceError) else "", failure))
         else:
-            self._reply(End(self._stopped))
+            self._reply(End(self._end_reason))
         finally:
             if self._ring is not None:
                 self._ring.remove()  # the host has mapped it too, or was killed and cannot remove it
 
     def _open(self, start: Start) -> None:
         self._ring = ring = Ring.attach(Path(start.ring))
-        if self._stopped:
+        if self._end_reason:
             self.stop()
-        touch = touch_of(parcel.unpack(Path(start.scene)))
+        touch = as_touch(parcel.unpack(Path(start.scene)))
         if ring.header[STOP]:
             return
         root = logging.getLogger()
@@ -94,20 +94,20 @@ class Child:
 
     def _tick(self, ring: Ring, failures: list[BaseException]) -> None:
         try:
-            real_time, granted = priority.request()
+            real_time, rights = priority.request()
             loop.start_clock(ring.header, real_time)
-            self._granted = granted
-            self._reply(StartReply(f"{granted}; {self._next.how}"))
+            self._rights = rights
+            self._reply(StartReply(f"{rights}; {self._next.how}"))
             self._next.run()
             while ring.header[SWAP] and not ring.header[STOP]:
                 loop.take_over(ring)
-                self._taken.set()
+                self._scene_taken.set()
                 self._next.run()
         except BaseException as error:  # noqa: BLE001 - the main thread raises it again, once the force is zero
             failures.append(error)
         finally:
             ring.header[STOP] = 1
-            self._taken.set()
+            self._scene_taken.set()
 
     def _listen(self, ring: Ring, link: Link) -> None:
         while isinstance(message := receive(self._commands), Swap):
@@ -117,22 +117,22 @@ class Child:
 
     def _swap(self, ring: Ring, link: Link, message: Swap) -> None:
         try:
-            touch = touch_of(parcel.unpack(Path(message.scene)))
+            touch = as_touch(parcel.unpack(Path(message.scene)))
             self._next = loop.prepare(link, touch, ring, message.settings)
         except BaseException as error:  # noqa: BLE001 - the current scene stays
             self._reply(Refusal(sendable(error)))
             return
-        self._taken.clear()
+        self._scene_taken.clear()
         ring.header[SWAP] = 1
         if not ring.header[STOP]:  # read after clearing: the loop sets both when it ends, in this order
-            self._taken.wait()
+            self._scene_taken.wait()
         if not ring.header[STOP]:
             self._timeout_s = message.timeout_s
-            self._reply(SwapReply(f"{self._granted}; {self._next.how}"))
+            self._reply(SwapReply(f"{self._rights}; {self._next.how}"))
 
     def stop(self, why: str = "") -> None:
         """End the loop with the next tick."""
-        self._stopped = self._stopped or why
+        self._end_reason = self._end_reason or why
         if self._ring is not None:
             self._ring.header[STOP] = 1
 

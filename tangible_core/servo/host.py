@@ -7,7 +7,7 @@ from typing import Any, Self, final
 
 from ..data import Relief, ServoReport
 from ..errors import DeviceError, check_positive
-from ..plugins.interfaces import Film, HapticDevice, Touch, touch_of
+from ..plugins.interfaces import Film, HapticDevice, Touch, as_touch
 from ..runtime.system import shared_memory
 from ..translation import language
 from . import limits as time_limits
@@ -15,7 +15,7 @@ from . import parcel
 from .beacon import ALL_BUTTONS, ASKED, SEEN, Beacon, BeaconState
 from .framing import Start, StartReply, Swap, SwapReply
 from .guard.safety import Safety
-from .guard.stiffness import stiffness_of
+from .guard.stiffness import find_stiffness
 from .parcel import Packed
 from .reports import report
 from .ring import LAST, PERIOD_NS, STOP, Ring
@@ -55,7 +55,7 @@ class Servo:
         self._loop = LoopProcess(device)
         self._ring: Ring | None = None
         self._film: Film | None = None
-        self._sent = [touch.parcel] if isinstance(touch, Packed) else list[Path]()
+        self._parcels = [touch.parcel] if isinstance(touch, Packed) else list[Path]()
         self.how: str = ""
         """A sentence about the granted rights, the kind of loop, and the stiffness of the current scene if measured."""
         self.start_s: float = 0.0
@@ -164,13 +164,13 @@ class Servo:
     @property
     def device_lost(self) -> bool:
         """True if the device ended the loop, or prevented its start: it was absent, or stopped answering."""
-        ended = self._loop.ended
-        return ended is not None and (isinstance(ended.error, DeviceError) or ended.stopped == STOOD_STILL)
+        end = self._loop.ended
+        return end is not None and (isinstance(end.error, DeviceError) or end.stopped == STOOD_STILL)
 
     def report(self) -> ServoReport:
         """Return a report of the loop so far."""
-        ended = self._loop.ended
-        return report(self.ring, (ended.stopped or OVER) if ended else "")
+        end = self._loop.ended
+        return report(self.ring, (end.stopped or OVER) if end else "")
 
     def stop(self, why: str = "stopped") -> ServoReport:
         """End the loop, if it still runs, and report on it. Raises: whatever a faulty plugin raised in the loop."""
@@ -193,20 +193,20 @@ class Servo:
     def _pack(self, touch: Touch | Film) -> tuple[str, Film | None]:
         """Return the file of a parcel, and the film in it, in the memory that the loop's process will share."""
         if isinstance(touch, Packed):
-            self._sent.append(touch.unused_parcel())
-            return str(self._sent[-1]), touch.film
-        self._sent.append(path := parcel.pack(touch))
+            self._parcels.append(touch.unused_parcel())
+            return str(self._parcels[-1]), touch.film
+        self._parcels.append(path := parcel.pack(touch))
         return str(path), parcel.share(path) if isinstance(touch, Film) else None
 
     def _remove_sent(self) -> None:
         """Delete parcels that the loop did not consume; `stop` and `swap` may do so at the same time."""
         with suppress(IndexError):
             while True:
-                shared_memory.remove(self._sent.pop())
+                shared_memory.remove(self._parcels.pop())
 
     def _arrays(self, touch: Touch | Film) -> tuple[Any, Any]:
         spec = self._device.spec()
-        self._stiffness = stiffness_of(touch_of(touch), spec)
+        self._stiffness = find_stiffness(as_touch(touch), spec)
         return self._limits.arrays(spec, self._stiffness.n_per_m)
 
     @property

@@ -6,11 +6,11 @@ from typing import Any, NoReturn, final
 
 from ..data import DeviceSpec, HapticState
 from ..errors import DeviceError
-from ..plugins.interfaces import Film, Touch, touch_of
+from ..plugins.interfaces import Film, Touch, as_touch
 from ..runtime.child_process import dumps
 from ..runtime.system import shared_memory
 from ..runtime.system.shared_memory import NAME, shared_folder
-from .guard.stiffness import stiffness_of
+from .guard.stiffness import find_stiffness
 from .ring import ALIGN
 
 
@@ -34,8 +34,8 @@ def pack(thing: Any) -> Path:
 
 def adopt(path: Path) -> Path:
     """Take over the memory of `pack`, and return its name here: it lasts as long as this process, not its maker."""
-    named = NAME.fullmatch(path.name)
-    if named is None or named[2] != "parcel":
+    match = NAME.fullmatch(path.name)
+    if match is None or match[2] != "parcel":
         raise DeviceError(f"{path}: is not the file of a packed scene; give the file that `pack_touch` made")
     try:
         return shared_memory.adopt(path)
@@ -45,9 +45,9 @@ def adopt(path: Path) -> Path:
 
 def unpack(path: Path) -> Any:
     """Load the object from the memory of `pack` and remove its name; the memory lasts as long as the arrays in it."""
-    mapped = shared_memory.attach(path)
+    memory = shared_memory.attach(path)
     shared_memory.remove(path)
-    return _load(mapped)
+    return _load(memory)
 
 
 def share(path: Path) -> Any:
@@ -55,13 +55,13 @@ def share(path: Path) -> Any:
     return _load(shared_memory.attach(path))
 
 
-def _load(mapped: memoryview) -> Any:
+def _load(memory: memoryview) -> Any:
     parts: list[memoryview] = []
     at = 0
-    while at < len(mapped):
-        length = int.from_bytes(mapped[at : at + 8], "little")
+    while at < len(memory):
+        length = int.from_bytes(memory[at : at + 8], "little")
         at += ALIGN
-        parts.append(mapped[at : at + length])
+        parts.append(memory[at : at + length])
         at += -(-length // ALIGN) * ALIGN
     return pickle.loads(parts[0], buffers=parts[1:])
 
@@ -118,7 +118,7 @@ def pack_touch(touch: Touch | Film, spec: DeviceSpec) -> Packed:
     spec: of the device on which the touch will act.
     Raises: DeviceError if there is no room, or the touch cannot be sent; BrokenMethod for an invalid stiffness.
     """
-    stiffness = stiffness_of(touch_of(touch), spec).n_per_m
-    packed = Packed(pack(touch), stiffness)
-    packed.film = share(packed.parcel) if isinstance(touch, Film) else None
-    return packed
+    stiffness = find_stiffness(as_touch(touch), spec).n_per_m
+    parcel_touch = Packed(pack(touch), stiffness)
+    parcel_touch.film = share(parcel_touch.parcel) if isinstance(touch, Film) else None
+    return parcel_touch

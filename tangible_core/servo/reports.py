@@ -57,9 +57,9 @@ class LoopTotals(NamedTuple):
 
     def plus(self, later: Self) -> Self:
         """Return the totals of both."""
-        summed = {name: getattr(self, name) + getattr(later, name) for name in self._fields}
+        sums = {name: getattr(self, name) + getattr(later, name) for name in self._fields}
         greatest = {name: max(getattr(self, name), getattr(later, name)) for name in GREATEST}
-        return self._replace(**summed | greatest)
+        return self._replace(**sums | greatest)
 
 
 def report(ring: Ring, stopped: str = "", before: LoopTotals | None = None, since_s: float = 0.0) -> ServoReport:
@@ -83,8 +83,8 @@ def report(ring: Ring, stopped: str = "", before: LoopTotals | None = None, sinc
 def _flag_counts(ring: Ring) -> Counter[str]:
     """Count the ticks with each flag of the guard, and with a beacon."""
     flags = safety.counts(ring.guard)
-    if pulled := int(ring.beacon.words[TICKS]):
-        flags[TickFlag.BEACON] = pulled
+    if ticks := int(ring.beacon.words[TICKS]):
+        flags[TickFlag.BEACON] = ticks
     return Counter({flag.name or "": count for flag, count in flags.items()})
 
 

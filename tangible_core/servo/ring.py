@@ -108,13 +108,13 @@ class Ring:
     def attach(cls, path: Path) -> Self:
         """Open the ring of this name. Raises: DeviceError if it is not a ring, or has another layout."""
         try:
-            mapped = shared_memory.attach(path)
+            memory = shared_memory.attach(path)
         except (OSError, ValueError) as error:
             raise DeviceError(f"{path}: no force loop runs there: {error}") from error
-        magic, layout, slots = np.frombuffer(mapped, np.int64, 3).tolist() if len(mapped) >= 24 else (0, 0, 0)
-        if magic != MAGIC or layout != LAYOUT or len(mapped) != _size(slots):
+        magic, layout, slots = np.frombuffer(memory, np.int64, 3).tolist() if len(memory) >= 24 else (0, 0, 0)
+        if magic != MAGIC or layout != LAYOUT or len(memory) != _size(slots):
             raise DeviceError(f"{path}: is not a ring of layout {LAYOUT}; watch it with the version that wrote it")
-        return cls(path, mapped, slots)
+        return cls(path, memory, slots)
 
     def allocate_beacon(self) -> None:
         """Allocate memory for the field: otherwise a process that writes there while memory is full would be killed."""

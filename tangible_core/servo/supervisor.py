@@ -88,8 +88,8 @@ class LoopProcess:
 
     def failure(self) -> Exception:
         """Return the error for a call after the end of the loop."""
-        ended = self.ended or End(OVER)
-        return ended.error or DeviceError(f"the force loop has ended: {ended.stopped or OVER}")
+        end = self.ended or End(OVER)
+        return end.error or DeviceError(f"the force loop has ended: {end.stopped or OVER}")
 
     def _close_pipe(self) -> None:
         if self._child is not None:
@@ -104,12 +104,12 @@ class LoopProcess:
     def _listen(self, ring: Ring, start: Start) -> None:
         """Start the process and take its messages until it is gone; nothing interrupts this thread."""
         try:
-            ended = self._run(ring, start)
+            end = self._run(ring, start)
         except Exception as error:  # noqa: BLE001 - passed to the thread that waits for a reply
-            ended = End("", sendable(error))
+            end = End("", sendable(error))
         ring.header[STOP] = 1
-        self.ended = ended
-        self._replies.put(ended)
+        self.ended = end
+        self._replies.put(end)
         self._over.set()
 
     def _run(self, ring: Ring, start: Start) -> End:
@@ -123,13 +123,13 @@ class LoopProcess:
                 self._close_pipe()
             with suppress(OSError, ValueError):  # the process is gone, or the pipe was closed
                 send(pipe_of(child.stdin), start)
-            ended = self._receive_until_end(replies)
+            end = self._receive_until_end(replies)
             ring.header[STOP] = 1
             self._close_pipe()
             code = self._wait_for_exit(child)
-        if ended is None:
+        if end is None:
             self._release_device()
-        return ended or End(self.why or f"the force loop's process died (exit code {code})")
+        return end or End(self.why or f"the force loop's process died (exit code {code})")
 
     def _wait_for_exit(self, child: subprocess.Popen[bytes]) -> int:
         """Return the exit code of a process that has sent its last message; kill it if it does not end."""
@@ -162,16 +162,16 @@ class LoopProcess:
         """Take the force from a device whose loop was killed: some hold the last force until the next command."""
         if self._device.spec().simulated:
             return
-        done = threading.Event()
-        threading.Thread(target=_open_and_close, args=(self._device, done), daemon=True).start()
-        if not done.wait(limits.KILL_S):
+        answer = threading.Event()
+        threading.Thread(target=_open_and_close, args=(self._device, answer), daemon=True).start()
+        if not answer.wait(limits.KILL_S):
             log.warning("the device does not answer and may still hold its last force; switch it off")
 
 
-def _open_and_close(device: HapticDevice, done: threading.Event) -> None:
+def _open_and_close(device: HapticDevice, answer: threading.Event) -> None:
     try:
         device.open().close()
     except Exception as error:  # noqa: BLE001 - whatever the driver raises, the user has to know
         log.warning("the device may still hold its last force: %s; switch it off", error)
     finally:
-        done.set()
+        answer.set()

@@ -11,11 +11,11 @@ from .parts_felt import beacons_felt as beacons_felt
 from .parts_felt import material_under as material_under
 from .parts_felt import materials_text as materials_text
 from .parts_felt import names_in as names_in
-from .parts_felt import names_of as names_of
 from .parts_felt import names_text as names_text
 from .parts_felt import part_label as part_label
 from .parts_felt import part_under as part_under
 from .parts_felt import parts_felt as parts_felt
+from .parts_felt import read_names as read_names
 from .parts_felt import with_parts as with_parts
 from .recording import INTERRUPTED as INTERRUPTED
 from .recording import STOPPED as STOPPED

@@ -35,11 +35,11 @@ def guard_summary(flagged: Mapping[str, int]) -> str:
     ''
     """
     by_name = {flag.name or "": flag for flag in SENTENCES}
-    touched = sum(flagged.get(name, 0) for name in ("TOUCHING", "NOT_FINITE", "STALE"))  # no tick has two of these
+    contacts = sum(flagged.get(name, 0) for name in ("TOUCHING", "NOT_FINITE", "STALE"))  # no tick has two of these
     ticks, name = max((flagged.get(name, 0), name) for name in by_name)
-    if ticks <= MOST * touched:
+    if ticks <= MOST * contacts:
         return ""
-    share = f"{100 * ticks / touched:.0f} %"
+    share = f"{100 * ticks / contacts:.0f} %"
     return f"In {share} of the ticks in contact {SENTENCES[by_name[name]]} (`tangible preflight` shows what fits)."
 
 

@@ -46,8 +46,8 @@ class RingDrain:
         these ticks on again.
         """
         rows, following = self._servo.ring.since(self._next)
-        if lost := following - self._next - len(rows):
-            log.warning("%d ticks were overwritten before they could be recorded; the machine is too busy", lost)
+        if lost_ticks := following - self._next - len(rows):
+            log.warning("%d ticks were overwritten before they could be recorded; the machine is too busy", lost_ticks)
         if len(rows):
             self._keep(rows)
         self._next = following
@@ -93,16 +93,16 @@ def watch_loop(
     """Start a loop, record and report it until something ends it, or `look` says why it must end; leave no force."""
     with ThreadPoolExecutor(1) as background, servo:  # in this order, the force ends first
         on_start(servo)
-        drain, next_s, ended = RingDrain(servo, keep), time.monotonic(), ""
+        drain, next_s, reason = RingDrain(servo, keep), time.monotonic(), ""
         try:
-            while servo.running and not ended:
+            while servo.running and not reason:
                 time.sleep(LOOK_EVERY_S)
                 background.submit(drain.look).result()
                 if time.monotonic() >= next_s:
                     next_s += REPORT_EVERY_S
                     on_report(servo.report())
-                ended = STOPPED if stop_asked() else look()
-            last = servo.stop(ended)
+                reason = STOPPED if stop_asked() else look()
+            last = servo.stop(reason)
         except KeyboardInterrupt:
             last = servo.stop(INTERRUPTED)
         background.submit(drain.look).result()

@@ -98,7 +98,7 @@ def names_in(configuration: str) -> str:
         return ""
 
 
-def names_of(text: str) -> list[dict[int, str]]:
+def read_names(text: str) -> list[dict[int, str]]:
     """Read the text of `names_text`, a line for each scene of a kiosk. Raises: OutputError if it is damaged."""
     try:
         scenes = [json.loads(line or "{}") for line in text.splitlines()]

@@ -9,19 +9,19 @@ from typing import final
 
 import numpy as np
 
-from ..compiled.touch import FRAME, moving_of
+from ..compiled.touch import FRAME, motion_array
 from ..data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport
 from ..errors import DeviceError, check_positive
-from ..plugins.interfaces import Film, HapticDevice, Link, Touch, touch_of
+from ..plugins.interfaces import Film, HapticDevice, Link, Touch, as_touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import OVER, Beacon, Safety
 from ..servo.beacon import BeaconMemory
-from ..servo.guard.stiffness import stiffness_of
+from ..servo.guard.stiffness import find_stiffness
 from ..servo.reports import brief_report
 from ..servo.ticks.python_tick import GuardedForce, guard_touch
 from .live import REPORT_EVERY_S, ignore
 from .recording import INTERRUPTED, STOPPED, Recording
-from .recording.replay import proxy_of
+from .recording.replay import proxy_reader
 
 log: logging.Logger = logging.getLogger(__name__)
 MAX_TICKS = 3_600_000
@@ -53,8 +53,8 @@ def run_simulated(
     a faulty touch, `on_report` or `frames` raises, once the force is zero.
     """
     check_positive("seconds", seconds)
-    touch, spec = touch_of(touch), device.spec()
-    settings, memory = (limits or Safety()).arrays(spec, stiffness_of(touch, spec).n_per_m)
+    touch, spec = as_touch(touch), device.spec()
+    settings, memory = (limits or Safety()).arrays(spec, find_stiffness(touch, spec).n_per_m)
     pull = None if beacon is None else BeaconMemory.of(beacon).arrays
     allowed_force = guard_touch(touch, settings, memory, pull)
     tape = _Tape(touch, on_report or ignore)
@@ -115,7 +115,7 @@ class _Tape:
         self.stopped = ""
         self.ticks = 0
         self._numbers = array("d")
-        self._proxy, self._moving = proxy_of(touch), moving_of(touch)
+        self._proxy, self._moving = proxy_reader(touch), motion_array(touch)
         self._on_report = on_report
         self._reports = 0
         self._start_s = self._peak_n = self._work_j = 0.0
@@ -126,10 +126,10 @@ class _Tape:
         if not self.ticks:
             self._start_s, self._state = state.time_s, state
         way = zip(self._force, state.position_m, self._state.position_m, strict=True)
-        self._work_j += sum(held * (now - then) for held, now, then in way)
+        self._work_j += sum(force_n * (now - then) for force_n, now, then in way)
         self._peak_n = max(self._peak_n, math.hypot(*force))
-        moved = *state.position_m, *state.velocity_m_per_s
-        row = state.time_s, 0.0, *moved, *self._proxy(), *force, flags, state.buttons, self._moving[FRAME]
+        motion = *state.position_m, *state.velocity_m_per_s
+        row = state.time_s, 0.0, *motion, *self._proxy(), *force, flags, state.buttons, self._moving[FRAME]
         self._numbers.extend(row)  # all at once: Ctrl-C leaves whole rows
         self._state, self._force = state, force
         self.ticks += 1

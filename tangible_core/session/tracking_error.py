@@ -65,9 +65,9 @@ class TickSampler:
         return Recording(np.concatenate(self._samples))
 
 
-def tracking_error(seen: Recording, wanted_m: Places | None, surface: HapticSurface) -> TrackingError:
+def tracking_error(recording: Recording, wanted_m: Places | None, surface: HapticSurface) -> TrackingError:
     """Return the tracking error of a hand. wanted_m: the place on its path at each tick; None if it is not known."""
-    beside, share, farthest_m, says = _held_off(seen, surface), 0.0, 0.0, ""
+    beside, share, farthest_m, says = _held_off(recording, surface), 0.0, 0.0, ""
     beside_share = float(beside.mean()) if beside.size else 0.0
     if beside_share > REPORTED_SHARE:
         says = (
@@ -75,35 +75,35 @@ def tracking_error(seen: Recording, wanted_m: Places | None, surface: HapticSurf
             f"{100 * beside_share:.0f} % of the time. Begin above the surface, and stay over its {_size(surface)}."
         )
     if wanted_m is not None and beside.size:
-        away_m, most_m = _distance(seen, wanted_m), min(OFF_M, min(surface.extent_m) / OFF_PART)
+        away_m, most_m = _distance(recording, wanted_m), min(OFF_M, min(surface.extent_m) / OFF_PART)
         share, farthest_m = float((away_m > most_m).mean()), float(away_m.max())
         if share > REPORTED_SHARE:
             says = (
                 f"The hand did not follow its path: for {100 * share:.0f} % of the time it was more than "
                 f"{1000 * most_m:.2g} mm off, {1000 * farthest_m:.0f} mm at most. Likely cause: "
             )
-            says += _cause(seen, wanted_m, surface, away_m, most_m)
+            says += _cause(recording, wanted_m, surface, away_m, most_m)
     return TrackingError(share, farthest_m, beside_share, says)
 
 
-def _distance(seen: Recording, wanted_m: Places) -> Float64[np.ndarray, " n"]:
+def _distance(recording: Recording, wanted_m: Places) -> Float64[np.ndarray, " n"]:
     """Return the horizontal distance of the hand from its path within the last LATE_S."""
-    period_s = float(np.median(np.diff(seen.time_s))) if len(seen.rows) > 1 else LATE_S
+    period_s = float(np.median(np.diff(recording.time_s))) if len(recording.rows) > 1 else LATE_S
     late = min(round(LATE_S / period_s), len(wanted_m) - 1) if period_s > 0 else 0
     path_m = np.pad(wanted_m[:, :2], ((late, 0), (0, 0)), mode="edge")
-    count, at_m = len(wanted_m), seen.position_m[:, :2]
+    count, at_m = len(wanted_m), recording.position_m[:, :2]
     ways_m = (at_m - path_m[first : first + count] for first in range(late + 1))
     return np.nan_to_num(np.min([np.hypot(*way_m.T) for way_m in ways_m], axis=0))
 
 
-def _held_off(seen: Recording, surface: HapticSurface) -> Which:
+def _held_off(recording: Recording, surface: HapticSurface) -> Which:
     """Mark the ticks at which a side wall holds the hand off: a contact that began outside, a force mostly level."""
-    touching: Which = np.asarray(seen.force_n.any(axis=1))
-    over = _over(seen.position_m, surface)
+    touching: Which = np.asarray(recording.force_n.any(axis=1))
+    over = _over(recording.position_m, surface)
     began = touching & ~np.append(False, touching[:-1])
     outside = np.flatnonzero(began & ~np.append(True, over[:-1]))
     contact = np.cumsum(began)
-    level = np.abs(seen.force_n[:, 2]) < np.hypot(seen.force_n[:, 0], seen.force_n[:, 1])
+    level = np.abs(recording.force_n[:, 2]) < np.hypot(recording.force_n[:, 0], recording.force_n[:, 1])
     return np.asarray(touching & level & np.isin(contact, contact[outside]))
 
 
@@ -112,25 +112,25 @@ def _over(at_m: Places, surface: HapticSurface) -> Which:
 
 
 def _cause(
-    seen: Recording, wanted_m: Places, surface: HapticSurface, away_m: Float64[np.ndarray, " n"], most_m: float
+    recording: Recording, wanted_m: Places, surface: HapticSurface, away_m: Float64[np.ndarray, " n"], most_m: float
 ) -> str:
     """Return the likely cause of the tracking error, and the cure."""
     off, worst = away_m > most_m, int(away_m.argmax())
-    if (_held_off(seen, surface) | ~_over(wanted_m, surface))[off].mean() > 0.5:
+    if (_held_off(recording, surface) | ~_over(wanted_m, surface))[off].mean() > 0.5:
         return (
             f"its path leaves the surface, which is {_size(surface)}, and it came in again by the side, under the rim. "
             "Leave out the device's `size_m`, and its path stays over the surface."
         )
-    held_n = float(np.median(np.hypot(*seen.force_n[off, :2].T)))
+    held_n = float(np.median(np.hypot(*recording.force_n[off, :2].T)))
     if held_n < HOLDS_N:
         return "the hand was free, but too slow for its path. A smaller `speed_m_per_s` of the device lets it follow."
-    at_m: Float64[np.ndarray, " 3"] = seen.proxy_m[worst]
+    at_m: Float64[np.ndarray, " 3"] = recording.proxy_m[worst]
     if not np.isfinite(at_m).all():
-        at_m = seen.position_m[worst]
+        at_m = recording.position_m[worst]
     here, goal_m = f"at x {1000 * at_m[0]:.0f} mm, y {1000 * at_m[1]:.0f} mm", wanted_m[worst] - at_m
-    turned = np.arctan2(goal_m[1], goal_m[0]) + 2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
-    foot_m = min(float(_ground(surface, at_m, angle, FOOT_M).min(initial=np.inf)) for angle in turned.tolist())
-    rises_m = np.array([_ground(surface, at_m, angle, AROUND_M).max(initial=0) - foot_m for angle in turned.tolist()])
+    angles = np.arctan2(goal_m[1], goal_m[0]) + 2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
+    foot_m = min(float(_ground(surface, at_m, angle, FOOT_M).min(initial=np.inf)) for angle in angles.tolist())
+    rises_m = np.array([_ground(surface, at_m, angle, AROUND_M).max(initial=0) - foot_m for angle in angles.tolist()])
     if np.count_nonzero(rises_m > max(RISE_M, rises_m[0] / 2)) >= IN_A_PIT:
         return f"it was stuck in a pit {1000 * np.median(rises_m):.0f} mm deep {here}. {GENTLER}"
     if rises_m[0] > RISE_M:

@@ -31,10 +31,10 @@ class Catalogue:
     def __init__(self, entries: dict[str, str], numerals: Numerals) -> None:
         templates = [Template(*each) for each in entries.items()]
         self._exact = {template.english: template.translation for template in templates if not template.names}
-        varied = sorted((template for template in templates if template.names), key=lambda each: -each.letters)
-        self._strong = [each for each in varied if each.letters >= WEAK or "\n" in each.english]
-        self._weak = [each for each in varied if each not in self._strong]
-        self._endings = [each for each in varied if each.english[0] in MARKS]
+        with_values = sorted((template for template in templates if template.names), key=lambda each: -each.letters)
+        self._strong = [each for each in with_values if each.letters >= WEAK or "\n" in each.english]
+        self._weak = [each for each in with_values if each not in self._strong]
+        self._endings = [each for each in with_values if each.english[0] in MARKS]
         self._words: dict[str, list[str]] = {}
         for english in self._exact:
             if english.count(" ") >= MAX_WORDS or english[0] in MARKS:
@@ -44,7 +44,7 @@ class Catalogue:
 
     def __call__(self, text: str) -> str:
         """Return a text in the language; what the catalogue does not know stays English, as a whole."""
-        return text if (found := self.find(text)) is None else found
+        return text if (translation := self.find(text)) is None else translation
 
     def _find(self, text: str) -> str | None:
         """Return a text in the language, or None if it is not known."""
@@ -57,18 +57,18 @@ class Catalogue:
             self._by_sentences, self._by_joints, self._weakly, self._by_joint_and_names,
             self._without_stop, self._behind_a_name,
         )  # fmt: skip
-        found = next(filter(None, (way(bare) for way in ways)), None)
-        if found is None and after:  # a template whose last placeholder is empty
-            found = self._strongly(f"{bare} ") or self._weakly(f"{bare} ")
-            return found and before + found + after[1:]
-        return None if found is None else before + found + after
+        translation = next(filter(None, (way(bare) for way in ways)), None)
+        if translation is None and after:  # a template whose last placeholder is empty
+            translation = self._strongly(f"{bare} ") or self._weakly(f"{bare} ")
+            return translation and before + translation + after[1:]
+        return None if translation is None else before + translation + after
 
     def _exactly(self, text: str) -> str | None:
-        joined = " ".join(text.split())
-        if (found := self._exact.get(text) or self._exact.get(joined)) is not None:
-            return found
-        found = self._exact.get(f"{joined}.")  # as in a list of commands
-        return found and found.removesuffix(".")
+        one_line = " ".join(text.split())
+        if (translation := self._exact.get(text) or self._exact.get(one_line)) is not None:
+            return translation
+        translation = self._exact.get(f"{one_line}.")  # as in a list of commands
+        return translation and translation.removesuffix(".")
 
     def _strongly(self, text: str) -> str | None:
         return self._by_template(text, self._strong)
@@ -93,8 +93,8 @@ class Catalogue:
     def _counted(self, text: str) -> str | None:
         """Return a number of known things, such as `3 ok`."""
         number, _, rest = text.partition(" ")
-        found = self._exact.get(rest)
-        return f"{number} {found}" if found and number.isdecimal() else None
+        translation = self._exact.get(rest)
+        return f"{number} {translation}" if translation and number.isdecimal() else None
 
     def _by_lines(self, text: str) -> str | None:
         """Return a text of several paragraphs or lines."""
@@ -110,17 +110,17 @@ class Catalogue:
             apart = start > 0 and text.endswith(ending) and (text[start - 1] == " " or ending[0] in MARKS)
             if apart and self._fits(text[:start]):
                 return self(text[:start]) + self._exact[ending]
-        for each in self._endings:
-            place = text.rfind(each.literals[0])
-            values = each.match(text[place:]) if place > 0 else None
+        for template in self._endings:
+            place = text.rfind(template.literals[0])
+            values = template.match(text[place:]) if place > 0 else None
             if values is not None and all(map(self._fits, (text[:place], *values.values()))):
-                return self(text[:place]) + each.fill(values, self)
+                return self(text[:place]) + template.fill(values, self)
         return None
 
     def _by_sentences(self, text: str) -> str | None:
         sentences = re.split(r"(?<=[.!?]) +(?=[A-Z`[])", text)
-        known = len(sentences) > 1 and all(self.find(sentence) is not None for sentence in sentences)
-        return " ".join(map(self, sentences)) if known else None
+        are_known = len(sentences) > 1 and all(self.find(sentence) is not None for sentence in sentences)
+        return " ".join(map(self, sentences)) if are_known else None
 
     def _by_joints(self, text: str) -> str | None:
         """Return two texts, such as those of a list or a place and a text, that are known."""
@@ -139,15 +139,15 @@ class Catalogue:
     def _behind_a_name(self, text: str) -> str | None:
         """Return a known text behind a name of somebody's own, of whatever words."""
         name, colon, rest = text.partition(": ")
-        found = self.find(rest) if colon else None
-        return found and f"{name}{colon}{found}"
+        translation = self.find(rest) if colon else None
+        return translation and f"{name}{colon}{translation}"
 
     def _without_stop(self, text: str) -> str | None:
-        found = self.find(text[:-1]) if text.endswith(".") else None
-        return found and f"{found}."
+        translation = self.find(text[:-1]) if text.endswith(".") else None
+        return translation and f"{translation}."
 
     def _halves(self, text: str) -> Iterator[tuple[tuple[str, str], str]]:
-        for joint in (each for each in JOINTS if text.count(each) <= MAX_JOINTS):
+        for joint in (mark for mark in JOINTS if text.count(mark) <= MAX_JOINTS):
             place = text.find(joint)
             while place > 0:
                 yield (text[:place], text[place + len(joint) :]), joint

@@ -30,14 +30,14 @@ def language_of_environment(environment: Mapping[str, str]) -> str:
     >>> language_of_environment({"LC_ALL": "C.UTF-8", "LANGUAGE": "de"})
     'en'
     """
-    locale = next((environment[each] for each in LOCALES if environment.get(each)), "")
+    locale = next((environment[variable] for variable in LOCALES if environment.get(variable)), "")
     if locale.partition(".")[0] in WITHOUT_LANGUAGE:
         return LANGUAGES[0]
     tags = [*environment.get("LANGUAGE", "").split(":"), locale]
-    return next((found for found in map(_spoken, tags) if found), LANGUAGES[0])
+    return next((name for name in map(_spoken, tags) if name), LANGUAGES[0])
 
 
 def _spoken(tag: str) -> str:
     """Return the language of a tag, or "" if there is no catalogue of it."""
-    found = tag.replace("_", "-").partition("-")[0].partition(".")[0].lower()
-    return found if found in LANGUAGES else ""
+    name = tag.replace("_", "-").partition("-")[0].partition(".")[0].lower()
+    return name if name in LANGUAGES else ""

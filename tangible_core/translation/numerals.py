@@ -17,10 +17,10 @@ class Numerals:
 
     def __call__(self, text: str) -> str | None:
         """Return a number in the notation; None for any other text."""
-        if (found := NUMBER.fullmatch(text)) is None:
+        if (match := NUMBER.fullmatch(text)) is None:
             return None
-        sign, whole, fraction, exponent = found.groups(default="")
-        unit = text[found.end(4) if exponent else found.end(3) if fraction else found.end(2) :]
+        sign, whole, fraction, exponent = match.groups(default="")
+        unit = text[match.end(4) if exponent else match.end(3) if fraction else match.end(2) :]
         return (
             f"{sign}{whole.replace(',', self._thousands)}{self._decimal + fraction if fraction else ''}{exponent}{unit}"
         )

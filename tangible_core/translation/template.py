@@ -22,7 +22,7 @@ class Template:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """The names of the placeholders, in the order of the English text."""
-        return tuple(found[1] for found in PLACEHOLDER.finditer(self.english))
+        return tuple(match[1] for match in PLACEHOLDER.finditer(self.english))
 
     def is_once_in(self, text: str) -> bool:
         """Return True if a text may be made of this template; two texts of it in one, joined as a list, are not."""
@@ -53,11 +53,11 @@ class Template:
         """Return the translation with these values. embed: puts a value into the language."""
         parts = self.translation.split("`")
         for number, part in enumerate(parts):
-            coded = number % 2 == 1
+            is_code = number % 2 == 1
 
-            def value(found: re.Match[str], coded: bool = coded) -> str:
-                own = values[found[1]]
-                return own if coded or found[2] else embed(own)
+            def value(match: re.Match[str], is_code: bool = is_code) -> str:
+                own = values[match[1]]
+                return own if is_code or match[2] else embed(own)
 
             parts[number] = PLACEHOLDER.sub(value, part)
         return "`".join(parts)

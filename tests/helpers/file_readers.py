@@ -319,12 +319,12 @@ def _make_recordings(folder: Path) -> None:
 
 
 def _recording(path: Path) -> object:
-    from tangible_core.session.parts_felt import names_of
+    from tangible_core.session.parts_felt import read_names
     from tangible_core.session.recording.recording import Recording
 
     recording = Recording.load(path)
     about = recording.about
-    return [names_of(getattr(about, name, "")) for name in ("parts", "materials")]
+    return [read_names(getattr(about, name, "")) for name in ("parts", "materials")]
 
 
 STROKE = "time_s,x_m,y_m,z_m\n0,0,0,0.01\n0.1,0.01,0,0.01\n0.2,0.01,0.02,0\n"

@@ -17,7 +17,7 @@ from tangible_core.files.yaml import on_one_line
 from tangible_core.parts import HeightChoice, PartChoice, PartHeights
 from tangible_core.pipeline import SIDE_MM, Pipeline
 from tangible_core.pipeline.config import parse_config
-from tangible_core.pipeline.engine import Cache, heights_of
+from tangible_core.pipeline.engine import Cache, choose_heights
 from tangible_core.pipeline.starter import starter
 from tangible_core.plugins import hooks
 from tangible_core.plugins.registry import Registry, default_registry
@@ -174,7 +174,7 @@ def proposed_heights(pipeline: Pipeline, parts: PartMap, top_m: float | None = N
     disparity = pipeline.make("disparity") if scene.disparity is not None or two_views else None
     by_depth = choice.model_copy(update={"by": "depth"})
     by, picture = choice if disparity is None else by_depth, scene.views.left if scene.views else None
-    proposal = heights_of(parts, by, top_m, {}, disparity, scene.shown, picture)
+    proposal = choose_heights(parts, by, top_m, {}, disparity, scene.shown, picture)
     front = _figure(pipeline).front_parts(parts) if disparity is None else ()
     share, lift_m = (GROUND, GROUND * top_m) if front else (1.0, 0.0)
     heights = (share * height_m + lift_m * (number in front) for number, height_m in enumerate(proposal.heights_m))

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tangible_core.data import unit_of
+from tangible_core.data import option_unit
 from tangible_core.files.yaml import read_text
 from tangible_core.pipeline import Feeling, Pipeline
 from tangible_core.pipeline.config import PipelineConfig, edit_text, parse_config, relocate_text, with_overrides
@@ -142,7 +142,7 @@ def _ratio(times: float) -> str:
 
 
 def _in_words(key: str, value: Any) -> str:
-    unit = unit_of(key)
+    unit = option_unit(key)
     if not isinstance(value, int | float):
         return str(value)
     return quantity(value, unit) if unit else f"{value:g}"

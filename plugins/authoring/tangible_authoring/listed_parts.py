@@ -15,7 +15,7 @@ from tangible_core.files.yaml import on_one_line, part_lines
 from tangible_core.parts import HeightChoice, PartChoice, PartHeights, part_sizes
 from tangible_core.pipeline import SIDE_MM, Pipeline
 from tangible_core.pipeline.config import MaterialChoice, PipelineConfig
-from tangible_core.pipeline.engine import check_parts, heights_of, parts_of
+from tangible_core.pipeline.engine import check_parts, choose_heights, divide_segments
 from tangible_core.scene import Scene, SceneFiles, builtin_files
 from tangible_legibility.words.places import place_in_words
 from tangible_report.numbered_parts import numbered_parts
@@ -92,13 +92,13 @@ def list_parts(pipeline: Pipeline) -> ListedParts:
         raise ConfigError(
             f"{where}the scene has no parts; give it a picture with `segments: parts.png`, or a `texture:` method"
         )
-    parts = parts_of(segments)
+    parts = divide_segments(segments)
     heights = None
     if config.heights is not None:
         given_m = {number: height_m for number, height_m in config.given_heights_m.items() if number < parts.count}
         disparity = alone.make("disparity") if config.heights.by == "depth" else None
         picture = scene.views.left
-        heights = heights_of(parts, config.heights, config.top_m, given_m, disparity, scene.shown, picture)
+        heights = choose_heights(parts, config.heights, config.top_m, given_m, disparity, scene.shown, picture)
     rows = list_rows(parts, heights, config.choices)
     names = [row.name for row in rows]
     numbers_png = numbered_parts(scene.views.left, parts, names)

@@ -96,7 +96,7 @@ def show_one(kind: Kind, name: Name = None, as_json: Json = False) -> None:
     """
     import inspect
 
-    from ...data.options import options_of
+    from ...data.options import describe_options
     from ...metrics.measured import load_measured
     from ...plugins.registry import default_registry
     from ...translation import localise
@@ -104,7 +104,7 @@ def show_one(kind: Kind, name: Name = None, as_json: Json = False) -> None:
 
     registry, (kind, name) = default_registry(), _kind_and_name(kind, name)
     listing, cls = registry.find(kind, name), registry.load(kind, name)
-    text, options = inspect.cleandoc(vars(cls).get("__doc__") or ""), options_of(cls)
+    text, options = inspect.cleandoc(vars(cls).get("__doc__") or ""), describe_options(cls)
     measurements = load_measured().get(kind) if listing.distribution == OURS else None
     if as_json:
         figures = None if measurements is None else _figures(measurements, listing.name)

@@ -87,9 +87,9 @@ def _print(
     if as_json:
         recorded: dict[str, Any] = {"device": before.about.device, "renderer": before.about.renderer}
         recorded |= {"started": before.about.started, "stopped": before.stopped}
-        recorded["parts"] = session.names_of(before.about.parts)
+        recorded["parts"] = session.read_names(before.about.parts)
         recorded["beacons"] = [each._asdict() for each in pulled]
-        recorded["materials"] = session.names_of(before.about.materials)
+        recorded["materials"] = session.read_names(before.about.materials)
         touched = [part._asdict() for part in parts]
         show.print_json({"recorded": recorded, "figures": figures, "parts": touched, "file": record and str(record)})
         return

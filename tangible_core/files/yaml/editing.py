@@ -14,7 +14,7 @@ from ruamel.yaml.nodes import MappingNode, ScalarNode
 from ...errors import ConfigError, quoted, wrong_argument
 from ..paths import CONTROLS
 from .bounds import MAX_DEPTH
-from .source import Location, Shorthand, expand_shorthand, key_of, no_shorthand, parse_value, plain_tree
+from .source import Location, Shorthand, expand_shorthand, find_key, no_shorthand, parse_value, plain_tree
 
 Node = Any
 """A key or a value with its position in the text."""
@@ -40,19 +40,19 @@ def change_text(text: str, path: Path, changes: Changes, shorthand: Shorthand = 
     Raises: ConfigError if the text is not YAML, a key leads into a list, or the values exceed the limits of a file;
     ArgumentError for a value that JSON cannot express.
     """
-    wanted = plain_tree(text, path)
+    target = plain_tree(text, path)
     for key, value in changes.items():
         parts = tuple(key.split(".")) if isinstance(key, str) else tuple(key)
         if not 0 < len(parts) <= MAX_DEPTH or "" in parts:
             raise ConfigError(f"{quoted(key)}: is not a key; write one such as render.stiffness_n_per_m")
-        value, before = _with_label_keys(value), deepcopy(wanted)
-        _change(wanted, parts, value, shorthand)
-        if _canonical(before) != _canonical(wanted):
+        value, before = _with_label_keys(value), deepcopy(target)
+        _change(target, parts, value, shorthand)
+        if _canonical(before) != _canonical(target):
             text = _edit(text, parts, value, shorthand)
-    if _holds(text, path, wanted):
+    if _holds(text, path, target):
         return text
-    text = _as_lines(wanted)
-    if _canonical(plain_tree(text, path)) != _canonical(wanted):
+    text = _as_lines(target)
+    if _canonical(plain_tree(text, path)) != _canonical(target):
         raise ConfigError(f"{path}: {quoted(list(changes))} cannot be changed key by key; change the text itself")
     return text
 
@@ -63,16 +63,16 @@ def _with_label_keys(value: Any, depth: int = 0) -> Any:
         raise ConfigError(f"more than {MAX_DEPTH} blocks are nested")
     if isinstance(value, dict):
         return {
-            key_of(key, {}): _with_label_keys(each, depth + 1) for key, each in cast("dict[Any, Any]", value).items()
+            find_key(key, {}): _with_label_keys(part, depth + 1) for key, part in cast("dict[Any, Any]", value).items()
         }
     if isinstance(value, list | tuple):
-        return [_with_label_keys(each, depth + 1) for each in cast("list[Any]", value)]
+        return [_with_label_keys(part, depth + 1) for part in cast("list[Any]", value)]
     return value
 
 
-def _holds(text: str, path: Path, wanted: dict[Any, Any]) -> bool:
+def _holds(text: str, path: Path, target: dict[Any, Any]) -> bool:
     try:
-        return _canonical(plain_tree(text, path)) == _canonical(wanted)
+        return _canonical(plain_tree(text, path)) == _canonical(target)
     except ConfigError:
         return False
 
@@ -90,7 +90,7 @@ def _change(tree: dict[Any, Any], parts: Location, value: Any, shorthand: Shorth
     """Apply a change to plain values."""
     blocks = [tree]
     for depth, part in enumerate(parts[:-1]):
-        node, key = blocks[-1], key_of(part, blocks[-1])
+        node, key = blocks[-1], find_key(part, blocks[-1])
         if isinstance(node.get(key), list):
             raise ConfigError(f"{'.'.join(map(str, parts))}: {part} is a list; set it as a whole")
         if not isinstance(node.get(key), dict):
@@ -99,7 +99,7 @@ def _change(tree: dict[Any, Any], parts: Location, value: Any, shorthand: Shorth
                 return
             node[key] = block
         blocks.append(node[key])
-    last, key = blocks[-1], key_of(parts[-1], blocks[-1])
+    last, key = blocks[-1], find_key(parts[-1], blocks[-1])
     if value is REMOVE:
         _remove(blocks, parts)
     else:
@@ -111,7 +111,7 @@ def _change(tree: dict[Any, Any], parts: Location, value: Any, shorthand: Shorth
 def _remove(blocks: list[dict[Any, Any]], parts: Location) -> None:
     """Remove a key, and the blocks around it that hold nothing else."""
     for block, part in zip(reversed(blocks), reversed(parts), strict=True):
-        if block.pop(key_of(part, block), REMOVE) is REMOVE or block:
+        if block.pop(find_key(part, block), REMOVE) is REMOVE or block:
             return
 
 
@@ -148,7 +148,7 @@ def _index(node: Any, part: Any) -> int | None:
 
 def _nest(parts: Location, value: Any) -> Any:
     for part in reversed(parts):
-        value = {key_of(part, {}): value}
+        value = {find_key(part, {}): value}
     return value
 
 
@@ -178,7 +178,7 @@ def _replace(text: str, entry: tuple[Node, Node], value: Any) -> str:
 
 def _append(text: str, node: Node | None, part: Any, value: Any) -> str:
     """Return the text with one more key at the end of a block."""
-    line = f"{on_one_line(key_of(part, {}))}: {on_one_line(value)}"
+    line = f"{on_one_line(find_key(part, {}))}: {on_one_line(value)}"
     if node is not None and node.flow_style:
         at = _entry_end(node.value[-1], text) if node.value else node.start_mark.index + 1
         return f"{text[:at]}{', ' if node.value else ''}{line}{text[at:]}"
@@ -253,7 +253,7 @@ def on_one_line(value: Any) -> str:
     """Return a value as YAML on one line. Raises: ArgumentError for a value that JSON cannot express."""
     if isinstance(value, dict):
         entries = cast("dict[Any, Any]", value).items()
-        return f"{{{', '.join(f'{on_one_line(key)}: {on_one_line(each)}' for key, each in entries)}}}"
+        return f"{{{', '.join(f'{on_one_line(key)}: {on_one_line(part)}' for key, part in entries)}}}"
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(on_one_line, cast('list[Any]', value)))}]"
     if isinstance(value, str):

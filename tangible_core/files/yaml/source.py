@@ -55,11 +55,11 @@ class Source:
 
     def override(self, text: str, shorthand: Shorthand = no_shorthand, place: Location = ()) -> None:
         """Apply `key.key=value`; a block with another `use` starts without the options of the method before."""
-        keys, loaded = parse_override(text)
+        keys, value = parse_override(text)
         parts: Location = place or keys
         node: Any = self.tree
         for depth, part in enumerate(parts[:-1], 1):
-            key = part if isinstance(node, list) else key_of(part, node)
+            key = part if isinstance(node, list) else find_key(part, node)
             below = cast(Any, node)[key] if has(node, key) else None
             if not has(node, key):
                 self.overridden.setdefault(tuple(map(str, parts[:depth])), text)
@@ -68,19 +68,19 @@ class Source:
             if not isinstance(below, dict | list):
                 cast(Any, node)[key] = CommentedMap(expand_shorthand(below, shorthand(parts[:depth])))
             node = cast(Any, node)[key]
-        if parts[-1] == "use" and node.get("use") != loaded:
+        if parts[-1] == "use" and node.get("use") != value:
             node.clear()
-        node[key_of(parts[-1], node)] = loaded
+        node[find_key(parts[-1], node)] = value
         self.overridden[tuple(map(str, parts))] = text
 
     def place(self, location: Location) -> str:
         """Return file:line:column of the deepest part of a location that the file has; for an override, its text."""
-        if text := self._override_of(location):
+        if text := self._find_override(location):
             return _as_typed(text)
         line, column = self._mark(location)
         return f"{self.path}:{line}:{column}"
 
-    def _override_of(self, location: Location) -> str | None:
+    def _find_override(self, location: Location) -> str | None:
         """Return the override that set this location or a block around it."""
         ends = range(len(location), 0, -1)
         texts = (self.overridden.get(tuple(str(part) for part in location[:end])) for end in ends)
@@ -101,7 +101,7 @@ class Source:
 
     def complain(self, location: Location, text: str) -> None:
         """Add a complaint at a location."""
-        mark = (None, None) if self._override_of(location) else self._mark(location)
+        mark = (None, None) if self._find_override(location) else self._mark(location)
         if tuple(map(str, location)) in self.overridden:  # its text names the key as it was typed
             text = text.removeprefix(f"{'.'.join(map(str, location))}: ")
         complaint = Complaint(tuple(map(_word_or_number, location)), text, *mark)
@@ -116,12 +116,12 @@ class Source:
     def error(self) -> ConfigError:
         """The error with every complaint, one a line."""
         return ConfigError(
-            *(sentence for sentence, _ in self.complaints), complaints=(each for _, each in self.complaints)
+            *(sentence for sentence, _ in self.complaints), complaints=(complaint for _, complaint in self.complaints)
         )
 
-    def check_keys(self, known: Iterable[str]) -> None:
-        """Complain about every key of the file that is not known."""
-        names = list(known)
+    def check_keys(self, keys: Iterable[str]) -> None:
+        """Complain about every key of the file that is not one of these."""
+        names = list(keys)
         for key in self.tree:
             if key not in names:
                 hint = did_you_mean(str(key), names)
@@ -154,7 +154,7 @@ def read_text(path: Path) -> str:
     try:
         return read_bytes(path, MAX_TEXT_BYTES).decode("utf-8-sig")
     except FileNotFoundError as error:
-        missing = what_is_missing(path, (each.name for each in path.parent.glob("*.y*ml")))
+        missing = what_is_missing(path, (file.name for file in path.parent.glob("*.y*ml")))
         raise ConfigError(f"{path}: {missing}") from error
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path}: cannot be read as text: {getattr(error, 'strerror', None) or error}") from error
@@ -172,7 +172,7 @@ def parse_source(
     try:
         tree = parse_value(text)
     except YAMLError as error:
-        mark, problem = _conflict(text) or (_mark_of(error), _problem(error))
+        mark, problem = _conflict(text) or (_error_mark(error), _problem(error))
         place = ":".join(map(str, (path, *mark)))
         raise ConfigError(f"{place}: {problem}", complaints=[Complaint((), problem, *mark)]) from error
     if tree is None and empty:
@@ -229,7 +229,7 @@ def _conflict(text: str) -> tuple[tuple[int, int], str] | None:
     return ((line, 1), "a merge has left both versions here; keep one, and remove the marks") if line else None
 
 
-def _mark_of(error: YAMLError) -> tuple[int, int] | tuple[()]:
+def _error_mark(error: YAMLError) -> tuple[int, int] | tuple[()]:
     """Return line and column, from 1, of a parser's error; () if it has none."""
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     return (mark.line + 1, mark.column + 1) if mark else ()
@@ -248,7 +248,7 @@ def expand_shorthand(value: Any, option: str) -> dict[str, Any]:
     return {option: value} if option and isinstance(value, str) else {}
 
 
-def key_of(part: Any, node: Mapping[Any, Any]) -> Any:
+def find_key(part: Any, node: Mapping[Any, Any]) -> Any:
     """Return a key as the tree has it: a word, or a whole number for the labels of a material map."""
     if not isinstance(part, str) or part in node:
         return part

@@ -11,6 +11,6 @@ from .model import KEYS as KEYS
 from .model import PipelineConfig as PipelineConfig
 from .parsing import load_config as load_config
 from .parsing import parse_config as parse_config
-from .part_checks import names_of as names_of
+from .part_checks import all_part_names as all_part_names
 from .schema import json_schema as json_schema
 from .schema import materials_schema as materials_schema

@@ -8,16 +8,16 @@ from typing import Any, cast
 
 from pydantic import BaseModel
 
-from ...data.quantities import in_unit_of
+from ...data.quantities import in_same_unit
 from ...errors import ConfigError, quoted
 from ...files.paths import as_path
 from ...files.yaml.editing import REMOVE, Changes, change_text
-from ...files.yaml.source import Location, key_of, parse_override, parse_source, plain
+from ...files.yaml.source import Location, find_key, parse_override, parse_source, plain
 from .keys import MethodBlock, MethodList
-from .keys.method import index_of
+from .keys.method import find_or_add
 from .model import KEYS, PipelineConfig
 from .parsing import EXPECTED, shorthand
-from .scene_readers import scene_reader_of
+from .scene_readers import find_scene_reader
 
 __all__ = ["REMOVE", "Changes", "edit_text", "read_values", "relocate_text", "with_overrides"]
 
@@ -33,12 +33,12 @@ def edit_text(text: str, path: Path, changes: Changes) -> str:
     """
     changes = {key: REMOVE if value is None and _is_stage(key) else value for key, value in changes.items()}
     tree: Any = plain(parse_source(text, path, EXPECTED, empty=True).tree)
-    places = {key: _parts_of(key) for key in changes}
+    places = {key: split_key(key) for key in changes}
     changes = {key: _as_before(places[key][-1:], _at(tree, places[key]), value) for key, value in changes.items()}
     within = {key: value for key, value in changes.items() if _is_within_list(key)}
     text = change_text(text, path, {key: value for key, value in changes.items() if key not in within}, shorthand)
     for key, value in within.items():
-        parts = _parts_of(key)
+        parts = split_key(key)
         text = change_text(text, path, {parts[:1]: _list_with(text, path, parts, value)})
     return text
 
@@ -47,35 +47,35 @@ def _as_before(name: Location, before: Any, value: Any) -> Any:
     """Return a value, or a block of values, with numbers in the units of the value before."""
     if isinstance(value, dict) and isinstance(before, dict):
         block, old = cast("dict[Any, Any]", value), cast("dict[Any, Any]", before)
-        return {key: _as_before((key,), old.get(key), each) for key, each in block.items()}
-    return in_unit_of(str(name[0]), before, cast(Any, value)) if name else cast(Any, value)
+        return {key: _as_before((key,), old.get(key), part) for key, part in block.items()}
+    return in_same_unit(str(name[0]), before, cast(Any, value)) if name else cast(Any, value)
 
 
 def _at(node: Any, parts: Location) -> Any:
     """Return the value at a key; None if there is none."""
     for part in parts:
         block: dict[Any, Any] = cast("dict[Any, Any]", node) if isinstance(node, dict) else {}
-        node = block.get(key_of(part, block))
+        node = block.get(find_key(part, block))
     return node
 
 
-def _parts_of(key: str | Location) -> Location:
+def split_key(key: str | Location) -> Location:
     return tuple(key.split(".")) if isinstance(key, str) else tuple(key)
 
 
 def _is_within_list(key: str | Location) -> bool:
     """Return True for an option of a method in a list, such as `export.swell.page`."""
-    parts = _parts_of(key)
+    parts = split_key(key)
     return len(parts) > 2 and isinstance(KEYS.get(parts[0]), MethodList)
 
 
 def _list_with(text: str, path: Path, parts: Location, value: Any) -> list[Any]:
     """Return the whole list of methods with another value of one option."""
-    listed = plain(parse_source(text, path, "it is a mapping", empty=True).tree.get(parts[0]) or [])
-    if not isinstance(listed, list):
-        raise ConfigError(f"{path}: {parts[0]}: takes a list of methods, not {quoted(listed)}")
-    methods = cast("list[Any]", listed)
-    index, keys = index_of(methods, str(parts[1])), parts[2:]
+    entries = plain(parse_source(text, path, "it is a mapping", empty=True).tree.get(parts[0]) or [])
+    if not isinstance(entries, list):
+        raise ConfigError(f"{path}: {parts[0]}: takes a list of methods, not {quoted(entries)}")
+    methods = cast("list[Any]", entries)
+    index, keys = find_or_add(methods, str(parts[1])), parts[2:]
     block = methods[index] = {"use": methods[index]} if isinstance(methods[index], str) else dict(methods[index])
     if keys == ("use",) and block.get("use") != value:
         block.clear()
@@ -89,7 +89,7 @@ def _list_with(text: str, path: Path, parts: Location, value: Any) -> list[Any]:
 
 
 def _is_stage(key: Any) -> bool:
-    return isinstance(KEYS.get(".".join(map(str, _parts_of(key)))), MethodBlock)
+    return isinstance(KEYS.get(".".join(map(str, split_key(key)))), MethodBlock)
 
 
 def with_overrides(text: str, path: Path, overrides: Iterable[str]) -> str:
@@ -121,7 +121,7 @@ def relocate_text(text: str, path: Path, config: PipelineConfig, out: Path) -> s
     """Return a pipeline file's text for another place, from which its relative paths lead to the same files."""
     if out.parent.absolute() == path.parent.absolute():
         return text
-    blocks = {place: each for name, key in KEYS.items() for place, each in key.models(getattr(config, name)).items()}
+    blocks = {place: model for name, key in KEYS.items() for place, model in key.models(getattr(config, name)).items()}
     tree, folder = read_values(text, path), out.parent.resolve()
     return edit_text(
         text, path, {**dict(_lead_elsewhere(tree, blocks, folder)), **_scene_elsewhere(tree, path, folder)}
@@ -131,7 +131,7 @@ def relocate_text(text: str, path: Path, config: PipelineConfig, out: Path) -> s
 def _scene_elsewhere(tree: Mapping[str, Any], path: Path, folder: Path) -> Mapping[tuple[str, str], str]:
     """Return the relative paths of a scene reader's block, defaults included, from this folder."""
     block = tree.get("scene")
-    if (reader := scene_reader_of(block)) is None:
+    if (reader := find_scene_reader(block)) is None:
         return {}
     paths = {name: value for name, value in reader.model_validate(block) if isinstance(value, Path)}
     there = path.parent.resolve()
@@ -148,6 +148,6 @@ def _lead_elsewhere(
         for part in key:
             block = cast(Any, block).get(part) if isinstance(block, dict) else block[part]
         for name, value in model if isinstance(model, BaseModel) and isinstance(block, dict) else ():
-            written = cast("dict[str, Any]", block).get(name)
-            if isinstance(value, Path) and isinstance(written, str) and not Path(written).is_absolute():
+            text = cast("dict[str, Any]", block).get(name)
+            if isinstance(value, Path) and isinstance(text, str) and not Path(text).is_absolute():
                 yield (*key, name), os.path.relpath(value.parent.resolve() / value.name, folder)

@@ -40,11 +40,11 @@ def check_material_names(source: Source, location: Location, choice: MaterialCho
         library = load_library(choice.library)
     except ConfigError:
         return
-    named: list[tuple[Location, str]] = [(("default",), choice.default)]
-    named += [(("rules", number, "material"), rule.material) for number, rule in enumerate(choice.rules)]
+    names: list[tuple[Location, str]] = [(("default",), choice.default)]
+    names += [(("rules", number, "material"), rule.material) for number, rule in enumerate(choice.rules)]
     labels = ("by",) if "by" in source.tree[location[0]] else ()
-    named += [((*labels, label), name) for label, name in (choice.by.items() if isinstance(choice.by, dict) else ())]
-    for place, name in named:
+    names += [((*labels, label), name) for label, name in (choice.by.items() if isinstance(choice.by, dict) else ())]
+    for place, name in names:
         try:
             find(name, library)
         except MaterialError as error:

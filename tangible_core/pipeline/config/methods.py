@@ -35,8 +35,8 @@ def choose(source: Source, location: Location, kind: str, block: Any, registry: 
     if isinstance(block, str):
         block = {"use": block}
     if not isinstance(block, dict) or not isinstance(cast(Any, block).get("use"), str):
-        known = ", ".join(registry.names(kind))
-        return source.complain(location, f"{kind} needs the name of a method, {{use: ...}}; installed: {known}")
+        names = ", ".join(registry.names(kind))
+        return source.complain(location, f"{kind} needs the name of a method, {{use: ...}}; installed: {names}")
     options = dict(cast("dict[str, Any]", block))
     name = options.pop("use")
     try:
@@ -63,6 +63,8 @@ def named_method(kind: str, method: M, registry: Registry) -> NamedMethod[M]:
 
 def check_kind(kind: str, method: object) -> None:
     """Refuse a method of another kind. Raises: ConfigError."""
-    wanted = KINDS[cast(Any, kind)]
-    if not isinstance(method, wanted):
-        raise ConfigError(f"{kind}: takes a name, or an object of a class of {wanted.__name__}, not {quoted(method)}")
+    interface = KINDS[cast(Any, kind)]
+    if not isinstance(method, interface):
+        raise ConfigError(
+            f"{kind}: takes a name, or an object of a class of {interface.__name__}, not {quoted(method)}"
+        )

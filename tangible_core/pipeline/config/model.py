@@ -36,7 +36,7 @@ from .keys import (
     Unchecked,
     Word,
 )
-from .keys.key import keys_of
+from .keys.key import find_keys
 from .material_choice import MaterialChoice, check_material_names
 from .methods import NamedMethod
 
@@ -214,8 +214,8 @@ class PipelineConfig(BaseModel):
         scene = self.scene.name if isinstance(self.scene, Scene) else self.scene
         name = scene if isinstance(scene, str) else scene_name(scene)
         methods = {"depth": self.depth, "texture": self.texture, "render": self.render, "device": self.device}
-        named = {"want": self.want, **{kind: chosen.name for kind, chosen in methods.items() if chosen}}
-        return ", ".join([quoted(without_folders(name)), *(f"{key}={quoted(value)}" for key, value in named.items())])
+        names = {"want": self.want, **{kind: method.name for kind, method in methods.items() if method}}
+        return ", ".join([quoted(without_folders(name)), *(f"{key}={quoted(value)}" for key, value in names.items())])
 
     def __repr__(self) -> str:
         return f"PipelineConfig({self.in_short})"
@@ -249,11 +249,11 @@ class PipelineConfig(BaseModel):
         size = {name: value for name, value in self.size._asdict().items() if name in Workspace.model_fields}
         workspace = self.workspace.model_copy(update=size)
         values = {name: getattr(self, name) for name in KEYS} | {"workspace": workspace}
-        shown = [name for name, value in values.items() if value not in (None, "", ())]
+        names = [name for name, value in values.items() if value not in (None, "", ())]
         if self.heights is None and self.given_heights_m:  # `heights: null`; without it, they would be a mistake
-            shown.append("heights")
-        shown.sort(key=lambda name: (KEYS[name].stands_last, list(KEYS).index(name)))
-        return {name: KEYS[name].write(values[name]) for name in shown}
+            names.append("heights")
+        names.sort(key=lambda name: (KEYS[name].stands_last, list(KEYS).index(name)))
+        return {name: KEYS[name].write(values[name]) for name in names}
 
     def as_yaml(self, leave_out: Collection[str] = ()) -> str:
         """Return the completed configuration as a pipeline file, without these keys. Raises: as `as_data`."""
@@ -273,7 +273,7 @@ def without_places(source: Source) -> ConfigError:
     return ConfigError(*(complaint.text for complaint in complaints), complaints=complaints)
 
 
-KEYS = keys_of(PipelineConfig)
+KEYS = find_keys(PipelineConfig)
 """The keys of a pipeline file by name, in the order of the fields."""
 STAGES = tuple(name for name, key in KEYS.items() if isinstance(key, MethodBlock))
 """The keys that name one method each."""

@@ -13,7 +13,7 @@ from ...scene.framing import measured_size
 from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
 from .keys import MethodList, Reading
-from .keys.method import index_of
+from .keys.method import find_or_add
 from .model import KEYS, PipelineConfig, without_places
 from .part_checks import wrong_of_parts, wrong_of_scale
 
@@ -55,7 +55,7 @@ def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[
     return PipelineConfig(path=path, source=source, **values)
 
 
-def config_of(
+def make_config(
     scene: Scene | None, registry: Registry, /, before: PipelineConfig | None = None, **arguments: Any
 ) -> PipelineConfig:
     """Check arguments in Python, by the names of keys: objects, or what a file may have; None for the default.
@@ -69,15 +69,15 @@ def config_of(
     reading = Reading(source, registry)
     if unknown := next((name for name in arguments if name not in KEYS), None):
         raise ArgumentError(f"{unknown}: is not a key of the pipeline file{did_you_mean(unknown, KEYS)}")
-    taken = {name: KEYS[name].take(reading, argument) for name, argument in arguments.items() if argument is not None}
+    changes = {name: KEYS[name].take(reading, argument) for name, argument in arguments.items() if argument is not None}
     if source.complaints:
         raise without_places(source)
-    seen = {} if scene is None else {"scene": scene, "measured": scene.measured}
+    scene_values = {} if scene is None else {"scene": scene, "measured": scene.measured}
     if before is None:
-        config = PipelineConfig(**seen, **_with_want(taken))
+        config = PipelineConfig(**scene_values, **_with_want(changes))
     else:
-        unset = {name: PipelineConfig.model_fields[name].get_default() for name in arguments if name not in taken}
-        values = {"render": before.render, **unset, **taken, **seen}
+        unset = {name: PipelineConfig.model_fields[name].get_default() for name in arguments if name not in changes}
+        values = {"render": before.render, **unset, **changes, **scene_values}
         if _with_want({"render": before.render})["want"] == before.want:
             values = _with_want(values)
         config = before.with_values(**values, source=None)
@@ -102,10 +102,10 @@ def _override(source: Source, text: str) -> None:
     parts, _ = parse_override(text)
     place: Location = ()
     if isinstance(KEYS.get(parts[0]), MethodList) and len(parts) > 1:
-        listed = source.tree.setdefault(parts[0], CommentedSeq())
-        if isinstance(listed, list) and len(parts) > 2:
-            before = len(cast("list[Any]", listed))
-            index = index_of(cast("list[Any]", listed), parts[1])
+        entries = source.tree.setdefault(parts[0], CommentedSeq())
+        if isinstance(entries, list) and len(parts) > 2:
+            before = len(cast("list[Any]", entries))
+            index = find_or_add(cast("list[Any]", entries), parts[1])
             place = (parts[0], index, *parts[2:])
             if index == before:  # the override names a method that the file does not list
                 source.overridden[parts[0], str(index)] = text

@@ -40,7 +40,9 @@ def _wrong_heights(config: PipelineConfig) -> Iterator[Wrong]:
     elif kind_of(config.scene) == "heights":
         yield ("heights",), "the scene is a map of heights, which are felt as they are; leave `heights:` out"
     elif config.top_m < -ROUNDING_M:
-        least_mm, relief_mm = (1e3 * each for each in (heights.bulge_m + heights.detail_m, config.size.relief_m))
+        least_mm, relief_mm = (
+            1e3 * length_m for length_m in (heights.bulge_m + heights.detail_m, config.size.relief_m)
+        )
         yield (
             ("heights",),
             f"bulge_m and detail_m are {least_mm:g} mm together, and the whole relief is {relief_mm:g} mm high; make "
@@ -81,7 +83,7 @@ def _wrong_materials(parts: Mapping[int, PartChoice], library: Mapping[str, Mate
 
 def _wrong_rules(rules: Iterable[int | str | None], parts: Mapping[int, PartChoice] | None) -> Iterator[Wrong]:
     """Find rules for parts that have no such name; `parts` is None where nothing is by parts."""
-    names = numbers_of(parts or {})
+    names = part_numbers(parts or {})
     for number, part in enumerate(rules):
         place = ("materials", "rules", number, "part")
         if part is None:
@@ -93,12 +95,12 @@ def _wrong_rules(rules: Iterable[int | str | None], parts: Mapping[int, PartChoi
             yield place, f"no part is named {quoted(part)}{did_you_mean(part, names)}; {there}"
 
 
-def numbers_of(parts: Mapping[int, PartChoice]) -> dict[str, int]:
+def part_numbers(parts: Mapping[int, PartChoice]) -> dict[str, int]:
     """Return the numbers of parts by name."""
     return {choice.name.strip(): number for number, choice in parts.items() if choice.name.strip()}
 
 
-def names_of(config: PipelineConfig, count: int) -> tuple[str, ...]:
+def all_part_names(config: PipelineConfig, count: int) -> tuple[str, ...]:
     """Return a name for each of `count` parts; empty for a part without one."""
     return tuple(config.part_names.get(label, "") for label in range(count))
 
@@ -106,15 +108,15 @@ def names_of(config: PipelineConfig, count: int) -> tuple[str, ...]:
 def wrong_of_scale(config: PipelineConfig) -> Iterator[Wrong]:
     """Find a scale, or a range of heights, that the scene cannot have."""
     workspace, scene = config.workspace, config.scene
-    given = [name for name in ("scale", "low_m", "high_m") if getattr(workspace, name) is not None]
-    if not given:
+    keys = [name for name in ("scale", "low_m", "high_m") if getattr(workspace, name) is not None]
+    if not keys:
         return
-    place, files = ("workspace", given[0]), scene.files if isinstance(scene, Scene) else scene
+    place, files = ("workspace", keys[0]), scene.files if isinstance(scene, Scene) else scene
     if kind_of(scene) != "heights":
         yield place, "is for a map of heights, and the scene is not one; leave it out, or name the map with `height:`"
-    elif isinstance(files, SceneFiles) and files.invert and given != ["scale"]:
+    elif isinstance(files, SceneFiles) and files.invert and keys != ["scale"]:
         yield (
-            ("workspace", given[-1]),
+            ("workspace", keys[-1]),
             "is a height of the file, and `invert` turns these over; leave one of them out",
         )
     elif workspace.times is None:

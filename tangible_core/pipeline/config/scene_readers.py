@@ -20,7 +20,7 @@ def scene_reader_points() -> Mapping[str, EntryPoint]:
     return {point.name: point for point in reversed(points)}
 
 
-def scene_reader_of(block: Any) -> type[SceneReader] | None:
+def find_scene_reader(block: Any) -> type[SceneReader] | None:
     """Find the reader of a block `scene:` by its keys; None for a block of files."""
     if not isinstance(block, dict):
         return None
@@ -43,4 +43,6 @@ def _load(point: EntryPoint) -> type[SceneReader]:
 def scene_readers(distribution: str | None = None) -> list[type[SceneReader]]:
     """Load the readers of a distribution, or of all that are installed, in the order of their keys."""
     points = sorted(scene_reader_points().items())
-    return [_load(each) for _, each in points if distribution is None or (each.dist and each.dist.name == distribution)]
+    return [
+        _load(point) for _, point in points if distribution is None or (point.dist and point.dist.name == distribution)
+    ]

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ...data.units import title_of
+from ...data.units import option_title
 from ...errors import UnknownName
 from ...materials.assignment import library
 from ...materials.files import MaterialBlock
@@ -32,12 +32,12 @@ def stage_schema(
     kind: str, registry: Registry | None = None, distribution: str | None = "tangible-images"
 ) -> dict[str, Any]:
     """Return the schema of one stage alone (depth, texture, render, device), or of the list of exporters (export)."""
-    if kind not in (known := [name for name, key in KEYS.items() if isinstance(key, MethodBlock | MethodList)]):
-        raise UnknownName("stage", kind, known)
+    if kind not in (stages := [name for name, key in KEYS.items() if isinstance(key, MethodBlock | MethodList)]):
+        raise UnknownName("stage", kind, stages)
     forms = Forms(registry or default_registry(), distribution)
     return {
         "$schema": DIALECT,
-        "title": title_of(kind),
+        "title": option_title(kind),
         **KEYS[kind].schema_of_field(forms),
         "$defs": forms.definitions,
     }

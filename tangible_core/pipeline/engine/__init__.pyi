@@ -1,8 +1,8 @@
 from .cache import Cache as Cache
 from .cache import write_record as write_record
-from .part_heights import heights_of as heights_of
+from .part_heights import choose_heights as choose_heights
 from .part_validation import check_parts as check_parts
-from .part_validation import parts_of as parts_of
+from .part_validation import divide_segments as divide_segments
 from .preview import PartHeightPreview as PartHeightPreview
 from .preview import config_heights as config_heights
 from .preview import is_at_hand as is_at_hand

@@ -128,8 +128,8 @@ class Cache:
         """Keep a record; where the cache cannot be written, there is a warning and no error."""
         try:
             write_record(self._path(key), record, notes or {})
-            held = self._tally.add(_use_and_size(self._path(key))[1])
-            if held is None or held > self.max_bytes:
+            total = self._tally.add(_use_and_size(self._path(key))[1])
+            if total is None or total > self.max_bytes:
                 self._prune()
         except (OutputError, OSError) as error:
             if self.folder not in _unwritable:
@@ -150,16 +150,16 @@ class Cache:
 
     def clear(self) -> tuple[int, int]:
         """Delete every result, and nothing else, and return their number and bytes; what is being written stays."""
-        freed: list[int] = []
+        sizes: list[int] = []
         for path in chain(self._results(), leftovers(self.folder, age_s=-inf)):
             size = _use_and_size(path)[1]
             try:
                 path.unlink(missing_ok=True)
             except OSError as error:
                 raise OutputError(f"{path}: cannot be deleted: {error.strerror}") from error
-            freed.append(size)
+            sizes.append(size)
         self._tally.path.unlink(missing_ok=True)
-        return len(freed), sum(freed)
+        return len(sizes), sum(sizes)
 
     def _results(self) -> list[Path]:
         return [path for path in self.folder.glob("*.npz") if _OURS.fullmatch(path.name) and path.is_file()]
@@ -170,21 +170,21 @@ class Cache:
     def _prune(self) -> None:
         sweep(self.folder)
         entries = [(*_use_and_size(path), path) for path in self.folder.glob("*.npz")]
-        held = sum(size for _, size, _ in entries)
-        if held > self.max_bytes:
+        total = sum(size for _, size, _ in entries)
+        if total > self.max_bytes:
             for _, size, path in sorted(entries):
                 log.info("cache is over %d MiB: %s is dropped", self.max_bytes >> 20, path.name)
                 path.unlink(missing_ok=True)
-                held -= size
-                if held <= LEFT * self.max_bytes:
+                total -= size
+                if total <= LEFT * self.max_bytes:
                     break
-        self._tally.begin(held)
+        self._tally.begin(total)
 
 
 def default_folder() -> Path:
     """Return $TANGIBLE_CACHE_DIR, or the user's cache folder."""
-    if named := os.environ.get("TANGIBLE_CACHE_DIR"):
-        return as_path(named, "TANGIBLE_CACHE_DIR")
+    if variable := os.environ.get("TANGIBLE_CACHE_DIR"):
+        return as_path(variable, "TANGIBLE_CACHE_DIR")
     from platformdirs import user_cache_path
 
     return user_cache_path("tangible-images")
@@ -196,9 +196,9 @@ def write_record(path: Path, record: Record, notes: Notes | None = None) -> None
     texts = {"record": _pack(record, "", arrays)}
     if notes is not None:
         texts[NOTES] = {product: [[note.text, note.kind] for note in notes[product]] for product in notes}
-    packed = {name: np.frombuffer(json.dumps(tree).encode(), np.uint8) for name, tree in texts.items()}
+    text_bytes = {name: np.frombuffer(json.dumps(tree).encode(), np.uint8) for name, tree in texts.items()}
     with atomic_write(path) as file:
-        write_arrays(file, packed | arrays)
+        write_arrays(file, text_bytes | arrays)
 
 
 def read_entry(path: Path) -> Entry:
@@ -214,9 +214,9 @@ def read_entry(path: Path) -> Entry:
     return Entry(record, notes)
 
 
-def _notes(packed: np.ndarray) -> Notes:
-    notes = json.loads(packed.tobytes())
-    return {str(product): tuple(_note(*each) for each in of_product) for product, of_product in notes.items()}
+def _notes(data_bytes: np.ndarray) -> Notes:
+    notes = json.loads(data_bytes.tobytes())
+    return {str(product): tuple(_note(*note) for note in of_product) for product, of_product in notes.items()}
 
 
 def _note(text: Any, kind: Any) -> Note:

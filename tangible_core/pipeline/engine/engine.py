@@ -31,8 +31,8 @@ from .planning import (
     NOT_MADE,
     REQUESTED,
     SAME,
-    Made,
     Outlook,
+    ProductEntry,
     depends_on,
     foresee,
     needed_for,
@@ -62,7 +62,7 @@ class Engine:
         """A process that compiles in the background; a stage waits for what is compiled for it."""
         self.begun: set[str] = set()
         """The products whose making has begun."""
-        self._made: defaultdict[str, Made] = defaultdict(Made)
+        self._entries: defaultdict[str, ProductEntry] = defaultdict(ProductEntry)
         self._outcomes: dict[str, Outcome] = {}
         """The outcome of each product, in the order in which they ended; products of the scene have one as well."""
         self.on_heights: list[Note] = []
@@ -84,8 +84,10 @@ class Engine:
     @property
     def outcomes(self) -> Outcomes:
         """The outcome of each product, in the order of making; last the products that nothing needed."""
-        left = (stage for product, stage in self.stages.items() if product not in self._outcomes and stage.in_outcomes)
-        idle = (not_needed(stage, self._made[stage.product].notes or ()) for stage in left)
+        idle_stages = (
+            stage for product, stage in self.stages.items() if product not in self._outcomes and stage.in_outcomes
+        )
+        idle = (not_needed(stage, self._entries[stage.product].notes or ()) for stage in idle_stages)
         return Outcomes([*self._outcomes.values(), *idle])
 
     @cached_property
@@ -96,9 +98,9 @@ class Engine:
     @cached_property
     def _read(self) -> tuple[Scene, tuple[Note, ...]]:
         """The scene, and the notes from reading it."""
-        given = self.config.scene
+        source = self.config.scene
         with collect_notes() as notes:
-            scene = given if isinstance(given, Scene) else Scene.read(given, self.config.folder)
+            scene = source if isinstance(source, Scene) else Scene.read(source, self.config.folder)
         of_files = (Note(text, "warning" if text in scene.warnings else "decision") for text in scene.notes)
         return scene, (*notes, *of_files)
 
@@ -114,7 +116,7 @@ class Engine:
             if isinstance(relief, Relief) and (text := flat_warning(relief, "heights")):
                 note(log, text, logging.WARNING)
         for product in products:
-            why, notes = self.source_of(product)
+            why, notes = self.describe_source(product)
             self._note(Outcome(product, "given", why, "", perf_counter() - start, notes))
             start = perf_counter()
         return products
@@ -122,7 +124,7 @@ class Engine:
     def plan(self, want: str | None = None) -> Plan:
         """Foresee the outcomes of making a product. Raises: TangibleError for an unreadable scene, UnknownName."""
         want = self._product(want)
-        ahead = Outlook(self.stages, self.scene_products, self.source_of, self.cache_for, self.key)
+        ahead = Outlook(self.stages, self.scene_products, self.describe_source, self.cache_for, self.key)
         plan = Plan(want, tuple(foresee(ahead, want, REQUESTED, {}).values()))
         hooks.tell(self.registry.plugins, "tangible_plan_made", plan=plan)
         return plan
@@ -140,12 +142,12 @@ class Engine:
         Raises: TangibleError for what a user can correct; whatever a plugin raises.
         """
         product = self._product(want)
-        value, stage, made = self._pull(product, REQUESTED), self.stages.get(product), self._made[product]
+        value, stage, entry = self._pull(product, REQUESTED), self.stages.get(product), self._entries[product]
         if value is None or stage is None:
             return value
-        if made.full_size is NOT_MADE:
-            made.full_size = stage.full_size(value)
-        return made.full_size
+        if entry.full_size is NOT_MADE:
+            entry.full_size = stage.full_size(value)
+        return entry.full_size
 
     def make_on_grid(self, product: str) -> Any:
         """Make a product on the working grid; a product of the scene keeps its size. Raises: as `make`."""
@@ -168,8 +170,8 @@ class Engine:
         }
         other._substituted = self._substituted | dependent | products.keys()
         other.begun, other.compiler, other._progress = set(), None, ignore_event
-        shared = {name: copy(made) for name, made in self._made.items() if name not in other._substituted}
-        other._made = defaultdict(Made, shared)
+        entries = {name: copy(entry) for name, entry in self._entries.items() if name not in other._substituted}
+        other._entries = defaultdict(ProductEntry, entries)
         other._outcomes = {name: self._outcomes[name] for name in self._outcomes if name not in other._substituted}
         return other
 
@@ -191,39 +193,39 @@ class Engine:
         """Take over the products of another configuration of the same scene that have the same keys."""
         if other.config.scene != self.config.scene:
             return
-        for name, made in [*other._made.items()]:  # a key may add the records of inputs
-            new = made.value is not NOT_MADE and self._made[name].value is NOT_MADE
+        for name, entry in [*other._entries.items()]:  # a key may add the records of inputs
+            new = entry.value is not NOT_MADE and self._entries[name].value is NOT_MADE
             if new and other.stages[name].cached and self.key(name) == other.key(name):
-                self._made[name].value = made.value
+                self._entries[name].value = entry.value
 
-    def inputs_of(self, want: str) -> set[str]:
+    def all_inputs(self, want: str) -> set[str]:
         """Return the product and all products that it is made from, directly or indirectly."""
         stage = self.stages.get(want)
-        return {want}.union(*map(self.inputs_of, stage.needs)) if stage and not stage.skip else {want}
+        return {want}.union(*map(self.all_inputs, stage.needs)) if stage and not stage.skip else {want}
 
     def key(self, product: str) -> str:
         """Return a text that identifies the product's content before it is made."""
-        made = self._made[product]
-        if made.key is None:
+        entry = self._entries[product]
+        if entry.key is None:
             stage, value = self.stages.get(product), self.scene_products.get(product)
             if stage is None:
-                made.key = "nothing" if value is None else value.digest()
+                entry.key = "nothing" if value is None else value.digest()
             elif stage.skip:
-                made.key = "skipped"
+                entry.key = "skipped"
             else:
-                made.key = product_key(product, stage.key, {name: self.key(name) for name in stage.needs})
-        return made.key
+                entry.key = product_key(product, stage.key, {name: self.key(name) for name in stage.needs})
+        return entry.key
 
     def _pull(self, product: str, why: str) -> Any:
         """Return a product, made if it is not there yet, and finished by its stage."""
-        stage, made = self.stages.get(product), self._made[product]
+        stage, entry = self.stages.get(product), self._entries[product]
         if stage is None:
             return self.scene_products.get(product)
-        if made.value is NOT_MADE:
-            made.value = self._make(stage, why)
-        if made.finished is NOT_MADE:
-            made.finished = self._finish(stage, made.value)
-        return made.finished
+        if entry.value is NOT_MADE:
+            entry.value = self._make(stage, why)
+        if entry.finished is NOT_MADE:
+            entry.finished = self._finish(stage, entry.value)
+        return entry.finished
 
     def _finish(self, stage: Stage, value: Any) -> Any:
         """Return what a stage made, checked by it, and with names; None for a skipped product."""
@@ -237,8 +239,8 @@ class Engine:
         if stage.skip:
             self._note(Outcome(stage.product, "skipped", stage.skip, stage.method))
             return None
-        if (cached := self._from_cache(stage)) is not None:
-            return cached
+        if (record := self._from_cache(stage)) is not None:
+            return record
         if stage.refusal is not None:
             self._note(Outcome(stage.product, "refused", str(stage.refusal), stage.method))
             raise stage.refusal.with_traceback(None)  # it may be raised again
@@ -259,11 +261,11 @@ class Engine:
             self._note(Outcome(stage.product, "failed", why, stage.method, perf_counter() - start))
             raise
         seconds = perf_counter() - start
-        self._made[stage.product].notes = all_notes = (*notes_ahead(stage), *notes)
+        self._entries[stage.product].notes = all_notes = (*notes_ahead(stage), *notes)
         self._note(Outcome(stage.product, "ran", with_notes(all_notes, why), stage.method, seconds, all_notes))
         if cache := self.cache_for(stage):
-            names = sorted(self.inputs_of(stage.product))
-            within = {name: notes for name in names if (notes := self._made[name].notes)}
+            names = sorted(self.all_inputs(stage.product))
+            within = {name: notes for name in names if (notes := self._entries[name].notes)}
             cache.put(self.key(stage.product), value, within)
         return value
 
@@ -272,12 +274,12 @@ class Engine:
         start, cache = perf_counter(), self.cache_for(stage)
         if not (cache and (entry := cache.entry(self.key(stage.product)))):
             return None
-        for product, noted in entry.notes.items():
-            if self._made[product].notes is None:
-                self._made[product].notes = noted
-                for text in (remark.text for remark in noted if remark.kind != "decision"):
+        for product, product_notes in entry.notes.items():
+            if self._entries[product].notes is None:
+                self._entries[product].notes = product_notes
+                for text in (remark.text for remark in product_notes if remark.kind != "decision"):
                     log.warning("%s", text)
-        notes, seconds = self._made[stage.product].notes or (), perf_counter() - start
+        notes, seconds = self._entries[stage.product].notes or (), perf_counter() - start
         self._note(Outcome(stage.product, "cached", with_notes(notes, SAME), stage.method, seconds, notes))
         return entry.record
 
@@ -285,7 +287,7 @@ class Engine:
         """Return the cache for the product of a stage; None where it is not cached."""
         return self.cache if stage.cached and stage.product not in self._substituted else None
 
-    def source_of(self, product: str) -> tuple[str, tuple[Note, ...]]:
+    def describe_source(self, product: str) -> tuple[str, tuple[Note, ...]]:
         """Return why a product is given, and for the pictures or the heights the notes on their files."""
         scene, of_files = self._read
         notes = of_files if product == ("relief" if scene.views is None else "views") else ()

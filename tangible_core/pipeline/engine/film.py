@@ -39,7 +39,7 @@ class PipelineFrames(FrameMaker):
         self._config, self._scene = config, scene
         self._method: DepthEstimator = config.depth.method
         self._estimate: Callable[[Views], DisparityMap] = self._method.estimate
-        self._exchanged = False
+        self._are_exchanged = False
         self._relief = ReliefStage(Context(config, scene))
 
     def begin(self, views: Views) -> DisparityMap:
@@ -51,13 +51,13 @@ class PipelineFrames(FrameMaker):
         estimate = stage.estimate(self._estimate)
         order = stage.order(estimate, stage.views)
         if order is not None:
-            self._exchanged = order.exchanged
-        return stage.in_picture_pixels(estimate, self._exchanged)
+            self._are_exchanged = order.exchanged
+        return stage.in_picture_pixels(estimate, self._are_exchanged)
 
     def disparity(self, views: Views) -> DisparityMap:
         """Return the disparity of a frame in pixels of the pictures."""
         stage = self._stage(views)
-        return stage.in_picture_pixels(stage.estimate(self._estimate), self._exchanged)
+        return stage.in_picture_pixels(stage.estimate(self._estimate), self._are_exchanged)
 
     def scale(self, disparity: DisparityMap) -> ReliefScale:
         """Return the scale of the relief of a map alone."""
@@ -72,7 +72,7 @@ class PipelineFrames(FrameMaker):
         return DisparityStage(Context(self._config, replace(self._scene, views=views)))
 
 
-def reliefs_of(config: PipelineConfig, scene: Scene) -> Reliefs:
+def make_reliefs(config: PipelineConfig, scene: Scene) -> Reliefs:
     """Return the frames of a video scene as reliefs. Raises: ConfigError for a scene that does not move."""
     if scene.frames is None:
         raise ConfigError(f"the scene {scene.name} does not move; give it a `video:`")
@@ -91,11 +91,11 @@ def reliefs_of(config: PipelineConfig, scene: Scene) -> Reliefs:
     return Reliefs(scene.frames.open, PipelineFrames(config, scene))
 
 
-def film_of(engine: Engine, device: HapticDevice | None, period_s: float) -> Film:
+def make_film(engine: Engine, device: HapticDevice | None, period_s: float) -> Film:
     """Return the force law as a film that begins at the first frame. device: limits the materials; None does not."""
     config, scene = engine.config, engine.scene
     law = _filming(config, engine.registry)
-    reliefs_of(config, scene)
+    make_reliefs(config, scene)
     assert scene.frames is not None
     surface = engine.make("surface")
     if device is not None:

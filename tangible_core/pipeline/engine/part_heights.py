@@ -20,20 +20,20 @@ MAX_NAMED = 8
 """The most parts that a note names."""
 
 
-def heights_of(
+def choose_heights(
     parts: PartMap,
     heights: HeightChoice,
     top_m: float,
     given_m: Mapping[int, float],
     disparity: DisparityMap | None = None,
-    shown: Bool[np.ndarray, "h w"] | None = None,
+    opaque_mask: Bool[np.ndarray, "h w"] | None = None,
     picture: np.ndarray | None = None,
 ) -> PartHeights:
     """Return the height of each part with its reason: the given heights, and computed ones up to top_m."""
-    computed = _compute(parts, heights, max(0.0, top_m), disparity, picture)
-    heights_m = {number: min(round(each, FINEST_DIGITS), top_m) for number, each in enumerate(computed.heights_m)}
-    reasons = dict(enumerate(computed.reasons))
-    for number in transparent_parts(parts, shown):
+    result = _compute(parts, heights, max(0.0, top_m), disparity, picture)
+    heights_m = {number: min(round(each, FINEST_DIGITS), top_m) for number, each in enumerate(result.heights_m)}
+    reasons = dict(enumerate(result.reasons))
+    for number in transparent_parts(parts, opaque_mask):
         heights_m[number], reasons[number] = 0.0, "transparent in the picture"
     for number, height_m in given_m.items():
         heights_m[number], reasons[number] = height_m, "given"
@@ -53,11 +53,13 @@ def _compute(
 
 def warn_missing_heights(result: PartHeights, heights: HeightChoice, given_m: Mapping[int, float]) -> None:
     """Note the parts without a given height; guessed heights are a warning."""
-    left = [number for number, why in enumerate(result.reasons) if number not in given_m and "transparent" not in why]
-    if not left:
+    missing = [
+        number for number, why in enumerate(result.reasons) if number not in given_m and "transparent" not in why
+    ]
+    if not missing:
         return
     count = len(result.reasons)
-    parts = f"all {count} parts" if len(left) == count > 1 else in_words(left)
+    parts = f"all {count} parts" if len(missing) == count > 1 else in_words(missing)
     if heights.by == "guess":
         note(
             log,
@@ -66,7 +68,7 @@ def warn_missing_heights(result: PartHeights, heights: HeightChoice, given_m: Ma
             logging.WARNING,
         )
     elif heights.by == "given":
-        lies = "lies" if len(left) == 1 else "lie"
+        lies = "lies" if len(missing) == 1 else "lie"
         note(log, f"no height is given for {parts}, which {lies} at 0")
 
 

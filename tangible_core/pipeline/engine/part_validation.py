@@ -14,7 +14,7 @@ from ...materials.rules import MaterialRule
 from ...parts import find_parts, part_sizes
 from ...plugins.notes import note
 from ..config.model import PipelineConfig, Wrong
-from ..config.part_checks import ROUNDING_M, names_of, numbers_of
+from ..config.part_checks import ROUNDING_M, all_part_names, part_numbers
 
 log: logging.Logger = logging.getLogger(__name__)
 
@@ -27,7 +27,7 @@ MAX_SLIPS = 3
 
 
 @lru_cache(maxsize=1)
-def parts_of(segments: SegmentMap) -> PartMap:
+def divide_segments(segments: SegmentMap) -> PartMap:
     """Find the parts of segments; the last result is remembered. Raises: PictureError for more than MAX_PARTS."""
     parts = find_parts(segments)
     if parts.count > MAX_PARTS:
@@ -45,7 +45,7 @@ def warn_small_parts(parts: PartMap) -> None:
     if not small:
         return
     texts = [
-        f"{name_part(each)} at {place_of(parts, each)} ({_pixels(int(sizes[each]))})" for each in small[:MAX_SLIPS]
+        f"{name_part(part)} at {place_text(parts, part)} ({_pixels(int(sizes[part]))})" for part in small[:MAX_SLIPS]
     ]
     more = f", and {len(small) - MAX_SLIPS} more" if len(small) > MAX_SLIPS else ""
     few = "one part has few pixels" if len(small) == 1 else f"{len(small)} parts have few pixels"
@@ -57,14 +57,14 @@ def _pixels(count: int) -> str:
     return f"{count} pixel{'s' * (count != 1)}"
 
 
-def place_of(parts: PartMap, number: int, scale: float = 1.0) -> str:
+def place_text(parts: PartMap, number: int, scale: float = 1.0) -> str:
     """Return a pixel in a part, in the middle of its middle row, as text: [x, y]."""
     rows, columns = np.nonzero(parts.labels == number)
     if not rows.size:
         return "no pixel"
     row = rows[rows.size // 2]
     there = columns[rows == row]
-    x, y = (int((each + 0.5) * scale) for each in (there[there.size // 2], row))
+    x, y = (int((pixel + 0.5) * scale) for pixel in (there[there.size // 2], row))
     return f"[{x}, {y}]"
 
 
@@ -97,7 +97,7 @@ def _wrong_heights(config: PipelineConfig, parts: PartMap, columns: int) -> Iter
     for label, height_m in config.given_heights_m.items():
         if label < parts.count and height_m > top_m + ROUNDING_M:
             above_m = config.heights.bulge_m + config.heights.detail_m
-            place = place_of(parts, label, columns / parts.labels.shape[1])
+            place = place_text(parts, label, columns / parts.labels.shape[1])
             yield (
                 ("parts", shown_number(label), "height_m"),
                 f"{name_part(label, names.get(label, ''))}, at {place} of the picture, is {_mm(height_m)} high, "
@@ -112,7 +112,7 @@ def _mm(length_m: float) -> str:
 
 def number_rules(config: PipelineConfig) -> tuple[MaterialRule, ...]:
     """Return the rules for materials with the numbers of parts in place of their names."""
-    numbers = numbers_of(config.parts or {})
+    numbers = part_numbers(config.parts or {})
     return tuple(
         rule.model_copy(update={"part": numbers[rule.part.strip()]}) if isinstance(rule.part, str) else rule
         for rule in config.materials.rules
@@ -137,4 +137,4 @@ def add_names_to_surface(config: PipelineConfig, surface: HapticSurface) -> Hapt
     """Add the names of its parts. Raises: ConfigError for parts that do not exist."""
     count = len(surface.names or ())
     check_numbers(config, count)
-    return replace(surface, names=names_of(config, count))
+    return replace(surface, names=all_part_names(config, count))

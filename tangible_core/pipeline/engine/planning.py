@@ -19,7 +19,7 @@ class Outlook(NamedTuple):
 
     stages: Mapping[str, Stage]
     scene_products: Mapping[str, Record]
-    source_of: Callable[[str], tuple[str, tuple[Note, ...]]]
+    describe_source: Callable[[str], tuple[str, tuple[Note, ...]]]
     """The function that returns where a given product comes from, with its notes."""
     cache_for: Callable[[Stage], Cache | None]
     key: Callable[[str], str]
@@ -43,14 +43,20 @@ def foresee(engine: Outlook, product: str, why: str, steps: dict[str, Outcome]) 
         return steps
     if stage is None:
         if product in engine.scene_products:
-            why, notes = engine.source_of(product)
+            why, notes = engine.describe_source(product)
             steps[product] = Outcome(product, "given", why, notes=notes)
     elif stage.skip:
         steps[product] = Outcome(product, "skipped", stage.skip, stage.method)
     elif (cache := engine.cache_for(stage)) and engine.key(product) in cache:
-        kept = cache.notes(engine.key(product))
-        within = (each for name in sorted(kept) if name != product for each in kept[name] if each.kind != "decision")
-        notes = (*kept.get(product, ()), *within)
+        entry_notes = cache.notes(engine.key(product))
+        within = (
+            note
+            for name in sorted(entry_notes)
+            if name != product
+            for note in entry_notes[name]
+            if note.kind != "decision"
+        )
+        notes = (*entry_notes.get(product, ()), *within)
         steps[product] = Outcome(product, "cached", with_notes(notes, SAME), stage.method, notes=notes)
     elif stage.refusal is not None:
         steps[product] = Outcome(product, "refused", str(stage.refusal), stage.method)
@@ -85,7 +91,7 @@ NOT_MADE: Final = object()
 
 
 @dataclass
-class Made:
+class ProductEntry:
     """A product of a stage at the steps of its making, each made once and on request."""
 
     key: str | None = None

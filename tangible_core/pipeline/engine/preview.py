@@ -54,21 +54,21 @@ def preview_config(config: PipelineConfig, heights: Mapping[str, Any] | None, sh
     if config.render is None:
         raise config.missing("render")
     choice = {**config_heights(config).model_dump(), **(heights or {}), "by": "given"}
-    given = config.with_values(heights=_validate(HeightChoice, choice), parts=config.parts or {})
-    if wrong := list(wrong_of_parts(given)):
-        raise given.error_at(*wrong)
+    preview = config.with_values(heights=_validate(HeightChoice, choice), parts=config.parts or {})
+    if wrong := list(wrong_of_parts(preview)):
+        raise preview.error_at(*wrong)
     size, (rows, columns) = config.size, shape
     factor = ceil(2 * sqrt(rows * columns / MAX_CELLS)) / 2  # in steps of half a pixel
     if factor <= felt_factor(columns, size.width_m, size.finest_m):
-        return given
+        return preview
     finest_m = (factor + 0.01) * size.width_m / columns
-    return given.with_values(workspace=given.workspace.model_copy(update={"finest_m": finest_m}))
+    return preview.with_values(workspace=preview.workspace.model_copy(update={"finest_m": finest_m}))
 
 
 def without_entries(config: PipelineConfig) -> PipelineConfig:
     """Return the configuration with the parts' names alone, by which rules may refer to them, and without its text."""
-    named = {number: PartChoice(name=part.name) for number, part in (config.parts or {}).items() if part.name}
-    return config.with_values(parts=named, title="", language="en", source=None)
+    names = {number: PartChoice(name=part.name) for number, part in (config.parts or {}).items() if part.name}
+    return config.with_values(parts=names, title="", language="en", source=None)
 
 
 @final
@@ -84,9 +84,9 @@ class PartHeightPreview:
         uses = config.render is None or config.render.method.uses_materials
         self._materials: MaterialMap | None = engine.make("materials") if uses else None
         """Materials by part, for parts without an own one; None if the law uses none."""
-        self._found_m: dict[str, tuple[float, ...]] = {}
+        self._recipe_heights_m: dict[str, tuple[float, ...]] = {}
         """Heights that each requested recipe finds, by part."""
-        if before is not None and self._has_layers_of(before):
+        if before is not None and self._shares_layers(before):
             self._layering = before._layering
         else:
             assert config.heights is not None
@@ -111,8 +111,10 @@ class PartHeightPreview:
         Raises: ConfigError for a height above the workspace, an unknown part, a depth that is not made yet;
         MaterialError; TangibleError as `Engine.make`.
         """
-        said = {number: _validate(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m, 1)}
-        check_parts(config.with_values(parts=said), self._parts, self.grid.scene.shape[1])
+        choices = {
+            number: _validate(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m, 1)
+        }
+        check_parts(config.with_values(parts=choices), self._parts, self.grid.scene.shape[1])
         check_numbers(config, self._parts.count)
         known_m = self._known_heights(heights_m, by)
         relief = relief_of_layers(self._layering, known_m, config.size, self.grid.opaque_mask)
@@ -120,34 +122,34 @@ class PartHeightPreview:
         if self._materials is not None:
             own = own_materials(config) if materials is None else dict(enumerate(materials))
             library = load_library(config.materials.library)
-            named = {number: find(name, library) for number, name in own.items() if name is not None}
-            found = self._materials.materials
-            chosen = tuple(named.get(number, material) for number, material in enumerate(found))
-            products["materials"] = replace(self._materials, materials=chosen)
-        made = self.engine.with_products(**products)
-        surface: HapticSurface = made.make("surface")
+            overrides = {number: find(name, library) for number, name in own.items() if name is not None}
+            defaults = self._materials.materials
+            new_materials = tuple(overrides.get(number, material) for number, material in enumerate(defaults))
+            products["materials"] = replace(self._materials, materials=new_materials)
+        engine = self.engine.with_products(**products)
+        surface: HapticSurface = engine.make("surface")
         device = config.felt_device
-        felt = surface if device is None else fit_to_device(surface, config, device)[0]
+        limited_surface = surface if device is None else fit_to_device(surface, config, device)[0]
         with silently():  # else every step of a height would log the device's limits
-            return TriedSurface(surface, felt, made.make("touch"))
+            return TriedSurface(surface, limited_surface, engine.make("touch"))
 
     def _known_heights(self, heights_m: Sequence[float | None], by: str) -> list[float]:
         """Return the heights, with what the recipe finds for None. Raises: ConfigError for a depth that is not made."""
-        if None in heights_m and by not in self._found_m:
+        if None in heights_m and by not in self._recipe_heights_m:
             disparity = product_at_hand(self.engine, "disparity") if by == "depth" else None
             if by == "depth" and disparity is None:
                 raise ConfigError("the picture's depth is not made yet; make it, and heights by depth are felt")
             config = self.engine.config
             choice = _validate(HeightChoice, {**config_heights(config).model_dump(), "by": by})
             stage = ReliefStage(Context(config.with_values(heights=choice), self.engine.scene))
-            self._found_m[by] = stage.part_heights(self._parts, disparity).heights_m
-        found_m = self._found_m.get(by, ())
+            self._recipe_heights_m[by] = stage.part_heights(self._parts, disparity).heights_m
+        found_m = self._recipe_heights_m.get(by, ())
         return [
             found_m[number] if height_m is None and number < len(found_m) else height_m or 0.0
             for number, height_m in enumerate(heights_m)
         ]
 
-    def _has_layers_of(self, before: "PartHeightPreview") -> bool:
+    def _shares_layers(self, before: "PartHeightPreview") -> bool:
         config, earlier = self.engine.config, before.engine.config
         same = earlier.heights == config.heights and earlier.size == config.size
         is_here = before.grid.scene is self.grid.scene
@@ -156,8 +158,8 @@ class PartHeightPreview:
 
 def is_at_hand(engine: Engine, product: Product) -> bool:
     """Return True if a product is available without making it: given, made, or cached."""
-    done = {outcome.product: outcome.outcome for outcome in engine.outcomes}
-    if done.get(product) in ("given", "ran", "cached"):
+    outcomes = {outcome.product: outcome.outcome for outcome in engine.outcomes}
+    if outcomes.get(product) in ("given", "ran", "cached"):
         return True
     steps = {step.product: step.outcome for step in engine.plan(product).steps}
     return steps.get(product) in ("given", "cached")
@@ -168,10 +170,10 @@ def product_at_hand(engine: Engine, product: Product) -> Any:
     return engine.make_on_grid(product) if is_at_hand(engine, product) else None
 
 
-def _validate(section: type[S], said: Mapping[str, Any]) -> S:
+def _validate(section: type[S], values: Mapping[str, Any]) -> S:
     """Validate options. Raises: ConfigError."""
     try:
-        return section.model_validate(said)
+        return section.model_validate(values)
     except ValidationError as error:
         first = error.errors()[0]
         raise ConfigError(f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from error

@@ -180,13 +180,13 @@ class MethodStage(Stage):
         method, views = self.choice and self.choice.method, self.context.scene.views
         return method.skip(views) if isinstance(method, Skippable) and views is not None else None
 
-    def check_shape(self, what: str, found: tuple[int, ...], wanted: tuple[int, ...]) -> None:
+    def check_shape(self, what: str, shape: tuple[int, ...], picture_shape: tuple[int, ...]) -> None:
         """Raise BrokenMethod for a result of another size: enlarged to the pictures' size it would pass unseen."""
-        if found != wanted:
+        if shape != picture_shape:
             choice = self.required_choice
             raise BrokenMethod(
-                f"{self.kind} method {choice.name} ({choice.origin}) made {what} of {_size(found)} for a picture of "
-                f"{_size(wanted)}; `tangible check {self.kind} {choice.name}` shows the rules that it breaks"
+                f"{self.kind} method {choice.name} ({choice.origin}) made {what} of {_size(shape)} for a picture of "
+                f"{_size(picture_shape)}; `tangible check {self.kind} {choice.name}` shows the rules that it breaks"
             )
 
 
@@ -207,26 +207,26 @@ def _size(shape: tuple[int, ...]) -> str:
 
 def product_key(product: str, key: str, inputs: Mapping[str, str]) -> str:
     """Return the key of a product: its own key and those of its inputs, as SHA-256 in hexadecimal digits."""
-    parts = (product, key, *(f"{name}={each}" for name, each in inputs.items()))
+    parts = (product, key, *(f"{name}={key_of_input}" for name, key_of_input in inputs.items()))
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
 def method_identities(config: PipelineConfig) -> str:
     """Return what results depend on of the code and the options of all methods, in one text."""
-    return "\n".join(" ".join(method_identity(each)) for each in (config.depth, config.texture, config.render))
+    return "\n".join(" ".join(method_identity(method)) for method in (config.depth, config.texture, config.render))
 
 
-def method_identity(chosen: NamedMethod[Any] | None) -> tuple[str, str]:
+def method_identity(choice: NamedMethod[Any] | None) -> tuple[str, str]:
     """Return a method's name, and all its results depend on: its distribution, code, version, options and files."""
-    if chosen is None:
+    if choice is None:
         return "", ""
-    method: Method = chosen.method
+    method: Method = choice.method
     cls = type(method)
     code = closure(cls.__module__)
     digest = code.digest if code.modules else source_digest(cls) or uuid4().hex
     options = method.model_dump()  # not as JSON, to which infinity and nothing are the same
     read = "".join(f" {content_digest(path)}" for path in method.reads())
-    return chosen.name, f"{chosen.origin} {cls.__module__}:{cls.__qualname__} {digest} v{cls.version} {options}{read}"
+    return choice.name, f"{choice.origin} {cls.__module__}:{cls.__qualname__} {digest} v{cls.version} {options}{read}"
 
 
 @cache

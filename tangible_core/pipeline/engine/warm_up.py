@@ -57,9 +57,9 @@ def run_stages(config: PipelineConfig, views: Views, segments: bool, touch: bool
     ramp, stripes = np.empty(views.shape, np.float32), np.empty(views.shape, np.int32)
     ramp[:], stripes[:] = columns + 1, columns * STRIPES // columns.size
     scene = Scene("rehearsal", views, DisparityMap(ramp), SegmentMap(stripes))
-    made = Engine(config.with_values(scene=scene), default_registry()).make("touch")
+    engine = Engine(config.with_values(scene=scene), default_registry()).make("touch")
     yield "touch"
     device = config.felt_device
     if device is not None and device.spec().simulated:
-        run_simulated(made, device, SECONDS, limits=config.safety)
+        run_simulated(engine, device, SECONDS, limits=config.safety)
     yield FELT

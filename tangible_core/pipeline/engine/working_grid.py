@@ -31,9 +31,9 @@ class WorkingGrid:
     @property
     def key(self) -> str:
         """The part of a product's key that depends on the grid."""
-        known = "" if self.scene.known is None else f"known {digest_of(self.scene.known)}"
-        shown = "" if self.scene.shown is None else f"shown {digest_of(self.scene.shown)}"
-        return f"1/{self.factor} {known} {shown}"
+        known_key = "" if self.scene.known is None else f"known {digest_of(self.scene.known)}"
+        shown_key = "" if self.scene.shown is None else f"shown {digest_of(self.scene.shown)}"
+        return f"1/{self.factor} {known_key} {shown_key}"
 
     @cached_property
     def views(self) -> Views | None:
@@ -48,8 +48,8 @@ class WorkingGrid:
     @cached_property
     def opaque_mask(self) -> Bool[np.ndarray, "h w"] | None:
         """A mask, True where the pictures are opaque; None for everywhere."""
-        shown = None if self.scene.shown is None else scaling.reduced_mask(self.scene.shown, self.shape)
-        return None if shown is None or shown.all() else shown
+        mask = None if self.scene.shown is None else scaling.reduced_mask(self.scene.shown, self.shape)
+        return None if mask is None or mask.all() else mask
 
     def full_disparity(self, disparity: DisparityMap) -> DisparityMap:
         """Return a map on this grid for every pixel of the pictures."""
@@ -68,29 +68,33 @@ class WorkingGrid:
         return parts_on_grid(parts, self.shape, product)
 
 
-def known_disparity(disparity: DisparityMap, known: Bool[np.ndarray, "h w"] | None) -> DisparityMap:
-    """Return the map with NaN and confidence 0 where `known` is False; None keeps it."""
-    if known is None:
+def known_disparity(disparity: DisparityMap, valid_mask: Bool[np.ndarray, "h w"] | None) -> DisparityMap:
+    """Return the map with NaN and confidence 0 where `valid_mask` is False; None keeps it."""
+    if valid_mask is None:
         return disparity
-    values_px = np.where(known, disparity.disparity_px, np.float32(np.nan))
-    return DisparityMap(values_px, disparity.confidence * known, disparity.unit)
+    values_px = np.where(valid_mask, disparity.disparity_px, np.float32(np.nan))
+    return DisparityMap(values_px, disparity.confidence * valid_mask, disparity.unit)
 
 
-def known_segments(segments: SegmentMap, known: Bool[np.ndarray, "h w"] | None) -> SegmentMap:
-    """Return the segments with confidence 0 where `known` is False; None keeps them."""
-    return segments if known is None else SegmentMap(segments.labels, segments.confidence * known)
+def known_segments(segments: SegmentMap, valid_mask: Bool[np.ndarray, "h w"] | None) -> SegmentMap:
+    """Return the segments with confidence 0 where `valid_mask` is False; None keeps them."""
+    return segments if valid_mask is None else SegmentMap(segments.labels, segments.confidence * valid_mask)
 
 
-def flatten_transparent(relief: Relief, shown: Bool[np.ndarray, "h w"] | None) -> Relief:
+def flatten_transparent(relief: Relief, opaque_mask: Bool[np.ndarray, "h w"] | None) -> Relief:
     """Return the relief at height 0 where the picture is transparent."""
-    return relief if shown is None else Relief(np.where(shown, relief.height_m, np.float32(0)), relief.extent_m)
+    return (
+        relief
+        if opaque_mask is None
+        else Relief(np.where(opaque_mask, relief.height_m, np.float32(0)), relief.extent_m)
+    )
 
 
 def relief_of_layers(
-    layering: Layering, heights_m: Sequence[float], size: FeltSize, shown: Bool[np.ndarray, "h w"] | None = None
+    layering: Layering, heights_m: Sequence[float], size: FeltSize, opaque_mask: Bool[np.ndarray, "h w"] | None = None
 ) -> Relief:
     """Return the relief of parts of these heights, smoothed, and at 0 where the picture is transparent."""
-    return flatten_transparent(smooth(layering.relief(heights_m), size.smooth_m), shown)
+    return flatten_transparent(smooth(layering.relief(heights_m), size.smooth_m), opaque_mask)
 
 
 def parts_on_grid(parts: PartMap, shape: tuple[int, int], product: Literal["parts", "simplified"]) -> PartMap:
@@ -98,20 +102,20 @@ def parts_on_grid(parts: PartMap, shape: tuple[int, int], product: Literal["part
     return reduced_parts(parts, shape) if product == "parts" else scaling.enlarged_parts(parts, shape)
 
 
-def add_ground_segment(segments: SegmentMap, shown: Bool[np.ndarray, "h w"] | None) -> SegmentMap:
+def add_ground_segment(segments: SegmentMap, opaque_mask: Bool[np.ndarray, "h w"] | None) -> SegmentMap:
     """Return the segments with all that is transparent as a segment of its own, the last one."""
-    if shown is None:
+    if opaque_mask is None:
         return segments
-    opaque = np.unique(segments.labels[shown])
-    labels = np.where(shown, np.searchsorted(opaque, segments.labels), opaque.size)
+    opaque = np.unique(segments.labels[opaque_mask])
+    labels = np.where(opaque_mask, np.searchsorted(opaque, segments.labels), opaque.size)
     return SegmentMap(labels.astype(np.int32), segments.confidence)
 
 
-def transparent_parts(parts: PartMap, shown: Bool[np.ndarray, "h w"] | None) -> list[int]:
-    """Return the parts that are all transparent. shown: of the parts' size; None for everywhere opaque."""
-    if shown is None:
+def transparent_parts(parts: PartMap, opaque_mask: Bool[np.ndarray, "h w"] | None) -> list[int]:
+    """Return the parts that are all transparent. opaque_mask: of the parts' size; None for everywhere opaque."""
+    if opaque_mask is None:
         return []
-    opaque = np.bincount(parts.labels[shown], minlength=parts.count)
+    opaque = np.bincount(parts.labels[opaque_mask], minlength=parts.count)
     total = np.bincount(parts.labels.reshape(-1), minlength=parts.count)
     return np.flatnonzero((opaque == 0) & (total > 0)).tolist()
 

@@ -1,6 +1,6 @@
 from .export_folder import read_list as read_list
 from .export_result import Exported as Exported
-from .exporting import title_of as title_of
+from .exporting import export_title as export_title
 from .exporting import work_for as work_for
 from .legible import drawn_width_m as drawn_width_m
 from .legible import with_width as with_width

@@ -14,24 +14,24 @@ from ..engine.networks import networks_identity
 
 def remove_ground(engine: Engine, products: Mapping[str, Record | None]) -> dict[str, Record | None]:
     """Return the products of an engine without their ground, which has no height, and is the last part."""
-    seen: Figure = engine.make_on_grid("figure") if networks_identity(engine.registry) else Figure()
-    if seen.figure is None:
+    figure: Figure = engine.make_on_grid("figure") if networks_identity(engine.registry) else Figure()
+    if figure.figure is None:
         raise ModelAbsent("a cut-out needs the network that sees figures; `tangible networks add figure` fetches it")
-    if not seen.is_figure(seen.figure.shape).any():
+    if not figure.is_figure(figure.figure.shape).any():
         raise PictureError("nothing stands out from its ground in this picture, so nothing is cut out")
-    return {name: flatten_ground(record, seen) for name, record in products.items()}
+    return {name: flatten_ground(record, figure) for name, record in products.items()}
 
 
-def flatten_ground(record: Record | None, seen: Figure) -> Any:
+def flatten_ground(record: Record | None, figure: Figure) -> Any:
     """Return a product without its ground."""
     match record:
         case Relief():
             shape = record.height_m.shape
-            return replace(record, height_m=np.where(seen.is_figure(shape), record.height_m, np.float32(0)))
+            return replace(record, height_m=np.where(figure.is_figure(shape), record.height_m, np.float32(0)))
         case HapticSurface():
-            return replace(record, relief=flatten_ground(record.relief, seen))
+            return replace(record, relief=flatten_ground(record.relief, figure))
         case PartMap():
-            labels = np.where(seen.is_figure(record.labels.shape), record.labels, np.int32(record.count))
+            labels = np.where(figure.is_figure(record.labels.shape), record.labels, np.int32(record.count))
             return PartMap(labels, (*record.segments, max(record.segments) + 1))
         case _:
             return record

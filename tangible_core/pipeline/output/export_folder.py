@@ -34,29 +34,29 @@ def check_writable(folder: Path) -> None:
         raise OutputError(f"{folder / LISTED}: is not a list of exports; move or delete it, or choose another folder")
 
 
-def check_written(written: Sequence[object], place: Path, who: str) -> tuple[Path, ...]:
+def check_written(paths: Sequence[object], place: Path, who: str) -> tuple[Path, ...]:
     """Check the paths that an exporter returned. place: its `stem`. who: the exporter's name for messages."""
-    if not written:
+    if not paths:
         raise BrokenMethod(f"{who}: write returned no path; it must return those of all files that it wrote")
-    for each in written:
-        if not isinstance(each, Path):
-            raise BrokenMethod(f"{who}: write returned {quoted(each)} for a path; it must return a tuple of Path")
-        if each.absolute().parent != place.absolute().parent or not each.name.startswith(place.name):
-            raise BrokenMethod(f"{who}: write returned {each}, which is not the given stem with an ending")
-        if each.is_symlink() or not each.is_file():
-            raise BrokenMethod(f"{who}: write returned {each.name}, and there is no such file")
-    return tuple(dict.fromkeys(cast("Sequence[Path]", written)))
+    for path in paths:
+        if not isinstance(path, Path):
+            raise BrokenMethod(f"{who}: write returned {quoted(path)} for a path; it must return a tuple of Path")
+        if path.absolute().parent != place.absolute().parent or not path.name.startswith(place.name):
+            raise BrokenMethod(f"{who}: write returned {path}, which is not the given stem with an ending")
+        if path.is_symlink() or not path.is_file():
+            raise BrokenMethod(f"{who}: write returned {path.name}, and there is no such file")
+    return tuple(dict.fromkeys(cast("Sequence[Path]", paths)))
 
 
-def move(written: Sequence[Path], folder: Path, source: str, exporter: str, force: bool) -> tuple[Path, ...]:
+def move(paths: Sequence[Path], folder: Path, source: str, exporter: str, force: bool) -> tuple[Path, ...]:
     """Move files to their place, all or none; `force` overwrites files that are not an earlier export."""
     with folder_lock(folder):
-        return _replace(written, folder, source, exporter, force)
+        return _replace(paths, folder, source, exporter, force)
 
 
-def _replace(written: Sequence[Path], folder: Path, source: str, exporter: str, force: bool) -> tuple[Path, ...]:
+def _replace(paths: Sequence[Path], folder: Path, source: str, exporter: str, force: bool) -> tuple[Path, ...]:
     before = read_list(folder)
-    places = {each: folder / each.name for each in written}
+    places = {entry: folder / entry.name for entry in paths}
     for place in places.values():
         if place.is_dir() or (place.exists() and not force and not _is_ours(place, before, source, exporter)):
             raise OutputError(
@@ -64,9 +64,9 @@ def _replace(written: Sequence[Path], folder: Path, source: str, exporter: str, 
                 f"another folder{'' if place.is_dir() else ', --force overwrites it'}"
             )
     new = {place.name: Listed(source, exporter, content_digest(path)) for path, place in places.items()}
-    listed = written[0].with_name(LISTED)  # beside the files, so that a full disk shows before any of them is moved
-    _write_list(listed, {name: each for name, each in before.items() if (folder / name).is_file()} | new)
-    for path, place in {**places, listed: folder / LISTED}.items():
+    list_file = paths[0].with_name(LISTED)  # beside the files, so that a full disk shows before any of them is moved
+    _write_list(list_file, {name: entry for name, entry in before.items() if (folder / name).is_file()} | new)
+    for path, place in {**places, list_file: folder / LISTED}.items():
         try:
             path.replace(place)
         except OSError as error:

@@ -34,7 +34,7 @@ from ..engine.stage import Progress, StageEvent, ignore_event
 from .cutting import remove_ground
 from .export_folder import check_writable, check_written, move
 from .export_result import Export, Exported
-from .legible import drawn_parts, drawn_width_m, judge_products, names_of_parts, with_cures_of, with_width
+from .legible import drawn_parts, drawn_width_m, judge_products, names_of_parts, with_exporter_cures, with_width
 from .run_folder import default_name, relative_source
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -52,15 +52,15 @@ def chosen_exporters(
 ) -> tuple[NamedMethod[Exporter], ...]:
     """Return the named exporters with their configured options; without names, all that the configuration lists."""
     if to is None:
-        chosen = config.export
+        exporters = config.export
     else:
         to = [to] if isinstance(to, str | Exporter) else to
-        chosen = tuple(method for each in to for method in _find_exporters(config, each, registry))
-    if not chosen:
-        known = ", ".join(registry.names("export"))
+        exporters = tuple(method for exporter in to for method in _find_exporters(config, exporter, registry))
+    if not exporters:
+        names = ", ".join(registry.names("export"))
         cure = "`export(folder, to=[NAMES])`" if config.path is None else "`--to NAMES` or `export: [NAMES]`"
-        raise ConfigError(f"no exporter is named; write {cure}; installed: {known}")
-    return chosen
+        raise ConfigError(f"no exporter is named; write {cure}; installed: {names}")
+    return exporters
 
 
 def _find_exporters(
@@ -70,7 +70,7 @@ def _find_exporters(
         return (NamedMethod(type(each).__qualname__, "", each),)
     if not isinstance(each, cast(Any, str)):
         raise wrong_argument("to", each, "the name of an exporter, or an object of one")
-    if own := tuple(chosen for chosen in config.export if chosen.name == each):
+    if own := tuple(method for method in config.export if method.name == each):
         return own
     listing, cls = registry.find("export", each), cast("type[Exporter]", registry.load("export", each))
     try:
@@ -82,7 +82,7 @@ def _find_exporters(
 def export(
     engine: Engine,
     folder: Path,
-    chosen: Sequence[NamedMethod[Exporter]],
+    exporters: Sequence[NamedMethod[Exporter]],
     progress: Progress | None = None,
     stop: Event | None = None,
     *,
@@ -90,19 +90,19 @@ def export(
     cut: bool = False,
 ) -> Export:
     """Write the files of each exporter into a folder; one that fails does not stop the others."""
-    stem = stem_of(engine.config, engine.scene)
+    stem = export_stem(engine.config, engine.scene)
     check_writable(folder)
-    run, done, names = (
+    run, results, names = (
         _ExportRun(engine, folder, force, cut, progress or ignore_event),
         list[Exported](),
         Counter[str](),
     )
     with sole_writer(folder / stem), stoppable(stop):
-        for each in chosen:
-            names[each.name] += 1
-            number = f"-{names[each.name]}" if names[each.name] > 1 else ""
-            done.append(run.export(f"{each.name}{number}", f"{stem}{number}", each))
-    return Export(folder, tuple(done))
+        for exporter in exporters:
+            names[exporter.name] += 1
+            number = f"-{names[exporter.name]}" if names[exporter.name] > 1 else ""
+            results.append(run.export(f"{exporter.name}{number}", f"{stem}{number}", exporter))
+    return Export(folder, tuple(results))
 
 
 @final
@@ -121,30 +121,30 @@ class _ExportRun:
         """The slope limit for exporters that need none."""
         self.engines = {(config.size.width_m, config.relief.slope): engine}
 
-    def export(self, name: str, stem: str, chosen: NamedMethod[Exporter]) -> Exported:
+    def export(self, name: str, stem: str, exporter: NamedMethod[Exporter]) -> Exported:
         """Make the products for an exporter, and run it."""
-        made, product, seconds = Outcomes(), f"{PREFIX}{name}", 0.0
+        outcomes, product, seconds = Outcomes(), f"{PREFIX}{name}", 0.0
         files, legible, notes, place = (), None, list[Note](), None
 
         def listen(stage: StageEvent) -> None:
             if stage.outcome is not None:
-                made.append(stage.outcome)
+                outcomes.append(stage.outcome)
             self.progress(stage)
 
         try:
-            engine = self._engine(chosen)
+            engine = self._engine(exporter)
             with engine.watching(listen):
-                work = work_for(engine, chosen.method, cut=self.cut)
-                legible = legible_for(engine, chosen)
+                work = work_for(engine, exporter.method, cut=self.cut)
+                legible = legible_for(engine, exporter)
             check_stopped()
-            self.progress(StageEvent(product, chosen.name))
-            hooks.tell(self.engine.registry.plugins, "tangible_stage_started", product=product, method=chosen.name)
+            self.progress(StageEvent(product, exporter.name))
+            hooks.tell(self.engine.registry.plugins, "tangible_stage_started", product=product, method=exporter.name)
             start = perf_counter()
             with temporary_folder(self.folder / "export") as place, collect_notes() as notes:
-                files = self._write(chosen, work, place / stem)
+                files = self._write(exporter, work, place / stem)
             seconds = perf_counter() - start
             kind: OutcomeKind = "ran"
-            notes = [*_illegible(chosen.name, legible), *notes]
+            notes = [*_illegible(exporter.name, legible), *notes]
             why = with_notes(notes, REQUESTED)
         except Stopped:
             raise
@@ -152,15 +152,15 @@ class _ExportRun:
             kind, why = _fault(error, self.folder)
             if place is not None:  # the user has never seen where files are written before they are moved
                 why = why.replace(str(place), str(self.folder))
-        outcome = Outcome(product, kind, why, chosen.name, seconds, tuple(notes))
-        self.progress(StageEvent(product, chosen.name, outcome))
+        outcome = Outcome(product, kind, why, exporter.name, seconds, tuple(notes))
+        self.progress(StageEvent(product, exporter.name, outcome))
         hooks.tell(self.engine.registry.plugins, "tangible_stage_finished", outcome=outcome)
-        return Exported(name, outcome, files, made, legible if kind == "ran" else None)
+        return Exported(name, outcome, files, outcomes, legible if kind == "ran" else None)
 
-    def _engine(self, chosen: NamedMethod[Exporter]) -> Engine:
+    def _engine(self, exporter: NamedMethod[Exporter]) -> Engine:
         """Return the engine for the width at which this exporter writes, and for its slopes."""
-        width_m = drawn_width_m(self.engine, chosen)
-        slope = self.engine.config.relief.slope if chosen.method.limits_slopes else self.upright_slope
+        width_m = drawn_width_m(self.engine, exporter)
+        slope = self.engine.config.relief.slope if exporter.method.limits_slopes else self.upright_slope
         if (width_m, slope) not in self.engines:
             self.engines[width_m, slope] = _with_slope(with_width(self.engine, width_m), slope)
         engine = self.engines[width_m, slope]
@@ -168,11 +168,11 @@ class _ExportRun:
             engine.adopt(other)
         return engine
 
-    def _write(self, chosen: NamedMethod[Exporter], work: Work, stem: Path) -> tuple[Path, ...]:
-        written = chosen.method.write(work, stem)
+    def _write(self, exporter: NamedMethod[Exporter], work: Work, stem: Path) -> tuple[Path, ...]:
+        outputs = exporter.method.write(work, stem)
         check_stopped()
-        paths = check_written(written, stem, _full_name(chosen.method))
-        return move(paths, self.folder, self.source, chosen.name, self.force)
+        paths = check_written(outputs, stem, _full_name(exporter.method))
+        return move(paths, self.folder, self.source, exporter.name, self.force)
 
 
 def _with_slope(engine: Engine, slope: float) -> Engine:
@@ -199,7 +199,7 @@ def work_for(engine: Engine, exporter: Exporter, *, cut: bool = False) -> Work:
     if has_figure(engine.config, engine.registry):
         extras["figure"] = engine.make_on_grid("figure")
     return Work(
-        title_of(engine.config, engine.scene),
+        export_title(engine.config, engine.scene),
         engine.config.language,
         products,
         None if views is None else views.left,
@@ -210,14 +210,15 @@ def work_for(engine: Engine, exporter: Exporter, *, cut: bool = False) -> Work:
     )
 
 
-def legible_for(engine: Engine, chosen: NamedMethod[Exporter]) -> Legibility | None:
+def legible_for(engine: Engine, exporter: NamedMethod[Exporter]) -> Legibility | None:
     """Judge the legibility by the products that an exporter needs; None for files that are not touched."""
-    exporter = chosen.method
-    if exporter.medium is None:
+    medium = exporter.method.medium
+    if medium is None:
         return None
-    parts = drawn_parts(engine, chosen)
-    judged = set[str]().union(*map(engine.inputs_of, exporter.needs))
-    return with_cures_of(engine, chosen, judge_products(engine, exporter.medium, parts, judged))
+    products = set[str]().union(*map(engine.all_inputs, exporter.method.needs))
+    return with_exporter_cures(
+        engine, exporter, judge_products(engine, medium, drawn_parts(engine, exporter), products)
+    )
 
 
 def _illegible(name: str, legible: Legibility | None) -> list[Note]:
@@ -227,7 +228,7 @@ def _illegible(name: str, legible: Legibility | None) -> list[Note]:
     return [Note(legible.sentence, "warning")]
 
 
-def title_of(config: PipelineConfig, scene: Scene) -> str:
+def export_title(config: PipelineConfig, scene: Scene) -> str:
     """Return the title for exporters: the configured one, the picture's own, or the scene's name without folder."""
     if title := config.title.strip() or scene.title:
         return title
@@ -235,13 +236,13 @@ def title_of(config: PipelineConfig, scene: Scene) -> str:
     return name.stem if isinstance(scene.files, SceneFiles) else name.name
 
 
-def stem_of(config: PipelineConfig, scene: Scene) -> str:
+def export_stem(config: PipelineConfig, scene: Scene) -> str:
     """Return the name of exported files without their endings: that of the pipeline file or of the scene, without dots.
 
-    >>> stem_of(PipelineConfig(scene="builtin/coins", path=Path("maps/harbour.v2.yaml")), Scene("coins"))
+    >>> export_stem(PipelineConfig(scene="builtin/coins", path=Path("maps/harbour.v2.yaml")), Scene("coins"))
     'harbour-v2'
     """
-    name = title_of(config, scene) if config.path is None else default_name(config.path)
+    name = export_title(config, scene) if config.path is None else default_name(config.path)
     plain = re.sub(r"[^\w -]+", "-", name).strip("- ")
     return plain.encode()[:MAX_STEM_BYTES].decode(errors="ignore") or "export"
 

@@ -14,7 +14,7 @@ from ...preflight.verdict import Change, Verdict
 from ...scene.workspace import Workspace
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
-from ..config.part_checks import names_of
+from ..config.part_checks import all_part_names
 from ..engine.engine import Engine
 from ..engine.hooked import judge_function
 from ..engine.working_grid import WorkingGrid
@@ -34,10 +34,10 @@ def legible(engine: Engine, medium: Medium, width_m: float | None = None) -> Leg
     if medium not in (media := get_args(Medium)):
         raise ConfigError(f"medium: is {quoted(medium)}{did_you_mean(str(medium), media)}; it is {', '.join(media)}")
     exporter = exporter_for(engine, medium)
-    judged = with_width(engine, drawn_width_m(engine, exporter) if width_m is None else width_m)
+    wide_engine = with_width(engine, drawn_width_m(engine, exporter) if width_m is None else width_m)
     parts = drawn_parts(engine, exporter)
-    found = judge_products(judged, medium, parts, {parts, *JUDGED.get(medium, ())})
-    return found if exporter is None else with_cures_of(engine, exporter, found)
+    verdicts = judge_products(wide_engine, medium, parts, {parts, *JUDGED.get(medium, ())})
+    return verdicts if exporter is None else with_exporter_cures(engine, exporter, verdicts)
 
 
 def exporter_for(engine: Engine, medium: Medium) -> NamedMethod[Exporter] | None:
@@ -71,33 +71,33 @@ def drawn_width_m(engine: Engine, exporter: NamedMethod[Exporter] | None) -> flo
     return engine.config.size.width_m if width_m is None else width_m
 
 
-def with_cures_of(engine: Engine, exporter: NamedMethod[Exporter], found: Legibility) -> Legibility:
+def with_exporter_cures(engine: Engine, exporter: NamedMethod[Exporter], verdicts: Legibility) -> Legibility:
     """Return the verdicts with cures that change the width in the exporter's options, where it has its own width."""
     aspect = _aspect(engine)
     if exporter.method.picture_width_m(aspect) is None:
-        return found
-    return Legibility(_with_width_of(exporter, each, aspect) for each in found)
+        return verdicts
+    return Legibility(_with_exporter_width(exporter, verdict, aspect) for verdict in verdicts)
 
 
-def _with_width_of(exporter: NamedMethod[Exporter], verdict: Verdict, aspect: float) -> Verdict:
+def _with_exporter_width(exporter: NamedMethod[Exporter], verdict: Verdict, aspect: float) -> Verdict:
     wider = next((change for change in verdict.changes if change.key == WIDTH), None)
     if wider is None:
         return verdict
     options = exporter.method.options_for_width(float(wider.value), aspect)
-    named = [Change(f"export.{exporter.name}.{name}", f"{value}", "is") for name, value in options.items()]
-    changes = tuple(new for change in verdict.changes for new in (named if change is wider else [change]))
-    cure = verdict.cure.replace(f"{wider}, ", "".join(f"{each}, " for each in named))
-    return replace(verdict, cure=cure.replace(f"{wider}", ", ".join(map(str, named))), changes=changes)
+    width_changes = [Change(f"export.{exporter.name}.{name}", f"{value}", "is") for name, value in options.items()]
+    changes = tuple(new for change in verdict.changes for new in (width_changes if change is wider else [change]))
+    cure = verdict.cure.replace(f"{wider}, ", "".join(f"{change_of_width}, " for change_of_width in width_changes))
+    return replace(verdict, cure=cure.replace(f"{wider}", ", ".join(map(str, width_changes))), changes=changes)
 
 
 def _aspect(engine: Engine) -> float:
-    (rows, columns), measured = engine.scene.shape, engine.scene.measured
-    return columns / rows if measured is None else measured.width_m / measured.length_m
+    (rows, columns), size = engine.scene.shape, engine.scene.measured
+    return columns / rows if size is None else size.width_m / size.length_m
 
 
-def judge_products(engine: Engine, medium: Medium, parts: str, judged: Collection[str]) -> Legibility:
+def judge_products(engine: Engine, medium: Medium, parts: str, names_judged: Collection[str]) -> Legibility:
     """Judge the legibility by these products alone. parts: the product with the parts. Raises: TangibleError."""
-    names = [name for name in (parts, "relief", "materials") if name in judged]
+    names = [name for name in (parts, "relief", "materials") if name in names_judged]
     products: dict[str, Any] = {name: engine.make_on_grid(name) for name in names}
     others = {name: products[name] for name in JUDGED.get(medium, ()) if name in products}
     part_map: PartMap | None = products.get(parts)
@@ -142,4 +142,4 @@ def names_of_parts(config: PipelineConfig, products: Mapping[str, Record | None]
     if not config.parts:
         return ()
     counts = [product.count for product in products.values() if isinstance(product, PartMap)]
-    return names_of(config, max(counts, default=max(config.parts)))
+    return all_part_names(config, max(counts, default=max(config.parts)))

@@ -44,10 +44,10 @@ def to_correct(engine: Engine) -> str:
     except ConfigError:
         rest = ""
     head = f"# {SOURCES[config.heights.by]} Correct what is wrong, and give names.\n"
-    given = config.heights.model_copy(update={"by": "given"}).model_dump(mode="json")
+    recipe = config.heights.model_copy(update={"by": "given"}).model_dump(mode="json")
     reasons = {n: f"{name_part(n - 1)}: {shown(why, MAX_REASON)}" for n, why in enumerate(heights.reasons, 1)}
     parts = with_parts(rest, Path(), _blocks(config, heights), reasons)
-    return f"{head}{parts}heights: {on_one_line(given)}\n"
+    return f"{head}{parts}heights: {on_one_line(recipe)}\n"
 
 
 def _blocks(config: PipelineConfig, heights: PartHeights) -> dict[int, dict[str, Any]]:

@@ -65,8 +65,8 @@ def read_manifest(folder: Path) -> Manifest | None:
 def default_folder(source: Path, parent: Path = Path("out"), name: str = "") -> Path:
     """Return `parent`/NAME for the results of this pipeline file, or NAME-2, NAME-3 where that has other files."""
     name = name or default_name(source)
-    numbered = (parent / (name if number == 1 else f"{name}-{number}") for number in count(1))
-    return next(folder for folder in numbered if _is_free_for(folder, source))
+    folders = (parent / (name if number == 1 else f"{name}-{number}") for number in count(1))
+    return next(folder for folder in folders if _is_free_for(folder, source))
 
 
 def default_name(source: Path, *others: Path) -> str:
@@ -115,11 +115,11 @@ def check_folder(folder: Path, source: Path | None) -> None:
 
 
 def _check_files(folder: Path, source: Path | None) -> None:
-    expected = {folder / name for name in _own(folder)}
+    own_files = {folder / name for name in _own(folder)}
     if source is not None and source.resolve() == (folder / CONFIG).resolve():  # edited, and run in its place
-        expected.add(folder / CONFIG)
+        own_files.add(folder / CONFIG)
     for path in (folder / name for name in NAMES):
-        if path not in expected and path.exists():
+        if path not in own_files and path.exists():
             raise OutputError(f"{path}: exists, and is not an unchanged file of a run; choose another folder")
 
 

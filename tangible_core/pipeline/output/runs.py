@@ -73,8 +73,8 @@ class Run:
         raise OutputError(f"{self.scene}: has no sheet, as no exporter named {SHEET!r} is installed")
 
     def __repr__(self) -> str:
-        made = [name for name, value in self.products.items() if value is not None]
-        return f"Run of {self.scene}: {', '.join(made)}, in {self.files[0].parent}"
+        names = [name for name, value in self.products.items() if value is not None]
+        return f"Run of {self.scene}: {', '.join(names)}, in {self.files[0].parent}"
 
     def _repr_html_(self) -> str:
         if self.sheet.suffix == ".png":
@@ -112,7 +112,7 @@ def make_run(
 def _make_run(engine: Engine, out: Path, want: str, seconds: float, sheet: Sheet) -> Run:
     with warm_up(engine, want) as engine.compiler:
         value = engine.make_on_grid(want)
-        products = {name: engine.make_on_grid(name) for name in IN_REPORT if name in engine.inputs_of(want)}
+        products = {name: engine.make_on_grid(name) for name in IN_REPORT if name in engine.all_inputs(want)}
         products[want] = value
         recording = _run_touch(engine, value, seconds) if want == "touch" else None
     figures, config_file = _figures(engine, products, recording), _config_file(engine)
@@ -120,8 +120,8 @@ def _make_run(engine: Engine, out: Path, want: str, seconds: float, sheet: Sheet
     recordings = [RECORDING] if recording is not None else []
     sheets = [f"{SHEET}.{sheet}"] if can_draw(engine.registry) else []
     heights, high = engine.config.heights, products.keys() & {"relief", "surface", "touch"}
-    guessed = {GUESSED: to_correct(engine)} if heights is not None and heights.by == "guess" and high else {}
-    texts = {**config_file, **guessed}
+    guesses = {GUESSED: to_correct(engine)} if heights is not None and heights.by == "guess" and high else {}
+    texts = {**config_file, **guesses}
     files = tuple(out / name for name in (*texts, *records, *recordings, *sheets, OUTCOMES))
     with rewriting(out, engine.config.path) as place:
         for name, record in records.items():
@@ -151,8 +151,8 @@ def _config_file(engine: Engine) -> dict[str, str]:
 
 def about(engine: Engine) -> About:
     """Describe the pipeline for a recording."""
-    used = {kind: getattr(engine.config, kind) for kind in ("device", "render")}
-    names = {kind: chosen.name if chosen else "" for kind, chosen in used.items()}
+    methods = {kind: getattr(engine.config, kind) for kind in ("device", "render")}
+    names = {kind: method.name if method else "" for kind, method in methods.items()}
     try:
         text = engine.config.as_yaml()
     except ConfigError as error:
@@ -171,8 +171,8 @@ def join_descriptions(first: About, each: Sequence[About]) -> About:
 
 def device_in_workspace(engine: Engine, device: HapticDevice | None = None) -> HapticDevice | None:
     """Place the device, or the configured one, over the surface, in the picture's frame; None without a device."""
-    placed = engine.config.felt_device if device is None else map_device(device, engine.config.mapping)
-    return placed and over(placed, engine.make("surface").extent_m)
+    frame_device = engine.config.felt_device if device is None else map_device(device, engine.config.mapping)
+    return frame_device and over(frame_device, engine.make("surface").extent_m)
 
 
 def path_tracking(engine: Engine, device: HapticDevice | None, ticks: Recording) -> TrackingError:
@@ -201,14 +201,14 @@ def _run_touch(engine: Engine, touch: Touch, seconds: float) -> Recording | None
 
 def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | None, path: Path) -> str:
     scene, language = engine.scene, engine.config.language
-    shown: dict[str, Any] = {name: products.get(name) for name in (*IN_REPORT, "relief")}
-    if scene.truth is not None and shown["disparity"] is not None:
-        shown["disparity"] = engine.make("disparity")  # pixel by pixel next to its truth
+    products_shown: dict[str, Any] = {name: products.get(name) for name in (*IN_REPORT, "relief")}
+    if scene.truth is not None and products_shown["disparity"] is not None:
+        products_shown["disparity"] = engine.make("disparity")  # pixel by pixel next to its truth
     title = engine.config.title or without_folders(scene.name)
     if doubts := [doubt.text.partition(":")[0] for doubt in engine.outcomes.doubts]:
         title = f"{title} (doubtful: {'; '.join(doubts)})"
     extras = {"views": scene.views, "truth": scene.truth, "recording": recording}
-    return drawing().draw(Work(title, language, shown, extras=extras), path)
+    return drawing().draw(Work(title, language, products_shown, extras=extras), path)
 
 
 def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording | None) -> dict[str, Any]:
@@ -217,10 +217,10 @@ def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording |
     if truth is not None and isinstance(products.get("disparity"), DisparityMap):
         disparity = engine.make("disparity")
         figures["disparity"] = disparity_errors(disparity.disparity_px, truth)
-    if isinstance(chosen := products.get("materials"), MaterialMap):
+    if isinstance(material_map := products.get("materials"), MaterialMap):
         figures["materials"] = {
             label: {"name": material.name, "why": why}
-            for label, (material, why) in enumerate(zip(chosen.materials, chosen.reasons, strict=True))
+            for label, (material, why) in enumerate(zip(material_map.materials, material_map.reasons, strict=True))
         }
     if says := [note.text for note in engine.on_heights if note.kind == "decision"]:
         figures["heights"] = {"says": says}

@@ -53,7 +53,7 @@ def tangible_servo_report(report: ServoReport) -> None:
     if report.stopped:
         _clear()
     else:
-        under = ", ".join(shown(each) for each in (report.part, report.material) if each)
+        under = ", ".join(shown(name) for name in (report.part, report.material) if name)
         on = f", on {under}" if under else ""
         _show(f"feeling: {report.time_s:5.1f} s, peak {report.peak_force_n:.2f} N{on}")
 

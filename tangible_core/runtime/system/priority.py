@@ -35,8 +35,8 @@ if sys.platform == "win32":
         kernel: Any = ctypes.WinDLL("kernel32")
         kernel.GetCurrentProcess.restype = ctypes.c_void_p
         kernel.SetPriorityClass(ctypes.c_void_p(kernel.GetCurrentProcess()), HIGH)
-        granted = _join_media() or _set_priority(TIME_CRITICAL)
-        return granted, f"{NAME} granted" if granted else f"{NAME} refused"
+        is_granted = _join_media() or _set_priority(TIME_CRITICAL)
+        return is_granted, f"{NAME} granted" if is_granted else f"{NAME} refused"
 
     def _join_media() -> bool:
         """Ask the scheduler for multimedia, which raises this thread even above the priority that anybody can ask."""
@@ -55,9 +55,9 @@ if sys.platform == "win32":
     @contextmanager
     def real_time() -> Generator[bool]:
         """Run a block in real time if the system permits it; yield whether it does."""
-        granted = _set_priority(TIME_CRITICAL)
+        is_granted = _set_priority(TIME_CRITICAL)
         try:
-            yield granted
+            yield is_granted
         finally:
             _set_priority(NORMAL)
 
@@ -69,8 +69,8 @@ elif sys.platform == "darwin":
 
     def request() -> tuple[bool, str]:
         """Request real time for the calling thread; return whether it was granted, and a sentence about it."""
-        granted = _set_policy(CONSTRAINT_POLICY, *map(_mach_units, (PERIOD_NS, WORK_NS, WITHIN_NS)), 1)
-        return granted, f"{NAME} granted" if granted else f"{NAME} refused"
+        is_granted = _set_policy(CONSTRAINT_POLICY, *map(_mach_units, (PERIOD_NS, WORK_NS, WITHIN_NS)), 1)
+        return is_granted, f"{NAME} granted" if is_granted else f"{NAME} refused"
 
     def _set_policy(policy: int, *words: int) -> bool:
         system = ctypes.CDLL(None)
@@ -86,9 +86,9 @@ elif sys.platform == "darwin":
     @contextmanager
     def real_time() -> Generator[bool]:
         """Run a block in real time if the system permits it; yield whether it does."""
-        granted, _ = request()
+        is_granted, _ = request()
         try:
-            yield granted
+            yield is_granted
         finally:
             _set_policy(STANDARD_POLICY)
 
@@ -105,8 +105,8 @@ else:
         except OSError as error:
             _c("prctl")(SET_TIMER_SLACK, 1, 0, 0, 0)
             shorten_slice()
-            refused = f"SCHED_FIFO is not permitted ({error.strerror})"
-            return False, f"plain sleeping: {refused}, so busy programs make ticks late; give the user an rtprio limit"
+            refusal = f"SCHED_FIFO is not permitted ({error.strerror})"
+            return False, f"plain sleeping: {refusal}, so busy programs make ticks late; give the user an rtprio limit"
         memory = "memory locked" if _c("mlockall")(CURRENT_AND_FUTURE) == 0 else "memory not locked"
         return True, f"SCHED_FIFO {PRIORITY}, {memory}"
 

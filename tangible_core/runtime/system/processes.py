@@ -137,8 +137,8 @@ if sys.platform == "win32":
         counters = _Counters()
         counters.cb = ctypes.sizeof(counters)
         process = ctypes.c_void_p(kernel.GetCurrentProcess())
-        found = kernel.K32GetProcessMemoryInfo(process, ctypes.byref(counters), counters.cb)
-        return int(counters.PeakWorkingSetSize) if found else None
+        is_known = kernel.K32GetProcessMemoryInfo(process, ctypes.byref(counters), counters.cb)
+        return int(counters.PeakWorkingSetSize) if is_known else None
 
 else:
     import resource

@@ -20,8 +20,8 @@ NAME = re.compile(rf"{PREFIX}([0-9]{{1,9}})-\w+\.(ring|parcel)")
 
 def shared_folder() -> Path:
     """Return $TANGIBLE_SHARED_DIR, or a folder in memory if the system has one, as a disk would stall the loop."""
-    if named := os.environ.get("TANGIBLE_SHARED_DIR"):
-        return Path(named)
+    if folder := os.environ.get("TANGIBLE_SHARED_DIR"):
+        return Path(folder)
     memory = Path("/dev/shm")
     return memory if sys.platform == "linux" and os.access(memory, os.W_OK) else Path(tempfile.gettempdir())
 
@@ -38,9 +38,9 @@ if sys.platform == "win32":
         """Make memory of zeros; return its name, and the memory. Raises: OSError if there is no room."""
         _let_go()
         name = f"{PREFIX}{os.getpid()}-{secrets.token_hex(4)}.{kind}"
-        _held[name] = mapped = mmap.mmap(-1, _HEAD + size, tagname=name)
-        mapped[:8] = size.to_bytes(8, "little")
-        return Path(name), memoryview(mapped)[_HEAD:]
+        _held[name] = memory = mmap.mmap(-1, _HEAD + size, tagname=name)
+        memory[:8] = size.to_bytes(8, "little")
+        return Path(name), memoryview(memory)[_HEAD:]
 
     def write(kind: str, parts: Sequence[bytes | memoryview]) -> Path:
         """Make memory of these bytes, and return its name. Raises: OSError if there is no room."""
@@ -53,8 +53,8 @@ if sys.platform == "win32":
 
     def attach(path: Path) -> memoryview:
         """Map the memory of this name. Raises: OSError if there is none any more."""
-        mapped = _map(path.name)
-        return memoryview(mapped)[_HEAD : _HEAD + int.from_bytes(mapped[:8], "little")]
+        memory = _map(path.name)
+        return memoryview(memory)[_HEAD : _HEAD + int.from_bytes(memory[:8], "little")]
 
     def exists(path: Path) -> bool:
         """Return True if there is memory of this name."""
@@ -92,16 +92,16 @@ if sys.platform == "win32":
                 size = _winapi.VirtualQuerySize(view)
             finally:
                 _winapi.UnmapViewOfFile(view)
-            mapped = mmap.mmap(-1, size, tagname=name)
+            memory = mmap.mmap(-1, size, tagname=name)
         finally:
             _winapi.CloseHandle(handle)
-        if mapped[8]:
+        if memory[8]:
             raise FileNotFoundError(2, "removed", name)
-        return mapped
+        return memory
 
     def _let_go() -> None:
         """Let go of removed memory: the last process that has mapped it frees it."""
-        for name in [name for name, mapped in _held.items() if mapped[8]]:
+        for name in [name for name, memory in _held.items() if memory[8]]:
             del _held[name]
 
 else:
@@ -165,10 +165,10 @@ else:
 
     def _is_stale(path: Path) -> bool:
         """Return True for a file of `create` or `write` by a process of this user that is gone."""
-        named = NAME.fullmatch(path.name)
+        match = NAME.fullmatch(path.name)
         about = path.lstat()
         ours = about.st_uid == os.getuid() and stat.S_ISREG(about.st_mode)
-        return bool(named and ours and not is_alive(int(named[1])))
+        return bool(match and ours and not is_alive(int(match[1])))
 
     def _new(kind: str) -> Path:
         number, name = tempfile.mkstemp(f".{kind}", f"{PREFIX}{os.getpid()}-", shared_folder())

@@ -55,8 +55,8 @@ def couple(settings, memory, period_s, x, y, z, vx, vy, vz):
     if settings[at.COUPLING] <= 0.0:
         return x, y, z, vx, vy, vz
     elapsed_s = memory[at.AGE_S] + period_s
-    lost = np.isnan(memory[at.TOOL]) or _leapt(settings, memory, elapsed_s, x, y, z)
-    if lost or not _lead_tool(settings, memory, elapsed_s, (x, y, z), (vx, vy, vz)):
+    is_lost = np.isnan(memory[at.TOOL]) or _leapt(settings, memory, elapsed_s, x, y, z)
+    if is_lost or not _lead_tool(settings, memory, elapsed_s, (x, y, z), (vx, vy, vz)):
         memory[at.TOOL], memory[at.TOOL + 1], memory[at.TOOL + 2] = x, y, z
         memory[at.TOOL + 3], memory[at.TOOL + 4], memory[at.TOOL + 5] = vx, vy, vz
     tool = memory[at.TOOL], memory[at.TOOL + 1], memory[at.TOOL + 2]

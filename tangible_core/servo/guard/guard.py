@@ -69,15 +69,15 @@ def _gain(settings, memory, elapsed_s):
     """
     memory[at.MEAN_S] += (elapsed_s - memory[at.MEAN_S]) / REMEMBERED
     memory[at.MEAN_S2] += (elapsed_s * elapsed_s - memory[at.MEAN_S2]) / REMEMBERED
-    held = settings[at.STIFFNESS_TIMES_PERIOD] * memory[at.MEAN_S] / memory[at.MEAN_S2]
-    held = min(held, settings[at.MAX_STIFFNESS])
+    stable = settings[at.STIFFNESS_TIMES_PERIOD] * memory[at.MEAN_S] / memory[at.MEAN_S2]
+    stable = min(stable, settings[at.MAX_STIFFNESS])
     stiffness = settings[at.STIFFNESS] + memory[at.PULL_STIFFNESS]
-    wanted = held / stiffness if stiffness > held else 1.0
+    target = stable / stiffness if stiffness > stable else 1.0
     share = memory[at.GAIN]
-    if wanted < share:
-        memory[at.GAIN] = max(wanted, share - elapsed_s / SOFTER_IN_S)
-    elif wanted >= 1.0 or wanted > ENOUGH * share:
-        memory[at.GAIN] = min(wanted, share + elapsed_s / HARDER_IN_S)
+    if target < share:
+        memory[at.GAIN] = max(target, share - elapsed_s / SOFTER_IN_S)
+    elif target >= 1.0 or target > ENOUGH * share:
+        memory[at.GAIN] = min(target, share + elapsed_s / HARDER_IN_S)
     return memory[at.GAIN]
 
 
@@ -172,13 +172,13 @@ def guard(settings, memory, period_s, x, y, z, vx, vy, vz, fx, fy, fz):
         before = np.sqrt(fx * fx + fy * fy + fz * fz)
     fx, fy, fz, soft = _limit(settings, memory, elapsed_s, acts, fx, fy, fz)
     surface_n = _surface_force(settings, law_n, before, fx, fy, fz)
-    braked = False
+    brakes = False
     if settings[at.BRAKE] > 0.0:
-        fx, fy, fz, braked = make_passive(settings, memory, elapsed_s, acts, surface_n, x, y, z, vx, vy, vz, fx, fy, fz)
+        fx, fy, fz, brakes = make_passive(settings, memory, elapsed_s, acts, surface_n, x, y, z, vx, vy, vz, fx, fy, fz)
     fx, fy, fz, late = _fade_in(settings, memory, elapsed_s, fx, fy, fz)
     _store_surface_force(memory, elapsed_s, surface_n, late, fz)
     _store(settings, memory, fx, fy, fz)
-    return fx, fy, fz, _count(memory, touching * TOUCHING | soft | braked * DAMPED | late)
+    return fx, fy, fz, _count(memory, touching * TOUCHING | soft | brakes * DAMPED | late)
 
 
 @njit(NEWTONS_AND_FLAGS(READ, WRITTEN, float64), **KERNEL)

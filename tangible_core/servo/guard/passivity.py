@@ -65,8 +65,8 @@ def _brake(settings, memory, elapsed_s, surface_j, vx, vy, vz, fx, fy, fz):
         return 0.0
     share = memory[at.GAIN]  # the pull of a beacon has an account of its own
     fx, fy = fx - share * memory[at.PULL], fy - share * memory[at.PULL + 1]
-    owed = (fx * vx + fy * vy + fz * vz - settings[at.CREDIT] * v2) * elapsed_s - surface_j - memory[at.ENERGY_J]
-    return min(owed / (elapsed_s * v2), settings[at.BRAKE]) if owed > 0.0 else 0.0
+    debt_j = (fx * vx + fy * vy + fz * vz - settings[at.CREDIT] * v2) * elapsed_s - surface_j - memory[at.ENERGY_J]
+    return min(debt_j / (elapsed_s * v2), settings[at.BRAKE]) if debt_j > 0.0 else 0.0
 
 
 @inner(forceinline=True)

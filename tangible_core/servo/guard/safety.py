@@ -74,7 +74,7 @@ class Safety(Quantities):
         """Return the settings and the initial memory of `guard`; one memory lasts as long as the device is open.
 
         For another scene, take other settings, keep the memory and call `restart`.
-        stiffness_n_per_m: stiffness of the force law by `stiffness_of`; 0 if the law has no spring.
+        stiffness_n_per_m: stiffness of the force law by `find_stiffness`; 0 if the law has no spring.
         """
         settings, memory = np.zeros(at.SETTINGS), np.zeros(at.MEMORY)
         damping = effective_damping_n_s_per_m(spec)
@@ -115,8 +115,8 @@ class Safety(Quantities):
 
 def gain(settings: Float64[np.ndarray, "settings"], period_s: float) -> float:
     """Return the gain by which a guard scales the law's force at this period; 1 if the law is soft enough."""
-    held = min(settings[at.STIFFNESS_TIMES_PERIOD] / period_s, settings[at.MAX_STIFFNESS])
-    return float(held / settings[at.STIFFNESS]) if settings[at.STIFFNESS] > held else 1.0
+    stable = min(settings[at.STIFFNESS_TIMES_PERIOD] / period_s, settings[at.MAX_STIFFNESS])
+    return float(stable / settings[at.STIFFNESS]) if settings[at.STIFFNESS] > stable else 1.0
 
 
 def counts(memory: Float64[np.ndarray, "memory"]) -> dict[TickFlag, int]:
@@ -148,5 +148,5 @@ def effective_damping_n_s_per_m(spec: DeviceSpec) -> float:
 
     Data sheets give the damping that a device can display, which is far more than the damping of its joints.
     """
-    implied = spec.max_stiffness_n_per_m * NOMINAL_S / 2
-    return min(spec.damping_n_s_per_m or implied, implied)
+    limit = spec.max_stiffness_n_per_m * NOMINAL_S / 2
+    return min(spec.damping_n_s_per_m or limit, limit)

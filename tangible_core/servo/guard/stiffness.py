@@ -39,20 +39,20 @@ class Stiffness(NamedTuple):
     """A sentence about the measurement; empty if the law states its stiffness."""
 
 
-def stiffness_of(touch: Touch, spec: DeviceSpec) -> Stiffness:
+def find_stiffness(touch: Touch, spec: DeviceSpec) -> Stiffness:
     """Return the stiffness that a force law states, or else measure that of a copy, in MAX_S at most.
 
     If the law cannot be copied, or raises, the slopes measured until then count; the loop will report the fault.
     Raises: BrokenMethod for a stiffness that is negative or not finite.
     """
-    stated = touch.stiffness_n_per_m
-    if stated is None:
+    n_per_m = touch.stiffness_n_per_m
+    if n_per_m is None:
         return _measure(touch, spec)
-    if not 0 <= stated < math.inf:
+    if not 0 <= n_per_m < math.inf:
         raise BrokenMethod(
-            f"{type(touch).__name__} states a stiffness of {stated} N/m; state 0 or more, or None to have it measured"
+            f"{type(touch).__name__} states a stiffness of {n_per_m} N/m; state 0 or more, or None to have it measured"
         )
-    return Stiffness(float(stated), "")
+    return Stiffness(float(n_per_m), "")
 
 
 def _measure(touch: Touch, spec: DeviceSpec) -> Stiffness:
@@ -109,11 +109,11 @@ def _surface_height(touch: Touch, x: float, y: float, top_m: float) -> float | N
             return None
     if free == top_m:
         return top_m
-    pressed, free = free, free + layer_m
+    contact, free = free, free + layer_m
     for _ in range(HALVINGS):
-        middle = (free + pressed) / 2
-        free, pressed = (free, middle) if any(_force_at(touch, (x, y, middle))) else (middle, pressed)
-    return pressed
+        middle = (free + contact) / 2
+        free, contact = (free, middle) if any(_force_at(touch, (x, y, middle))) else (middle, contact)
+    return contact
 
 
 def _steepest(touch: Touch, place: Vector) -> tuple[Force, float]:
@@ -129,8 +129,8 @@ def _steepest(touch: Touch, place: Vector) -> tuple[Force, float]:
     steepest = 0.0
     for way in _ways((-force.x / strength, -force.y / strength, -force.z / strength)):
         before, rest, one, two = (_force_at(touch, _displace(place, way, steps * STEP_M)) for steps in (0, 0, 1, 2))
-        moved = min(math.dist(rest, one), math.dist(one, two)) - math.dist(before, rest)
-        steepest = max(steepest, moved / STEP_M)
+        change = min(math.dist(rest, one), math.dist(one, two)) - math.dist(before, rest)
+        steepest = max(steepest, change / STEP_M)
     return force, steepest
 
 

@@ -94,9 +94,9 @@ def allow_force(law, limits, period_s, x, y, z, vx, vy, vz, buttons):
     tool = couple(settings, memory, period_s, x, y, z, vx, vy, vz)
     force_n = tick(*of_law, *tool)
     memory[RISE_M] = moving[RISE]
-    pulled = pull(*beacon, memory, period_s, tool[0], tool[1], tool[3], tool[4], int64(buttons))
+    pull_flags = pull(*beacon, memory, period_s, tool[0], tool[1], tool[3], tool[4], int64(buttons))
     fx, fy, fz, flags = guard(settings, memory, period_s, x, y, z, vx, vy, vz, *force_n)
-    return fx, fy, fz, flags | pulled
+    return fx, fy, fz, flags | pull_flags
 
 
 @njit(**KERNEL)
@@ -127,9 +127,9 @@ def begin(clock, header):
 
 
 @njit(**KERNEL)
-def finish(shared, row, at_ns, late_ns):
+def finish(sections, row, at_ns, late_ns):
     """Add the loop's own flags to a tick, and write the tick to the ring and the sums."""
-    header, sums, late, period, contact, stamps, ticks = shared
+    header, sums, late, period, contact, stamps, ticks = sections
     flags = int(row[FLAGS]) | header[MARKS]
     header[MARKS] = 0
     row[FLAGS] = flags | (OVERRUN if late_ns >= header[PERIOD_NS] else 0)
@@ -137,24 +137,24 @@ def finish(shared, row, at_ns, late_ns):
 
 
 @njit(**KERNEL)
-def step(link, law, limits, shared, state, row, at_ns, late_ns):
+def step(link, law, limits, sections, state, row, at_ns, late_ns):
     """Do a whole tick that began at at_ns, late_ns late; nothing if the loop is to stop."""
-    header = shared[0]
+    header = sections[0]
     if header[STOP] != 0:
         return
     since_ns = at_ns - header[PREVIOUS_NS] if header[COUNT] > 0 else header[PERIOD_NS]
     time_s = (at_ns - header[START_NS]) / SECOND_NS
     cycle(link, law, limits, state, row, time_s, late_ns / SECOND_NS, since_ns / SECOND_NS)
-    finish(shared, row, at_ns, late_ns)
+    finish(sections, row, at_ns, late_ns)
 
 
 @njit(**KERNEL)
-def run(clock, link, law, limits, shared, state, row):
+def run(clock, link, law, limits, sections, state, row):
     """Do tick after tick while the loop is `going`; Python is not needed meanwhile."""
-    header = shared[0]
+    header = sections[0]
     while going(header):
         at_ns, late_ns = begin(clock, header)
-        step(link, law, limits, shared, state, row, at_ns, late_ns)
+        step(link, law, limits, sections, state, row, at_ns, late_ns)
 
 
 # Python calls a generator once a tick: it keeps its arguments, as passing them takes the time of a hundred ticks. AT
@@ -163,16 +163,16 @@ def run(clock, link, law, limits, shared, state, row):
 
 
 @njit(cache=True, error_model="numpy")
-def ticks(link, law, limits, shared, state, row, now):
+def ticks(link, law, limits, sections, state, row, now):
     """Do a whole tick at each `next`."""
     while now[AT] != NO_MORE:
-        step(link, law, limits, shared, state, row, now[AT], now[LATE])
+        step(link, law, limits, sections, state, row, now[AT], now[LATE])
         yield True
 
 
 @njit(cache=True, error_model="numpy")
-def finish_ticks(shared, row, now):
+def finish_ticks(sections, row, now):
     """Write a tick that was done in Python to the ring, at each `next`."""
     while now[AT] != NO_MORE:
-        finish(shared, row, now[AT], now[LATE])
+        finish(sections, row, now[AT], now[LATE])
         yield True

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from ...compiled.touch import FRAME, CompiledLink, CompiledTouch, moving_of
+from ...compiled.touch import FRAME, CompiledLink, CompiledTouch, motion_array
 from ...data import TICK_COLUMNS, HapticState, TickFlag
 from ...plugins.interfaces import Link, Touch
 from ...runtime.system.timers import now_ns
@@ -67,23 +67,23 @@ def prepare(link: Link, touch: Touch, ring: Ring, settings: np.ndarray) -> Loop:
     cast(Any, guard).restart(np.zeros_like(ring.guard))  # `take_over` needs it between two ticks
     kernels = cast(Any, cycle)
     row = np.full(len(TICK_COLUMNS), np.nan)
-    shared, limits = sections(ring), (settings, ring.guard, ring.beacon.arrays)
+    arrays, limits = sections(ring), (settings, ring.guard, ring.beacon.arrays)
     if not isinstance(link, CompiledLink) or not isinstance(touch, CompiledTouch):
-        return Loop(_timed_loop(*_plain_tick(link, touch, limits, shared, row), shared[0]), "the tick is in Python")
-    fixed = (*_kernels(link, touch), limits)
+        return Loop(_timed_loop(*_plain_tick(link, touch, limits, arrays, row), arrays[0]), "the tick is in Python")
+    kernel_arguments = (*_kernels(link, touch), limits)
     state = np.zeros(cycle.STATE)
     if clock.SLEEPS and not link.exchanges:
         ticking = clock.clock()
-        kernels.run(ticking, *fixed, _stopped_sections(shared), state, row)
-        return Loop(lambda: kernels.run(ticking, *fixed, shared, state, row), "the whole loop is compiled")
-    kernel = _start_generator(kernels.ticks, *fixed, shared, state, row)
+        kernels.run(ticking, *kernel_arguments, _stopped_sections(arrays), state, row)
+        return Loop(lambda: kernels.run(ticking, *kernel_arguments, arrays, state, row), "the whole loop is compiled")
+    kernel = _start_generator(kernels.ticks, *kernel_arguments, arrays, state, row)
 
     def exchange_then_tick(at_ns: int, late_ns: int) -> None:
         link.exchange()
         kernel.now[:] = at_ns, late_ns
         next(kernel.ticks)
 
-    return Loop(_timed_loop(exchange_then_tick, kernel, shared[0]), "the tick is compiled, Python calls the device")
+    return Loop(_timed_loop(exchange_then_tick, kernel, arrays[0]), "the tick is compiled, Python calls the device")
 
 
 def sections(ring: Ring) -> Sections:
@@ -120,11 +120,11 @@ def _kernels(link: CompiledLink, touch: CompiledTouch) -> tuple[Any, Any]:
     )
 
 
-def _stopped_sections(shared: Sections) -> Sections:
+def _stopped_sections(arrays: Sections) -> Sections:
     """Return the sections with a header that stops a loop before its first tick."""
-    header = np.zeros_like(shared[0])
+    header = np.zeros_like(arrays[0])
     header[STOP] = 1
-    return header, *shared[1:]
+    return header, *arrays[1:]
 
 
 def _start_generator(generator: Callable[..., Iterator[bool]], *arguments: Any) -> Kernel:
@@ -138,18 +138,18 @@ def _plain_tick(
     link: Link,
     touch: Touch,
     limits: Limits,
-    shared: Sections,
+    arrays: Sections,
     row: np.ndarray,
 ) -> tuple[Timed, Kernel]:
     """Return a tick for a device or a force law that is not a kernel."""
     from . import cycle
 
-    proxy, moving = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan), moving_of(touch)
+    proxy, moving = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan), motion_array(touch)
     settings, memory, beacon = limits
-    header, allowed_force = shared[0], guard_touch(touch, settings, memory, beacon)
+    header, allowed_force = arrays[0], guard_touch(touch, settings, memory, beacon)
     held_force = hold_force(settings, memory)
     touch.force(FAR)
-    kernel = _start_generator(cast(Any, cycle).finish_ticks, shared, row)
+    kernel = _start_generator(cast(Any, cycle).finish_ticks, arrays, row)
 
     def tick(at_ns: int, late_ns: int) -> None:
         period_s = (at_ns - header[PREVIOUS_NS] if header[COUNT] else header[PERIOD_NS]) / SECOND_NS

@@ -5,7 +5,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from ...compiled.touch import RISE_M, moving_of
+from ...compiled.touch import RISE_M, motion_array
 from ...data import Force, HapticState
 from ...plugins.interfaces import Touch
 from ..guard import layout
@@ -23,7 +23,7 @@ def guard_touch(
     from ..guard import guard
 
     couple, allow = cast(Any, guard).couple, cast(Any, guard).guard
-    moving = moving_of(touch)
+    moving = motion_array(touch)
     pull: Any = None
     if beacon is not None:
         from .. import beacon_kernels
@@ -33,10 +33,10 @@ def guard_touch(
     def allowed_force(state: HapticState, period_s: float) -> tuple[Force, int]:
         device = *state.position_m, *state.velocity_m_per_s
         x, y, z, vx, vy, vz = couple(settings, memory, period_s, *device)
-        wanted = touch.force(HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons))
+        law_force = touch.force(HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons))
         memory[layout.RISE_M] = moving[RISE_M]
         flags = 0 if beacon is None else pull(*beacon, memory, period_s, x, y, vx, vy, state.buttons)
-        fx, fy, fz, guard_flags = allow(settings, memory, period_s, *device, *wanted)
+        fx, fy, fz, guard_flags = allow(settings, memory, period_s, *device, *law_force)
         return Force(fx, fy, fz), flags | guard_flags
 
     return allowed_force

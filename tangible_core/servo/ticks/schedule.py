@@ -25,7 +25,7 @@ def begin_tick(header: np.ndarray, at_ns: int) -> int:
     if header[SPINS] != 0:
         lead_ns = header[LEAD_NS]
         header[LEAD_NS] = min(lead_ns + 10_000, MAX_LEAD_NS) if late_ns > 1_000 else max(lead_ns - 10, 0)
-    missed = late_ns // header[PERIOD_NS]
-    header[OVERRUNS] += missed
-    header[NEXT_NS] += (missed + 1) * header[PERIOD_NS]
+    misses = late_ns // header[PERIOD_NS]
+    header[OVERRUNS] += misses
+    header[NEXT_NS] += (misses + 1) * header[PERIOD_NS]
     return late_ns

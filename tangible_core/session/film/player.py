@@ -38,7 +38,7 @@ class _Screen:
     def __init__(self, film: Film) -> None:
         self.film = film
         self._last: FrameRelief | None = None
-        self._logged = set[type]()
+        self._logged_kinds = set[type]()
         self.shown = self.damaged = 0
 
     def show(self, frame: FrameRelief) -> None:
@@ -62,13 +62,13 @@ class _Screen:
         if isinstance(error, BrokenMethod | Stopped):
             raise error
         self.damaged += 1
-        if type(error) not in self._logged:
-            self._logged.add(type(error))
+        if type(error) not in self._logged_kinds:
+            self._logged_kinds.add(type(error))
             log.warning("the surface stands still until the next valid frame: %s", error)
 
-    def counts(self, skipped: int, per_s: float, age_ms: float | None) -> FilmFelt:
+    def counts(self, skip_count: int, per_s: float, age_ms: float | None) -> FilmFelt:
         """Return the counts of the film, with those of its player."""
-        return FilmFelt(self.shown, self.film.dropped, skipped, self.damaged, per_s, age_ms)
+        return FilmFelt(self.shown, self.film.dropped, skip_count, self.damaged, per_s, age_ms)
 
 
 @final
@@ -81,7 +81,7 @@ class Player:
         self._threads = max(1, min(threads or thread_limit() or processors(), processors() - 1))
         self._ending = threading.Event()
         self._fault: BaseException | None = None
-        self._skipped = 0
+        self._skip_count = 0
         self._began_s: float | None = None
         self._since_s = self._until_s = 0.0
         self._ages_s = deque[float](maxlen=AGES)
@@ -109,7 +109,7 @@ class Player:
         seconds = self._until_s - self._since_s
         per_s = (self._screen.shown - 1) / seconds if seconds > 0 else 0.0
         age_ms = 1e3 * statistics.median(list(self._ages_s)) if self._ages_s else None
-        return self._screen.counts(self._skipped, per_s, age_ms)
+        return self._screen.counts(self._skip_count, per_s, age_ms)
 
     def _run(self) -> None:
         lower_priority({threading.get_native_id()}, NICENESS)
@@ -141,15 +141,15 @@ class Player:
         frame_s, again_s = 1 / reliefs.frames.fps, 0.0
         while not self._ending.is_set():
             frame, now_s = self._due(reliefs.frames), time.monotonic()
-            if frame is not None and (made := self._make(reliefs, frame)) is not None:
-                self._screen.show(made)
+            if frame is not None and (relief := self._make(reliefs, frame)) is not None:
+                self._screen.show(relief)
                 again_s = self._note(frame.time_s) + frame_s
             elif self._screen.waits and now_s >= again_s:
                 self._screen.repeat()
                 again_s = now_s + frame_s
             else:
                 self._ending.wait(min(frame_s / 8, MAX_WAIT_S))
-            self._skipped = reliefs.frames.skipped
+            self._skip_count = reliefs.frames.skipped
 
     def _due(self, frames: VideoFrames) -> VideoFrame | None:
         """Return the frame that is due now, if it is new; the first one starts the film's time."""

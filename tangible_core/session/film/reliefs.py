@@ -57,15 +57,15 @@ class Scale:
         self.current: ReliefScale = first
         self._time_s = time_s
 
-    def look(self, seen: ReliefScale, time_s: float) -> None:
+    def look(self, scale: ReliefScale, time_s: float) -> None:
         """Follow the scale of a frame at this time of the film; the first that is not empty is adopted at once."""
         share = 1 - math.exp(-max(0.0, time_s - self._time_s) / ADAPTS_S)
         self._time_s = time_s
         if not self.current.spans.low < self.current.spans.high:
-            self.current = seen
-        elif seen.spans.low < seen.spans.high:
-            low, high = (then + share * (now - then) for then, now in zip(self.current.spans, seen.spans, strict=True))
-            tones = self.current.tones + share * (seen.tones - self.current.tones)
+            self.current = scale
+        elif scale.spans.low < scale.spans.high:
+            low, high = (then + share * (now - then) for then, now in zip(self.current.spans, scale.spans, strict=True))
+            tones = self.current.tones + share * (scale.tones - self.current.tones)
             self.current = ReliefScale(ValueRange(low, high), tones)
 
 
@@ -117,16 +117,16 @@ class Reliefs:
     def _disparity(self, frame: VideoFrame) -> DisparityMap:
         if not self._count:
             return self._begin(frame)
-        filtered = self._steady.next(self._maker.disparity(frame.views))
-        if filtered.cut:
+        steady_map = self._steady.next(self._maker.disparity(frame.views))
+        if steady_map.cut:
             return self._begin(frame)
         if self._scale is not None and self._count % LOOK_EVERY == 0:
-            whole = filtered.disparity
+            whole = steady_map.disparity
             few = whole.disparity_px[::LOOK_PIXELS, ::LOOK_PIXELS]
             thin = DisparityMap(few if np.isfinite(few).any() else whole.disparity_px, unit=whole.unit)
             self._scale.look(self._maker.scale(thin), frame.time_s)
         self._count += 1
-        return filtered.disparity
+        return steady_map.disparity
 
     def _begin(self, frame: VideoFrame) -> DisparityMap:
         """Begin a scene, the first or one after a cut; if this frame has no depth, the next one begins it."""

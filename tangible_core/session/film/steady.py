@@ -35,29 +35,29 @@ class Steady:
     """
 
     def __init__(self) -> None:
-        self._kept = self._waiting = np.empty((0, 0), np.float32)
+        self._values = self._waiting = np.empty((0, 0), np.float32)
         self._doubts = np.empty((0, 0), np.uint8)
         self._gate = GATE_PX
-        self._changed = False
+        self._is_changed = False
         """True if most of the frame before differed from the kept values."""
 
     def next(self, disparity: DisparityMap) -> FilteredMap:
         """Filter the next map. The first one, and one of another size, is adopted as it is."""
         new = disparity.disparity_px
-        if self._kept.shape != new.shape:
-            return self._restart(disparity, cut=self._kept.size > 0)
-        out, changed = self._step(new)
-        if changed and self._changed:
+        if self._values.shape != new.shape:
+            return self._restart(disparity, cut=self._values.size > 0)
+        out, is_changed = self._step(new)
+        if is_changed and self._is_changed:
             return self._restart(disparity, cut=True)
-        self._changed = changed
+        self._is_changed = is_changed
         return FilteredMap(DisparityMap(out, disparity.confidence, disparity.unit), cut=False)
 
     def _restart(self, disparity: DisparityMap, cut: bool) -> FilteredMap:
         """Adopt the whole map."""
         new = disparity.disparity_px
-        self._kept, self._waiting = new.copy(), np.full(new.shape, np.nan, np.float32)
+        self._values, self._waiting = new.copy(), np.full(new.shape, np.nan, np.float32)
         self._doubts = np.zeros(new.shape, np.uint8)
-        self._gate, self._changed = _gate(disparity), False
+        self._gate, self._is_changed = _gate(disparity), False
         return FilteredMap(disparity, cut)
 
     def _step(self, new: Float32[np.ndarray, "h w"]) -> tuple[Float32[np.ndarray, "h w"], bool]:
@@ -65,13 +65,13 @@ class Steady:
 
         out = np.empty_like(new)
         how = (np.float32(AVERAGED), np.float32(self._gate), MAX_DOUBTS, MAX_MISSING)
-        changed, known = cast(Any, steady_kernels).step(new, self._kept, self._waiting, self._doubts, out, *how)
-        return out, changed > CUT_SHARE * known
+        changes, count = cast(Any, steady_kernels).step(new, self._values, self._waiting, self._doubts, out, *how)
+        return out, changes > CUT_SHARE * count
 
 
 def _gate(disparity: DisparityMap) -> float:
     """Return the threshold between noise and change, in the unit of this map."""
     if disparity.unit == "px":
         return GATE_PX
-    known = disparity.disparity_px[np.isfinite(disparity.disparity_px)]
-    return GATE_SHARE * float(np.ptp(known)) if known.size else GATE_SHARE
+    values = disparity.disparity_px[np.isfinite(disparity.disparity_px)]
+    return GATE_SHARE * float(np.ptp(values)) if values.size else GATE_SHARE

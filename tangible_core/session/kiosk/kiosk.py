@@ -54,10 +54,10 @@ class DeviceWait:
             tell_service_manager(f"READY=1\nSTATUS=waiting for the device: {why.partition(chr(10))[0]}")
         until_s = time.monotonic() + self._pause_s
         self._pause_s = min(2 * self._pause_s, LONGEST_PAUSE_S)
-        while not (ended := end_reason()) and time.monotonic() < until_s:
+        while not (reason := end_reason()) and time.monotonic() < until_s:
             time.sleep(LOOK_EVERY_S)
             tell_service_manager(ALIVE)
-        return ended
+        return reason
 
 
 PERIOD_S = 0.001
@@ -165,18 +165,18 @@ class _Kiosk:
 
     def run(self) -> ServoReport:
         """Run until the session ends for another reason than its device."""
-        ended = ""
-        while not ended:
+        reason = ""
+        while not reason:
             try:
-                lost = self._run_loop()
-                if lost is None or self.wait is None:
+                device_reason = self._run_loop()
+                if device_reason is None or self.wait is None:
                     return self.last
-                ended = self.wait.pause(lost, self._end_reason)
+                reason = self.wait.pause(device_reason, self._end_reason)
             except KeyboardInterrupt:
                 if not self.totals.begun:
                     raise
-                ended = INTERRUPTED
-        self.last = replace(self.last, stopped=ended)
+                reason = INTERRUPTED
+        self.last = replace(self.last, stopped=reason)
         self.on_report(self.last)
         return self.last
 

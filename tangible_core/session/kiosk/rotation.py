@@ -41,7 +41,7 @@ class Rotation:
         self._at, self._due_s = 0, math.inf
         self._swapping: Future[None] | None = None
         self._player: Player | None = None
-        self._released = False
+        self._is_released = False
         """True once a button has released a beacon: then no beacon follows."""
 
     @property
@@ -60,7 +60,7 @@ class Rotation:
         log.info("now on the device, at %s: %s", time.strftime("%H:%M:%S"), self.current.name)
         tell_service_manager(f"READY=1\nSTATUS=on the device: {self.current.name}")
         self.note_release(servo)
-        if not self._released:
+        if not self._is_released:
             servo.pull_to(self.current.beacon)
         self._player, reliefs, film = None, self.current.reliefs, servo.film
         if reliefs is not None and film is not None:
@@ -72,9 +72,9 @@ class Rotation:
         if self._player is not None:
             self._player.check()
         if self._swapping is not None and self._swapping.done():
-            swapped, self._swapping = self._swapping, None
+            swap, self._swapping = self._swapping, None
             if servo.running:  # else it fails for what ended the loop
-                swapped.result()
+                swap.result()
                 self._at = self._next
                 self.begin(servo)
         elif self._swapping is None and len(self._slots) > 1 and time.monotonic() >= self._due_s:
@@ -90,7 +90,7 @@ class Rotation:
 
     def note_release(self, servo: Servo) -> None:
         """Note whether a button has released the beacon."""
-        self._released = self._released or servo.ring.beacon.state.why == BUTTON
+        self._is_released = self._is_released or servo.ring.beacon.state.why == BUTTON
 
     @property
     def _next(self) -> int:

@@ -67,8 +67,8 @@ def read(path: Path) -> RecordingContents:
             if not (np.abs(contents.rows[:, ARRAYS[name]]) < 2**31).all():
                 raise ValueError(f"its {name} do not all fit into 32 bits")
     except OSError as error:
-        gone = isinstance(error, FileNotFoundError)
-        why = "there is no such file" if gone else f"cannot be read: {error.strerror or error}"
+        missing_file = isinstance(error, FileNotFoundError)
+        why = "there is no such file" if missing_file else f"cannot be read: {error.strerror or error}"
         raise OutputError(f"{path}: {why}") from error
     except ImportError:  # a package is missing, which is not the file's fault
         raise

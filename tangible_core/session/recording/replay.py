@@ -42,7 +42,7 @@ def replay(touch: Touch, recording: Recording) -> Recording:
     return replace(recording, rows=rows)
 
 
-def proxy_of(touch: Touch) -> Callable[[], tuple[float, ...]]:
+def proxy_reader(touch: Touch) -> Callable[[], tuple[float, ...]]:
     """Return a function that returns the present place of a touch's proxy; NaN if there is none."""
     if not isinstance(touch, CompiledTouch):
         return lambda: NOWHERE
@@ -60,8 +60,8 @@ def unaltered_forces(recording: Recording) -> np.ndarray:
 
     Such forces were limited, faded in, damped or zero for a fault; or the surface had moved.
     """
-    changed = (recording.flags & ~int(UNTOUCHED) != 0) | (recording.frame > 0)
-    return np.where(changed[:, None], np.nan, recording.force_n)
+    is_altered = (recording.flags & ~int(UNTOUCHED) != 0) | (recording.frame > 0)
+    return np.where(is_altered[:, None], np.nan, recording.force_n)
 
 
 def compare_replay(before: Recording, after: Recording) -> dict[str, float]:
@@ -102,7 +102,9 @@ def compare_recordings(first: Recording, second: Recording, near_m: float = NEAR
     Raises: ConfigError if near_m is not positive.
     """
     check_positive("near_m", near_m)
-    ours, theirs = (each.rows[np.isfinite(_places(each, near_m)).all(axis=1)] for each in (first, second))
+    ours, theirs = (
+        recording.rows[np.isfinite(_places(recording, near_m)).all(axis=1)] for recording in (first, second)
+    )
     ours = ours[:: max(1, -(-len(ours) // MAX_COMPARED))]
     here, there = Recording(ours), Recording(theirs)
     partner, apart_m = _partners(here, there, near_m)

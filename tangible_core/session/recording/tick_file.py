@@ -70,7 +70,7 @@ def _variables() -> Iterator[Variable]:
         (">f4", "N", "force on the hand that the device was given"),
     ):
         yield from (_variable(dtype, units, f"{axis} of the {what}") for axis in "xyz")
-    flags = np.array(list(TickFlag), ">i4"), " ".join(str(each.name).lower() for each in TickFlag)
+    flags = np.array(list(TickFlag), ">i4"), " ".join(str(flag.name).lower() for flag in TickFlag)
     what = f"what happened in the tick; from bit {BEACON_SHIFT} on the number of the part that a beacon pulls to"
     yield _variable(">i4", "1", what, flag_masks=flags[0], flag_meanings=flags[1])
     yield _variable(">i4", "1", "buttons held, one bit each")
@@ -114,8 +114,8 @@ def read(path: Path) -> tuple[Float64[np.ndarray, "n columns"], str, About]:
     """Read rows of `TICK_COLUMNS`, the reason of the end, and the information about the session."""
     from scipy.io import netcdf_file  # pyright: ignore[reportMissingTypeStubs]
 
-    with netcdf_file(path, "r", mmap=True) as opened:
-        file = cast(Any, opened)
+    with netcdf_file(path, "r", mmap=True) as netcdf:
+        file = cast(Any, netcdf)
         rows = unknown_rows(file.variables["time_s"].shape[0])
         for i, name in enumerate(TICK_COLUMNS):
             if name in file.variables or name != "frame":  # older recordings have no frame

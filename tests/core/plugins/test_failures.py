@@ -15,7 +15,7 @@ from tangible_core import Force, Relief
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.plugins import PlainTouch
-from tangible_core.plugins.failures import Place, missing_package, place_of, sentence
+from tangible_core.plugins.failures import Place, find_place, missing_package, sentence
 from tangible_core.plugins.registry import Registry
 from tangible_core.session.recording.files import READERS, read
 from tangible_export import Heights
@@ -40,10 +40,10 @@ class Outer(Law):
 def test_error_in_nested_plugins_names_the_innermost():
     with pytest.raises(IndexError) as raised:
         Outer(Law()).force((0, 0, 0))
-    assert place_of(raised.value) == Place("render", __name__, "Law", "force")
+    assert find_place(raised.value) == Place("render", __name__, "Law", "force")
     with pytest.raises(TypeError) as raised:
         CompiledTouch(None, ()).force((0, 0, 0))  # pyright: ignore[reportArgumentType]
-    assert place_of(raised.value) is None, "an error of the core"
+    assert find_place(raised.value) is None, "an error of the core"
 
 
 def test_missing_package_is_named_with_the_command_that_installs_it(monkeypatch: pytest.MonkeyPatch):

@@ -18,10 +18,10 @@ from tangible_core.session import (
     material_under,
     materials_text,
     names_in,
-    names_of,
     names_text,
     part_under,
     parts_felt,
+    read_names,
     run_kiosk,
     run_simulated,
     with_parts,
@@ -69,7 +69,7 @@ def test_material_under_a_tip_is_named_for_parts_and_segments(names: tuple[str, 
     places = [(-0.02, 0.01), (0.02, 0.01), (0.0, -0.01), (-0.041, 0.01), (np.nan, 0.0)]
     assert [material_under(surface, (x, y, 0.1)) for x, y in places] == ["glass", "wood", "moss", "", ""]
     assert material_under(in_parts(), (0.0, -0.01, 0.1)) == "", "it has parts and no materials"
-    assert names_of(materials_text(surface)) == [{0: "glass", 1: "wood", 2: "moss"}]
+    assert read_names(materials_text(surface)) == [{0: "glass", 1: "wood", 2: "moss"}]
     heard: list[ServoReport] = []
     run_simulated(Penalty().touch(surface), Mock(path="press"), 0.2, with_parts(surface, heard.append))
     assert {each.material for each in heard} == {"moss"}
@@ -112,8 +112,8 @@ def test_recording_has_the_names_of_parts(tmp_path: Path, suffix: str):
     said, of = names_text({6: "Gräser [hoch]", 0: 'a "wall"\n'}), names_text({6: "moss"})
     Recording(np.zeros((2, 17)), "", About("mock", parts=said, materials=of)).save(tmp_path / f"a{suffix}")
     about = Recording.load(tmp_path / f"a{suffix}").about
-    assert names_of(about.parts) == [{0: 'a "wall"\n', 6: "Gräser [hoch]"}]
-    assert names_of(about.materials) == [{6: "moss"}]
+    assert read_names(about.parts) == [{0: 'a "wall"\n', 6: "Gräser [hoch]"}]
+    assert read_names(about.materials) == [{6: "moss"}]
     assert about.device == "mock"
 
 
@@ -129,12 +129,12 @@ def test_recording_has_the_names_of_parts(tmp_path: Path, suffix: str):
     ],
 )
 def test_names_are_read_from_the_text_of_a_pipeline_file(text: str, names: dict[int, str] | None):
-    assert names_of(names_in(text)) == ([] if names is None else [names])
+    assert read_names(names_in(text)) == ([] if names is None else [names])
 
 
 def test_names_of_kiosk_scenes_are_read_and_damaged_ones_refused():
-    assert names_of('{"0": "door"}\n\n{"2": "wall"}') == [{0: "door"}, {}, {2: "wall"}]
+    assert read_names('{"0": "door"}\n\n{"2": "wall"}') == [{0: "door"}, {}, {2: "wall"}]
     assert names_text({}) == ""
     for damaged in ("{", "[1]", '{"a": "b"}', "7"):
         with pytest.raises(OutputError, match="names of its parts are damaged"):
-            names_of(damaged)
+            read_names(damaged)

@@ -15,7 +15,7 @@ from tangible_authoring.renumbering import draw_numbers
 from tangible_core.errors import OutputError
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.formats.pictures import read_labels
-from tangible_core.session import Recording, names_of
+from tangible_core.session import Recording, read_names
 
 WALL, FLOOR, VASE = (90, 120, 200), (120, 80, 40), (200, 200, 60)
 HERE = "parts.png", "parts-numbered.png", "still.yaml"
@@ -227,8 +227,8 @@ def test_names_of_parts_reach_recording_and_replay(folder: Path):
     assert said["part"] in ("[wall]", "part 2", "part 3")
     assert sum(each["share"] for each in said["parts"]) == pytest.approx(1)
     about = Recording.load(folder / "hand.nc").about
-    (materials,) = names_of(about.materials)
-    assert names_of(about.parts) == [{0: "[wall]"}] and materials[0] == "glass"
+    (materials,) = read_names(about.materials)
+    assert read_names(about.parts) == [{0: "[wall]"}] and materials[0] == "glass"
     assert said["material"] in materials.values()
     assert [each["material"] for each in said["parts"]] == [materials[each["number"]] for each in said["parts"]]
     again = json.loads(well(tangible("replay", "hand.nc", "still.yaml", "--json", cwd=folder)).stdout)

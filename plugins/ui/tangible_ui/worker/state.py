@@ -57,7 +57,7 @@ class Work:
 
     def give_way(self, to: Pipeline, want: str) -> bool:
         """Stop for another pipeline: at once, or after a stage that it needs too. Returns: True if at once."""
-        product, inputs = self._product, to.engine.inputs_of(want)
+        product, inputs = self._product, to.engine.all_inputs(want)
         if product in inputs and self.pipeline.engine.key(product) == to.engine.key(product):
             self._after = True
             return False

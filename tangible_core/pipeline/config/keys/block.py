@@ -37,10 +37,10 @@ class Block(Key):
 
     def read(self, reading: Reading, block: Any) -> Any:
         """Check the block of a file."""
-        found = self._parse(reading, block)
-        if found is not None and self.check is not None:
-            self.check(reading.source, (self.name,), found)
-        return found
+        options = self._parse(reading, block)
+        if options is not None and self.check is not None:
+            self.check(reading.source, (self.name,), options)
+        return options
 
     def take(self, reading: Reading, value: Any) -> Any:
         """Check a model, a mapping, or the word of an option."""
@@ -110,8 +110,8 @@ class Word(Key):
 
     def read(self, reading: Reading, block: Any) -> Any:
         """Check the value by the type of the field."""
-        found = reading.source.model((), self._form, {self.name: block})
-        return None if found is None else getattr(found, self.name)
+        options = reading.source.model((), self._form, {self.name: block})
+        return None if options is None else getattr(options, self.name)
 
     def schema(self, forms: Forms) -> dict[str, Any]:
         """Describe the value by the type of the field."""

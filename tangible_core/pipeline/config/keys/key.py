@@ -117,7 +117,7 @@ class Key(ABC):
         return {**self.schema(forms), "description": self.field.description or ""}
 
 
-def keys_of(model: type[BaseModel]) -> dict[str, Key]:
+def find_keys(model: type[BaseModel]) -> dict[str, Key]:
     """Return the keys of a pipeline file by name, in the order of the fields; fields without a marker are none."""
     return {
         name: marker.for_field(name, field)

@@ -60,24 +60,26 @@ class MethodList(Key, Unchecked):
         if block is None:
             return ()
         if not isinstance(block, list):
-            known = ", ".join(reading.registry.names(self.name))
+            names = ", ".join(reading.registry.names(self.name))
             return reading.source.complain(
                 (self.name,),
                 f"{self.name}: takes a list of {_plural(self.name)}, such as [{{use: ...}}], not {quoted(block)}; "
-                f"installed: {known}",
+                f"installed: {names}",
             )
-        listed = enumerate(cast("list[Any]", block))
-        found = [choose(reading.source, (self.name, at), self.name, each, reading.registry) for at, each in listed]
-        return tuple(each for each in found if each is not None)
+        entries = enumerate(cast("list[Any]", block))
+        methods = [
+            choose(reading.source, (self.name, at), self.name, method, reading.registry) for at, method in entries
+        ]
+        return tuple(method for method in methods if method is not None)
 
     def take(self, reading: Reading, value: Any) -> Any:
         """Check the kinds of methods that were made in Python, or make those that are named."""
-        listed = [value] if isinstance(value, str) else value
-        return tuple(_take_method((self.name, at), self.name, reading, method) for at, method in enumerate(listed))
+        methods = [value] if isinstance(value, str) else value
+        return tuple(_take_method((self.name, at), self.name, reading, method) for at, method in enumerate(methods))
 
     def write(self, value: Iterable[NamedMethod[Any]]) -> Any:
         """Write the name and all options of each."""
-        return [each.as_written(self.name) for each in value]
+        return [method.as_written(self.name) for method in value]
 
     def word_option(self, depth: int) -> str:
         """Return `use` for an entry of the list."""
@@ -85,7 +87,7 @@ class MethodList(Key, Unchecked):
 
     def models(self, value: Iterable[NamedMethod[Any]]) -> Mapping[Location, BaseModel]:
         """Return the methods by their places in the list."""
-        return {(self.name, index): each.method for index, each in enumerate(value)}
+        return {(self.name, index): method.method for index, method in enumerate(value)}
 
     def schema(self, forms: Forms) -> dict[str, Any]:
         """Describe the list."""
@@ -107,16 +109,16 @@ def _plural(kind: str) -> str:
     return f"{KINDS[cast(Any, kind)].__name__.lower()}s"
 
 
-def index_of(listed: list[Any], name: str) -> int:
+def find_or_add(methods: list[Any], name: str) -> int:
     """Find a method in a list of a file by its name, or its number from 0; a method that is not there is added.
 
-    >>> index_of(["stl", {"use": "swell"}], "swell")
+    >>> find_or_add(["stl", {"use": "swell"}], "swell")
     1
     """
-    if name.isdecimal() and int(name) < len(listed):
+    if name.isdecimal() and int(name) < len(methods):
         return int(name)
-    for index, each in enumerate(listed):
-        if name == (cast("dict[Any, Any]", each).get("use") if isinstance(each, dict) else each):
+    for index, entry in enumerate(methods):
+        if name == (cast("dict[Any, Any]", entry).get("use") if isinstance(entry, dict) else entry):
             return index
-    listed.append(CommentedMap(use=name))
-    return len(listed) - 1
+    methods.append(CommentedMap(use=name))
+    return len(methods) - 1

@@ -32,8 +32,8 @@ class PartsBlock(Key, Unchecked):
             elif isinstance(part, PartChoice):
                 parts[number] = part
             elif not isinstance(part, str | dict | None):
-                wanted = "takes the name of a part, or {name: ..., height_m: ..., material: ...}"
-                source.complain(place, f"{self.name}.{key}: {wanted}, not {quoted(part)}")
+                expected = "takes the name of a part, or {name: ..., height_m: ..., material: ...}"
+                source.complain(place, f"{self.name}.{key}: {expected}, not {quoted(part)}")
             elif (choice := source.model(place, PartChoice, {} if part is None else part)) is not None:
                 parts[number] = choice
         return parts
@@ -52,7 +52,7 @@ class PartsBlock(Key, Unchecked):
 
     def write(self, value: Mapping[int, PartChoice]) -> Any:
         """Write every part, without defaults."""
-        return {number: each.model_dump(mode="json", exclude_defaults=True) for number, each in value.items()}
+        return {number: part.model_dump(mode="json", exclude_defaults=True) for number, part in value.items()}
 
     def word_option(self, depth: int) -> str:
         """Return `name` for the number of a part."""

@@ -9,7 +9,7 @@ from pydantic import BaseModel
 from ....errors import BrokenMethod, ConfigError, TangibleError
 from ....scene.scene import Scene
 from ....scene.scene_files import BUILTINS, SceneFiles, unknown_scene
-from ..scene_readers import scene_reader_of, scene_reader_points, scene_readers
+from ..scene_readers import find_scene_reader, scene_reader_points, scene_readers
 from .key import Forms, Key, Reading, Unchecked
 
 
@@ -24,7 +24,7 @@ class SceneBlock(Key, Unchecked):
         """Check a builtin name, files, or the block of a scene reader."""
         source = reading.source
         try:
-            reader = scene_reader_of(block)
+            reader = find_scene_reader(block)
         except BrokenMethod as error:
             return source.complain((self.name,), f"{self.name}: {error}")
         if reader is not None:
@@ -35,9 +35,9 @@ class SceneBlock(Key, Unchecked):
 
     def _files(self, reading: Reading, reader: Any, block: Any) -> SceneFiles | None:
         """Return the files that the block of a scene reader stands for; None after a complaint."""
-        chosen = reading.source.model((self.name,), reader, block)
+        options = reading.source.model((self.name,), reader, block)
         try:
-            return chosen and chosen.files()
+            return options and options.files()
         except TangibleError as error:
             return reading.source.complain((self.name,), f"{self.name}: {error}")
 

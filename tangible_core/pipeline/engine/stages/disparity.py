@@ -30,7 +30,7 @@ class DisparityStage(MethodStage):
 
     @cached_property
     def key(self) -> str:
-        code = " ".join(self.code(each.__name__) for each in (scaling, pair_checks))
+        code = " ".join(self.code(module.__name__) for module in (scaling, pair_checks))
         return f"{code} {self._order_is_given} {self.identity[1]} {self.grid.key}"
 
     def make(self, inputs: Inputs) -> DisparityMap:

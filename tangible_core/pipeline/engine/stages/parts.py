@@ -5,7 +5,7 @@ from functools import cached_property
 from ....data import PartMap, SegmentMap
 from ....errors import ConfigError
 from ....parts import find as part_finding
-from ..part_validation import check_parts, parts_of, warn_small_parts
+from ..part_validation import check_parts, divide_segments, warn_small_parts
 from ..stage import Context, Inputs, Stage
 
 
@@ -36,14 +36,14 @@ class PartsStage(OfPartsStage):
         super().__init__(context)
         segments = context.scene_products.get("segments")
         if self.config.by_parts and isinstance(segments, SegmentMap):
-            self.finish(parts_of(segments))
+            self.finish(divide_segments(segments))
 
     @cached_property
     def key(self) -> str:
         return self.code(part_finding.__name__)
 
     def make(self, inputs: Inputs) -> PartMap:
-        parts = parts_of(inputs["segments"])
+        parts = divide_segments(inputs["segments"])
         warn_small_parts(parts)
         return parts
 

@@ -54,8 +54,8 @@ class ReliefStage(Stage):
     def needs(self) -> tuple[str, ...]:
         heights = self.config.heights
         if heights is None:
-            seen = ("figure",) if self.config.relief_kind == "figure" else ()
-            return "views", *seen, *(("disparity",) if self._takes_depth else ())
+            figure_needs = ("figure",) if self.config.relief_kind == "figure" else ()
+            return "views", *figure_needs, *(("disparity",) if self._takes_depth else ())
         by_depth = ("disparity",) if heights.by == "depth" else ()
         return "views", self.config.felt_parts, *by_depth
 
@@ -130,10 +130,10 @@ class ReliefStage(Stage):
         return self.from_disparity(scaling.reduced_disparity(disparity, self.grid.shape))
 
     def _from_lines(self) -> Relief:
-        found = self.context.scene.kind
-        areas = found.kind not in (PictureKind.lines, PictureKind.text)
+        kind = self.context.scene.kind
+        areas = kind.kind not in (PictureKind.lines, PictureKind.text)
         relief, texts = line_relief(self.views, self.size, self.choice, areas=areas)
-        note(log, kind_sentence(found))
+        note(log, kind_sentence(kind))
         if texts:
             note(log, f"letters are left out of the relief, at {texts} places")
         return flatten_transparent(relief, self.grid.opaque_mask)
@@ -194,9 +194,9 @@ class ReliefStage(Stage):
         if disparity is not None:
             disparity = scaling.reduced_disparity(disparity, grid.shape)
         on_grid, given_m = grid.parts(parts, config.felt_parts), config.given_heights_m
-        left = grid.views.left if grid.views else None
-        return part_heights.heights_of(
-            on_grid, config.heights, config.top_m, given_m, disparity, grid.opaque_mask, left
+        picture = grid.views.left if grid.views else None
+        return part_heights.choose_heights(
+            on_grid, config.heights, config.top_m, given_m, disparity, grid.opaque_mask, picture
         )
 
     def _from_parts(self, parts: PartMap, disparity: DisparityMap | None) -> Relief:

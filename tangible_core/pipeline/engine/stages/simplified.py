@@ -5,7 +5,7 @@ from functools import cached_property
 from ....data import PartMap
 from ....drawing import PictureKind
 from ....parts import SimplifyChoice
-from ...config.part_checks import names_of
+from ...config.part_checks import all_part_names
 from ..hooked import legibility_point, simplify_function
 from ..networks import has_figure
 from ..stage import Inputs
@@ -39,7 +39,7 @@ class SimplifiedStage(OfPartsStage):
 
     def make(self, inputs: Inputs) -> PartMap:
         parts: PartMap = inputs["parts"]
-        names = names_of(self.config, parts.count)
+        names = all_part_names(self.config, parts.count)
         picture = self.grid.views.left if self.grid.views else None
         simplify = simplify_function(self.context.registry)
         front = {"front": inputs["figure"].front_parts(parts)} if "figure" in self.needs else {}

@@ -36,8 +36,8 @@ class SurfaceStage(Stage):
         materials: MaterialMap | None = inputs.get("materials")
         if self.config.by_parts:
             parts = self.grid.parts(inputs[self.config.felt_parts], self.config.felt_parts)
-            chosen = materials.materials if materials else None
-            return HapticSurface(inputs["relief"], parts.labels, chosen, ("",) * parts.count)
+            chosen_materials = materials.materials if materials else None
+            return HapticSurface(inputs["relief"], parts.labels, chosen_materials, ("",) * parts.count)
         segments: SegmentMap | None = inputs.get("segments")
         if segments is None or materials is None:
             return HapticSurface(inputs["relief"])

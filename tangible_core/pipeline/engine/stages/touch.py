@@ -30,13 +30,13 @@ class TouchStage(MethodStage):
         return self.identity[1]
 
     def make(self, inputs: Inputs) -> Touch:
-        chosen, device = self.required_choice, self.config.felt_device
+        method, device = self.required_choice, self.config.felt_device
         surface, limits = inputs["surface"], ""
         if device is not None:
             surface, limits = fit_to_device(surface, self.config, device)
         if limits:
             note(log, limits)
-        return chosen.method.touch(surface)
+        return method.method.touch(surface)
 
     @cached_property
     def skip(self) -> None:

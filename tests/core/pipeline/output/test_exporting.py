@@ -22,7 +22,7 @@ from tangible_core.pipeline.engine.working_grid import parts_on_grid
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.pipeline.output import export_folder
 from tangible_core.pipeline.output.export_folder import move, read_list
-from tangible_core.pipeline.output.exporting import MAX_STEM_BYTES, stem_of
+from tangible_core.pipeline.output.exporting import MAX_STEM_BYTES, export_stem
 from tangible_core.pipeline.output.parts_text import part_heights
 from tangible_core.plugins import DepthEstimator, Exporter, Segmenter, Work
 from tangible_core.plugins.registry import default_registry
@@ -310,7 +310,7 @@ class TestFiles:
     )
     def test_stem_of_any_title_is_a_file_name(self, title: str, stem: str):
         config = pipeline(title=title[:200]).config
-        assert stem_of(config, Scene("x" * 300) if title[:2] == "xx" else LABELLED) == stem[: len(stem)]
+        assert export_stem(config, Scene("x" * 300) if title[:2] == "xx" else LABELLED) == stem[: len(stem)]
 
 
 class TestFailures:

@@ -17,7 +17,7 @@ from tangible_core.errors import BrokenMethod
 from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.servo import Safety, Servo
 from tangible_core.servo.guard import stiffness
-from tangible_core.servo.guard.stiffness import DEPTHS_M, STEP_M, stiffness_of
+from tangible_core.servo.guard.stiffness import DEPTHS_M, STEP_M, find_stiffness
 from tangible_core.session import run_simulated
 from tangible_core.testing.synthetic.scenes import ramp
 from tangible_devices.mock import Mock
@@ -91,7 +91,7 @@ class TestStatedStiffness:
     def test_stated_stiffness_is_used_unchanged(self, said: float) -> None:
         touch = spring(5000.0)
         touch.stiffness_n_per_m = said
-        assert stiffness_of(touch, SPEC) == (float(said), "")
+        assert find_stiffness(touch, SPEC) == (float(said), "")
         assert touch.asked == 0
 
     @pytest.mark.parametrize("said", [math.nan, math.inf, -1.0])
@@ -99,20 +99,20 @@ class TestStatedStiffness:
         touch = spring(5000.0)
         touch.stiffness_n_per_m = said
         with pytest.raises(BrokenMethod, match=r"^Law states a stiffness of .* N/m; state 0 or more, or None"):
-            stiffness_of(touch, SPEC)
+            find_stiffness(touch, SPEC)
 
     def test_compiled_law_of_unstated_stiffness_is_measured(self) -> None:
         said = wall(1500.0)
         silent = CompiledTouch(said.tick, said.fixed)
         assert silent.stiffness_n_per_m is None
-        assert stiffness_of(silent, SPEC).n_per_m == pytest.approx(1500, rel=1e-6)
-        assert stiffness_of(said, SPEC) == (1500.0, "")
+        assert find_stiffness(silent, SPEC).n_per_m == pytest.approx(1500, rel=1e-6)
+        assert find_stiffness(said, SPEC) == (1500.0, "")
 
 
 class TestMeasuredStiffness:
     @pytest.mark.parametrize("k", [1.0, 2e5])
     def test_spring_is_measured_exactly(self, k: float) -> None:
-        found = stiffness_of(spring(k), SPEC)
+        found = find_stiffness(spring(k), SPEC)
         assert found.n_per_m == pytest.approx(k, rel=1e-6)
         assert found.how == f"Law does not state its stiffness; {k:.4g} N/m was measured"
 
@@ -120,21 +120,21 @@ class TestMeasuredStiffness:
         """The stiffness along the force is k (1 + g^2)."""
         slope = load_method("render", "penalty-gradient")(stiffness_n_per_m=500.0).touch(ramp((0.6, 0.8), 0.06).surface)
         slope.stiffness_n_per_m = None
-        assert stiffness_of(slope, SPEC).n_per_m == pytest.approx(1000, rel=0.01)
+        assert find_stiffness(slope, SPEC).n_per_m == pytest.approx(1000, rel=0.01)
 
     def test_wall_is_measured_sideways(self) -> None:
         """A constant force up, and a stiff spring along x that does not depend on the depth."""
         law = Law(lambda x, y, z: (-3000.0 * x, 0.0, 2.0) if z < LEVEL_M else NO_FORCE)
-        assert stiffness_of(law, SPEC).n_per_m == pytest.approx(3000, rel=1e-6)
+        assert find_stiffness(law, SPEC).n_per_m == pytest.approx(3000, rel=1e-6)
 
     def test_stiffening_law_is_measured_up_to_the_device_force(self) -> None:
         """F = c d^2, whose slope counts at the deepest place with a force that the device can give."""
         c = 1e6
-        assert stiffness_of(level(lambda depth: c * depth**2), SPEC).n_per_m == pytest.approx(
+        assert find_stiffness(level(lambda depth: c * depth**2), SPEC).n_per_m == pytest.approx(
             2 * c * (DEPTHS_M[2] + STEP_M / 2), rel=0.02
         )
         weak = DeviceSpec(1.0, 3000.0, 20.0, SPEC.workspace_m, 1e-6)
-        assert stiffness_of(level(lambda depth: c * depth**2), weak).n_per_m == pytest.approx(
+        assert find_stiffness(level(lambda depth: c * depth**2), weak).n_per_m == pytest.approx(
             2 * c * (DEPTHS_M[1] + STEP_M / 2), rel=0.02
         )
 
@@ -149,7 +149,7 @@ class TestMeasuredStiffness:
         ids=["none", "a step", "cells", "nan"],
     )
     def test_force_that_jumps_is_not_a_spring(self, law: Any) -> None:
-        assert stiffness_of(Law(law), SPEC).n_per_m == 0
+        assert find_stiffness(Law(law), SPEC).n_per_m == 0
 
     def test_vibration_at_rest_is_not_a_spring(self) -> None:
         class Shaking(Law):
@@ -158,7 +158,7 @@ class TestMeasuredStiffness:
                 return Force(x, y, z * (1 + self.asked % 2))
 
         shaking = Shaking(lambda x, y, z: (0.0, 0.0, 2.0 * (z < LEVEL_M)))
-        assert stiffness_of(shaking, SPEC).n_per_m == 0
+        assert find_stiffness(shaking, SPEC).n_per_m == 0
 
     @pytest.mark.parametrize(("width_m", "height_m"), [(0.004, 0.0123), (0.02, 0.0), (0.3, 0.2)])
     def test_surface_of_any_size_is_found(self, width_m: float, height_m: float) -> None:
@@ -166,18 +166,18 @@ class TestMeasuredStiffness:
             inside = abs(x) < width_m / 2 and abs(y) < width_m / 2 and z < height_m
             return 0.0, 0.0, 700.0 * (height_m - z) * inside
 
-        assert stiffness_of(Law(law), SPEC).n_per_m == pytest.approx(700, rel=1e-6)
+        assert find_stiffness(Law(law), SPEC).n_per_m == pytest.approx(700, rel=1e-6)
 
     def test_stiff_quarter_of_a_surface_is_found(self) -> None:
         law = Law(lambda x, y, z: (0.0, 0.0, (9000.0 if x > 0.01 and y > 0.01 else 500.0) * max(0.0, LEVEL_M - z)))
-        assert stiffness_of(law, SPEC).n_per_m == pytest.approx(9000, rel=1e-6)
+        assert find_stiffness(law, SPEC).n_per_m == pytest.approx(9000, rel=1e-6)
 
     def test_measurement_is_repeatable_and_leaves_the_law_unchanged(self) -> None:
         heights = np.random.default_rng(0).uniform(0, 0.002, (32, 32)).astype(np.float32)
         touch = load_method("render", "proxy")(static_friction=0.4).touch(HapticSurface.from_heights(heights))
         touch.stiffness_n_per_m = None
         before = touch.path(np.full((3, 3), 0.001))
-        assert stiffness_of(touch, SPEC) == stiffness_of(touch, SPEC)
+        assert find_stiffness(touch, SPEC) == find_stiffness(touch, SPEC)
         np.testing.assert_array_equal(touch.path(np.full((3, 3), 0.001)), before)
 
 
@@ -200,7 +200,7 @@ class TestFaultyLaw:
         def fail() -> None:
             raise error
 
-        found = stiffness_of(law_at_fault(fail), SPEC)
+        found = find_stiffness(law_at_fault(fail), SPEC)
         assert found.n_per_m == pytest.approx(900, rel=1e-6)
         assert found.how.endswith(f"then it raised {type(error).__name__}: {error}")
         assert found.how in caplog.text
@@ -208,7 +208,7 @@ class TestFaultyLaw:
     def test_law_that_cannot_be_copied_counts_as_zero(self) -> None:
         touch = spring(900.0)
         touch.lock = threading.Lock()  # pyright: ignore[reportAttributeAccessIssue]
-        found = stiffness_of(touch, SPEC)
+        found = find_stiffness(touch, SPEC)
         assert found.n_per_m == 0
         assert "then it raised TypeError" in found.how
 
@@ -217,7 +217,7 @@ class TestFaultyLaw:
         ended = threading.Event()
         touch = law_at_fault(lambda: ended.wait(60))
         begun_s = time.monotonic()
-        found = stiffness_of(touch, SPEC)
+        found = find_stiffness(touch, SPEC)
         ended.set()
         assert time.monotonic() - begun_s < 20
         assert found.n_per_m == pytest.approx(900, rel=1e-6)

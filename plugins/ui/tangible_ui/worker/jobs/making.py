@@ -78,7 +78,7 @@ def _all_steps(pipeline: Pipeline, plan: Plan) -> list[Outcome]:
     """Return the plan's steps, and the products inside a cached one, in the order of making."""
     steps = {step.product: step for step in plan.steps}
     if not plan.refusal:
-        inputs = pipeline.engine.inputs_of(plan.want)
+        inputs = pipeline.engine.all_inputs(plan.want)
         for outcome in pipeline.outcomes:
             if outcome.product in inputs and outcome.product not in steps:
                 steps[outcome.product] = (

@@ -12,7 +12,7 @@ from tangible_core.data import Material, digest_of
 from tangible_core.errors import GeometryError
 from tangible_core.pipeline import Pipeline
 from tangible_core.pipeline.engine import product_at_hand
-from tangible_core.pipeline.output import title_of
+from tangible_core.pipeline.output import export_title
 from tangible_core.scene import kind_of
 from tangible_legibility.words.languages import LANGUAGES, Language
 from tangible_render.haptic_textures.table import waves
@@ -92,7 +92,7 @@ def description(state: WorkerState, language: Language) -> dict[str, Any] | None
         return None
     pipeline, view = state.description
     config, kind = pipeline.config, kind_of(pipeline.scene)
-    title, parts = title_of(config, pipeline.scene), facts(view.surface)
+    title, parts = export_title(config, pipeline.scene), facts(view.surface)
     people = _people(pipeline)
     texts = tell(view.surface, title, language, parts, kind, people)
     return {

@@ -11,7 +11,7 @@ from tangible_core.data import PartMap, SegmentMap, SegmentTree, border_pixels, 
 from tangible_core.parts import PartChoice, find_parts, part_sizes
 from tangible_core.pipeline import Pipeline
 from tangible_core.pipeline.config import PipelineConfig
-from tangible_core.pipeline.engine import config_heights, is_at_hand, parts_of
+from tangible_core.pipeline.engine import config_heights, divide_segments, is_at_hand
 from tangible_core.plugins import Hierarchical
 from tangible_core.scene import Scene
 
@@ -99,7 +99,7 @@ def _parts(pipeline: Pipeline) -> PartMap:
     """Return the parts of the scene's segments, or those that a document names; one part without any."""
     scene = pipeline.scene
     if scene.segments is not None:
-        return parts_of(scene.segments)
+        return divide_segments(scene.segments)
     is_made = pipeline.config.by_parts and is_at_hand(pipeline.engine, "parts")
     if is_made and (parts := pipeline.make("parts")) is not None:
         return parts

@@ -22,7 +22,7 @@ from tangible_core.data import (
 from tangible_core.files import without_folders
 from tangible_core.metrics import absolute_error
 from tangible_core.pipeline import Pipeline
-from tangible_core.pipeline.config import PipelineConfig, names_of
+from tangible_core.pipeline.config import PipelineConfig, all_part_names
 from tangible_core.pipeline.engine import fit_to_device, is_at_hand, parts_on_grid, product_at_hand
 from tangible_core.scene import RANGE_PERCENT, flat_relief, reduced_map, reduced_segments, reduced_shape
 
@@ -132,7 +132,7 @@ def _names(pipeline: Pipeline) -> tuple[str, ...] | None:
     """Return the names of the parts; None if nothing is by parts."""
     config = pipeline.config
     parts: PartMap | None = product_at_hand(pipeline.engine, config.felt_parts) if config.by_parts else None
-    return None if parts is None else names_of(config, parts.count)
+    return None if parts is None else all_part_names(config, parts.count)
 
 
 def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h w"] | None:

@@ -27,7 +27,6 @@ KERNEL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", 
 """The options of a kernel that allocates no arrays: it does not count references, which would be two atomic operations
 for each array and call; it has no entry point for C, because nothing uses that."""
 INNER: dict[str, Any] = {**KERNEL, "cache": False, "no_cpython_wrapper": True}
-"""The options of a function that only kernels call."""
 
 
 def inner(**options: Any) -> Any:
@@ -96,7 +95,6 @@ def _package(function: Any) -> str:
 
 
 def _function(event: Any) -> Any:
-    """Return the Python function of a compile event."""
     return event.data["dispatcher"].py_func
 
 

@@ -13,7 +13,6 @@ from ..errors import ArgumentError, did_you_mean, wrong_argument
 from .device import Force, HapticState
 
 NUMBERS = "buif"
-"""The kinds of NumPy types that hold numbers."""
 F = TypeVar("F", bound=Callable[..., Any])
 C = TypeVar("C", bound=type)
 READERS = "; Scene and numpy.load read files"

@@ -49,7 +49,6 @@ class _Blocks(type(BaseModel)):
 _TEXTS = WeakKeyDictionary[type, str | None]()
 """The documentation of classes with that of their options, once it was requested."""
 MAX_NAMED = 3
-"""The most options that a message about their names quotes."""
 
 
 class Quantities(BaseModel, metaclass=_Blocks):

@@ -35,7 +35,6 @@ class Record:
                 object.__setattr__(self, name, as_read_only(cast(np.ndarray, value)))
 
     def _repr_html_(self) -> str:
-        """Return a small picture with units, for a notebook."""
         home = __name__.partition(".")[0]
         return import_module(f"{home}.pipeline.output.showing").as_html(self)  # the drawing lies on a higher floor
 
@@ -118,7 +117,6 @@ def _converter(hint: Any) -> Convert | None:
 
 
 def _parts(union: Any) -> list[Any]:
-    """Return the parts of a union other than None."""
     return [arg for arg in get_args(union) if arg is not NoneType]
 
 

@@ -17,7 +17,6 @@ from .records import Record
 
 Texture = Literal["smooth", "periodic", "stochastic", "stick-slip", "drag"]
 TEXTURES: tuple[Texture, ...] = get_args(Texture)
-"""The models of a material's fine texture."""
 FLAT_M = 1e-5
 """Difference of heights below which a relief is flat: a third of what a Falcon resolves."""
 

@@ -69,7 +69,6 @@ def plain_line(name: str) -> str:
 
 
 def _check_name(path: Path) -> None:
-    """Raise a ConfigError for a name that no file can have."""
     try:
         sizes = [len(fsencode(part)) for part in path.parts]
     except UnicodeEncodeError:  # half a character, which JSON can express

@@ -8,7 +8,6 @@ from jaxtyping import Float, Float64
 from ..errors import GeometryError, PictureError
 
 BOUNDS_PX = (0.5, 1.0, 2.0, 4.0)
-"""The errors above which Middlebury's tables count pixels as bad."""
 
 
 def disparity_errors(disparity_px: Float[np.ndarray, "h w"], truth_px: Float[np.ndarray, "h w"]) -> dict[str, float]:

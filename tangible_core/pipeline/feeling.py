@@ -32,7 +32,6 @@ from .output.runs import about, device_in_workspace, join_descriptions, path_tra
 
 T = TypeVar("T")
 NO_ROWS = np.empty((0, len(TICK_COLUMNS)))
-"""The rows of a recording without ticks."""
 
 
 @final
@@ -158,7 +157,6 @@ class Feeling:
         stop: Event | None,
         beacon: str | int | None,
     ) -> Recording:
-        """Run a session by the clock of a simulated device."""
         listener = session.with_parts(self.pipeline.make("surface"), listener)
         touch, options = self._touch_or_film(), (self.engine.config.safety, stop, self._beacon(beacon))
         if not isinstance(touch, Film):
@@ -259,7 +257,6 @@ class Feeling:
         return Slot(touch, ours.safety, surface, self._beacon(beacon), reliefs, name)
 
     def _touch_or_film(self) -> Touch | Film:
-        """Return the touch; the film for a video."""
         return self.touch if self.engine.scene.frames is None else self.film()
 
     def _beacon(self, part: str | int | None) -> Beacon | None:
@@ -267,7 +264,6 @@ class Feeling:
         return None if part is None else beacon_to(self.pipeline.make("surface"), part)
 
     def _about(self) -> About:
-        """Describe the pipeline and the device for a recording."""
         about_pipeline = about(self.engine)
         if self.given is None:
             return about_pipeline

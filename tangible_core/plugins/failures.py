@@ -26,7 +26,6 @@ PACKAGES = {
     "skimage": "scikit-image",
     "usb": "pyusb",
 }
-"""Packages whose modules have another name."""
 NO_MEMORY = re.compile("failed to map segment|[Cc]annot allocate memory|Insufficient memory")
 """What the system's loader, the C library and OpenCV say when the memory runs out."""
 _PLACE = "tangible_place"

@@ -215,4 +215,3 @@ KINDS: dict[Kind, type[Method]] = {
     "device": HapticDevice,
     "export": Exporter,
 }
-"""The interface of each kind of plugin."""

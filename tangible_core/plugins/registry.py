@@ -183,7 +183,6 @@ time."""
 
 
 def _source(top: str, *rest: str) -> Path:
-    """Find the file of a module."""
     spec = find_spec(top)
     if spec is None:
         raise ImportError(f"there is no module {top}")

@@ -201,7 +201,6 @@ class _Text(NamedTuple):
 
 @cache
 def _definitions(package: Place) -> frozenset[str]:
-    """Return the names that a package's own file defines."""
     try:
         return definitions(_text(package).content)
     except (SyntaxError, ValueError):  # it cannot be imported either

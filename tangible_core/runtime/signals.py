@@ -36,7 +36,6 @@ def received_signal() -> signal.Signals | None:
 
 
 def _interrupt() -> None:
-    """Interrupt the main thread from the thread of the console."""
     _received.append(ENDING[-1])
     signal.raise_signal(signal.SIGINT)
 

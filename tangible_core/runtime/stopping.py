@@ -43,7 +43,6 @@ def check_stopped() -> None:
 
 
 LONG_S = 5.0
-"""The time until the warning, s."""
 
 
 @contextmanager

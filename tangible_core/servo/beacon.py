@@ -29,7 +29,6 @@ BRAKED_FROM = 0.125
 """Share of the pull from which on the damping is whole: sampling a spring adds energy where it is steep, next to the
 part, where the pull itself is nearly zero."""
 RAMP_S = 0.5
-"""Time over which a pull fades in."""
 STIFFNESS_N_PER_M = PULL_N / SOFT_M
 """The steepest slope of the pull, next to the part."""
 ROUNDED_M = 0.0015
@@ -234,4 +233,3 @@ def _list_parts(names: tuple[str, ...]) -> str:
 
 
 MAX_LISTED = 20
-"""Greatest number of parts in a message."""

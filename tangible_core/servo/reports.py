@@ -16,7 +16,6 @@ from .guard import safety
 from .ring import LONGEST_S, MAX_LATE_S, PEAK_N, WORK_J, Ring
 
 AT = {name: column for column, name in enumerate(TICK_COLUMNS)}
-"""Column of each name in a row of ticks."""
 NOTHING_YET = np.array([np.nan if name == "frame" else 0.0 for name in TICK_COLUMNS])
 """The row of a loop before its first tick."""
 GREATEST = ("peak_force_n", "most_late_s", "longest_s")

@@ -22,7 +22,6 @@ log: logging.Logger = logging.getLogger(__name__)
 LOOK_EVERY_S = 0.05
 """Interval at which ticks are taken from the loop's ring, and so the most that a crash can lose of a recording."""
 REPORT_EVERY_S = 0.1
-"""Interval of the reports."""
 
 
 @final
@@ -149,4 +148,3 @@ def figures(report: ServoReport) -> dict[str, float]:
 
 
 LIMITS = [flag.name or "" for flag in TickFlag if not flag & UNTOUCHED]
-"""Names of the flags of limited forces."""

@@ -27,7 +27,6 @@ log: logging.Logger = logging.getLogger(__name__)
 MAX_TICKS = 3_600_000
 """Greatest number of ticks of a recording in memory, at which the loop stops: an hour at 1 kHz, half a gigabyte."""
 FIRST_S = 0.001
-"""Assumed period of the first tick."""
 
 
 def run_simulated(
@@ -122,7 +121,6 @@ class _Tape:
         self._state, self._force = HapticState((0.0, 0.0, 0.0)), NO_FORCE
 
     def add(self, state: HapticState, force: Force, flags: int) -> None:
-        """Add a tick, and report when it is time."""
         if not self.ticks:
             self._start_s, self._state = state.time_s, state
         way = zip(self._force, state.position_m, self._state.position_m, strict=True)
@@ -138,10 +136,8 @@ class _Tape:
             self.report("")
 
     def report(self, stopped: str) -> None:
-        """Report the state so far."""
         last = np.array(self._numbers[-len(TICK_COLUMNS) :]).reshape(-1, len(TICK_COLUMNS))
         self._on_report(brief_report(last, self.ticks, self._peak_n, self._work_j, stopped))
 
     def recording(self) -> Recording:
-        """Return all ticks."""
         return Recording(np.array(self._numbers, np.float64).reshape(-1, len(TICK_COLUMNS)), self.stopped)

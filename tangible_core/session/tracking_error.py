@@ -21,7 +21,6 @@ REPORTED_SHARE = 0.05
 FOOT_M, AROUND_M, RISE_M = 0.003, 0.03, 0.001
 """Radius of the ground on which the hand stands; radius in which an obstacle is searched; its least height."""
 HOLDS_N = 0.5
-"""The smallest horizontal force that can hold a hand."""
 DIRECTIONS, IN_A_PIT = 16, 14
 """Number of directions in which the ground is searched, and how many must rise around a hand in a pit."""
 

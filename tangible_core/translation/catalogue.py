@@ -18,7 +18,6 @@ WEAK = 9
 MAX_WORDS = 2
 """Most words of a name, which stays as it is between texts that are known."""
 MAX_CHARACTERS = 3000
-"""Longest text that is taken apart."""
 MAX_JOINTS = 30
 """Most marks of one kind at which a text is taken apart: a longer list stays as it is."""
 CACHED = 8192
@@ -97,7 +96,6 @@ class Catalogue:
         return f"{number} {translation}" if translation and number.isdecimal() else None
 
     def _by_lines(self, text: str) -> str | None:
-        """Return a text of several paragraphs or lines."""
         for mark in ("\n\n", "\n"):
             if mark in text:
                 return mark.join(map(self, text.split(mark)))

@@ -5,7 +5,6 @@ import re
 from .chosen import LANGUAGES, language
 
 MARKS = re.compile(r"((?<!\\)\[/?[a-z][a-z0-9_ #]*\]|(?<!\\)\[/\])")
-"""Marks of rich in a text."""
 
 
 def translate(text: str, to: str) -> str:
@@ -33,5 +32,4 @@ def localise_marked(text: str) -> str:
 
 
 def _escape(text: str) -> str:
-    """Return a text whose brackets are not taken for marks."""
     return re.sub(r"\[(?=[a-z/#@])", r"\\[", text)

@@ -38,8 +38,6 @@ class _Block:
 @final
 @dataclass
 class _Count:
-    """The nodes that were counted so far."""
-
     open: list[_Block] = field(default_factory=list[_Block])
     nodes_of: dict[str, int] = field(default_factory=dict[str, int])
     """The number of nodes that an alias to each closed anchor stands for."""

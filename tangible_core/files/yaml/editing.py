@@ -87,7 +87,6 @@ def _canonical(node: Any) -> Any:
 
 
 def _change(tree: dict[Any, Any], parts: Location, value: Any, shorthand: Shorthand) -> None:
-    """Apply a change to plain values."""
     blocks = [tree]
     for depth, part in enumerate(parts[:-1]):
         node, key = blocks[-1], find_key(part, blocks[-1])
@@ -116,7 +115,6 @@ def _remove(blocks: list[dict[Any, Any]], parts: Location) -> None:
 
 
 def _edit(text: str, parts: Location, value: Any, shorthand: Shorthand) -> str:
-    """Return the text with one change made in its place."""
     node: Any = cast(Any, YAML(typ="rt")).compose(text)
     above: list[tuple[Node, int]] = []
     for depth, part in enumerate(parts):
@@ -275,7 +273,6 @@ def json_in_yaml(value: Any) -> str:
 
 _NUMBERS = {"None": "null", "True": "true", "False": "false", "nan": ".nan", "inf": ".inf", "-inf": "-.inf"}
 _MAX_PLAIN = 100
-"""The most characters of a word without quotes."""
 _PLAIN = re.compile(r"[\w./~]([\w./~ +-]*[\w./~])?")
 
 

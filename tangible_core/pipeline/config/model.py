@@ -45,7 +45,6 @@ Wrong = tuple[Location, str]
 MAX_TITLE = 200
 """The most characters of a title: what a person reads at a glance, and what fits a line of braille or two."""
 LANGUAGE_TAG = "^[A-Za-z]{2,8}(-[A-Za-z0-9]{1,8})*$"
-"""The form of a language's tag, as BCP 47 has it."""
 
 
 def _check_title(title: str) -> str:
@@ -69,7 +68,6 @@ class _Representer(SafeRepresenter):
     """A representer that escapes what cannot be printed; by itself, ruamel writes U+0085 as it is, a line break."""
 
     def represent_str(self, data: str) -> Any:
-        """Return the node of a text."""
         return cast(Any, self).represent_scalar("tag:yaml.org,2002:str", data, None if data.isprintable() else '"')
 
 
@@ -274,6 +272,5 @@ def without_places(source: Source) -> ConfigError:
 
 
 KEYS = find_keys(PipelineConfig)
-"""The keys of a pipeline file by name, in the order of the fields."""
 STAGES = tuple(name for name, key in KEYS.items() if isinstance(key, MethodBlock))
 """The keys that name one method each."""

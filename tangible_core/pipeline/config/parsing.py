@@ -18,7 +18,6 @@ from .model import KEYS, PipelineConfig, without_places
 from .part_checks import wrong_of_parts, wrong_of_scale
 
 EXPECTED = "a configuration is a mapping that starts with `scene:`"
-"""The complaint about a file that is not a mapping."""
 
 
 def load_config(path: Path, registry: Registry, overrides: Iterable[str] = ()) -> PipelineConfig:

@@ -41,7 +41,6 @@ KEPT = frozenset(name for name in dir(data) if is_dataclass(getattr(data, name))
 
 
 Notes = Mapping[str, tuple[Note, ...]]
-"""Notes by product."""
 
 
 class Entry(NamedTuple):
@@ -262,7 +261,6 @@ def _remove(path: Path) -> None:
 
 
 def _use_and_size(path: Path) -> tuple[float, int]:
-    """Return the time of the last use and the size in bytes."""
     try:
         status = path.stat()
     except FileNotFoundError:  # another process dropped it

@@ -68,7 +68,6 @@ class PipelineFrames(FrameMaker):
         return self._relief.from_disparity(disparity, scale)
 
     def _stage(self, views: Views) -> DisparityStage:
-        """Return the stage that makes the disparity of these views."""
         return DisparityStage(Context(self._config, replace(self._scene, views=views)))
 
 

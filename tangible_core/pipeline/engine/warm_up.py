@@ -13,7 +13,6 @@ from ..config.model import PipelineConfig
 from .engine import Engine
 
 MAX_PX = 768
-"""The most rows and columns of the crop."""
 STRIPES = 6
 """Segments of the made-up map: enough for every material that a rule may choose."""
 FELT = "felt"

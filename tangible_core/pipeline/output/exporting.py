@@ -40,7 +40,6 @@ from .run_folder import default_name, relative_source
 log: logging.Logger = logging.getLogger(__name__)
 
 PREFIX = "export: "
-"""The prefix of an exporter's name in the product of its outcome."""
 MAX_STEM_BYTES = 120
 """The most bytes of a file's name before its ending: systems take 255, and endings are added."""
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
@@ -122,7 +121,6 @@ class _ExportRun:
         self.engines = {(config.size.width_m, config.relief.slope): engine}
 
     def export(self, name: str, stem: str, exporter: NamedMethod[Exporter]) -> Exported:
-        """Make the products for an exporter, and run it."""
         outcomes, product, seconds = Outcomes(), f"{PREFIX}{name}", 0.0
         files, legible, notes, place = (), None, list[Note](), None
 

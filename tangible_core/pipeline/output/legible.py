@@ -20,7 +20,6 @@ from ..engine.hooked import judge_function
 from ..engine.working_grid import WorkingGrid
 
 WIDTH = "workspace.width_m"
-"""The key by which cures enlarge a picture."""
 ROUNDING = 1e-9
 """A share above the rounding error of a product of floating-point numbers."""
 MAX_FILLS = 5

@@ -15,7 +15,6 @@ from ..engine.stage import Context
 from ..engine.stages.relief import ReliefStage
 
 MAX_REASON = 300
-"""The most characters of the reason behind a part."""
 SOURCES = {
     "guess": "The heights are guessed: a picture does not show which parts are in front.",
     "depth": "The heights are by depth: each is the median over its part.",
@@ -51,7 +50,6 @@ def to_correct(engine: Engine) -> str:
 
 
 def _blocks(config: PipelineConfig, heights: PartHeights) -> dict[int, dict[str, Any]]:
-    """Return the block of each part, with its present height."""
     choices = {label: config.choices.get(label, PartChoice()) for label in range(len(heights.heights_m))}
     return {
         shown_number(label): {

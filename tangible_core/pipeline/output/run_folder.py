@@ -25,13 +25,11 @@ from ...runtime.system.files import folder_lock
 MANIFEST = "manifest.json"
 CONFIG, NO_CONFIG, OUTCOMES = "config.yaml", "config.txt", "outcomes.json"
 CLAIMS = (CONFIG, NO_CONFIG, OUTCOMES)
-"""The files that describe the others."""
 RECORDING, SHEET = "recording.npz", "sheet"
 GUESSED = "parts-guessed.yaml"
 """The pipeline file with guessed heights of parts, to correct."""
 SHEETS = tuple(f"{SHEET}.{drawn_as}" for drawn_as in ("png", "svg", "pdf"))
 NAMES = (*CLAIMS, *(f"{product}.npz" for product in PRODUCTS), RECORDING, GUESSED, *SHEETS)
-"""The names of all files that a run may write."""
 
 
 @dataclass(frozen=True)

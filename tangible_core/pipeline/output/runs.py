@@ -41,7 +41,6 @@ from .run_folder import CONFIG, GUESSED, MANIFEST, NO_CONFIG, OUTCOMES, RECORDIN
 from .showing import can_draw, drawing, png_html
 
 Sheet = Literal["png", "svg", "pdf"]
-"""A file format of sheets."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,9 +29,7 @@ if TYPE_CHECKING:
 log: logging.Logger = logging.getLogger(__name__)
 
 SHEET = "sheet"
-"""The exporter that draws runs and products."""
 DPI = 80
-"""The resolution of a picture in a notebook."""
 
 
 def can_draw(registry: Registry) -> bool:

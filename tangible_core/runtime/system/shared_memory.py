@@ -15,7 +15,6 @@ from .processes import is_alive
 
 PREFIX = "tangible-"
 NAME = re.compile(rf"{PREFIX}([0-9]{{1,9}})-\w+\.(ring|parcel)")
-"""Pattern of the names, which contain the ID of the process that made the memory."""
 
 
 def shared_folder() -> Path:

@@ -34,7 +34,6 @@ NEWTONS_AND_FLAGS = types.Tuple((float64, float64, float64, int64))
 
 @inner(forceinline=True)
 def _count(memory, flags):
-    """Count each of the flags, and return them."""
     memory[at.COUNTS] += flags & TOUCHING
     if flags > TOUCHING:
         for bit in range(1, at.FLAGS):

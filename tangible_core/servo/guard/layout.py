@@ -44,7 +44,6 @@ TOOL = HELD + 3 * (MAX_DELAY + 1)
 COUNTS = TOOL + 9
 """Memory: ticks with each flag of the guard, by the flag's bit."""
 FLAGS = 8
-"""Number of flags that a guard sets."""
 PULL = COUNTS + FLAGS
 """Memory: the beacon's force along x and y, which is added to the law's."""
 PULL_STIFFNESS = PULL + 2
@@ -54,4 +53,3 @@ RISE_M, LAST_RISE_M, SURFACE_FORCE_N, GIVEN_J, MAY_GIVE_J = range(PULL_STIFFNESS
 guard, and in the tick before; the law's force along z as it was sent; the work that the surface did in this contact and
 has not taken back, and the work that it may still do."""
 MEMORY = MAY_GIVE_J + 1
-"""Length of a guard's memory."""

@@ -22,13 +22,11 @@ log: logging.Logger = logging.getLogger(__name__)
 STOPPING_S = 0.5
 """Time to wait for a player to end; if it still computes then, it is abandoned."""
 OPEN_AGAIN_S = 1.0
-"""Interval of attempts to open a source."""
 NICENESS = 5
 """Niceness of the thread, so that the force loop's process goes first; on systems with a niceness per thread."""
 MAX_WAIT_S = 0.01
 """Longest time between two checks for a frame."""
 AGES = 1000
-"""Number of frames over which the median age is computed."""
 
 
 @final
@@ -42,7 +40,6 @@ class _Screen:
         self.shown = self.damaged = 0
 
     def show(self, frame: FrameRelief) -> None:
-        """Show the next frame."""
         self.film.show(frame.relief, frame.number)
         self._last = frame
         self.shown += 1
@@ -67,7 +64,6 @@ class _Screen:
             log.warning("the surface stands still until the next valid frame: %s", error)
 
     def counts(self, skip_count: int, per_s: float, age_ms: float | None) -> FilmFelt:
-        """Return the counts of the film, with those of its player."""
         return FilmFelt(self.shown, self.film.dropped, skip_count, self.damaged, per_s, age_ms)
 
 

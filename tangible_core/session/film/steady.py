@@ -53,7 +53,6 @@ class Steady:
         return FilteredMap(DisparityMap(out, disparity.confidence, disparity.unit), cut=False)
 
     def _restart(self, disparity: DisparityMap, cut: bool) -> FilteredMap:
-        """Adopt the whole map."""
         new = disparity.disparity_px
         self._values, self._waiting = new.copy(), np.full(new.shape, np.nan, np.float32)
         self._doubts = np.zeros(new.shape, np.uint8)

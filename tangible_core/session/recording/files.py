@@ -19,7 +19,6 @@ from .tick_file import ARRAYS, NEEDED, NO_INFORMATION, UNKNOWN, About, join_arra
 
 SUFFIXES = (".nc", ".npz", ".csv")
 NPZ_NAMES = frozenset(("stopped", *ARRAYS, *(field.name for field in fields(About))))
-"""Names of the arrays that are read from an .npz."""
 
 
 class RecordingContents(NamedTuple):

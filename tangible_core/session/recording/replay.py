@@ -17,7 +17,6 @@ from .recording import Recording
 from .tick_file import ARRAYS
 
 NOWHERE = (math.nan, math.nan, math.nan)
-"""Place of a proxy that does not exist."""
 
 
 def replay(touch: Touch, recording: Recording) -> Recording:
@@ -86,7 +85,6 @@ NEAR_M = 1e-3
 MAX_COMPARED = 100_000
 """Greatest number of ticks that are compared; a longer recording is thinned evenly."""
 SHOWN = ("ticks", "seconds", "contact_share", "median_contact_force_n", "peak_force_n", "work_j")
-"""Names of the figures of each recording in the comparison."""
 
 
 def compare_recordings(first: Recording, second: Recording, near_m: float = NEAR_M) -> dict[str, float]:

@@ -57,7 +57,6 @@ class About:
 
 
 NO_INFORMATION = About()
-"""The information of a recording of unknown origin."""
 
 
 def _variables() -> Iterator[Variable]:
@@ -85,7 +84,6 @@ VARIABLES = dict(zip(TICK_COLUMNS, _variables(), strict=True))
 """Variables by column. Inputs of a force law are exact: rounded by a nanometre, a proxy may take another way. Its
 outputs are float32: within 4 nm of a proxy under 0.125 m from the centre, and 0.3 uN of a force under 8 N."""
 RECORD = np.dtype([(name, variable.dtype) for name, variable in VARIABLES.items()])
-"""Record of a tick, 96 bytes."""
 
 
 def header(about: About, stopped: str = CUT_OFF, ticks: int = 0) -> bytes:
@@ -153,7 +151,6 @@ UNKNOWN = {
     "buttons": 0.0,
     "frame": np.nan,
 }
-"""Values of columns that are not known."""
 
 
 def unknown_rows(count: int) -> Float64[np.ndarray, "n columns"]:

@@ -36,14 +36,12 @@ class Block(Key):
         return type(None) in get_args(self.field.annotation)
 
     def read(self, reading: Reading, block: Any) -> Any:
-        """Check the block of a file."""
         options = self._parse(reading, block)
         if options is not None and self.check is not None:
             self.check(reading.source, (self.name,), options)
         return options
 
     def take(self, reading: Reading, value: Any) -> Any:
-        """Check a model, a mapping, or the word of an option."""
         if isinstance(value, self.model):
             return value
         value = {self.labels: value} if self.labels and isinstance(value, str) else value
@@ -60,24 +58,19 @@ class Block(Key):
         return reading.source.model((self.name,), self.model, block)
 
     def write(self, value: Any) -> Any:
-        """Write the options, without those that are null."""
         return value and value.model_dump(mode="json", exclude_none=True)
 
     def word_option(self, depth: int) -> str:
-        """Return `word` for this key."""
         return self.word if depth == 1 else ""
 
     def settings(self) -> Iterable[str]:
-        """Return the key of each option."""
         alone = [f"{self.name}="] if self.word else []
         return (*alone, *(f"{self.name}.{option}=" for option in self.model.model_fields))
 
     def models(self, value: Any) -> Mapping[Location, BaseModel]:
-        """Return the block."""
         return {} if value is None else {(self.name,): value}
 
     def schema(self, forms: Forms) -> dict[str, Any]:
-        """Describe the block, and what may stand for it."""
         block = forms.of(self.model)
         others = list[dict[str, Any]]()
         if self.word:
@@ -109,16 +102,13 @@ class Word(Key):
     """A key with a single value, which the type of its field checks."""
 
     def read(self, reading: Reading, block: Any) -> Any:
-        """Check the value by the type of the field."""
         options = reading.source.model((), self._form, {self.name: block})
         return None if options is None else getattr(options, self.name)
 
     def schema(self, forms: Forms) -> dict[str, Any]:
-        """Describe the value by the type of the field."""
         return forms.of(self._form)["properties"][self.name]
 
     @cached_property
     def _form(self) -> type[BaseModel]:
-        """A model of this field alone."""
         fields: dict[str, Any] = {self.name: (self.field.annotation, self.field)}
         return create_model(self.name, __base__=Section, **fields)

@@ -21,31 +21,24 @@ class MethodBlock(Key, Unchecked):
     stands_last = True
 
     def read(self, reading: Reading, block: Any) -> Any:
-        """Make the method that the file names."""
         return choose(reading.source, (self.name,), self.name, block, reading.registry)
 
     def take(self, reading: Reading, value: Any) -> Any:
-        """Check the kind of a method that was made in Python, or make the one that is named."""
         return _take_method((self.name,), self.name, reading, value)
 
     def write(self, value: NamedMethod[Any]) -> Any:
-        """Write the name and all options."""
         return value.as_written(self.name)
 
     def word_option(self, depth: int) -> str:
-        """Return `use` for this key."""
         return "use" if depth == 1 else ""
 
     def settings(self) -> Iterable[str]:
-        """Return the key of the name."""
         return (f"{self.name}.use=",)
 
     def models(self, value: NamedMethod[Any] | None) -> Mapping[Location, BaseModel]:
-        """Return the method."""
         return {} if value is None else {(self.name,): value.method}
 
     def schema(self, forms: Forms) -> dict[str, Any]:
-        """Describe all methods of this kind."""
         return forms.of_kind(self.name)
 
 
@@ -56,7 +49,6 @@ class MethodList(Key, Unchecked):
     stands_last = True
 
     def read(self, reading: Reading, block: Any) -> Any:
-        """Make all methods that the file lists."""
         if block is None:
             return ()
         if not isinstance(block, list):
@@ -73,24 +65,19 @@ class MethodList(Key, Unchecked):
         return tuple(method for method in methods if method is not None)
 
     def take(self, reading: Reading, value: Any) -> Any:
-        """Check the kinds of methods that were made in Python, or make those that are named."""
         methods = [value] if isinstance(value, str) else value
         return tuple(_take_method((self.name, at), self.name, reading, method) for at, method in enumerate(methods))
 
     def write(self, value: Iterable[NamedMethod[Any]]) -> Any:
-        """Write the name and all options of each."""
         return [method.as_written(self.name) for method in value]
 
     def word_option(self, depth: int) -> str:
-        """Return `use` for an entry of the list."""
         return "use" if depth == 2 else ""
 
     def models(self, value: Iterable[NamedMethod[Any]]) -> Mapping[Location, BaseModel]:
-        """Return the methods by their places in the list."""
         return {(self.name, index): method.method for index, method in enumerate(value)}
 
     def schema(self, forms: Forms) -> dict[str, Any]:
-        """Describe the list."""
         return {"anyOf": [{"type": "array", "items": forms.of_kind(self.name)}, {"type": "null"}]}
 
 

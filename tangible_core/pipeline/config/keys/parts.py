@@ -18,7 +18,6 @@ class PartsBlock(Key, Unchecked):
     """The key with a name, a height and a material for parts, by number."""
 
     def read(self, reading: Reading, block: Any) -> Any:
-        """Check every part, with a complaint for each mistake."""
         source = reading.source
         if not isinstance(block, dict | None):
             example = f"takes a mapping from the number of a part to its name, such as {EXAMPLE}"
@@ -39,7 +38,6 @@ class PartsBlock(Key, Unchecked):
         return parts
 
     def take(self, reading: Reading, value: Any) -> Any:
-        """Check a mapping whose keys are numbers."""
         if not isinstance(value, Mapping):
             return self.read(reading, value)
         blocks = dict[Any, Any]()
@@ -51,11 +49,9 @@ class PartsBlock(Key, Unchecked):
         return self.read(reading, blocks)
 
     def write(self, value: Mapping[int, PartChoice]) -> Any:
-        """Write every part, without defaults."""
         return {number: part.model_dump(mode="json", exclude_defaults=True) for number, part in value.items()}
 
     def word_option(self, depth: int) -> str:
-        """Return `name` for the number of a part."""
         return "name" if depth == 2 else ""
 
     def settings(self) -> Iterable[str]:
@@ -63,7 +59,6 @@ class PartsBlock(Key, Unchecked):
         return ()
 
     def schema(self, forms: Forms) -> dict[str, Any]:
-        """Describe the map from numbers to names or blocks."""
         part = {"anyOf": [{"type": "string"}, {"type": "null"}, forms.of(PartChoice)]}
         return {"anyOf": [by_number(part), {"type": "null"}], "title": "Parts"}
 

@@ -21,7 +21,6 @@ class SceneBlock(Key, Unchecked):
     missing = "`scene:` is missing; name a builtin (builtin/motorcycle) or files {left:, right:}"
 
     def read(self, reading: Reading, block: Any) -> Any:
-        """Check a builtin name, files, or the block of a scene reader."""
         source = reading.source
         try:
             reader = find_scene_reader(block)
@@ -42,7 +41,6 @@ class SceneBlock(Key, Unchecked):
             return reading.source.complain((self.name,), f"{self.name}: {error}")
 
     def write(self, value: str | SceneFiles | Scene) -> Any:
-        """Write the builtin name or the files."""
         files = value.files if isinstance(value, Scene) else value
         if files is None:
             raise ConfigError(
@@ -51,14 +49,11 @@ class SceneBlock(Key, Unchecked):
         return files if isinstance(files, str) else files.model_dump(mode="json", exclude_none=True)
 
     def settings(self) -> Iterable[str]:
-        """Return the key, and those that mark the blocks of scene readers."""
         return (f"{self.name}=", *(f"{self.name}.{key}=" for key in scene_reader_points()))
 
     def models(self, value: Any) -> Mapping[tuple[str], BaseModel]:
-        """Return the files."""
         return {(self.name,): value} if isinstance(value, BaseModel) else {}
 
     def schema(self, forms: Forms) -> dict[str, Any]:
-        """Describe builtin names, files and the blocks of all scene readers."""
         blocks = (SceneFiles, *scene_readers(forms.distribution))
         return {"anyOf": [{"enum": sorted(BUILTINS)}, *map(forms.of, blocks)]}

@@ -34,7 +34,6 @@ from ..working_grid import flatten_transparent, relief_of_layers
 
 log: logging.Logger = logging.getLogger(__name__)
 SPREAD = "heights are spread so that borders can be felt; `relief: depth` keeps true proportions"
-"""The note on a relief whose heights are not proportional to depth."""
 LEVEL, MAX_REGIONS = 0.6, 64
 """The least share of people who would draw a border that is a raised line, and the most regions between such lines. On
 20 photographs, lines at this level are at drawn borders as often as lines at edges, and find more of these."""
@@ -42,7 +41,6 @@ SEEN_LEVEL = 0.4
 """The least share where the method has a network, whose borders are surer: of .3 to .6, that whose lines lie best at
 the borders that people drew in 30 photographs."""
 LINEAR = ReliefChoice(by="depth", slope=0, grain_m=0)
-"""The shape of a relief that is neither spread nor limited."""
 
 
 class ReliefStage(Stage):

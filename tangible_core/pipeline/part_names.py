@@ -7,7 +7,7 @@ from ..plugins.registry import Registry
 from .config.model import PipelineConfig
 from .engine.cache import Cache
 from .engine.engine import Engine
-from .engine.networks import networks_identity, read_function
+from .engine.hooked import networks_identity, read_function
 
 
 def read_part_names(config: PipelineConfig, registry: Registry) -> dict[int, str]:

@@ -31,7 +31,7 @@ from ..scene.scene import Scene
 from ..scene.scene_files import SceneFiles
 from .config.model import PipelineConfig
 from .config.parsing import make_config, parse_config
-from .engine.networks import networks_identity
+from .engine.hooked import networks_identity
 from .part_names import read_part_names
 
 SIDE_MM = 80

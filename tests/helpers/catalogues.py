@@ -10,8 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from shown_texts import ROOT, described, is_prose, literals, python_files
-from tangible_core.translation.catalogue import ENTRY, unquoted
-from tangible_core.translation.template import PLACEHOLDER
+from tangible_core.translation.catalogue import ENTRY, PLACEHOLDER, unquoted
 from tangible_legibility.words.languages import TABLES
 
 FOLDER = ROOT / "tangible_core" / "translation"

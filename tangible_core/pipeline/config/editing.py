@@ -14,7 +14,7 @@ from ...files.paths import as_path
 from ...files.yaml.editing import REMOVE, Changes, change_text
 from ...files.yaml.source import Location, find_key, parse_override, parse_source, plain
 from .keys import MethodBlock, MethodList
-from .keys.method import find_or_add
+from .keys.kinds import find_or_add
 from .model import KEYS, PipelineConfig
 from .parsing import EXPECTED, shorthand
 from .scene_readers import find_scene_reader

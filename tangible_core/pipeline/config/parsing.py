@@ -13,7 +13,7 @@ from ...scene.framing import measured_size
 from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
 from .keys import MethodList, Reading
-from .keys.method import find_or_add
+from .keys.kinds import find_or_add
 from .model import KEYS, PipelineConfig, without_places
 from .part_checks import wrong_of_parts, wrong_of_scale
 

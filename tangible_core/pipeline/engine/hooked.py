@@ -4,12 +4,13 @@ from collections.abc import Callable
 from importlib.metadata import EntryPoint
 from typing import Any, Literal
 
-from ...data import PartMap
+from ...data import Figure, PartMap, PictureText
 from ...errors import BrokenMethod, shown
 from ...plugins import hooks
 from ...plugins.registry import Registry
 from ...preflight import Legibility
 from ...runtime.failure_log import where_kept
+from ..config.model import PipelineConfig
 
 
 def hooked_point(registry: Registry, hook: str, name: str, purpose: str) -> EntryPoint:
@@ -51,3 +52,27 @@ def simplify_function(registry: Registry) -> Callable[..., PartMap]:
 
 def _load(point: EntryPoint) -> Any:
     return load_hooked(point, f"{point.name} parts")
+
+
+NETWORKS_HOOK, LOOK, READ = "tangible_networks", "look at a photograph", "read texts"
+
+
+def look_function(registry: Registry) -> Callable[..., Figure]:
+    """Import the function that returns what networks see in a picture; tasks, if not all, are its second argument."""
+    return load_hooked(hooked_point(registry, NETWORKS_HOOK, "look", LOOK), LOOK)
+
+
+def networks_identity(registry: Registry, *tasks: str) -> str:
+    """Return a text that differs wherever networks for these tasks may see something else; "" without one."""
+    purpose = "tell which networks are here"
+    return load_hooked(hooked_point(registry, NETWORKS_HOOK, "identity", purpose), purpose)(*tasks)
+
+
+def read_function(registry: Registry) -> Callable[..., tuple[PictureText, ...]]:
+    """Import the function that returns the texts of a picture, its second argument, with what they say."""
+    return load_hooked(hooked_point(registry, NETWORKS_HOOK, "read", READ), READ)
+
+
+def has_figure(config: PipelineConfig, registry: Registry) -> bool:
+    """Return True where the relief is made of what networks see, and some are here: other products use it then."""
+    return config.relief_kind == "figure" and bool(networks_identity(registry))

@@ -4,16 +4,29 @@ import errno
 import logging
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from threading import Event
 from time import perf_counter
 from typing import Any, cast, final
 
-from ...data import Note, Outcome, Outcomes, Record, Work
+import numpy as np
+
+from ...data import Figure, HapticSurface, Note, Outcome, Outcomes, PartMap, Record, Relief, Work
 from ...data.outcome import OutcomeKind
 from ...data.products import EXPORTABLE
-from ...errors import BrokenMethod, ConfigError, Stopped, TangibleError, exit_error, quoted, wrong_argument
+from ...errors import (
+    BrokenMethod,
+    ConfigError,
+    ModelAbsent,
+    PictureError,
+    Stopped,
+    TangibleError,
+    exit_error,
+    quoted,
+    wrong_argument,
+)
 from ...files.paths import without_folders
 from ...files.writing import sole_writer, temporary_folder
 from ...plugins import failures, hooks
@@ -28,10 +41,9 @@ from ...scene.scene_files import SceneFiles
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from ..engine.engine import Engine
-from ..engine.networks import has_figure
+from ..engine.hooked import has_figure, networks_identity
 from ..engine.planning import REQUESTED, with_notes
 from ..engine.stage import Progress, StageEvent, ignore_event
-from .cutting import remove_ground
 from .export_folder import check_writable, check_written, move
 from .export_result import Export, Exported
 from .legible import drawn_parts, drawn_width_m, judge_products, names_of_parts, with_exporter_cures, with_width
@@ -254,3 +266,28 @@ def _fault(error: BaseException, folder: Path) -> tuple[OutcomeKind, str]:
     if isinstance(error, OSError) and error.errno in NO_ROOM:
         return "refused", f"{folder}: cannot be written: {error.strerror}; free some space or choose another folder"
     return "refused" if failures.lacks_memory(error) else "failed", failures.sentence(error)
+
+
+def remove_ground(engine: Engine, products: Mapping[str, Record | None]) -> dict[str, Record | None]:
+    """Return the products of an engine without their ground, which has no height, and is the last part."""
+    figure: Figure = engine.make_on_grid("figure") if networks_identity(engine.registry) else Figure()
+    if figure.figure is None:
+        raise ModelAbsent("a cut-out needs the network that sees figures; `tangible networks add figure` fetches it")
+    if not figure.is_figure(figure.figure.shape).any():
+        raise PictureError("nothing stands out from its ground in this picture, so nothing is cut out")
+    return {name: flatten_ground(record, figure) for name, record in products.items()}
+
+
+def flatten_ground(record: Record | None, figure: Figure) -> Any:
+    """Return a product without its ground."""
+    match record:
+        case Relief():
+            shape = record.height_m.shape
+            return replace(record, height_m=np.where(figure.is_figure(shape), record.height_m, np.float32(0)))
+        case HapticSurface():
+            return replace(record, relief=flatten_ground(record.relief, figure))
+        case PartMap():
+            labels = np.where(figure.is_figure(record.labels.shape), record.labels, np.int32(record.count))
+            return PartMap(labels, (*record.segments, max(record.segments) + 1))
+        case _:
+            return record

@@ -10,8 +10,8 @@ from onnx_models import mono
 from tangible_core import Pipeline, Scene
 from tangible_core.data import DisparityMap, Figure, PartMap, Views
 from tangible_core.errors import ConfigError, ModelAbsent, PictureError
-from tangible_core.pipeline.output.cutting import flatten_ground
 from tangible_core.pipeline.output.export_result import Exported
+from tangible_core.pipeline.output.exporting import flatten_ground
 from tangible_core.relief import ReliefChoice, figure_relief
 from tangible_core.relief.figure import BODY, FACE, GROOVE_M, GROUND, STEP
 from tangible_core.scene.workspace import FeltSize, Workspace

@@ -8,10 +8,8 @@ from command_line import tangible
 from english import english_of
 from tangible_core.errors import UnknownMethod
 from tangible_core.translation import language, language_of_environment, localise, translate
-from tangible_core.translation.catalogue import Catalogue, parse
+from tangible_core.translation.catalogue import Catalogue, Numerals, Template, parse
 from tangible_core.translation.chosen import set_language
-from tangible_core.translation.numerals import Numerals
-from tangible_core.translation.template import Template
 from tangible_core.translation.translate import localise_marked
 from tangible_legibility import sizes
 

@@ -6,7 +6,7 @@ from .block import Word as Word
 from .key import Key as Key
 from .key import Reading as Reading
 from .key import Unchecked as Unchecked
-from .method import MethodBlock as MethodBlock
-from .method import MethodList as MethodList
-from .parts import PartsBlock as PartsBlock
-from .scene import SceneBlock as SceneBlock
+from .kinds import MethodBlock as MethodBlock
+from .kinds import MethodList as MethodList
+from .kinds import PartsBlock as PartsBlock
+from .kinds import SceneBlock as SceneBlock

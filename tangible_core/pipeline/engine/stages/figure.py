@@ -4,7 +4,7 @@ from functools import cached_property
 
 from ....data import Figure
 from ....errors import ModelAbsent, TangibleError
-from ..networks import look_function, networks_identity
+from ..hooked import look_function, networks_identity
 from ..stage import Inputs, Stage
 
 

@@ -27,7 +27,7 @@ from ....relief import (
 from ....scene import geometry, scaling
 from ....scene.workspace import FeltSize, flat_warning
 from .. import part_heights
-from ..networks import look_function, networks_identity
+from ..hooked import look_function, networks_identity
 from ..part_heights import warn_missing_heights
 from ..stage import Inputs, Stage, method_identity
 from ..working_grid import flatten_transparent, relief_of_layers

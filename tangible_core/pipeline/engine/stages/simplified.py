@@ -6,8 +6,7 @@ from ....data import PartMap
 from ....drawing import PictureKind
 from ....parts import SimplifyChoice
 from ...config.part_checks import all_part_names
-from ..hooked import legibility_point, simplify_function
-from ..networks import has_figure
+from ..hooked import has_figure, legibility_point, simplify_function
 from ..stage import Inputs
 from .parts import OfPartsStage
 

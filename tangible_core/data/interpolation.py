@@ -15,13 +15,7 @@ Numbers = Float64[np.ndarray, "..."] | float
 def bilinear(
     height_m: Float32[np.ndarray, "h w"], extent_m: tuple[float, float], x_m: ArrayLike, y_m: ArrayLike
 ) -> tuple[Numbers, Numbers, Numbers]:
-    """Return height and exact gradient (h, dh/dx, dh/dy) of the bilinear interpolant between the cells' centres.
-
-    x_m, y_m: points in metres from the centre, x to the right, y away from the user; the results have their common
-    shape, and are NaN beyond the extent. From the outermost centres to the edge the heights continue unchanged, as the
-    force laws have it.
-    Raises: ArgumentError for values that are not numbers, and for shapes that do not go together.
-    """
+    """Return height and exact gradient (h, dh/dx, dh/dy) of the bilinear interpolant between the cells' centres."""
     if isinstance(x_m, (float, int)) and isinstance(y_m, (float, int)):
         return _bilinear_at(height_m, extent_m, x_m, y_m)
     x_m, y_m = as_array("x_m", x_m, "float64"), as_array("y_m", y_m, "float64")
@@ -31,6 +25,7 @@ def bilinear(
         raise ArgumentError(f"x_m and y_m: shapes {x_m.shape} and {y_m.shape} do not go together") from error
     x, y = (np.ravel(axis) for axis in both)
     (rows, columns), (width_m, length_m) = height_m.shape, extent_m
+    # From the outermost centres to the edge the heights continue unchanged, as the force laws have it.
     left, right, across = _between(x * (columns / width_m) + 0.5 * (columns - 1), columns)
     far, near, down = _between(0.5 * (rows - 1) - y * (rows / length_m), rows)
     far_left, far_right = height_m[far, left].astype(np.float64), height_m[far, right].astype(np.float64)

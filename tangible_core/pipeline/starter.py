@@ -95,11 +95,7 @@ class Starter(NamedTuple):
 
 
 def starter(pictures: Sequence[Path], file: Path) -> Starter:
-    """Write a pipeline file for one picture, a left and a right one, a map of heights, a video, or a builtin scene.
-
-    file: the place for the text, to which its paths are relative.
-    Raises: ConfigError for more pictures; PictureError for an unreadable one, or for two of different size.
-    """
+    """Write a pipeline file for one picture, a pair, a map of heights, a video, or a builtin scene, to be at `file`."""
     if not 0 < len(pictures) <= 2:
         raise ConfigError(
             f"{len(pictures)} pictures: name one, or left and right; `tangible batch` takes many, each on its own"
@@ -142,10 +138,7 @@ def _settings(text: str) -> dict[str, Any]:
 
 
 def suited_config(pictures: Sequence[Any], registry: Registry, overrides: Sequence[str] = ()) -> PipelineConfig:
-    """Make the configuration of a starter without writing it.
-
-    pictures: files as for `starter`, arrays, or one scene. Raises: as `starter`, and ConfigError for the overrides.
-    """
+    """Make the configuration of a starter for files, arrays or one scene, without writing it."""
     if len(pictures) in (1, 2) and not all(isinstance(picture, str | PathLike) for picture in pictures):
         of_arrays = Scene.photo if len(pictures) == 1 else Scene.pair
         scene = pictures[0] if isinstance(pictures[0], Scene) else of_arrays(*pictures)

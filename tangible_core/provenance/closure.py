@@ -1,7 +1,4 @@
-"""The import closure of code: its own source, that of all it imports, and the versions of the libraries below.
-
-A source text is read for its imports and definitions without running it.
-"""
+"""The import closure of code: its own source, that of all it imports, and the versions of the libraries below."""
 
 import ast
 import hashlib

@@ -77,11 +77,7 @@ class Packed(Touch):
     """
 
     def __init__(self, path: Path | str, stiffness_n_per_m: float) -> None:
-        """Adopt a parcel.
-
-        path, stiffness_n_per_m: those of the `Packed` that `pack_touch` returned in the process that made the touch.
-        Raises: DeviceError if the parcel does not exist any more, or is not a parcel.
-        """
+        """Adopt the parcel of the `Packed` that `pack_touch` returned in the process that made the touch."""
         self.stiffness_n_per_m: float | None = float(stiffness_n_per_m)
         self.parcel: Path = adopt(Path(path))
         """The file, renamed to this process."""

@@ -57,11 +57,7 @@ def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[
 def make_config(
     scene: Scene | None, registry: Registry, /, before: PipelineConfig | None = None, **arguments: Any
 ) -> PipelineConfig:
-    """Check arguments in Python, by the names of keys: objects, or what a file may have; None for the default.
-
-    before: a configuration that keeps its other keys, and its scene if none is given.
-    Raises: ConfigError with every complaint; ArgumentError for what is not a key, or a scene that is none.
-    """
+    """Check arguments in Python, by the names of keys, into a configuration; `before` has the keys that stay."""
     if not (isinstance(scene, Scene) or (scene is None and before)):
         raise wrong_argument("scene", scene, "a Scene, such as Scene.photo(...) makes")
     source = Source(Path(), {})

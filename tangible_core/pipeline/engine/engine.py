@@ -136,11 +136,7 @@ class Engine:
                 raise refusal
 
     def make(self, want: str | None = None) -> Any:
-        """Make a product from what it needs and no more; None if this scene does not need it.
-
-        Disparity, segments and parts are enlarged from the working grid to the size of the pictures.
-        Raises: TangibleError for what a user can correct; whatever a plugin raises.
-        """
+        """Make a product at the pictures' size from what it needs and no more; None if this scene does not need it."""
         product = self._product(want)
         value, stage, entry = self._pull(product, REQUESTED), self.stages.get(product), self._entries[product]
         if value is None or stage is None:

@@ -1,9 +1,4 @@
-"""Heights and materials of parts that are tried: the surface and its touch while a hand drags them.
-
-What does not depend on the heights is made once. The surface is, to the bit, what the document gives once it has these
-heights: the same stages make it (`Engine.with_products`). Only one of more than MAX_CELLS is made on a coarser grid
-until it is saved: a hand that drags a height must not wait.
-"""
+"""Heights and materials of parts that are tried: the surface and its touch while a hand drags them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -104,13 +99,7 @@ class PartHeightPreview:
         by: str,
         materials: Sequence[str | None] | None = None,
     ) -> TriedSurface:
-        """Make surface and touch of parts at other heights, without notes on the device's limits.
-
-        config: by `preview_config`, with all entries of its parts. heights_m: by number of the part; None for what the
-        recipe `by` finds. materials: by number; None for those of the document.
-        Raises: ConfigError for a height above the workspace, an unknown part, a depth that is not made yet;
-        MaterialError; TangibleError as `Engine.make`.
-        """
+        """Make surface and touch of parts at other heights; None stands for what the recipe `by` or document has."""
         choices = {
             number: _validate(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m, 1)
         }

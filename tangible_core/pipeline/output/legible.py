@@ -59,10 +59,8 @@ def drawn_parts(engine: Engine, exporter: NamedMethod[Exporter] | None) -> Liter
 
 
 def drawn_width_m(engine: Engine, exporter: NamedMethod[Exporter] | None) -> float:
-    """Return the width of the whole picture in the files of an exporter; that of the workspace without one.
-
-    Solids of maps at a scale have this scale, so that they fit together.
-    """
+    """Return the width of the whole picture in the files of an exporter; that of the workspace without one."""
+    # Solids of maps at a scale have this scale, so that they fit together.
     to_scale = engine.config.workspace.scale is not None
     if exporter is None or (to_scale and exporter.method.medium == "print"):
         return engine.config.size.width_m

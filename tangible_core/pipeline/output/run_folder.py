@@ -1,9 +1,4 @@
-"""The folder of a run: the results of one run, complete or marked as incomplete, and none of an earlier run.
-
-A manifest names the files of a run with their digests, so that the next run deletes these and no others. The files that
-describe the products (the configuration, the outcomes) are deleted first and written last: a killed run leaves products
-without a wrong description, and a manifest that marks them as incomplete.
-"""
+"""The folder of a run: the results of one run, complete or marked as incomplete, and none of an earlier run."""
 
 import json
 import os
@@ -68,11 +63,7 @@ def default_folder(source: Path, parent: Path = Path("out"), name: str = "") -> 
 
 
 def default_name(source: Path, *others: Path) -> str:
-    """Return the name of a pipeline file or picture without its ending.
-
-    The completed configuration of a run, and two views whose names say no more than which one is left, have that of
-    their folder. others: the right view.
-    """
+    """Return the name of a file without its ending, or that of its folder where it is just "left" of a pair."""
     if others and source.stem.casefold() in LEFT:
         return source.resolve().parent.name or source.stem
     ran = source.name == CONFIG and (source.parent / OUTCOMES).exists()
@@ -144,6 +135,7 @@ def rewriting(folder: Path, source: Path | None) -> Generator[Callable[[str], Pa
 def _rewrite(folder: Path, source: Path | None) -> Generator[Callable[[str], Path]]:
     relative, own, names = relative_source(source, folder), _own(folder), list[str]()
     Manifest(relative, own, complete=False).write(folder)
+    # What describes the products goes first and is written last: a killed run leaves no wrong description.
     for name in sorted(own, key=lambda each: each not in CLAIMS):
         _remove(folder / name)
 

@@ -81,6 +81,7 @@ def processors() -> int:
 
 def lower_priority(threads: set[int] | None = None, niceness: int = 10) -> None:
     """Give threads of this process a niceness; all of them if None. Only in Linux each thread has its own."""
+    # Elsewhere a niceness would lower the whole process, also what somebody waits for.
     if sys.platform == "linux":
         for thread in all_threads() if threads is None else threads:
             with suppress(OSError):  # the thread has ended

@@ -65,6 +65,7 @@ def posix_wait_ns(clock, deadline_ns, lead_ns):
     words, _, sleep = clock
     wake_ns = deadline_ns - lead_ns
     at_ns = posix_now_ns(clock)
+    # A loop, as a signal may end the sleep early: then the rest is slept.
     while at_ns < wake_ns:
         words[0], words[1] = wake_ns // SECOND_NS, wake_ns % SECOND_NS
         sleep(int32(MONOTONIC), int32(ABSOLUTE), words.ctypes.data, uintp(0))
@@ -113,6 +114,7 @@ def windows_wait_ns(clock, deadline_ns, lead_ns):
     wake_ns = deadline_ns - lead_ns
     at_ns = windows_now_ns(clock)
     while at_ns < wake_ns:
+        # The timer takes steps of 100 ns; a negative number of them is a time from now.
         words[1] = -((wake_ns - at_ns + 99) // 100)
         timer = uintp(words[TIMER])
         start(timer, words[1:].ctypes.data, int32(0), uintp(0), uintp(0), int32(0))

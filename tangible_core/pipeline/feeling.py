@@ -50,12 +50,12 @@ class Feeling:
             check_kind("device", device)
         self.pipeline = pipeline
         self.engine: Engine = pipeline.engine
-        self.given = device
+        self.own_device = device
 
     @property
     def device(self) -> HapticDevice:
         """The device in the picture's frame, by the mapping. Raises: ConfigError without a device."""
-        device = device_in_workspace(self.engine, self.given)
+        device = device_in_workspace(self.engine, self.own_device)
         if device is None:
             raise self.engine.config.missing("device")
         return device
@@ -63,7 +63,7 @@ class Feeling:
     @property
     def touch(self) -> Touch:
         """The force law on the surface, with materials that fit the device. Raises: as `Pipeline.make`."""
-        return self.pipeline.make("touch") if self.given is None else self.engine.touch_on(self.given)
+        return self.pipeline.make("touch") if self.own_device is None else self.engine.touch_on(self.own_device)
 
     @property
     def reliefs(self) -> Reliefs:
@@ -84,7 +84,7 @@ class Feeling:
         Raises: ConfigError for a scene without a video, or a force law without films; TangibleError as `make`.
         """
         config = self.engine.config
-        return make_film(self.engine, config.felt_device if self.given is None else self.device, period_s)
+        return make_film(self.engine, config.felt_device if self.own_device is None else self.device, period_s)
 
     @named_options
     @naming_plugins()
@@ -128,7 +128,10 @@ class Feeling:
                 recording.save(file)
             return recording
 
-        turns = [self._turn(self, beacon), *(Feeling(pipeline, self.given)._turn(self, beacon) for pipeline in then)]
+        turns = [
+            self._turn(self, beacon),
+            *(Feeling(pipeline, self.own_device)._turn(self, beacon) for pipeline in then),
+        ]
         about_session = join_descriptions(
             about_session, [Feeling(pipeline)._about() for pipeline in (self.pipeline, *then)]
         )
@@ -241,7 +244,7 @@ class Feeling:
     def _turn(self, first: "Feeling", beacon: str | int | None) -> Slot:
         """Return the turn of this scene on the device of the first one. Raises: ConfigError for another device."""
         ours, theirs = self.engine.config, first.engine.config
-        own = self.given is None and ours.device is not None
+        own = self.own_device is None and ours.device is not None
         if ours.mapping != theirs.mapping or (own and ours.felt_device != theirs.felt_device):
             here, before = (feeling.engine.config.path or feeling.engine.scene.name for feeling in (self, first))
             raise ConfigError(
@@ -249,7 +252,7 @@ class Feeling:
                 "same, or leave `device:` out of all but the first"
             )
         on = self
-        if self.given is None and ours.device is None and theirs.device is not None:
+        if self.own_device is None and ours.device is None and theirs.device is not None:
             on = Feeling(self.pipeline, theirs.device.method)
         reliefs = None if self.engine.scene.frames is None else lambda: self.reliefs
         touch, surface = on._touch_or_film(), self.pipeline.make("surface")
@@ -265,9 +268,9 @@ class Feeling:
 
     def _about(self) -> About:
         about_pipeline = about(self.engine)
-        if self.given is None:
+        if self.own_device is None:
             return about_pipeline
-        return replace(about_pipeline, device=named_method("device", self.given, self.engine.registry).name)
+        return replace(about_pipeline, device=named_method("device", self.own_device, self.engine.registry).name)
 
 
 def _both(one: Callable[[T], None], other: Callable[[T], None] | None) -> Callable[[T], None]:

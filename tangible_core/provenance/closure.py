@@ -32,7 +32,7 @@ class Import(NamedTuple):
 
     module: str
     name: str = ""
-    bound: str = ""
+    alias: str = ""
     level: int = 0
 
 
@@ -111,7 +111,7 @@ def closure_of_function(function: FunctionType) -> Closure | None:
 def _closure(start: tuple[Place, ...], alone: tuple[str, ...]) -> Closure:
     walk = _Walk({here.top for here in start})
     walk.through(start)
-    texts = {here.name: _text(here) for here in (*walk.done, *walk.packages, *map(place, alone)) if here is not None}
+    texts = {here.name: _text(here) for here in (*walk.visited, *walk.packages, *map(place, alone)) if here is not None}
     libraries = versions.of_imported(walk.libraries)
     is_settled = all(text.settled for text in texts.values())
     sources = hashlib.sha256()
@@ -128,7 +128,7 @@ class _Walk:
 
     own: set[str]
     """The top packages that are read wherever they lie."""
-    done: set[Place] = field(default_factory=set[Place])
+    visited: set[Place] = field(default_factory=set[Place])
     packages: set[Place] = field(default_factory=set[Place])
     """The packages that only re-export names: their text counts, and not their imports of other names."""
     libraries: set[str] = field(default_factory=set[str])
@@ -137,8 +137,8 @@ class _Walk:
         waiting = [statement for here in start for statement in (*self._above(here.name), here)]
         while waiting:
             here = waiting.pop()
-            if here not in self.done:
-                self.done.add(here)
+            if here not in self.visited:
+                self.visited.add(here)
                 waiting += [module for statement in _text(here).imports for module in self._resolve(statement, here)]
 
     def _resolve(self, each: Import, here: Place) -> Iterator[Place]:
@@ -157,7 +157,7 @@ class _Walk:
 
     def _origin(self, module: Place, name: str) -> Iterator[Place]:
         """Yield the modules from which a package re-exports a name; the module itself if it does more than that."""
-        entries = [entry for entry in _text(module).imports if entry.bound == name]
+        entries = [entry for entry in _text(module).imports if entry.alias == name]
         sources = [entry for entry in entries if _absolute(entry, module) != module.name]  # an example in its docstring
         if name in ("", "*") or not sources or not _only_reexports(module) or name in _definitions(module):
             yield module

@@ -159,24 +159,24 @@ class Servo:
     @property
     def running(self) -> bool:
         """True while the loop runs."""
-        return self._loop.ended is None
+        return self._loop.end_message is None
 
     @property
     def device_lost(self) -> bool:
         """True if the device ended the loop, or prevented its start: it was absent, or stopped answering."""
-        end = self._loop.ended
+        end = self._loop.end_message
         return end is not None and (isinstance(end.error, DeviceError) or end.stopped == STOOD_STILL)
 
     def report(self) -> ServoReport:
         """Return a report of the loop so far."""
-        end = self._loop.ended
+        end = self._loop.end_message
         return report(self.ring, (end.stopped or OVER) if end else "")
 
     def stop(self, why: str = "stopped") -> ServoReport:
         """End the loop, if it still runs, and report on it. Raises: whatever a faulty plugin raised in the loop."""
         self._loop.why = self._loop.why or why
         self._close()
-        error = self._loop.ended and self._loop.ended.error
+        error = self._loop.end_message and self._loop.end_message.error
         if error is not None and not isinstance(error, DeviceError):
             raise error
         return self.report()

@@ -37,7 +37,7 @@ class LoopProcess:
         """The longest time without a tick in the current scene, by `watchdog.timeout_s`."""
         self.why: str = ""
         """The reason for which the host ends the loop."""
-        self.ended: End | None = None
+        self.end_message: End | None = None
         """The last message, once the loop is over."""
 
     def start(self, ring: Ring, start: Start) -> None:
@@ -88,7 +88,7 @@ class LoopProcess:
 
     def failure(self) -> Exception:
         """Return the error for a call after the end of the loop."""
-        end = self.ended or End(OVER)
+        end = self.end_message or End(OVER)
         return end.error or DeviceError(f"the force loop has ended: {end.stopped or OVER}")
 
     def _close_pipe(self) -> None:
@@ -108,7 +108,7 @@ class LoopProcess:
         except Exception as error:  # noqa: BLE001 - passed to the thread that waits for a reply
             end = End("", sendable(error))
         ring.header[STOP] = 1
-        self.ended = end
+        self.end_message = end
         self._replies.put(end)
         self._over.set()
 

@@ -62,15 +62,15 @@ def run_simulated(
         with stoppable(stop), link:
             _feel(allowed_force, link, seconds, tape, frames or ignore)
     except DeviceError as error:  # also when the device is gone before its force could be made zero
-        tape.stopped = tape.stopped or str(error)
-    if tape.stopped:
+        tape.end_reason = tape.end_reason or str(error)
+    if tape.end_reason:
         log.log(
-            logging.INFO if tape.stopped in (INTERRUPTED, STOPPED) else logging.WARNING,
+            logging.INFO if tape.end_reason in (INTERRUPTED, STOPPED) else logging.WARNING,
             "stopped after %d ticks: %s",
             tape.ticks,
-            tape.stopped,
+            tape.end_reason,
         )
-    tape.report(tape.stopped or OVER)
+    tape.report(tape.end_reason or OVER)
     recording = tape.recording()
     if recording.not_finite:
         log.warning("%d forces were not finite and were set to zero: the force law is at fault", recording.not_finite)
@@ -80,11 +80,11 @@ def run_simulated(
 def _feel(
     allowed_force: GuardedForce, link: Link, seconds: float, tape: "_Tape", frames: Callable[[float], None]
 ) -> None:
-    """Tick until the time is over; the reason for an early end is in tape.stopped."""
+    """Tick until the time is over; the reason for an early end is in tape.end_reason."""
     try:
         state, period_s = link.read(), FIRST_S
         start_s = state.time_s
-        while not tape.stopped:
+        while not tape.end_reason:
             frames(state.time_s - start_s)
             force, flags = allowed_force(state, period_s)
             link.write(force)
@@ -92,18 +92,18 @@ def _feel(
             last_s, state = state.time_s, link.read()
             period_s = state.time_s - last_s
             if not period_s > 0:
-                tape.stopped = f"the device's clock stands still at {state.time_s} s"
+                tape.end_reason = f"the device's clock stands still at {state.time_s} s"
             # ticks come at 0, T, 2 T ...: round(seconds / T) of them, whatever the rounding of their stamps
             elif state.time_s - start_s >= seconds - period_s / 2:
                 return
             elif stop_asked():
-                tape.stopped = STOPPED
+                tape.end_reason = STOPPED
             elif tape.ticks >= MAX_TICKS:
-                tape.stopped = f"the recording is full, {MAX_TICKS} ticks; use a shorter time"
+                tape.end_reason = f"the recording is full, {MAX_TICKS} ticks; use a shorter time"
     except KeyboardInterrupt:
-        tape.stopped = INTERRUPTED
+        tape.end_reason = INTERRUPTED
     except DeviceError as error:
-        tape.stopped = str(error)
+        tape.end_reason = str(error)
 
 
 @final
@@ -111,7 +111,7 @@ class _Tape:
     """The memory of a loop: its ticks, and the sums for its reports."""
 
     def __init__(self, touch: Touch, on_report: Callable[[ServoReport], None]) -> None:
-        self.stopped = ""
+        self.end_reason = ""
         self.ticks = 0
         self._numbers = array("d")
         self._proxy, self._moving = proxy_reader(touch), motion_array(touch)
@@ -140,4 +140,4 @@ class _Tape:
         self._on_report(brief_report(last, self.ticks, self._peak_n, self._work_j, stopped))
 
     def recording(self) -> Recording:
-        return Recording(np.array(self._numbers, np.float64).reshape(-1, len(TICK_COLUMNS)), self.stopped)
+        return Recording(np.array(self._numbers, np.float64).reshape(-1, len(TICK_COLUMNS)), self.end_reason)

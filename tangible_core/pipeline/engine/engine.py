@@ -60,14 +60,14 @@ class Engine:
         """The most threads at once, on which no result depends; None for the limit of `TANGIBLE_THREADS`, if any."""
         self.compiler: BackgroundCompiler | None = None
         """A process that compiles in the background; a stage waits for what is compiled for it."""
-        self.begun: set[str] = set()
+        self.starts: set[str] = set()
         """The products whose making has begun."""
         self._entries: defaultdict[str, ProductEntry] = defaultdict(ProductEntry)
         self._outcomes: dict[str, Outcome] = {}
         """The outcome of each product, in the order in which they ended; products of the scene have one as well."""
         self.on_heights: list[Note] = []
         """Remarks on the scale of the heights that the scene provides."""
-        self._substituted: frozenset[str] = frozenset()
+        self._own_products: frozenset[str] = frozenset()
         """The products of `with_products`, and all that is made of them: they are neither cached nor reported."""
         self._progress: Progress = ignore_event
 
@@ -164,11 +164,11 @@ class Engine:
             for name, stage in self.stages.items()
             if name not in products
         }
-        other._substituted = self._substituted | dependent | products.keys()
-        other.begun, other.compiler, other._progress = set(), None, ignore_event
-        entries = {name: copy(entry) for name, entry in self._entries.items() if name not in other._substituted}
+        other._own_products = self._own_products | dependent | products.keys()
+        other.starts, other.compiler, other._progress = set(), None, ignore_event
+        entries = {name: copy(entry) for name, entry in self._entries.items() if name not in other._own_products}
         other._entries = defaultdict(ProductEntry, entries)
-        other._outcomes = {name: self._outcomes[name] for name in self._outcomes if name not in other._substituted}
+        other._outcomes = {name: self._outcomes[name] for name in self._outcomes if name not in other._own_products}
         return other
 
     def touch_on(self, device: HapticDevice) -> Any:
@@ -219,9 +219,9 @@ class Engine:
             return self.scene_products.get(product)
         if entry.value is NOT_MADE:
             entry.value = self._make(stage, why)
-        if entry.finished is NOT_MADE:
-            entry.finished = self._finish(stage, entry.value)
-        return entry.finished
+        if entry.result is NOT_MADE:
+            entry.result = self._finish(stage, entry.value)
+        return entry.result
 
     def _finish(self, stage: Stage, value: Any) -> Any:
         """Return what a stage made, checked by it, and with names; None for a skipped product."""
@@ -243,9 +243,9 @@ class Engine:
         inputs = {name: self._pull(name, needed_for(stage.product)) for name in stage.needs}
         check_stopped()
         self._progress(StageEvent(stage.product, stage.method))
-        if stage.product not in self._substituted:
+        if stage.product not in self._own_products:
             hooks.tell(self.registry.plugins, "tangible_stage_started", product=stage.product, method=stage.method)
-        self.begun.add(stage.product)
+        self.starts.add(stage.product)
         if self.compiler is not None:
             self.compiler.wait(stage.product)
         start = perf_counter()
@@ -281,7 +281,7 @@ class Engine:
 
     def cache_for(self, stage: Stage) -> Cache | None:
         """Return the cache for the product of a stage; None where it is not cached."""
-        return self.cache if stage.cached and stage.product not in self._substituted else None
+        return self.cache if stage.cached and stage.product not in self._own_products else None
 
     def describe_source(self, product: str) -> tuple[str, tuple[Note, ...]]:
         """Return why a product is given, and for the pictures or the heights the notes on their files."""
@@ -304,5 +304,5 @@ class Engine:
     def _note(self, outcome: Outcome) -> None:
         self._outcomes[outcome.product] = outcome
         self._progress(StageEvent(outcome.product, outcome.method, outcome))
-        if outcome.product not in self._substituted:
+        if outcome.product not in self._own_products:
             hooks.tell(self.registry.plugins, "tangible_stage_finished", outcome=outcome)

@@ -98,7 +98,7 @@ class ProductEntry:
     """The text that identifies its content before it is made."""
     value: Any = NOT_MADE
     """The product as the stage or the cache returned it, on the working grid."""
-    finished: Any = NOT_MADE
+    result: Any = NOT_MADE
     """The product checked, and with names."""
     full_size: Any = NOT_MADE
     """The finished product for every pixel of the pictures."""

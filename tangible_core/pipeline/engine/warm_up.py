@@ -30,13 +30,13 @@ def _work(engine: Engine, want: str) -> Work | None:
     from ...compiled.threads import thread_count  # imports numba, which is there by now
 
     views, config = engine.scene.views, engine.config
-    segments = config.texture is not None and "segments" not in {*engine.begun, *engine.scene_products}
-    touch = want == "touch" and config.render is not None and "touch" not in engine.begun
+    segments = config.texture is not None and "segments" not in {*engine.starts, *engine.scene_products}
+    touch = want == "touch" and config.render is not None and "touch" not in engine.starts
     if views is None or min(thread_count(), engine.threads or 2) < 2 or not (segments or touch):
         return None
     rows, columns = (slice(max(0, (size - MAX_PX) // 2), (size + MAX_PX) // 2) for size in views.shape)
     part = Views(np.ascontiguousarray(views.left[rows, columns]))
-    depth = config.depth is not None and "disparity" in engine.begun
+    depth = config.depth is not None and "disparity" in engine.starts
     names = frozenset([LATE_STEPS] * depth + ["segments"] * segments + ["touch", FELT] * touch)
     crop_config = config.with_values(scene=Scene("rehearsal", part), simplify=None)
     return Work(names, run_stages, (crop_config, part, segments, touch, depth))

@@ -37,12 +37,12 @@ class _Screen:
         self.film = film
         self._last: FrameRelief | None = None
         self._logged_kinds = set[type]()
-        self.shown = self.damaged = 0
+        self.show_count = self.damage_count = 0
 
     def show(self, frame: FrameRelief) -> None:
         self.film.show(frame.relief, frame.number)
         self._last = frame
-        self.shown += 1
+        self.show_count += 1
 
     @property
     def waits(self) -> bool:
@@ -58,13 +58,13 @@ class _Screen:
         """Count a damaged frame, and log each kind of error once. Raises: the error if it is a plugin's fault."""
         if isinstance(error, BrokenMethod | Stopped):
             raise error
-        self.damaged += 1
+        self.damage_count += 1
         if type(error) not in self._logged_kinds:
             self._logged_kinds.add(type(error))
             log.warning("the surface stands still until the next valid frame: %s", error)
 
     def counts(self, skip_count: int, per_s: float, age_ms: float | None) -> FilmFelt:
-        return FilmFelt(self.shown, self.film.dropped, skip_count, self.damaged, per_s, age_ms)
+        return FilmFelt(self.show_count, self.film.dropped, skip_count, self.damage_count, per_s, age_ms)
 
 
 @final
@@ -103,7 +103,7 @@ class Player:
     def counts(self) -> FilmFelt:
         """The counts of the film so far."""
         seconds = self._until_s - self._since_s
-        per_s = (self._screen.shown - 1) / seconds if seconds > 0 else 0.0
+        per_s = (self._screen.show_count - 1) / seconds if seconds > 0 else 0.0
         age_ms = 1e3 * statistics.median(list(self._ages_s)) if self._ages_s else None
         return self._screen.counts(self._skip_count, per_s, age_ms)
 
@@ -211,7 +211,7 @@ class ByClock:
     @property
     def counts(self) -> FilmFelt:
         """The counts of the film so far."""
-        per_s = (self._screen.shown - 1) / self._until_s if self._until_s > 0 else 0.0
+        per_s = (self._screen.show_count - 1) / self._until_s if self._until_s > 0 else 0.0
         return self._screen.counts(self._reliefs.frames.skipped, per_s, None)
 
     def _read(self) -> VideoFrame | None:

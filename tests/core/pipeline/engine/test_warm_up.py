@@ -132,7 +132,7 @@ class TestWork:
 
     def test_work_of_a_depth_that_has_begun_rehearses_it_first(self, monkeypatch: pytest.MonkeyPatch):
         engine = pipeline(depth=SemiGlobal()).engine
-        engine.begun.add("disparity")
+        engine.starts.add("disparity")
         rehearsed: list[SemiGlobal] = []
         monkeypatch.setattr(SemiGlobal, "rehearse", lambda self: rehearsed.append(self))
         work = _work(engine, "segments")

@@ -15,7 +15,7 @@ from jaxtyping import Float32
 from ..data.part_words import shown_number
 from ..data.pictures import to_grey
 from ..drawing import PictureKind, kind_sentence
-from ..errors import MOST_QUOTED, ConfigError
+from ..errors import MAX_QUOTED, ConfigError
 from ..files.paths import as_path, plain_line
 from ..files.yaml.editing import on_one_line
 from ..files.yaml.source import plain_tree
@@ -220,7 +220,7 @@ def _part_lines(names: Mapping[int, str], comment: str) -> str:
     """
     lines, numbers = list[str](), Counter[str]()
     for label, given in names.items():
-        name = plain_line(given)[: MOST_QUOTED - 5].strip()
+        name = plain_line(given)[: MAX_QUOTED - 5].strip()
         if name and not name.isdecimal():  # a number would be taken for that of a part
             numbers[name.casefold()] += 1
             again = numbers[name.casefold()]

@@ -48,7 +48,7 @@ def test_imports_of_every_module_equal_those_of_a_full_parse():
 
 
 def _each(node: ast.AST) -> list[Import]:
-    return reading._imports_of(node) if isinstance(node, ast.Import | ast.ImportFrom) else []
+    return reading._node_imports(node) if isinstance(node, ast.Import | ast.ImportFrom) else []
 
 
 def test_definitions_are_found_at_any_depth():

@@ -134,5 +134,5 @@ def _figures(flight: Flight) -> dict[str, Any]:
             "real_time": late.real_time,
         },
         "tick": {f"{name}_s": cost.at(percent) for name, percent in PERCENTILES.items()}
-        | {"compiled_s": cost.kernel_s if cost.compiled else None},
+        | {"compiled_s": cost.kernel_s if cost.is_compiled else None},
     }

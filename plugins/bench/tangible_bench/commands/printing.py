@@ -105,7 +105,9 @@ def _change(regression: Regression) -> tuple[str, str, str]:
 
 def _print_table(table: Table) -> None:
     """Print a table without cutting numbers: one with many columns is as wide as it must be, on any terminal."""
-    rich_table = RichTable(title=localise(table.title), title_justify="left", box=None, pad_edge=False, header_style="bold")
+    rich_table = RichTable(
+        title=localise(table.title), title_justify="left", box=None, pad_edge=False, header_style="bold"
+    )
     for heading in table.headings:
         if heading in WORDS:
             rich_table.add_column(localise(heading), overflow="fold", vertical="bottom")

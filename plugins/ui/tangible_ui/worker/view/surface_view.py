@@ -150,7 +150,7 @@ def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h 
 def _layers(pipeline: Pipeline) -> dict[str, Layer]:
     layers: dict[str, Layer] = {}
     engine = pipeline.engine  # a depth that lies in the cache, and that nothing is made of, would warn of itself
-    used = "disparity" in engine.inputs_of("relief") or "disparity" in engine.scene_products
+    used = "disparity" in engine.all_inputs("relief") or "disparity" in engine.scene_products
     disparity: DisparityMap | None = product_at_hand(engine, "disparity") if used else None
     if disparity is not None:
         unit = "px" if disparity.unit == "px" else ""

@@ -61,7 +61,7 @@ class Clock:
 
     def heard(self, step: Step) -> None:
         """Print that a process begins, or has ended."""
-        if step.done:
+        if step.is_end:
             self.seconds.setdefault(step.row.method, []).append(perf_counter() - self._since)
         self._since = perf_counter()
 

@@ -41,15 +41,15 @@ def joinings(scenes: Iterable[KnownSegments]) -> Iterator[Joined]:
         caught.append(list(steps))
         return caught[-1][-1].labels
 
-    from tangible_texture.clusters import counting
+    from tangible_texture.clusters import classes
 
-    kept, counting.likeliest_division = counting.likeliest_division, catch
+    kept, classes.likeliest_division = classes.likeliest_division, catch
     try:
         for scene in scenes:
             Gabor().segment(scene.picture)
             yield Joined(caught[-1], scene.count)
     finally:
-        counting.likeliest_division = kept
+        classes.likeliest_division = kept
 
 
 def crops(scenes: Iterable[KnownSegments]) -> Iterator[KnownSegments]:

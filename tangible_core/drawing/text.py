@@ -91,7 +91,8 @@ def find_texts(ink: Ink) -> Texts:
     letters, measures = np.bincount(row), _measure_rows(ink, pieces, boxes, chosen, row)
     mean, spread, first, second = MEASURES.T
     away = np.clip((measures - mean) / spread, -FAR, FAR)
-    is_text = np.where(letters == 1, *CONSTANTS) + away @ first + away**2 @ second > 0
+    scores = np.einsum("rm,m->r", away, first) + np.einsum("rm,m->r", away**2, second)
+    is_text = np.where(letters == 1, *CONSTANTS) + scores > 0
     if not is_text.any():
         return none
     rows, columns = pieces.shape
@@ -116,8 +117,8 @@ def _direction(own: Bool[np.ndarray, "r c"]) -> float:
     if own.shape[1] < TILTED * own.shape[0]:
         return 0.0
     y, x = np.nonzero(own)
-    spread = np.cov(x, y)
-    return float(np.degrees(np.arctan2(-2 * spread[0, 1], spread[0, 0] - spread[1, 1])) / 2)
+    x, y = x - x.mean(), y - y.mean()
+    return float(np.degrees(np.arctan2(-2 * (x * y).sum(), (x * x - y * y).sum())) / 2)
 
 
 def _neighbours(left: np.ndarray, top: np.ndarray, wide: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -148,7 +148,8 @@ def _plain_tick(
     settings, memory, beacon = limits
     header, allowed_force = arrays[0], guard_touch(touch, settings, memory, beacon)
     held_force = hold_force(settings, memory)
-    touch.force(FAR)  # whatever the law compiles is compiled before the first tick
+    # Whatever the law compiles is compiled before the first tick.
+    touch.force(FAR)
     kernel = _start_generator(cast(Any, cycle).finish_ticks, arrays, row)
 
     def tick(at_ns: int, late_ns: int) -> None:

@@ -127,7 +127,6 @@ class SceneSource:
             if rig_file := find_rig(paths["left"], paths["right"], shape):
                 shown_path = rig_file.relative_to(self.folder) if rig_file.is_relative_to(self.folder) else rig_file
                 notes.append(f"{rig_file.name} states the cameras of the pair; write `rig: {shown_path}` to use it")
-        warnings: list[str] = []
         fields = combine_parts(files, parts, rig, notes, warnings, page)
         for note in notes:
             log.info("%s", note)

@@ -46,6 +46,9 @@ if sys.platform == "win32":
         """Start a process that receives no Ctrl-C of the console. Raises: OSError."""
         return subprocess.Popen(words, creationflags=subprocess.CREATE_NEW_PROCESS_GROUP, stdin=stdin, stdout=stdout)
 
+    def limit_memory(size_bytes: int) -> None:
+        """Do nothing: Windows limits the memory of jobs alone."""
+
 else:
     import signal
 
@@ -72,6 +75,12 @@ else:
         """
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         return subprocess.Popen(words, stdin=stdin, stdout=stdout)
+
+    def limit_memory(size_bytes: int) -> None:
+        """Let this process have no more memory than this: more is an error in it, and not the end of others."""
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_AS, (size_bytes, size_bytes))
 
 
 def processors() -> int:

@@ -6,6 +6,7 @@ import subprocess
 from base64 import b64decode
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
 from math import atan2, degrees
 from pathlib import Path
 from typing import Any, cast
@@ -39,13 +40,10 @@ STROKE = 1 / 55
 MAX_SECONDS, MAX_MEMORY = 60, 4 << 30
 """The limits of drawing, s and bytes."""
 CHILD = """import base64, json, {0} as resvg
-try:
-    import resource
-    resource.setrlimit(resource.RLIMIT_AS, ({1}, {1}))
-except ImportError:
-    pass
+from tangible_core.runtime.system.processes import limit_memory
+limit_memory({1})
 print(json.dumps([base64.b64encode(resvg.svg_to_bytes(**call)).decode() for call in json.load(sys.stdin)]))"""
-"""The program that renders; Windows has no limits of memory."""
+"""The program that renders."""
 LARGER = 1.5
 """The least ratio of the height of a text that names a part to those of others in it."""
 PLAIN = "*{opacity:1!important;fill-opacity:1!important;stroke-opacity:1!important;filter:none!important;" \
@@ -142,9 +140,10 @@ def _render(texts: Sequence[str]) -> list[UInt8[np.ndarray, "h w 4"]]:
     """
     import cv2
     import resvg_py
-    from matplotlib import get_data_path
 
-    font = str(Path(get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf")  # the same on every system
+    matplotlib = find_spec("matplotlib")  # which has a font, the same on every system; it is not imported
+    fonts = [] if matplotlib is None else matplotlib.submodule_search_locations or []
+    font = str(Path(*fonts, "mpl-data", "fonts", "ttf", "DejaVuSans.ttf"))
     families = dict.fromkeys(("font_family", "serif_family", "sans_serif_family", "monospace_family"), "DejaVu Sans")
     every = {"dpi": 96, "width": SIDE_PX, "height": SIDE_PX, "skip_system_fonts": True, "font_files": [font]} | families
     sheets = [None, *[PLAIN] * (len(texts) - 1)]

@@ -19,7 +19,7 @@ SMOOTH = ("plane", "ramp", "sphere", "sine", "cone")
 
 def hands(name: str, count: int = 40) -> np.ndarray:
     """Return hands up to 1.5 mm under the surface, on either side of its edges."""
-    random, known = np.random.default_rng(5), SURFACES[name].known((16, 16))
+    random, known = np.random.default_rng(5), SURFACES[name].surface((16, 16))
     places = random.uniform(-0.03, 0.03, (count, 2)).tolist()
     return np.array(
         [known.at(x, y, depth) for (x, y), depth in zip(places, random.uniform(0, 0.0015, count), strict=True)]
@@ -29,7 +29,7 @@ def hands(name: str, count: int = 40) -> np.ndarray:
 @pytest.mark.parametrize("name", [*SMOOTH, "ridge"])
 def test_nearest_point_no_other_point_is_nearer(name: str):
     """Points of a fine grid around each hand are compared, each hand alone."""
-    known = SURFACES[name].known((16, 16))
+    known = SURFACES[name].surface((16, 16))
     offsets = np.linspace(-0.004, 0.004, 81)
     for hand in hands(name):
         (found,) = SURFACES[name].nearest(hand[None])
@@ -105,10 +105,10 @@ def test_analytic_stroke_own_path_is_unknown_outside_the_surface():
 
 
 def test_relief_stroke_nearest_points_are_unknown():
-    surface = SURFACES["sine"].known((64, 32)).surface
+    surface = SURFACES["sine"].surface((64, 32)).surface
     stroke = relief_stroke(surface)
     assert np.isnan(stroke.nearest_m).all()
-    known = SURFACES["sine"].known((16, 16))
+    known = SURFACES["sine"].surface((16, 16))
     depths = [known.height_m(x, y) - z for x, y, z in stroke.position_m]
     assert 0.0005 < np.percentile(depths, 90) < 0.0015
     assert np.abs(stroke.position_m[:, :2]).max(axis=0) == pytest.approx([0.03, 0.06], rel=1e-3)

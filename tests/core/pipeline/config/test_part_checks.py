@@ -132,5 +132,5 @@ def test_override_keeps_the_name_of_a_part():
     config = parse("scene: builtin/brick\nrender: proxy\n", "render.stiffness_n_per_m=500")
     assert config.render is not None and config.render.method.model_dump()["stiffness_n_per_m"] == 500
     (sentence,), (complaint,) = complaints(f"{SCENE}parts: {{1: a}}\n", "parts.4.name=a")
-    assert sentence.startswith("--set parts.4.name=a: parts.4.name: 'a' is the name of part 1 as well")
+    assert sentence.startswith("--set parts.4.name=a: 'a' is the name of part 1 as well")
     assert complaint == Complaint(("parts", 4, "name"), complaint.text, None, None)

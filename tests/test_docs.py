@@ -80,7 +80,7 @@ def test_plugin_page_names_every_hook(moment):
     assert f"`{moment}(" in PLUGIN_PAGE.read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(("page", "number"), [("materials", 6), ("export", 6), ("drawings", 2)])
+@pytest.mark.parametrize(("page", "number"), [("materials", 6), ("export", 7), ("drawings", 2)])
 def test_files_of_a_page_are_valid(tmp_path: Path, page: str, number: int):
     blocks = re.findall(r"```yaml\n(.*?)```", ROOT.joinpath(f"docs/{page}.md").read_text("utf-8"), re.DOTALL)
     assert len(blocks) == number

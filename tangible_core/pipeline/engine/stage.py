@@ -15,7 +15,6 @@ from ...files.reading import content_digest
 from ...plugins.interfaces import Method, Skippable
 from ...plugins.registry import Registry, default_registry
 from ...provenance.closure import closure
-from ...provenance.source import source_digest
 from ...scene import scaling
 from ...scene.scene import Scene
 from ..config.methods import NamedMethod
@@ -223,7 +222,7 @@ def method_identity(choice: NamedMethod[Any] | None) -> tuple[str, str]:
     method: Method = choice.method
     cls = type(method)
     code = closure(cls.__module__)
-    digest = code.digest if code.modules else source_digest(cls) or uuid4().hex
+    digest = code.digest if code.modules else uuid4().hex  # a class of a notebook may be another one by now
     options = method.model_dump()  # not as JSON, to which infinity and nothing are the same
     read = "".join(f" {content_digest(path)}" for path in method.reads())
     return choice.name, f"{choice.origin} {cls.__module__}:{cls.__qualname__} {digest} v{cls.version} {options}{read}"

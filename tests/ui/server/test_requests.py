@@ -241,7 +241,7 @@ async def test_recordings_are_made_one_after_the_other(
 
     monkeypatch.setattr("tangible_ui.requests.records.Recorder", Recorder)
     felt = SimpleNamespace(law="penalty", device_name="mouse", materials="")
-    session.feeling = Mock(Feeling, servo=SimpleNamespace(running=True), felt=felt)
+    session.feeling = Mock(Feeling, servo=SimpleNamespace(running=True), loop_input=felt)
     path = await ask("record")
     told = tab.last("recorder")
     assert (told["recording"], told["path"], told["ticks"], told["why"]) == (True, path, 0, "")

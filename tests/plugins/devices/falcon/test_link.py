@@ -165,7 +165,7 @@ class TestRate:
         link.write(PUSH)
         body = bus.units[0].chip.processor.body
         body._hand.wants = lambda tip, homing, homed: tip[:3]  # pyright: ignore
-        body._homed = 0
+        body._home_bits = 0
         lost_s = clock()
         with pytest.raises(DeviceError, match="lost its homing"):
             for _ in range(5):

@@ -1,9 +1,8 @@
-"""Standard sets in comparisons: scenes, measures, the tables of papers, and folders to submit."""
+"""Standard sets in comparisons: scenes, measures, and the tables of papers."""
 
 import csv
 import io
 import math
-import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -13,10 +12,8 @@ import pytest
 
 from command_line import tangible
 from standard_sets import LAYOUTS, known, put
-from tangible_bench.commands.submission import submit
 from tangible_bench.config.reading import Comparison, parse_comparison
 from tangible_bench.datasets import MarkedPair
-from tangible_bench.datasets.submissions import write_png16
 from tangible_bench.measuring.rows import Row, append
 from tangible_bench.results import set_tables
 from tangible_bench.results.summary import cells
@@ -26,7 +23,6 @@ from tangible_bench.tasks.depth_scenes import DepthScene
 from tangible_core.data import DisparityMap
 from tangible_core.errors import ConfigError
 from tangible_core.plugins.registry import Registry
-from tangible_core.scene.formats.pictures import read_map, read_truth
 
 
 @pytest.fixture(scope="module")
@@ -194,56 +190,6 @@ def test_set_table_leaves_out_a_method_without_a_pair():
     assert list(table.rows) == ["m"] and 1.5 in table.rows["m"]
 
 
-class TestSubmissions:
-    @pytest.mark.parametrize(
-        ("scenes", "files", "time"),
-        [
-            (
-                "middlebury-eval3",
-                "trainingQ/Adirondack/disp0my-half.pfm trainingQ/Adirondack/timemy-half.txt",
-                r"[\d.e-]+",
-            ),
-            ("middlebury-eval3@test", "testQ/Australia/disp0my-half.pfm testQ/Australia/timemy-half.txt", r"[\d.e-]+"),
-            ("kitti-2015@test", "disp_0/000000_10.png", ""),
-            ("kitti-2012@test", "000000_10.png", ""),
-            (
-                "eth3d",
-                "low_res_two_view/delivery_area_1l.pfm low_res_two_view/delivery_area_1l.txt",
-                r"runtime [\d.e-]+",
-            ),
-        ],
-    )
-    def test_submission_has_the_layout_of_its_kit(self, scenes, files, time, registry: Registry, folder: Path):
-        comparison = parse(registry, folder, scenes, "{use: half, label: my half, value_px: 4.126}")
-        (found,) = submit(comparison, folder / "sent")
-        assert (
-            not found.error
-            and [str(path.relative_to(folder / "sent/my-half")) for path in found.files] == files.split()
-        )
-        first = found.files[0]
-        disparity_px = read_truth(first, 256) if first.suffix == ".png" else read_map(first)
-        assert np.isnan(disparity_px[:, 48:]).all() and np.abs(disparity_px[:, :48] - 4.126).max() <= 1 / 512
-        assert first.suffix == ".png" or b"\x00\x00\x80\x7f" in first.read_bytes(), "unknown is infinite"
-        assert not time or re.fullmatch(time, found.files[1].read_text().strip())
-
-    def test_set_without_submissions_is_refused(self, registry: Registry, folder: Path):
-        with pytest.raises(ConfigError, match="takes submissions"):
-            list(submit(parse(registry, folder, "{synthetic: steps}"), folder / "sent"))
-
-    def test_png16_clips_values_to_16_bits(self, tmp_path: Path):
-        values = np.float32([[0, -3, 1e-4, 255.99, 300, np.nan, np.inf]])
-        write_png16(tmp_path / "d.png", values)
-        stored = read_map(tmp_path / "d.png")
-        np.testing.assert_array_equal(stored, [[1, 1, 1, 65533, 65535, 0, 0]])
-
-    def test_submission_reports_failing_methods_and_continues(self, registry: Registry, folder: Path):
-        found = list(submit(parse(registry, folder, "eth3d", "raises, fails, relative, constant"), folder / "sent"))
-        errors = {each.method: each.error for each in found}
-        assert errors["raises"] == "not this picture" and "relative" in errors["relative"]
-        assert errors["fails"] and not errors["constant"]
-        assert [path.name for path in (folder / "sent").iterdir()] == ["constant"]
-
-
 class TestCommand:
     @pytest.fixture(autouse=True)
     def use_registry(self, registry: Registry, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -266,20 +212,10 @@ class TestCommand:
         done = tangible("compare", "r.jsonl", "--table", "latex", cwd=folder)
         assert done.stdout == (folder / "table.tex").read_text()
 
-    def test_command_writes_submissions(self, folder: Path):
-        (folder / "elsewhere").symlink_to(folder / "eth3d")
-        words = ("compare", "eth3d", "--folder", "elsewhere", "--submission", "sent")
-        done = tangible(*words, "--set", "methods=[half]", cwd=folder)
-        assert done.returncode == 0, done.stderr
-        assert "half: 2 files in sent" in done.stdout and not (folder / "out").exists()
-        done = tangible(*words, "--set", "methods=[half, raises]", cwd=folder)
-        assert done.returncode == 1 and "raises on eth3d/delivery_area_1l" in done.stderr
-
     @pytest.mark.parametrize(
         ("words", "why"),
         [
             (["c.yaml", "--folder", "x"], "--folder"),
-            (["r.jsonl", "--submission", "x"], "--submission"),
             (["c.yaml", "--table", "csv", "--json"], "--table"),
             (["kitti-2015@X"], "'X'"),
         ],

@@ -57,9 +57,6 @@ def compare(
     table: Annotated[
         Literal["latex", "csv"] | None, typer.Option(help="Print the table that papers print, and nothing else.")
     ] = None,
-    submission: Annotated[
-        Path | None, typer.Option(help="Measure nothing; write a folder to submit to the benchmark.")
-    ] = None,
     as_json: Json = False,
 ) -> None:
     """Compare methods by time, memory and error.
@@ -78,15 +75,11 @@ def compare(
     from ..measuring.rows import read_rows
     from . import printing
     from .progress import Progress
-    from .submission import write_submissions
 
     if workers is not None and not errors:
         raise ArgumentError("--workers: goes with --errors-only; side by side, methods would spoil each other's times")
     config = configs[0] if len(configs) == 1 else Path("-".join(map(str, configs)))
-    _check_options(config, folder, table, submission, as_json)
-    if submission is not None:
-        write_submissions(_read(configs, folder, sets or []), submission, as_json)
-        return
+    _check_options(config, folder, table, as_json)
     earlier = None if against is None else list(read_rows(against).values())
     if config.suffix == ".jsonl":
         outcome = read_comparison(config, earlier)
@@ -124,15 +117,13 @@ def _is_set(config: Path) -> bool:
     return str(config).partition("@")[0] in SETS and not config.is_file()
 
 
-def _check_options(config: Path, folder: Path | None, table: str | None, submission: Path | None, json: bool) -> None:
+def _check_options(config: Path, folder: Path | None, table: str | None, json: bool) -> None:
     from tangible_core.errors import ConfigError
 
     if folder is not None and not _is_set(config):
         raise ConfigError(f"--folder: is the folder of a standard set, and {config} is not one; leave it out")
-    if submission is not None and config.suffix == ".jsonl":
-        raise ConfigError(f"--submission: {config} holds figures alone; name the comparison file that they are from")
-    if table is not None and (json or submission is not None):
-        raise ConfigError("--table: decides what is printed, as do --json and --submission; leave one of them out")
+    if table is not None and json:
+        raise ConfigError("--table: decides what is printed, as does --json; leave one of them out")
 
 
 def _read(configs: Sequence[Path], folder: Path | None, sets: Sequence[str]) -> Comparison:

@@ -1,5 +1,4 @@
 from .auto import Auto as Auto
-from .contour import Contour as Contour
 from .cues import Cues as Cues
 from .kornia_report import KorniaReport as KorniaReport
 from .kornia_zncc import KorniaZNCC as KorniaZNCC

@@ -33,7 +33,7 @@ PERIOD_PX = 8
 HALF = SHAPE[0] // 2
 WINDOWS_PX = 12
 """Margin, in pixels, in which a border of texture may affect a map."""
-FROM_ONE_PICTURE = ("contour", "cues", "luminance")
+FROM_ONE_PICTURE = ("cues", "luminance")
 OTHERS_ANSWERS = ("auto", "onnx")
 """Methods that forward to others, or to the user's network."""
 METHODS = [
@@ -245,7 +245,7 @@ def test_method_on_a_case_keeps_its_bound(case: str, name: str):
     assert found.unit == "relative" or all(demand(found, known) for demand in demands)
 
 
-@pytest.mark.parametrize("name", ["semi-global", "zncc", "opencv-sgbm", "contour"])
+@pytest.mark.parametrize("name", ["semi-global", "zncc", "opencv-sgbm", "luminance"])
 def test_simultaneous_calls_are_independent(name: str):
     method = load_method("depth", name)()
     pairs = [planes().views, border().views, jump().views] * 2

@@ -23,8 +23,8 @@ async def test_change_of_a_key_leaves_the_rest(small: SmallSession, ask: Any):
     assert small.tab.last("document")["values"]["workspace"]["smooth_m"] == 0.002
     await ask("set", removed=["workspace.smooth_m", "render.stiffness_n_per_m"])
     assert small.session.document.text == TEXT.replace(", stiffness_n_per_m: 400", "")
-    await ask("set", changes={"depth.use": "contour"})
-    assert "depth: {use: contour}  # bright is near" in small.session.document.text
+    await ask("set", changes={"depth.use": "cues"})
+    assert "depth: {use: cues}  # bright is near" in small.session.document.text
 
 
 async def test_change_takes_a_value_in_yaml(small: SmallSession, ask: Any):

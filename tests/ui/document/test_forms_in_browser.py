@@ -52,7 +52,7 @@ def test_option_typed_in_the_form_is_saved_to_the_file(serve, open_page: OpenPag
     other.locator("#section-render > summary").click()
     other.locator(f'[id="{STIFFNESS}"]').press_sequentially("9")  # begun, not finished
     page.locator('[id="field:depth"]').evaluate("each => { each.closest('details').open = true; each.focus() }")
-    page.keyboard.press("c")  # contour
+    page.keyboard.press("a")  # auto
     page.keyboard.press("Enter")
     until(lambda: "changed since" in page.locator("#methods").inner_text().lower())
     until(lambda: state(page, "disparity") == "waiting")
@@ -60,13 +60,13 @@ def test_option_typed_in_the_form_is_saved_to_the_file(serve, open_page: OpenPag
     page.locator("#make").focus()
     page.keyboard.press("Enter")
     until(lambda: state(page, "disparity") == state(page, "touch") == "ran")
-    until(lambda: "contour" in page.locator('#stages [data-product="disparity"]').inner_text(), "the method is shown")
+    until(lambda: "auto" in page.locator('#stages [data-product="disparity"]').inner_text(), "the method is shown")
 
     open_panel(page, "yaml")
     save = bring(page, "save")
     page.locator("#save-path").fill("saved.yaml")
     page.keyboard.press("Enter")
-    expected = TEXT.replace("stiffness_n_per_m: 400", "stiffness_n_per_m: 0.5 N/mm").replace("luminance", "contour")
+    expected = TEXT.replace("stiffness_n_per_m: 400", "stiffness_n_per_m: 0.5 N/mm").replace("luminance", "auto")
     until(lambda: page.locator("#yaml-text").input_value() == expected)
     save.get_by_role("button", name="Save").press("Enter")
     until(lambda: (tmp_path / "saved.yaml").is_file())

@@ -2,10 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from tangible_depth.contour import gradient, integrate
 from tangible_depth.dense.confidence import OF_FILLED, OF_MATCHED, probability
 from tangible_depth.dense.edges import sharpen_edges
 from tangible_depth.dense.refinement import reconcile
@@ -113,27 +110,6 @@ def test_unknown_or_outside_pixels_have_no_confidence():
     right = np.float32([[1, 1, NAN, 1, -1]])
     assert left_right_confidence(left, right).tolist() == [[0, 0, 0, 0, 0]]
     assert left_right_confidence(np.float32([[0, 1]]), np.float32([[NAN, 1]])).tolist() == [[0, 0]]
-
-
-@given(st.integers(0, 2**32 - 1), st.integers(1, 12), st.integers(1, 12))
-def test_any_surface_is_restored(seed, rows, columns):
-    surface = np.random.default_rng(seed).normal(size=(rows, columns))
-    assert integrate(*gradient(surface)) == pytest.approx(surface - surface.mean(), abs=1e-9)
-
-
-def test_inconsistent_slopes_are_fitted_by_least_squares():
-    random = np.random.default_rng(0)
-    x, y = random.normal(size=(2, 12, 15))
-    x[:, -1], y[-1] = 0, 0
-
-    def cost(surface):
-        along_x, along_y = gradient(surface)
-        return ((along_x - x) ** 2).sum() + ((along_y - y) ** 2).sum()
-
-    best = integrate(x, y)
-    beyond = np.full(15, 7.0)
-    assert np.array_equal(best, integrate(np.hstack([x[:, :-1], beyond[:12, None]]), np.vstack([y[:-1], beyond])))
-    assert all(cost(best) < cost(best + 1e-3 * random.normal(size=best.shape)) for _ in range(20))
 
 
 @pytest.mark.parametrize("table", [OF_FILLED, OF_MATCHED])

@@ -57,7 +57,7 @@ async def forget(session: Any, tab: Any) -> None:
     for event in tabs._latest.keys() - {"maker", "described"}:
         del tabs._latest[event]
     tabs._history.clear()
-    tabs._logged.clear()
+    tabs._log.clear()
     session.document.texts = type(session.document.texts)()
 
 

@@ -33,8 +33,8 @@ def tab() -> tuple[Any, Hand]:
     """A tab that holds the hand, and the hand."""
     hand = Hand("ui-test")
     tab: Any = LiveTab.__new__(LiveTab)
-    tab._program, tab._seq, tab._drawn = SimpleNamespace(hand=hand, holds=lambda _: True), 2, 0
-    tab._acked = SimpleNamespace(set=lambda: None)
+    tab._program, tab._seq, tab._last_drawn = SimpleNamespace(hand=hand, holds=lambda _: True), 2, 0
+    tab._new_ack = SimpleNamespace(set=lambda: None)
     return tab, hand
 
 
@@ -46,7 +46,7 @@ class TestFrames:
         live._handle_frame(WHOLE[wire.RELEASE])
         assert not hand.holding
         live._handle_frame(WHOLE[wire.ACK])
-        assert live._drawn == 1
+        assert live._last_drawn == 1
 
     @pytest.mark.parametrize("kind", WHOLE)
     def test_frame_that_is_damaged_is_ignored(self, kind: int) -> None:
@@ -58,7 +58,7 @@ class TestFrames:
             hand.point((0.01, 0.0, 0.0), 0, 0)
             held = hand._held
             live._handle_frame(damaged)
-            assert (hand._held, live._drawn) == (held, 0)
+            assert (hand._held, live._last_drawn) == (held, 0)
 
     @given(st.binary(min_size=1, max_size=100))
     def test_frame_of_any_bytes_leaves_a_finite_hand(self, frame: bytes) -> None:
@@ -69,7 +69,7 @@ def check(frame: bytes) -> None:
     live, hand = tab()
     live._handle_frame(frame)
     assert all(abs(part) <= 1.0 for part in hand._held.at)
-    assert 0 <= live._drawn <= live._seq
+    assert 0 <= live._last_drawn <= live._seq
 
 
 def ask(**said: Any) -> str:

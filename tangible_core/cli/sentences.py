@@ -58,12 +58,13 @@ def export_summary(scene: str, done: Export) -> str:
     written = [export.name for export in done.exports if export.files]
     simple = [export.name for export in done.exports if export.files and made_simpler(export.made)]
     failed = [export.name for export in done.exports if not export.files]
-    text = f"{scene} is written as {listing(written)}." if written else f"Nothing of {scene} was written."
-    if simple:
-        text += f" Parts are simplified in {listing(simple)}."
-    if written and failed:
-        text += f" {listing(failed)} could not be written."
-    return text
+    if not written:
+        return f"Nothing of {scene} was written."
+    return (
+        f"{scene} is written as {listing(written)}"
+        f"{f'; parts are simplified in {listing(simple)}' if simple else ''}"
+        f"{f'; {listing(failed)} could not be written' if failed else ''}."
+    )
 
 
 def made_simpler(outcomes: Sequence[Outcome]) -> bool:

@@ -47,19 +47,17 @@ def flush() -> None:
         own.flush()
 
 
-def table(
-    headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | None = None, named: bool = False
-) -> None:
+def table(headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | None = None, named: int = 0) -> None:
     """Print a table without frames, or one entry a row if the terminal is too narrow.
 
     Cells are text with rich's marks. No text is lost: a word that is too long continues in the next line.
-    named: the first column has names to type, which stay as they are in every language.
+    named: how many columns, from the left, have names to type, which stay as they are in every language.
     """
     headings, title = [localise(each) for each in headings], title and localise_marked(title)
     grid = Table(title=title, title_justify="left", box=None, pad_edge=False, header_style="bold")
     for heading in headings:
         grid.add_column(heading, overflow="fold")
-    cells = [(first if named else localise_marked(first), *map(localise_marked, rest)) for first, *rest in rows]
+    cells = [(*row[:named], *map(localise_marked, row[named:])) for row in rows]
     for row in cells:
         grid.add_row(*row)
     terminal = console()

@@ -178,10 +178,10 @@ class Catalogue:
         return is_name(text.strip()) or self.find(text) is not None
 
     def _counted(self, text: str) -> str | None:
-        """Return a number of known things, such as `3 ok`."""
-        number, _, rest = text.partition(" ")
-        translation = self._exact.get(rest)
-        return f"{number} {translation}" if translation and number.isdecimal() else None
+        """Return a number of known things, such as `3 ok` or `196.1 ns a tick`."""
+        count, _, things = text.partition(" ")
+        number, translation = self._numerals(count), self._exact.get(things)
+        return f"{number} {translation}" if number and translation else None
 
     def _by_lines(self, text: str) -> str | None:
         for mark in ("\n\n", "\n"):

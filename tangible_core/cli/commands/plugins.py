@@ -141,8 +141,6 @@ def _figures(measured: Measured, name: str) -> dict[str, Any]:
 
 def _speed_and_accuracy(listing: Listing, measured: Measured | None) -> str:
     """Return how fast and how exact a method was, on which scene and machine."""
-    from ...metrics.measured import in_words
-
     if listing.kind == "device":
         return f"`tangible devices stress {listing.name}` measures how fast it can be read and written."
     if listing.kind == "export":
@@ -150,13 +148,14 @@ def _speed_and_accuracy(listing: Listing, measured: Measured | None) -> str:
     if measured is None or listing.name not in (*measured.methods, *measured.failed):
         file = f"configs/compare-{listing.kind}.yaml"
         return f"The program has no figures of it: `tangible compare` measures it, with a file such as {file}."
-    where = f"On {measured.scene}, with its defaults, on {in_words(measured.machine)} ({measured.day})"
+    processor, cores, system = (measured.machine[key] for key in ("processor", "cores", "system"))
+    where = f"On {measured.scene}, with its defaults, on {processor}, {cores} cores, {system} ({measured.day})"
     if why := measured.failed.get(listing.name):
         return f"{where}, it has no figures: {why}."
     values = zip(measured.columns, measured.methods[listing.name], strict=True)
-    figures = ", ".join(f"{column} {value:g}" for column, value in values if value is not None)
+    figures = ", ".join(f"{column}: {value:g}" for column, value in values if value is not None)
     best = next(iter(measured.methods))
-    return f"{where}: {figures}. The most exact of {len(measured.methods)} is {best}."
+    return f"{where}, it has these figures ({figures}). The most exact of {len(measured.methods)} is {best}."
 
 
 def check(kind: Kind, name: Name = None, as_json: Json = False) -> None:

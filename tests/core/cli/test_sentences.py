@@ -52,7 +52,7 @@ def check_summary(results: tuple[bool, ...]) -> str:
         (run_summary({"surface": "it"}, {}), ("done", "80 x 40 mm, 12.5 mm high")),
         (run_summary({"relief": 1}, {}, SIMPLER), ("simplified", "relief is made")),
         (export_summary("abc", ""), ("written as a, b and c.",)),
-        (export_summary("a", "bc"), ("written as a.", "b and c could not")),
+        (export_summary("a", "bc"), ("written as a; b and c could not be written.",)),
         (export_summary("", "a"), ("Nothing of dot.png",)),
         (plan_summary("rr"), ("make a and b.",)),
         (plan_summary("rc"), ("make a, and take 1 result ",)),

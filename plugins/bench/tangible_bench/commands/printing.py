@@ -77,12 +77,14 @@ def summary(results: Results) -> str:
     scenes = f"{len(results.scenes)} scenes" if len(results.scenes) > 1 else results.scenes[0]
     value = best.measures.get(results.main_measure, nan)
     heading = results.heading(results.main_measure) if with_time else task.measures[results.main_measure].title
-    exact = f"{best.method} is the most exact ({heading}: {value:.{task.measures[results.main_measure].digits}f})"
+    exact = f"{heading}: {value:.{task.measures[results.main_measure].digits}f}"
     if not with_time:
-        return f"On {scenes}, {exact}; times were not measured."
+        return f"On {scenes}, {best.method} is the most exact ({exact}); times were not measured."
     fastest = min(with_time, key=lambda line: line.seconds)
-    fast = f"{fastest.method} is the fastest ({task.clock.per_second * fastest.seconds:.3g} {task.clock.unit})"
-    return f"On {scenes}, {exact}, and {fast}." if isfinite(value) else f"On {scenes}, {fast}."
+    time = f"{task.clock.per_second * fastest.seconds:.3g} {task.clock.unit}"
+    if not isfinite(value):
+        return f"On {scenes}, {fastest.method} is the fastest ({time})."
+    return f"On {scenes}, {best.method} is the most exact ({exact}), and {fastest.method} is the fastest ({time})."
 
 
 def _print_verdict(verdict: Verdict) -> None:

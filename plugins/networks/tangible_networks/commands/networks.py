@@ -55,7 +55,7 @@ def networks(context: typer.Context, as_json: Json = False) -> None:
         )
         for name, network in known.items()
     ]
-    show.table(["network", "task", "is", "size", "what it does", "licence", "trained on"], rows, named=True)
+    show.table(["network", "task", "is", "size", "what it does", "licence", "trained on"], rows, named=2)
     show.say("They are kept in:")
     show.plain(str(models_folder()))
 

@@ -60,7 +60,7 @@ def materials(context: typer.Context, library: Library = None, as_json: Json = F
         for row in materials.values()
     ]
     headings = ("material", "N/m", "N s/m", "static", "dynamic friction", "texture", "roughness um", "grain mm")
-    show.table(headings, rows, named=True)
+    show.table(headings, rows, named=1)
     show.say("\n[bold]sources[/]")
     for row in materials.values():
         show.say(f"  {row.name}: {row.source}")
@@ -95,7 +95,7 @@ def show_one(
         show.print_json({**asdict(material), "sources": sources, "vibration_hz": _vibration_hz(material)})
         return
     rows = [(key, _worth(getattr(material, key)), _unit(key), sources[key]) for key in VALUES]
-    show.table(("value", "", "unit", "source"), rows, f"[bold]{material.name}[/]", named=True)
+    show.table(("value", "", "unit", "source"), rows, f"[bold]{material.name}[/]", named=1)
     show.say(f"\n{material.texture}: {MODELS[material.texture]}.")
     if (hertz := _vibration_hz(material)) is not None:
         show.say(f"A stroke at {STROKE_M_PER_S:g} m/s vibrates with {hertz:.0f} Hz.")

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from shown_texts import ROOT, described, is_prose, literals, python_files
 from tangible_core.translation.catalogue import ENTRY, PLACEHOLDER, unquoted
+from tangible_core.translation.translate import MARKS
 from tangible_legibility.words.languages import TABLES
 
 FOLDER = ROOT / "tangible_core" / "translation"
@@ -27,8 +28,12 @@ msgstr ""
 "Language: {language}\\n"
 "Content-Type: text/plain; charset=UTF-8\\n"
 """
-OTHERS = (*TABLES["en"].words.values(), *TABLES["en"].materials)
-"""Words of descriptions, which other texts may contain."""
+OTHERS = (
+    *TABLES["en"].words.values(), *TABLES["en"].materials,
+    "its groups lie more than {number} deep", "it takes more than {time} s to draw", "it takes too much memory to draw",
+    "page is for a PDF; leave it out",
+)  # fmt: skip
+"""Words of descriptions, and reasons why a drawing is not read, which other texts may contain."""
 OWN = frozenset(["Source: {0}", "and", "or", "integer", "number", "boolean", "string", "warning", "error"])
 """Texts that stand in no literal: sources of methods, joints of lists, types of JSON Schema, levels of logging."""
 TYPER = (
@@ -82,7 +87,8 @@ named: dict[str, str] = {}
 @cache
 def words() -> frozenset[str]:
     """Return all literals of the program: a catalogue may have more than `shown` finds, such as single words."""
-    return frozenset(map(normal, (*OTHERS, *(text for path in python_files() for text in texts_of(path))))) | OWN
+    texts = (*OTHERS, *(text for path in python_files() for text in texts_of(path)))
+    return frozenset(normal(form) for text in texts for form in (text, MARKS.sub("", text))) | OWN
 
 
 @cache

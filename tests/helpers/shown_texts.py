@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[2]
 FOR_PROGRAMMERS = {
     "ValueError", "TypeError", "RuntimeError", "AssertionError", "NotImplementedError", "KeyError", "StopIteration",
     "AttributeError", "Protocol", "TypeVar", "NewType", "compile", "getLogger", "cast", "njit", "inner",
-    "field_validator", "mark", "fullmatch", "match", "search", "sub", "Popen",
+    "field_validator", "mark", "fullmatch", "match", "search", "findall", "sub", "Popen", "tell_service_manager",
 }  # fmt: skip
 """Calls whose texts are not for people who use the program."""
 MAX_FORMS = 6
@@ -40,6 +40,7 @@ def python_files() -> list[Path]:
 NOT_SHOWN = (
     "tangible_core/translation",  # is in the language itself
     "plugins/legibility/tangible_legibility/words",  # has its own words in each language
+    "plugins/authoring/tangible_authoring/editor_schema.py",  # writes a file that is English throughout
 )
 
 
@@ -83,8 +84,11 @@ def described() -> Iterator[str]:
     from tangible_core.plugins import hooks
     from tangible_core.plugins.registry import default_registry
     from tangible_core.testing import kit
+    from tangible_networks.card import shipped_cards
 
     yield from dict.fromkeys(kit.demand(check) for kind in kit.FAMILIES for check in kit.checks(kind))
+    for card in shipped_cards().values():
+        yield from filter(is_prose, (card.improves, card.trained_on, *card.licence.split("; ")))
     hooks.tell(default_registry().plugins, "tangible_commands", app=app)
     for listings in hooks.tell(default_registry().plugins, "tangible_listings"):
         yield from (each.summary for each in listings if each.distribution == "tangible-images")
@@ -200,7 +204,7 @@ def _name(value: ast.AST) -> str:
     return plain[0] if plain else "value"
 
 
-NAMES = {"Pro Audio", "tangible parts", "tangible numbers", "outside right upper", "part share {next}"}
+NAMES = {"Pro Audio", "DejaVu Sans", "tangible parts", "tangible numbers", "outside right upper", "part share {next}"}
 """Texts that are names for programs."""
 DULL = {
     "quoted", "shown", "self", "len", "str", "map", "join", "float", "int", "max", "min", "round", "name_of", "sorted",

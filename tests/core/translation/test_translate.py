@@ -112,7 +112,7 @@ LISTED = parse("\n".join(f'msgid "{english}"\nmsgstr "{german}"\n' for english, 
         ("3 of 7 files, 4 of 9 files", "von 7 Dateien 3, von 9 Dateien 4"),
         ('the text 2.5 has\n two lines, "quoted"', 'zwei Zeilen,\n "zitiert", hat 2,5'),
         ("too small ends", "zu klein endet"),
-        ("2 too small", "2 zu klein"),
+        ("2.5 too small", "2,5 zu klein"),
         ("too small 2", None),
         ("  too small\n", "  zu klein\n"),
         ("too small\nof nothing known\n\ntoo large", "zu klein\nof nothing known\n\nzu groß"),
@@ -266,7 +266,7 @@ export: [swell]
 RESULTS = [
     "--help", "run --help", "devices doctor --help", "plugins", "plugins show render proxy", "materials show wood",
     "devices doctor mock", "cache", "plan photo.yaml", "run photo.yaml --seconds 0.1", "export photo.yaml",
-    "preflight photo.yaml --seconds 0.1", "legible photo.yaml --for swell",
+    "preflight photo.yaml --seconds 0.1", "legible photo.yaml --for swell", "networks",
 ]  # fmt: skip
 MISTAKES = [
     "run nothere.yaml", "run", "run --nonsense", "nonsense", "plugins show depth nonsense", "materials show wod",

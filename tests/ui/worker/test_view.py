@@ -200,7 +200,7 @@ class TestSee:
     def test_depth_that_the_relief_is_not_made_of_is_no_layer(self):
         pipeline = Pipeline(Scene.photo(np.eye(40)), depth="luminance", relief="edges", cached=False)
         assert pipeline.make("disparity") is not None
-        assert view_of(pipeline, "surface").layers == {}
+        assert make_view(pipeline, "surface").layers == {}
 
     def test_segments_are_viewed_flat_without_a_depth(self):
         picture = np.zeros((40, 60), np.uint8)

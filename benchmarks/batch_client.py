@@ -30,7 +30,7 @@ def main(config: Path, manifest: Path, out: Path, workers: int, first: int) -> N
         if seen in marks or seen == total:
             reached.append(seen)
             client_mb.append(own.memory_info().rss / 1e6)
-            worker_mb.append(max(each.memory_info().rss for each in own.children(recursive=True)) / 1e6)
+            worker_mb.append(max(child.memory_info().rss for child in own.children(recursive=True)) / 1e6)
     end_s = time.monotonic()
     used = time.process_time()
     names = [scene.id for scene in find_rows(str(manifest))]

@@ -89,7 +89,7 @@ def draw_borders(axes: Any, result: dict[str, Any]) -> None:
 def mark(axes: Any, times: tuple[float, ...]) -> None:
     """Mark these multiples on the axis of time, and no others."""
     axes.xaxis.minorticks_off()
-    axes.set_xticks(times, [f"{each:g}" for each in times])
+    axes.set_xticks(times, [f"{time:g}" for time in times])
 
 
 def number(pattern: str, text: str) -> float:
@@ -106,13 +106,13 @@ def main(path: Path = CHARTS) -> None:
     plt.rcParams.update({"svg.hashsalt": "tangible", "svg.fonttype": "none", "font.size": 8})
     results = newest()
     figure, axes = plt.subplots(1, 4, figsize=(13, 3.2), layout="constrained")
-    for each, (draw, section) in zip(
+    for axis, (draw, section) in zip(
         axes,
         ((draw_depth, "depth"), (draw_texture, "texture"), (draw_lateness, "servo_late"), (draw_borders, "relief")),
         strict=True,
     ):
-        draw(each, results[section])
-        each.spines[["top", "right"]].set_visible(False)
+        draw(axis, results[section])
+        axis.spines[["top", "right"]].set_visible(False)
     figure.savefig(path, metadata={"Date": None})
     print(path)
 

@@ -42,8 +42,8 @@ def _promises(effort: Effort, rows: list[Size]) -> list[Figure]:
         f"least of {ROUNDS} rounds: {min(costs):.2f} to {max(costs):.2f} ns: {max(costs) / min(costs):.2f} x",
         max(costs) <= 1.5 * min(costs),
     )
-    pixels = [each[0] * 1e6 for each in rows]
-    memory = [each[2] for each in rows]
+    pixels = [row[0] * 1e6 for row in rows]
+    memory = [row[2] for row in rows]
     bounds = [MEMORY_BYTES_PX[effort] * count + VOLUMES_BYTES for count in pixels]
     slope = np.polyfit(pixels[1:], memory[1:], 1)[0]
     peak = Figure(
@@ -72,7 +72,7 @@ def _sizes(effort: Effort) -> list[Size]:
     found = []
     for i, scene in enumerate(scenes):
         pixels = scene.grey.left.size
-        theirs, ours = np.array([each[i] for each in times]).T
+        theirs, ours = np.array([time[i] for time in times]).T
         found.append((pixels / 1e6, 1e9 * min(ours) / pixels / DISPARITIES, memory[i], float(np.median(ours / theirs))))
     return found
 

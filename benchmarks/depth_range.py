@@ -18,8 +18,8 @@ MAX_SHARE = 0.09
 def figures() -> list[Figure]:
     """Coverage and cost on every pair."""
     scenes = {**real(), **synthetic()}
-    covered = {name: coverage(each) for name, each in scenes.items()}
-    shares = {name: cost(each) for name, each in scenes.items()}
+    covered = {name: coverage(scene) for name, scene in scenes.items()}
+    shares = {name: cost(scene) for name, scene in scenes.items()}
     least, dearest = min(covered, key=covered.__getitem__), max(shares, key=shares.__getitem__)
     short = sum(share < 99.9 for share in covered.values())
     over = sum(share > MAX_SHARE for share in shares.values())

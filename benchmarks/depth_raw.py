@@ -65,7 +65,7 @@ def figures() -> list[Figure]:
     for name, views, truth_px in pairs():
         with collected() as notes:
             SemiGlobal().estimate(views)
-        noticed += any(each.startswith("rectified: ") for each in notes)
+        noticed += any(note.startswith("rectified: ") for note in notes)
         shares[name] = found_share(views, truth_px)
     worst = min(shares, key=shares.__getitem__)
     measured = (

@@ -24,7 +24,7 @@ def measured() -> tuple[list[Figure], list[str]]:
     """Return the promise about damaged pairs, and bad2 by damage, mean over the scenes."""
     scenes = {**real(), **synthetic()}
     cells = {
-        (kind, value): {name: _errors(_damaged(each, kind, value)) for name, each in scenes.items()}
+        (kind, value): {name: _errors(_damaged(scene, kind, value)) for name, scene in scenes.items()}
         for kind, value in DAMAGES
     }
     margins, best = (
@@ -79,7 +79,7 @@ def _damaged(scene: KnownScene, kind: str, value: float) -> KnownScene:
 
 def _errors(scene: KnownScene) -> tuple[float, ...]:
     """bad2 of ours with either effort, of 3WAY and of HH4."""
-    return tuple(measure(fill(each.estimate(scene.pair.views)), scene.pair)["bad2"] for each in _methods(scene))
+    return tuple(measure(fill(method.estimate(scene.pair.views)), scene.pair)["bad2"] for method in _methods(scene))
 
 
 def _methods(scene: KnownScene) -> Iterator[DepthEstimator]:

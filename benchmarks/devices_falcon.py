@@ -61,8 +61,8 @@ def _tick_ns(way: np.ndarray) -> float:
     _inverse(way, angles)
     counts = np.round((angles - math.radians(35)) / kinematics.RAD_PER_COUNT).astype(np.int64)
     answers = np.zeros((POINTS, 18), np.uint8)
-    for row, each in zip(answers, counts, strict=True):
-        packet.encode(*each.tolist(), 0, row[2:])
+    for row, count in zip(answers, counts, strict=True):
+        packet.encode(*count.tolist(), 0, row[2:])
         row[2 + packet.INFO] = packet.ZERO + packet.HOMED
     given = answers, np.zeros(64, np.uint8), np.zeros(16, np.uint8), tuple(falcon_streams.buffers()), np.zeros(7)
     return min(_ns(_ticks, *given) for _ in range(7))

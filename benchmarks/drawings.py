@@ -64,9 +64,9 @@ def _kinds() -> Iterator[Figure]:
         yield Figure(f"kind right: {kind}", ">= 0.97", f"{share:.3f}", share >= 0.97)
     seconds = sum(each[1] for each in counted.values()) / (COUNT * len(kinds))
     yield Figure("processor time for a kind", "<= 0.3 s", f"{seconds:.2f} s", seconds <= 0.3)
-    photos = [each for end in ("jpg", "png") for each in Path(PHOTOS).rglob(f"*.{end}")] if PHOTOS else []
+    photos = [path for end in ("jpg", "png") for path in Path(PHOTOS).rglob(f"*.{end}")] if PHOTOS else []
     if photos:
-        taken = [picture_kind(cv2.imread(str(each))[..., ::-1]).likely != "photograph" for each in photos]
+        taken = [picture_kind(cv2.imread(str(photo))[..., ::-1]).likely != "photograph" for photo in photos]
         text = f"{sum(taken)} of {len(taken)}"
         yield Figure("photographs taken for a drawing", "<= 1 %", text, np.mean(taken) <= 0.01)
 

@@ -69,7 +69,7 @@ class Paper:
 
     def __init__(self, rng: np.random.Generator, half: str, paper: tuple[int, int, int] = (255, 255, 255)) -> None:
         self.rng, self.half = rng, half
-        self.width, self.height = (int(each) for each in rng.integers(*SIDES, 2))
+        self.width, self.height = (int(integer) for integer in rng.integers(*SIDES, 2))
         self.fine = np.full((self.height * FINER, self.width * FINER, 3), paper, np.uint8)
         self.areas = np.zeros(self.fine.shape[:2], np.int32)
         self.letters = np.zeros(self.fine.shape[:2], np.uint8)
@@ -165,7 +165,7 @@ def _map(paper: Paper) -> None:
     seeds = rng.uniform(0.18, 0.82, (int(rng.integers(4, 8)), 2)) * (w, h)
     colours, width = _palette(rng, len(seeds)), rng.uniform(1.5, 4)
     div = cv2.Subdiv2D((0, 0, w, h))
-    div.insert([tuple(map(float, each)) for each in seeds])
+    div.insert([tuple(map(float, seed)) for seed in seeds])
     edge = 0.08 * min(w, h)
     for facet, colour in zip(div.getVoronoiFacetList([])[0], colours, strict=False):
         country = np.clip(np.asarray(facet), edge, (w - edge, h - edge))
@@ -408,8 +408,8 @@ def tilted(made: Made, degrees: float) -> Made:
         return at @ turn[:, :2].T + turn[:, 2]
 
     corners = [move(np.array([(a, b), (c, b), (c, d), (a, d)])) for a, b, c, d in made.texts]
-    texts = [(*each.min(axis=0), *each.max(axis=0)) for each in corners]
-    lines = [move(each) for each in made.lines]
+    texts = [(*corner.min(axis=0), *corner.max(axis=0)) for corner in corners]
+    lines = [move(line) for line in made.lines]
     return replace(made, picture=picture, labels=labels.astype(np.int32), lines=lines, texts=texts)
 
 

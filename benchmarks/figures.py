@@ -17,7 +17,7 @@ class Figure(NamedTuple):
 
 def judged(figures: Iterable[Figure]) -> list[str]:
     """Return a Markdown table; what is not within its bound says `missed`."""
-    rows = [(each.what, each.bound, each.measured, "" if each.met else "missed") for each in figures]
+    rows = [(figure.what, figure.bound, figure.measured, "" if figure.met else "missed") for figure in figures]
     return table(("what", "bound", "measured", ""), rows)
 
 

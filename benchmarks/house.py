@@ -64,7 +64,7 @@ def overhead_rows(runs: int = 7) -> list[str]:
         records = [(product, pipeline.make(product)) for product in PRODUCTS]
         keys = [pipeline.engine.key(product) for product, _ in records]
         total = perf_counter() - start
-        ran = sum(each.seconds for each in pipeline.outcomes if each.outcome == "ran")
+        ran = sum(outcome.seconds for outcome in pipeline.outcomes if outcome.outcome == "ran")
         stages.append(ran)
         engine.append(total - ran)
         digest.append(timed(views.digest))
@@ -147,7 +147,7 @@ def demo(folder: Path, kernels: Path) -> tuple[float, str]:
     start = perf_counter()
     done = subprocess.run(command, capture_output=True, text=True, check=True, env={**os.environ, **own})
     seconds = perf_counter() - start
-    return seconds, ", ".join(f"{each['product']} {each['outcome']}" for each in json.loads(done.stdout)["outcomes"])
+    return seconds, ", ".join(f"{load['product']} {load['outcome']}" for load in json.loads(done.stdout)["outcomes"])
 
 
 def tangible() -> str:

@@ -113,8 +113,8 @@ def houses_on(house: str) -> list[str]:
 
 def translation_mechanisms() -> list[str]:
     """Return what texts are translated by: catalogues, the page's tables, and each other table of words."""
-    files = [each for folder in shipped() for name in ("words.py", "words/de.json") for each in folder.rglob(name)]
-    tables = [each for each in files if each.stem == "de" or '"de"' in each.read_text(encoding="utf-8")]
+    files = [path for folder in shipped() for name in ("words.py", "words/de.json") for path in folder.rglob(name)]
+    tables = [file for file in files if file.stem == "de" or '"de"' in file.read_text(encoding="utf-8")]
     kinds = {"catalogues": "tangible_core/translation/*.po", "tables of the page": "plugins/**/src/words/words.ts"}
     return [*(kind for kind, pattern in kinds.items() if any(ROOT.glob(pattern))), *map(str, tables)]
 

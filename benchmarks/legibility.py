@@ -86,7 +86,7 @@ def _simplified() -> tuple[list[str], list[Figure]]:
             Figure(f"{what}: seconds", f"<= {MAX_S:g} s", f"{seconds:.2f} s", seconds <= MAX_S),
         ]
     heads = ("parts", "narrow", "border")
-    before, after = ([f"{each} {when}" for each in heads] for when in ("before", "after"))
+    before, after = ([f"{head} {when}" for head in heads] for when in ("before", "after"))
     return table(("picture", "parts by", *before, *after, "pixels changed", "s"), rows), figures
 
 

@@ -38,7 +38,7 @@ def section() -> str:
 def side_by_side(kind: str) -> Measured:
     """Our methods of one kind."""
     registry = default_registry()
-    names = [each.name for each in registry.listings if each.kind == kind and each.distribution == OURS]
+    names = [listing.name for listing in registry.listings if listing.kind == kind and listing.distribution == OURS]
     text = f"compare: {kind}\nmethods: [{', '.join(names)}]\nscenes: [{SCENES[kind]}]\nrepeats: {ROUNDS}\n"
     clock = Clock()
     with tempfile.TemporaryDirectory() as folder:
@@ -82,7 +82,7 @@ def known(value: float, digits: int) -> float | None:
 def rows(kind: str, found: Measured) -> list[str]:
     """As a table."""
     lines = [
-        (name, *("-" if value is None else f"{value:g}" for value in each)) for name, each in found.methods.items()
+        (name, *("-" if value is None else f"{value:g}" for value in method)) for name, method in found.methods.items()
     ]
     failed = [(name, why, *("" for _ in found.columns[1:])) for name, why in found.failed.items()]
     head = f"{kind}: {found.scene}, every method with its defaults, median of {ROUNDS} processes."

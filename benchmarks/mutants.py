@@ -93,11 +93,11 @@ def _row(results: Sequence[Result]) -> tuple[str, ...]:
         _count(results, Outcome.EXPLAINED),
         _count(results, *BAD),
     ]
-    return *map(str, counts), f"{sum(each.seconds for each in results):.0f}"
+    return *map(str, counts), f"{sum(result.seconds for result in results):.0f}"
 
 
 def _count(results: Iterable[Result], *outcomes: Outcome) -> int:
-    return sum(each.outcome in outcomes for each in results)
+    return sum(result.outcome in outcomes for result in results)
 
 
 def run(root: Path, chosen: Sequence[Mutant], jobs: int, patience_s: float = PATIENCE_S) -> Generator[Result]:
@@ -259,7 +259,7 @@ def main(words: Sequence[str] | None = None) -> None:
     except KeyboardInterrupt:
         sys.exit(130)
     print("\n".join(rows(results)))
-    sys.exit(any(each.outcome in BAD for each in results))
+    sys.exit(any(result.outcome in BAD for result in results))
 
 
 if __name__ == "__main__":

@@ -49,7 +49,7 @@ def mutants(root: Path) -> list[Mutant]:
         except (YAMLError, ValidationError, TypeError) as error:
             wrong.append(f"{path.name}: {error}")
     for mutant in found:
-        wrong += (f"{mutant.place}: {mutant.name}: {each}" for each in _misfits(root, mutant))
+        wrong += (f"{mutant.place}: {mutant.name}: {misfit}" for misfit in _misfits(root, mutant))
     names = [(mutant.room, mutant.name) for mutant in found]
     wrong += (f"{room}.yaml: {name}: stands twice" for room, name in set(names) if names.count((room, name)) > 1)
     if wrong:

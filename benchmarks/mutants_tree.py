@@ -109,10 +109,10 @@ class Tree:
 
     def owns(self, programs: "Programs", files: Iterable[str]) -> bool:
         """Whether the packages of these files are imported from here; a file in no package, as of docs, is read."""
-        packages = {found for each in files if (found := self._package(Path(each)))}
+        packages = {found for file in files if (found := self._package(Path(file)))}
         code = "import importlib, sys\nfor name in sys.argv[1:]: print(importlib.import_module(name).__file__)"
         ended = programs.run([str(self.python), "-c", code, *packages], self.sources, self.environ(), 60)
-        return ended.code == 0 and all(Path(each).is_relative_to(self.sources) for each in ended.said.splitlines())
+        return ended.code == 0 and all(Path(line).is_relative_to(self.sources) for line in ended.said.splitlines())
 
     def _package(self, file: Path) -> str:
         """Return the package or module of a file; "" for none."""

@@ -80,8 +80,8 @@ def _took(folder: Path, size: int) -> Taken:
     found: dict[str, Process] = {}
     for name, command in commands.items():
         runs = [_process(command, cache / f"{name}{number}") for number in range(RUNS + 1)][1:]  # the first compiles
-        seconds, processor_s = (median(each[column] for each in runs) for column in (0, 1))
-        found[name] = Process(seconds, processor_s, max(each.peak_gb for each in runs))
+        seconds, processor_s = (median(run[column] for run in runs) for column in (0, 1))
+        found[name] = Process(seconds, processor_s, max(run.peak_gb for run in runs))
     return found, (_megabytes(cache / f"`tangible run`{RUNS}"), _megabytes(out))
 
 
@@ -104,7 +104,7 @@ def _process(command: Sequence[str], cache: Path) -> Process:
 
 
 def _megabytes(folder: Path) -> float:
-    return sum(each.stat().st_size for each in folder.rglob("*") if each.is_file()) / 1e6
+    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) / 1e6
 
 
 def _figures(taken: dict[int, Taken]) -> Iterator[Figure]:
@@ -116,7 +116,7 @@ def _figures(taken: dict[int, Taken]) -> Iterator[Figure]:
             f"{took.seconds:.1f} s",
             took.seconds <= SECONDS[size],
         )
-        peak = max(each.peak_gb for each in processes.values())
+        peak = max(process.peak_gb for process in processes.values())
         yield Figure(f"{size} Mpx, peak memory", f"<= {PEAK_GB[size]:g} GB", f"{peak:.2f} GB", peak <= PEAK_GB[size])
         kept = max(cache_mb, out_mb)
         yield Figure(f"{size} Mpx, cache and results, the larger", "<= 150 MB", f"{kept:.0f} MB", kept <= 150)
@@ -160,7 +160,7 @@ def photo(columns: int, rows: int) -> np.ndarray:
             (int(rng.integers(columns)), int(rng.integers(rows))),
             int(rng.integers(columns // 60, columns // 10)),
         )
-        colour = tuple(float(each) for each in rng.integers(20, 240, 3))
+        colour = tuple(float(integer) for integer in rng.integers(20, 240, 3))
         if number % 2:
             cv2.circle(picture, centre, radius, colour, -1)
         else:

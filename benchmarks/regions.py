@@ -47,7 +47,7 @@ def rand_index(counts: Counts) -> float:
     Source: Unnikrishnan, Pantofaru & Hebert, IEEE TPAMI 29, 2007.
     """
     groups = counts, counts.sum(axis=1), counts.sum(axis=0), counts.sum(keepdims=True)
-    both, first, second, every = (int((each * (each - 1) // 2).sum()) for each in groups)
+    both, first, second, every = (int((group * (group - 1) // 2).sum()) for group in groups)
     return 1 - (first + second - 2 * both) / every if every else 1.0
 
 
@@ -193,7 +193,7 @@ def _best(cuts: Sequence[Labels], photo: Photograph) -> Mapping[str, float]:
 def _measures(labels: Labels, photo: Photograph) -> Mapping[str, float]:
     """Return the mean of each measure over the people."""
     counts = [contingency(labels, drawn) for drawn in photo.drawn]
-    means = {name: fmean(measure(each) for each in counts) for name, measure in COUNTED.items()}
+    means = {name: fmean(measure(count) for count in counts) for name, measure in COUNTED.items()}
     return means | {"F": border_f(border_pixels(labels), photo)}
 
 

@@ -35,7 +35,7 @@ def figures() -> Iterator[Figure]:
         arrays = (asked or BeaconMemory.ready()).arrays
         calls[name] = partial(_ticks, *law, settings, memory, *arrays, asked is not None, hands, forces)
     times = in_turns(calls, 25, thread_time)
-    ns = {name: 1e9 * each.seconds / len(hands) for name, each in times.items()}
+    ns = {name: 1e9 * time.seconds / len(hands) for name, time in times.items()}
     for name, most in (("off", 1.15), ("on", 1.6)):
         ratio = ns[name] / ns["without"]
         told = f"{ratio:.2f} x, {ns[name] - ns['without']:.0f} ns more"

@@ -17,10 +17,10 @@ def figures() -> Iterator[Figure]:
     hands = path(HAND)
     touches = {f"{count}": Proxy().touch(surface(count)) for count in (64, 256, 1024, 4096)}
     times = in_turns({name: _twice(touch.path, hands) for name, touch in touches.items()}, 25, thread_time)
-    ns = {name: 1e9 * each.seconds / TICKS / 2 for name, each in times.items()}
+    ns = {name: 1e9 * time.seconds / TICKS / 2 for name, time in times.items()}
     told = ", ".join(f"{name}^2 {each:.0f}" for name, each in ns.items())
     yield Figure("`proxy` tick", "<= 400 ns", told, max(ns.values()) <= 400)
-    ratio = max(each.ratio for each in times.values())
+    ratio = max(time.ratio for time in times.values())
     yield Figure("the same, slowest over 64^2", "<= 1.3 x", f"{ratio:.2f} x", ratio <= 1.3)
 
 

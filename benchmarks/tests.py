@@ -51,7 +51,7 @@ def figures(whole: dict[str, float]) -> Iterator[Figure]:
 
 def compiled_since(clock_s: float, folder: Path) -> int:
     """Return how many kernels numba has kept below a folder since then: minutes of processor time where it is all."""
-    return sum(each.stat().st_mtime >= clock_s for each in folder.rglob("*.nbc"))
+    return sum(path.stat().st_mtime >= clock_s for path in folder.rglob("*.nbc"))
 
 
 def seconds_of_tests(folder: Path) -> dict[str, float]:

@@ -253,7 +253,7 @@ def main() -> None:
     textures = find_textures([Path(each) for each in sys.argv[2:]])
     print(f"{len(textures)} textures", flush=True)
     variants = [
-        [variant(each, np.random.default_rng([i, j])) for j in range(VARIANTS)] for i, each in enumerate(textures)
+        [variant(texture, np.random.default_rng([i, j])) for j in range(VARIANTS)] for i, texture in enumerate(textures)
     ]
     back = [each for i, each in enumerate(variants) if i % KEPT_BACK == 0]
     used = [each for i, each in enumerate(variants) if i % KEPT_BACK]

@@ -54,10 +54,10 @@ def figures() -> list[Figure]:
         name: {who: segment_errors(call(), pieces(smooth()[name])) for who, call in each.items()}
         for name, each in calls.items()
     }
-    ours, theirs = ({name: each[who]["ari"] for name, each in errors.items()} for who in ("gradient", PEER))
-    boundary_px = np.mean([each["gradient"]["boundary_px"] for each in errors.values()])
+    ours, theirs = ({name: error[who]["ari"] for name, error in errors.items()} for who in ("gradient", PEER))
+    boundary_px = np.mean([error["gradient"]["boundary_px"] for error in errors.values()])
     times = [in_turns(each, ROUNDS)["gradient"] for each in list(calls.values())[:TIMED]]
-    share = float(np.median([each.ratio for each in times]))
+    share = float(np.median([time.ratio for time in times]))
     worst = min(ours, key=ours.__getitem__)
     below = sum(ari < 0.99 for ari in ours.values())
     return [
@@ -65,7 +65,7 @@ def figures() -> list[Figure]:
             f"`gradient`, {len(ours)} piecewise-smooth scenes, number of segments not told",
             "ARI >= .99 on every one, at <= 1/5 of scikit-image's Sobel and watershed",
             f"mean {np.mean(list(ours.values())):.4f}, worst {ours[worst]:.3f} ({worst}; {below} below), "
-            f"boundary {boundary_px:.2f} px, {1e3 * np.median([each.seconds for each in times]):.1f} ms, at "
+            f"boundary {boundary_px:.2f} px, {1e3 * np.median([time.seconds for time in times]):.1f} ms, at "
             f"1/{1 / share:.1f} (scikit-image: {np.mean(list(theirs.values())):.4f}, {min(theirs.values()):.3f})",
             below == 0 and share <= 1 / 5,
         ),

@@ -70,7 +70,7 @@ def fit(mosaics: list[Joined]) -> Weights:
     """Return the weights under which the true numbers are the likeliest."""
 
     def loss(weights: np.ndarray) -> float:
-        likelihoods = [_of(each.textures, each, Weights(*weights)) for each in mosaics]
+        likelihoods = [_of(mosaic.textures, mosaic, Weights(*weights)) for mosaic in mosaics]
         return -sum(likelihoods) / len(mosaics) + PENALTY * float((weights[1:] ** 2).sum())
 
     return Weights(*minimize(loss, np.zeros(len(Weights._fields)), method="BFGS").x.tolist())
@@ -95,9 +95,9 @@ def main() -> None:
     weights = fit(
         [each for name in ("tuning half", "built-in textures") for each in found[name] + found[f"crops, {name}"]]
     )
-    print(Weights(*(round(each, 2) for each in weights)))
+    print(Weights(*(round(weight, 2) for weight in weights)))
     for name, mosaics in found.items():
-        off, worth = zip(*(_guess(each, weights) for each in mosaics), strict=True)
+        off, worth = zip(*(_guess(mosaic, weights) for mosaic in mosaics), strict=True)
         exact, near = np.equal(off, 0), np.abs(off) <= 1
         print(f"{name}: exact {exact.mean():.3f}, within one {near.mean():.3f}, stated {np.mean(worth):.3f}")
 

@@ -28,7 +28,7 @@ def held_out() -> dict[str, KnownSegments]:
 
 def folders() -> list[Path]:
     """Return the folders that FOLDER names."""
-    return [Path(each) for each in os.environ.get(FOLDER, "").split(os.pathsep) if each]
+    return [Path(word) for word in os.environ.get(FOLDER, "").split(os.pathsep) if word]
 
 
 @cache

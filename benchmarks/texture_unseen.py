@@ -118,7 +118,7 @@ def _counted() -> Figure:
     guesses = np.array([(*guess(scene.picture), scene.count) for scene in reported_half().values()])
     off, worth = np.abs(guesses[:, 0] - guesses[:, 2]), guesses[:, 1]
     groups = [(worth >= low) & (worth < high) for low, high in pairwise(WORTHS)]
-    rates = [(int(each.sum()), worth[each].mean(), (off[each] == 0).mean()) for each in groups if each.any()]
+    rates = [(int(group.sum()), worth[group].mean(), (off[group] == 0).mean()) for group in groups if group.any()]
     exact, near = np.mean(off == 0), np.mean(off <= 1)
     return Figure(
         f"number of segments that `gabor` finds by itself, {len(off)} mosaics of the reported half",
@@ -133,7 +133,7 @@ def guess(picture: np.ndarray) -> tuple[int, float]:
     """Return the number of segments found, and the confidence of that; 1 where nothing was guessed."""
     with collected() as notes:
         count = Gabor().segment(picture).count
-    worth = [float(found[1]) for each in notes if (found := re.search(r"estimated with confidence ([\d.]+):", each))]
+    worth = [float(found[1]) for note in notes if (found := re.search(r"estimated with confidence ([\d.]+):", note))]
     return count, worth[0] if worth else 1.0
 
 

@@ -87,6 +87,6 @@ def _run(folder: Path, *words: str, **variables: str) -> str:
 
 
 def _sizes() -> Iterator[tuple[str, int]]:
-    for each in metadata.distributions():
-        files = (Path(str(each.locate_file(file))) for file in each.files or ())
-        yield each.name, sum(path.stat().st_size for path in files if path.is_file())
+    for distribution in metadata.distributions():
+        files = (Path(str(distribution.locate_file(file))) for file in distribution.files or ())
+        yield distribution.name, sum(path.stat().st_size for path in files if path.is_file())

@@ -77,7 +77,7 @@ def test_run_of_a_pair_makes_every_product_and_reports_it(folder: Path):
 
 def test_plan_runs_nothing_and_reports_a_refusal(folder: Path):
     steps = json.loads(tangible("plan", "p.yaml", "--json", cwd=folder).stdout)
-    assert [(each["product"], each["outcome"]) for each in steps][:2] == [("views", "given"), ("disparity", "ran")]
+    assert [(step["product"], step["outcome"]) for step in steps][:2] == [("views", "given"), ("disparity", "ran")]
     one = ("p.yaml", "--set", "scene={photo: left.png}", "--set", "depth={use: semi-global}")
     said = mistake("plan", *one, cwd=folder)
     assert "left.png has one: give both" in said
@@ -116,8 +116,8 @@ def test_feel_with_hardly_any_matches_asks_first(folder: Path, monkeypatch: pyte
 
 def test_lists_have_units_and_sources():
     methods = json.loads(tangible("plugins", "--json", cwd=Path()).stdout)
-    assert {("depth", "opencv-sgbm"), ("device", "mock")} <= {(each["kind"], each["name"]) for each in methods}
-    assert all(each["summary"] and "cannot be read" not in each["summary"] for each in methods)
+    assert {("depth", "opencv-sgbm"), ("device", "mock")} <= {(method["kind"], method["name"]) for method in methods}
+    assert all(method["summary"] and "cannot be read" not in method["summary"] for method in methods)
     ice = json.loads(tangible("materials", "--json", cwd=Path()).stdout)["ice"]
     assert ice["dynamic_friction"] <= 0.1 and ice["source"]
     done = tangible("materials", "show", "sand", cwd=Path())
@@ -171,7 +171,7 @@ def test_check_of_a_declared_failure_reports_it_and_succeeds(monkeypatch: pytest
     monkeypatch.setattr(Penalty, "expected_failures", {"pickle_is_small": "a mistake"})
     done = tangible("check", "render", "penalty", "--json", cwd=Path())
     assert done.returncode == 1
-    odd = [each for each in json.loads(done.stdout) if each["passed"] == bool(each["expected_failure"])]
+    odd = [load for load in json.loads(done.stdout) if load["passed"] == bool(load["expected_failure"])]
     assert {each["name"]: each["passed"] for each in odd} == {"springs_are_exact": False, "pickle_is_small": True}
     assert "did you mean 'depth'" in mistake("check", "depht", "x", cwd=Path())
 

@@ -19,15 +19,15 @@ DRAWN = {("export", "swell"), ("export", "sheet")}
 LONG = {"every_picture_type_is_taken", "every_picture_type_is_segmented", "every_work_is_answered"}
 """Checks of a dozen pictures each; methods beside these have them daily."""
 
-for each in default_registry().listings:
-    if each.distribution == "tangible-images":
-        test = conforms(each.kind, each.name)
-        if (each.kind, each.name) in PEERS | DRAWN:
-            ring = pytest.mark.whole if (each.kind, each.name) in DRAWN else pytest.mark.nightly
+for listing in default_registry().listings:
+    if listing.distribution == "tangible-images":
+        test = conforms(listing.kind, listing.name)
+        if (listing.kind, listing.name) in PEERS | DRAWN:
+            ring = pytest.mark.whole if (listing.kind, listing.name) in DRAWN else pytest.mark.nightly
             name, cases = test.pytestmark.pop().args
             cases = [pytest.param(*case.values, id=case.id, marks=ring if case.id in LONG else ()) for case in cases]
             test = pytest.mark.parametrize(name, cases)(test)
-        globals()[f"test_{each.kind}_{each.name}".replace("-", "_")] = test
+        globals()[f"test_{listing.kind}_{listing.name}".replace("-", "_")] = test
 del test  # pytest would collect it once more
 
 

@@ -51,12 +51,12 @@ class TestContainer:
 
     def test_only_the_volume_is_written_to(self):
         settings = dict(stages()["exhibition"])
-        folders = dict(each.split("=", 1) for each in shlex.split(settings["ENV"]) if each.startswith("XDG_"))
+        folders = dict(word.split("=", 1) for word in shlex.split(settings["ENV"]) if word.startswith("XDG_"))
         assert folders == {f"XDG_{each}_HOME": settings["VOLUME"] for each in ("CACHE", "CONFIG", "DATA", "STATE")}
 
     def test_images_have_a_version_and_stages_exist(self):
         bases = [words.split()[0] for name, words in instructions() if name == "FROM"]
-        assert all(each in stages() or re.search(r":\d", each) for each in bases)
+        assert all(base in stages() or re.search(r":\d", base) for base in bases)
 
 
 def test_development_container_is_a_stage_of_the_container_file():
@@ -74,7 +74,7 @@ def test_desktop_entry_starts_the_page_for_types_that_are_declared():
     entry = desktop["Desktop Entry"]
     declared = {each.get("type") for each in ElementTree.parse(DEPLOY / "tangible-images.xml").iter(f"{MIME}mime-type")}
     assert entry["Exec"].split()[0] in SCRIPTS
-    assert {each for each in entry["MimeType"].split(";") if "x-tangible" in each} == declared
+    assert {word for word in entry["MimeType"].split(";") if "x-tangible" in word} == declared
 
 
 class TestSlim:
@@ -85,9 +85,9 @@ class TestSlim:
 
     def test_packages_have_the_digests_of_the_lock(self):
         locked, slim = ((ROOT / name).read_text("utf-8") for name in ("requirements-dev.txt", "deploy/slim.txt"))
-        entries = [each[0].strip() for each in self.ENTRY.finditer(slim)]
+        entries = [match[0].strip() for match in self.ENTRY.finditer(slim)]
         assert len(entries) == slim.count("==")
-        assert set(entries) <= {each[0].strip() for each in self.ENTRY.finditer(locked)}
+        assert set(entries) <= {match[0].strip() for match in self.ENTRY.finditer(locked)}
 
     def test_surface_of_heights_is_felt_with_the_listed_packages_alone(self, tmp_path: Path):
         y, x = np.mgrid[:48, :64]

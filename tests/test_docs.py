@@ -126,7 +126,7 @@ def test_devices_page_shows_valid_files():
     config = parse_config(text, Path("p.yaml"), default_registry())
     assert config.felt_device is not None and config.device is not None
     assert config.felt_device != config.device.method
-    assert {each.name for each in default_registry().listings if each.kind == "device"} <= set(
+    assert {listing.name for listing in default_registry().listings if listing.kind == "device"} <= set(
         re.findall(r"^\| `([a-z-]+)` \|", page, re.MULTILINE)
     )
 

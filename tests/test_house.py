@@ -190,7 +190,7 @@ def test_concrete_methods_are_registered():
 def test_methods_live_in_their_family():
     for kind, target in registered():
         homes = (PACKAGES[kind], REPORT, SEND) if kind == "export" else (PACKAGES[kind],)
-        assert target.partition(".")[0] in {each.name for each in homes}, f"{target} is registered as {kind}"
+        assert target.partition(".")[0] in {home.name for home in homes}, f"{target} is registered as {kind}"
 
 
 def test_methods_are_in_the_file_named_after_them():
@@ -206,16 +206,20 @@ def test_methods_are_final_and_inherit_from_interfaces_alone(kind):
         Adjustable, Attended, Drawing, Filming, Following, Hierarchical, Previewing, Reshaping, Scripted, Serviceable,
         Skippable,
     }  # fmt: skip
-    for each in default_registry().listings:
-        if each.kind == kind and each.distribution == "tangible-images":
-            bases = default_registry().load(kind, each.name).__bases__
+    for listing in default_registry().listings:
+        if listing.kind == kind and listing.distribution == "tangible-images":
+            bases = default_registry().load(kind, listing.name).__bases__
             shared = {base for base in bases if base not in KINDS.values() and isabstract(base)} - capabilities
             interfaces = {*bases, *(above for base in shared for above in base.__bases__)} - shared
-            assert interfaces <= {KINDS[kind], *capabilities}, each.target
+            assert interfaces <= {KINDS[kind], *capabilities}, listing.target
 
 
 def test_installed_methods_are_those_of_the_project():
-    ours = {(each.kind, each.target) for each in default_registry().listings if each.distribution == "tangible-images"}
+    ours = {
+        (listing.kind, listing.target)
+        for listing in default_registry().listings
+        if listing.distribution == "tangible-images"
+    }
     assert ours == registered()
 
 
@@ -264,7 +268,7 @@ def test_blocks_of_files_and_options_cannot_be_changed():
     loose = [
         path
         for path, call in models
-        if {each.arg: ast.dump(each.value) for each in call.keywords}.get("frozen") != frozen
+        if {keyword.arg: ast.dump(keyword.value) for keyword in call.keywords}.get("frozen") != frozen
     ]
     assert not loose
 
@@ -306,7 +310,7 @@ def test_no_text_names_a_part_by_its_label():
     pages = (ROOT / "plugins/web/kit", ROOT / "plugins/ui/web/src")
     rooms = [ROOT / "tangible_core", *(ROOT / "plugins").glob("*/tangible_*"), *pages]
     files = [each for room in rooms for each in [*room.rglob("*.py"), *room.rglob("*.ts")]]
-    files = [each for each in files if each.stem != "part_words"]
+    files = [file for file in files if file.stem != "part_words"]
     assert len(files) > 500
     found = [
         f"{path.relative_to(ROOT)}: {match[0]}"

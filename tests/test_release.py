@@ -49,7 +49,7 @@ def test_citation_names_the_version_and_the_licence():
 
 def test_dependency_group_dev_is_the_extra_dev():
     extras = PROJECT["project"]["optional-dependencies"]
-    own = [each for each in extras["dev"] if not each.startswith("tangible-images[")]
+    own = [extra for extra in extras["dev"] if not extra.startswith("tangible-images[")]
     assert sorted(group("dev")) == sorted([*own, *extras["docs"]])
 
 
@@ -65,7 +65,7 @@ class TestLock:
         extras = PROJECT["project"]["optional-dependencies"]
         wanted = [*PROJECT["project"]["dependencies"], *group("dev")]
         wanted += (
-            each for name, needs in extras.items() if name not in ("dev", "torch", "peers", "falcon") for each in needs
+            need for name, needs in extras.items() if name not in ("dev", "torch", "peers", "falcon") for need in needs
         )
         assert {name_of(each) for each in wanted} - versions(LOCKED).keys() == set(), "run .ci/lock"
 
@@ -81,12 +81,12 @@ class TestLock:
 class TestWorkflows:
     def test_every_action_is_named_by_a_commit_and_its_version(self):
         uses = [
-            each for path in WORKFLOWS for each in re.findall(r"^\s*-? *uses: (.*)$", path.read_text("utf-8"), re.M)
+            text for path in WORKFLOWS for text in re.findall(r"^\s*-? *uses: (.*)$", path.read_text("utf-8"), re.M)
         ]
         assert len(uses) >= 10
-        wrong = [each for each in uses if not re.fullmatch(r"[\w.-]+(/[\w.-]+)+@[0-9a-f]{40} +# v\d+\.\d+\.\d+", each)]
+        wrong = [use for use in uses if not re.fullmatch(r"[\w.-]+(/[\w.-]+)+@[0-9a-f]{40} +# v\d+\.\d+\.\d+", use)]
         assert wrong == []
-        versions_of = {each.partition("@")[0]: each for each in uses}
+        versions_of = {use.partition("@")[0]: use for use in uses}
         assert set(versions_of.values()) == set(uses), "an action has one version in all workflows"
 
     @pytest.mark.parametrize("builds", ["release.yml", "run"])

@@ -67,7 +67,7 @@ def controls_of(page: "Page") -> list[Control]:
     """Return every control that the browser's accessibility tree has."""
     session: CDPSession = page.context.new_cdp_session(page)
     nodes: list[dict[str, Any]] = session.send("Accessibility.getFullAXTree")["nodes"]
-    found = [each for each in nodes if not each["ignored"] and each["role"]["value"] in CONTROLS]
+    found = [node for node in nodes if not node["ignored"] and node["role"]["value"] in CONTROLS]
     controls = [
         Control(each["role"]["value"], each.get("name", {}).get("value", "").strip(), **_seen(session, each))
         for each in found
@@ -84,17 +84,17 @@ def _seen(session: "CDPSession", node: dict[str, Any]) -> dict[str, str]:
 
 def faults_of(controls: list[Control]) -> list[str]:
     """Return the controls without a name, with another one than people see, or with one that a neighbour has too."""
-    faults = [f"no name: {each.role} {each.tag}" for each in controls if not each.name]
+    faults = [f"no name: {control.role} {control.tag}" for control in controls if not control.name]
     faults += [
-        f"{each.role} {each.name!r} reads {each.label!r}"
-        for each in controls
-        if each.name and _plain(each.label) not in _plain(each.name)
+        f"{control.role} {control.name!r} reads {control.label!r}"
+        for control in controls
+        if control.name and _plain(control.label) not in _plain(control.name)
     ]
     known = set[tuple[str, str, str]]()
-    for each in controls:
-        key = each.role, each.name, each.inside
-        if each.name and key in known:
-            faults.append(f"twice: {each.role} {each.name!r} in {each.inside}")
+    for control in controls:
+        key = control.role, control.name, control.inside
+        if control.name and key in known:
+            faults.append(f"twice: {control.role} {control.name!r} in {control.inside}")
         known.add(key)
     return faults
 

@@ -127,7 +127,9 @@ def misfits(language: str) -> Iterator[str]:
     Of placeholders side by side, the text itself does not tell where the first one ends.
     """
     for english, own in entries(language).values():
-        known, used = ({each[1] for each in PLACEHOLDER.finditer(each.replace("!s}", "}"))} for each in (english, own))
+        known, used = (
+            {match[1] for match in PLACEHOLDER.finditer(each.replace("!s}", "}"))} for each in (english, own)
+        )
         pairs = re.findall(r"(?=(\{\w+\}\{\w+\}))", english)
         if not used <= known or any(pair not in own.replace("!s}", "}") for pair in pairs):
             yield english
@@ -139,7 +141,7 @@ def update(language: str) -> None:
     texts = shown() if language in WHOLE else {each: place for each, place in shown().items() if each in known}
     rest = {each: "words" for each, (_, own) in known.items() if own and each not in texts and each not in gone}
     title = {"de": "German", "fr": "French"}[language]
-    unsure = {normal(unquoted(each)) for each in FUZZY.findall((FOLDER / f"{language}.po").read_text(encoding="utf-8"))}
+    unsure = {normal(unquoted(text)) for text in FUZZY.findall((FOLDER / f"{language}.po").read_text(encoding="utf-8"))}
     lines, last = [HEADER.format(title=title, language=language)], ""
     for each, place in {**texts, **rest}.items():
         lines += [f"#: {place}"] if place != last else []
@@ -153,7 +155,7 @@ def update(language: str) -> None:
 def _quoted(text: str) -> str:
     """Return a text as a .po file has it, a line of the text in a line of its own."""
     pieces = re.findall(r"[^\n]*\n|[^\n]+", text) or [""]
-    quoted = [json.dumps(each, ensure_ascii=False) for each in pieces]
+    quoted = [json.dumps(piece, ensure_ascii=False) for piece in pieces]
     return "\n".join(quoted if len(quoted) == 1 else ['""', *quoted])
 
 

@@ -74,7 +74,9 @@ def checked_fields(dataclass: type) -> type:
 
 
 def _checking(function: Any) -> Callable[..., Any]:
-    function.__annotations__ = {name: _hint(each, function) for name, each in function.__annotations__.items()}
+    function.__annotations__ = {
+        name: _hint(annotation, function) for name, annotation in function.__annotations__.items()
+    }
     if any(_has_shape(hint) for hint in function.__annotations__.values()):
         return jaxtyping.jaxtyped(typechecker=_typed)(function)
     return _typed(function)  # as strict where there are no shapes, at a tenth of the time
@@ -96,7 +98,7 @@ def _hint(annotation: Any, function: Any) -> Any:
 def _has_shape(hint: Any) -> bool:
     if isinstance(hint, type) and issubclass(hint, jaxtyping.AbstractArray):
         return True
-    return any(_has_shape(each) for each in typing.get_args(hint))
+    return any(_has_shape(arg) for arg in typing.get_args(hint))
 
 
 def check() -> None:

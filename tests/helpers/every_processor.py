@@ -70,7 +70,7 @@ def noisy_pair() -> Views:
     """The same with noise, the right view darker and two rows lower: for all that pairs are put right by."""
     noise = np.random.default_rng(0).integers(-12, 13, (2, *pair().left.shape))
     views = pair().left, np.roll(pair().right, 2, axis=0).astype(int) * 7 // 8
-    return Views(*(np.clip(each + more, 0, 255).astype(np.uint8) for each, more in zip(views, noise, strict=True)))
+    return Views(*(np.clip(view + more, 0, 255).astype(np.uint8) for view, more in zip(views, noise, strict=True)))
 
 
 @cache
@@ -110,12 +110,12 @@ def path() -> np.ndarray:
 
 def ours(kind: Any) -> Iterator[tuple[str, type[Any], dict[str, Any]]]:
     """Name, class and options of every method that comes with this distribution."""
-    for each in default_registry().listings:
-        if each.kind == kind and each.distribution == "tangible-images":
-            cls: Any = load_method(kind, each.name)
-            if each.name in ("auto", "onnx"):  # another one's, or those of a network that the user brings
+    for listing in default_registry().listings:
+        if listing.kind == kind and listing.distribution == "tangible-images":
+            cls: Any = load_method(kind, listing.name)
+            if listing.name in ("auto", "onnx"):  # another one's, or those of a network that the user brings
                 continue
-            yield each.name, cls, {"torch_device": "cpu"} if "torch_device" in cls.model_fields else {}
+            yield listing.name, cls, {"torch_device": "cpu"} if "torch_device" in cls.model_fields else {}
 
 
 def pictures() -> Found:
@@ -187,7 +187,10 @@ def layers() -> Found:
     parts = find_parts(segments)
     yield "parts", parts
     yield "parts, reduced", reduced_parts(parts, (100, 131))
-    yield "parts, borders", tuple(get_coordinates(each) for each in shared_borders(parts, 0.08, 0.0005))
+    yield (
+        "parts, borders",
+        tuple(get_coordinates(shared_border) for shared_border in shared_borders(parts, 0.08, 0.0005)),
+    )
     guess = guess_heights(parts, 0.004)
     yield "parts, heights guessed", guess
     yield "parts, heights by depth", depth_heights(parts, DisparityMap(truth[SIZE]), 0.004)

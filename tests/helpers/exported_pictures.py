@@ -33,7 +33,7 @@ def work_of(name: str, exporter: Exporter) -> Work:
         "simplified": simplified(name, width_m),
         "relief": Relief(heights, (width_m, width_m * rows / columns)),
     }
-    needed = {each: products[each] for each in exporter.needs}
+    needed = {need: products[need] for need in exporter.needs}
     return Work(name.capitalize(), "en", needed, made.picture, made.names)
 
 

@@ -416,7 +416,7 @@ def _answers(path: Path) -> object:
     from tangible_study.analysis.analysing import read_results
 
     kept = read_results(path.parents[2])
-    return [kept.of(each) for each in kept.study.comparisons]
+    return [kept.of(comparison) for comparison in kept.study.comparisons]
 
 
 def _make_batch(folder: Path) -> None:
@@ -474,7 +474,7 @@ def _make_kits(folder: Path) -> None:
 def _kits(path: Path) -> object:
     from tangible_bench.datasets.kits import kitti_2012, since_2014
 
-    top = next(each for each in path.parents if each.name in ("a", "b"))
+    top = next(parent for parent in path.parents if parent.name in ("a", "b"))
     pairs = since_2014(top) if top.name == "a" else kitti_2012(top)
     return [
         pair.open() for pair in pairs if pair.left.parent in path.parents or pair.left.parent.parent in path.parents
@@ -675,7 +675,7 @@ def _study_once(path: Path) -> Any:
 def _study_folder(path: Path) -> object:
     from tangible_study.session.folder import Place, check_name, faults_before, participants, prepare
 
-    root = next(each for each in path.parents if each.name == "out")
+    root = next(parent for parent in path.parents if parent.name == "out")
     prepare(root, _study_once(root.parent / "study.yaml"))
     return participants(root), faults_before(Place(root, "P1", "small")), check_name(root, "P1", resume=True)
 

@@ -100,7 +100,7 @@ class Seen(Film):
 
 def greys(*values: np.ndarray | float, shape: tuple[int, int] = (8, 12)) -> list[Views]:
     """Views of one picture each, of these grey levels."""
-    return [Views(np.broadcast_to(np.asarray(each, np.uint8), shape).copy()) for each in values]
+    return [Views(np.broadcast_to(np.asarray(value, np.uint8), shape).copy()) for value in values]
 
 
 def layered(number: int, noise: float, generator: np.random.Generator, shape: tuple[int, int] = (96, 128)) -> Views:

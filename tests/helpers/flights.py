@@ -79,12 +79,12 @@ def material(name: str = "made-up", **values: Any) -> Material:
 
 def of(verdicts: Any, what: str) -> Verdict:
     """Return the one verdict of this thing."""
-    [found] = [each for each in verdicts if each.of == what]
+    [found] = [verdict for verdict in verdicts if verdict.of == what]
     return found
 
 
 def grades(verdicts: Any) -> list[str]:
-    return [each.verdict for each in verdicts]
+    return [verdict.verdict for verdict in verdicts]
 
 
 def value_in_cure(verdict: Verdict, key: str) -> float:

@@ -34,8 +34,8 @@ class LastingServer(UiServer):
 
     def open(self, file: str | Path) -> str:
         """Open a file of this machine or a scene that is built in, wait until it is felt; the page's address."""
-        for each in self._data.iterdir():
-            shutil.rmtree(each)
+        for path in self._data.iterdir():
+            shutil.rmtree(path)
         host, url = self.url.split("/")[2], self.url.replace("http", "ws").replace("/?", "/live?")
         with TestTab(connect(url, origin=f"http://{host}", compression=None, max_size=None, proxy=None)) as tab:  # type: ignore[arg-type]
             tab.until(event="hello")

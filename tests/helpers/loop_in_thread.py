@@ -84,5 +84,5 @@ def loops_in_threads(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(priority, "_c", lambda name: (lambda *_: -1) if name == "mlockall" else asked(name))
     # A loop's process has not imported distributed, which teaches pickle every error that there is.
     errors = [each for each in copyreg.dispatch_table if isinstance(each, type) and issubclass(each, BaseException)]
-    for each in errors:
-        patch.delitem(copyreg.dispatch_table, each)
+    for error in errors:
+        patch.delitem(copyreg.dispatch_table, error)

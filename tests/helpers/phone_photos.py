@@ -22,7 +22,7 @@ def segment(content: bytes, marker: int = 0xE1) -> bytes:
 
 def write_mpo(path: Path, pictures: list[np.ndarray], kind: int) -> None:
     """Write pictures with Pillow, then change their type in the directory of the file."""
-    first, *others = (Image.fromarray(each) for each in pictures)
+    first, *others = (Image.fromarray(picture) for picture in pictures)
     first.save(path, format="MPO", save_all=True, append_images=others, quality=95)
     data = bytearray(path.read_bytes())
     entries = data.index(b"MPF\0") + 54  # behind the head of the directory and its three tags

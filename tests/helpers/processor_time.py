@@ -54,5 +54,5 @@ def used_s() -> float:
 def _children(process: int) -> list[int]:
     with suppress(OSError):
         tasks = Path(f"/proc/{process}/task").iterdir()
-        return [int(each) for task in tasks for each in (task / "children").read_text().split()]
+        return [int(word) for task in tasks for word in (task / "children").read_text().split()]
     return []

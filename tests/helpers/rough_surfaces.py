@@ -22,7 +22,7 @@ def rough_surfaces(count: int = 128) -> dict[str, HapticSurface]:
         "walls": walls,
     }
     known = {"ridge": ridge(1.5, 0.06, (count, count)).surface, "waves": waves(shape=(count, count)).surface}
-    return {name: HapticSurface.from_heights(each) for name, each in heights.items()} | known
+    return {name: HapticSurface.from_heights(height) for name, height in heights.items()} | known
 
 
 def _smooth(noise: Float64[np.ndarray, "h w"]) -> Float64[np.ndarray, "h w"]:

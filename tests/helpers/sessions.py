@@ -125,10 +125,10 @@ class Heard:
         self.events.append(event)
 
     def last(self, name: str) -> dict[str, Any]:
-        return next(each for each in reversed(self.events) if each["event"] == name)
+        return next(event for event in reversed(self.events) if event["event"] == name)
 
     def names(self) -> list[str]:
-        return [each["event"] for each in self.events]
+        return [event["event"] for event in self.events]
 
     async def until(self, name: str, count: int = 1) -> dict[str, Any]:
         """Return the newest event of a name, as soon as there are `count` of them."""

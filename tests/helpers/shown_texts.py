@@ -91,14 +91,14 @@ def described() -> Iterator[str]:
         yield from filter(is_prose, (card.improves, card.trained_on, *card.licence.split("; ")))
     hooks.tell(default_registry().plugins, "tangible_commands", app=app)
     for listings in hooks.tell(default_registry().plugins, "tangible_listings"):
-        yield from (each.summary for each in listings if each.distribution == "tangible-images")
+        yield from (listing.summary for listing in listings if listing.distribution == "tangible-images")
     sources = {part for each in load_library().values() for part in re.split(r"; |\w+: ", each.source) if part}
     for source in sorted(sources):
         yield _unique(re.sub(r"(?<![\^\w])[\d.]+", "{number}", source))
     for text in [*_of_schema(json_schema()), *_of_schema(materials_schema()),
                  *(text for name in COMMANDS for text in _of_command(load(name))),
                  *_of_command(typer.main.get_command(app))]:  # fmt: skip
-        yield from filter(None, (" ".join(each.split()) for each in text.split("\n\n")))
+        yield from filter(None, (" ".join(word.split()) for word in text.split("\n\n")))
 
 
 def _of_schema(node: Any) -> Iterator[str]:
@@ -113,7 +113,7 @@ def _of_schema(node: Any) -> Iterator[str]:
 
 def _of_command(command: Any) -> Iterator[str]:
     yield command.help or ""
-    yield from (each.help or "" for each in command.params if getattr(each, "help", None))
+    yield from (param.help or "" for param in command.params if getattr(param, "help", None))
     for each in getattr(command, "commands", {}).values():
         yield from _of_command(each)
 
@@ -133,22 +133,22 @@ def _hidden(tree: ast.Module) -> Iterator[ast.AST]:
             function = node.func
             name = getattr(function, "id", getattr(function, "attr", ""))
             if name in FOR_PROGRAMMERS:
-                for each in node.args:
-                    yield from ast.walk(each)
+                for arg in node.args:
+                    yield from ast.walk(arg)
 
 
 def _has_help(annotation: ast.AST) -> bool:
-    return any(isinstance(each, ast.keyword) and each.arg == "help" for each in ast.walk(annotation)) or any(
-        isinstance(each, ast.Name) and each.id == "Block" for each in ast.walk(annotation)
+    return any(isinstance(node, ast.keyword) and node.arg == "help" for node in ast.walk(annotation)) or any(
+        isinstance(node, ast.Name) and node.id == "Block" for node in ast.walk(annotation)
     )
 
 
 def _inside(node: ast.AST) -> Iterator[ast.AST]:
     """Yield the texts that are already part of a template; not those of calls and lists in its placeholders."""
-    for each in ast.iter_child_nodes(node):
-        yield each
-        if isinstance(each, ast.Constant | ast.JoinedStr | ast.BinOp | ast.IfExp | ast.FormattedValue):
-            yield from _inside(each)
+    for iter_child_node in ast.iter_child_nodes(node):
+        yield iter_child_node
+        if isinstance(iter_child_node, ast.Constant | ast.JoinedStr | ast.BinOp | ast.IfExp | ast.FormattedValue):
+            yield from _inside(iter_child_node)
 
 
 def _forms(node: ast.AST) -> list[str] | None:
@@ -157,11 +157,11 @@ def _forms(node: ast.AST) -> list[str] | None:
     if pieces is None:
         return None
     forms = 1
-    for each in pieces:
-        forms *= len(each) if isinstance(each, list) else 1
+    for piece in pieces:
+        forms *= len(piece) if isinstance(piece, list) else 1
     if forms > MAX_FORMS:
-        pieces = [_placeholder(each) if isinstance(each, list) else each for each in pieces]
-    choices = [each if isinstance(each, list) else [each] for each in pieces]
+        pieces = [_placeholder(piece) if isinstance(piece, list) else piece for piece in pieces]
+    choices = [piece if isinstance(piece, list) else [piece] for piece in pieces]
     return [_unique("".join(each)) for each in product(*choices)]
 
 
@@ -195,12 +195,12 @@ def _pieces(node: ast.AST) -> list[str | list[str]] | None:
 def _name(value: ast.AST) -> str:
     """Return a name for a placeholder: the last one in its expression that says what it is."""
     names = [
-        each.id if isinstance(each, ast.Name) else each.attr if isinstance(each, ast.Attribute) else str(each.value)
-        for each in ast.walk(value)
-        if isinstance(each, ast.Name | ast.Attribute)
-        or (isinstance(each, ast.Constant) and isinstance(each.value, str) and each.value.isidentifier())
+        node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else str(node.value)
+        for node in ast.walk(value)
+        if isinstance(node, ast.Name | ast.Attribute)
+        or (isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value.isidentifier())
     ]
-    plain = [each for each in names if each not in DULL]
+    plain = [name for name in names if name not in DULL]
     return plain[0] if plain else "value"
 
 

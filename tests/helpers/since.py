@@ -20,9 +20,9 @@ def changed_files(revision: str) -> set[str]:
     """Return what differs from a revision, and what git does not know. Raises: CalledProcessError if there is none."""
     commands = [["diff", "--name-only", "--merge-base", revision], ["ls-files", "--others", "--exclude-standard"]]
     outputs = [
-        subprocess.run(["git", *each], cwd=ROOT, check=True, capture_output=True, text=True) for each in commands
+        subprocess.run(["git", *command], cwd=ROOT, check=True, capture_output=True, text=True) for command in commands
     ]
-    return {line for each in outputs for line in each.stdout.splitlines()}
+    return {line for output in outputs for line in output.stdout.splitlines()}
 
 
 def affected(tests: Iterable[Path], changed: set[str]) -> set[Path]:

@@ -27,8 +27,8 @@ def write_video(path: Path, pictures: Iterable[np.ndarray], fps: float = 25, cod
     with silent_opencv():
         writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*codec), fps, (width, height))
     assert writer.isOpened(), f"OpenCV writes no {codec} here"
-    for each in pictures:
-        writer.write(each)
+    for picture in pictures:
+        writer.write(picture)
     writer.release()
     return path
 
@@ -40,7 +40,7 @@ def greys(path: Path, count: int, fps: float = 25, shape: tuple[int, int] = (24,
 
 def jpegs(path: Path, pictures: Iterable[np.ndarray]) -> Path:
     """These pictures, of any sizes, as a stream of JPEGs."""
-    path.write_bytes(b"".join(cv2.imencode(".jpg", each)[1].tobytes() for each in pictures))
+    path.write_bytes(b"".join(cv2.imencode(".jpg", picture)[1].tobytes() for picture in pictures))
     return path
 
 

@@ -32,7 +32,7 @@ def calls(name: str) -> Iterator[list[str]]:
     for words, command in leaves((), load(name)):
         for path in command.params:
             if "pathlib.Path" in str(path.type_descriptor):
-                yield [*words, *(word for each in command.params for word in given(each, path))]
+                yield [*words, *(word for param in command.params for word in given(param, path))]
 
 
 def given(parameter: Any, path: Any) -> list[str]:

@@ -39,7 +39,7 @@ def plan_summary(steps: str) -> str:
 
 
 def check_summary(results: tuple[bool, ...]) -> str:
-    return sentences.check_summary("it", cast(Any, [SimpleNamespace(as_declared=each) for each in results]))
+    return sentences.check_summary("it", cast(Any, [SimpleNamespace(as_declared=result) for result in results]))
 
 
 @pytest.mark.parametrize(

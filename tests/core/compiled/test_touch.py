@@ -35,7 +35,7 @@ class TestPickling:
         touch = _touch(name)
         small = pickle.dumps(touch, protocol=5, buffer_callback=buffers.append)
         assert len(small) < 3000
-        other = pickle.loads(small, buffers=[bytearray(each.raw()) for each in buffers])
+        other = pickle.loads(small, buffers=[bytearray(buffer.raw()) for buffer in buffers])
         np.testing.assert_array_equal(other.path(PATH), touch.path(PATH))
 
 

@@ -62,7 +62,7 @@ class TestOwnFile:
         )
         lines = complaints(tmp_path, text)
         places = ["1:28", "1:7", "3:3", "5:3", "4:3", "6:12", "2:1", "7:1", "8:1", "9:1", "10:8", "10:1"]
-        assert [each.split(": ", 1)[0] for each in lines] == [f"mine.yaml:{place}" for place in places]
+        assert [line.split(": ", 1)[0] for line in lines] == [f"mine.yaml:{place}" for place in places]
         assert "did you mean 'stiffness_n_per_m'" in lines[1] and "did you mean 'grain_m'" in lines[5]
         assert "dynamic_friction 0.9 is above static_friction 0.26" in lines[9]
         assert "are missing" in lines[11] and "did you mean 'glass'" in lines[11]
@@ -102,7 +102,7 @@ class TestOwnFile:
 class TestByName:
     def test_each_label_gets_its_material(self):
         assigned = assign(stripes(3), None, {1: "ice", 2: "sand", 3: "ice"}, library())
-        assert [each.name for each in assigned.materials] == ["ice", "sand", "ice"]
+        assert [material.name for material in assigned.materials] == ["ice", "sand", "ice"]
         assert assigned.reasons == ("segment 1: named ice", "segment 2: named sand", "segment 3: named ice")
 
     def test_wrong_labels_and_names_are_all_reported(self):
@@ -118,7 +118,7 @@ class TestByRoughness:
     def test_rougher_segment_gets_the_rougher_material(self):
         picture = checkers(0.3, 0.0, 0.1)
         assigned = assign(stripes(3), picture, "roughness", library())
-        assert [each.name for each in assigned.materials] == ["brick", "ice", "wood"]
+        assert [material.name for material in assigned.materials] == ["brick", "ice", "wood"]
         spread = picture.std()
         assert assigned.reasons == (
             f"segment 1: number 3 of 3 from smooth to rough ({0.3 / spread * np.sqrt(80 / 81):.3f}) -> brick",
@@ -128,7 +128,7 @@ class TestByRoughness:
 
     def test_more_segments_than_materials_share_them_in_order(self):
         assigned = assign(stripes(12), checkers(*np.arange(12) / 30), "roughness", library())
-        rungs = [LADDER.index(each.name) for each in assigned.materials]
+        rungs = [LADDER.index(material.name) for material in assigned.materials]
         assert rungs == [0, 1, 1, 2, 3, 4, 4, 5, 6, 7, 7, 8]
 
     @pytest.mark.parametrize(("shape", "side"), [((40, 90), 3), ((300, 256), 5), ((704, 800), 11)])
@@ -160,7 +160,7 @@ def quarters(side: int = 20) -> tuple[SegmentMap, np.ndarray]:
 
 
 def rules(*texts: dict) -> list[MaterialRule]:
-    return [MaterialRule.model_validate(each) for each in texts]
+    return [MaterialRule.model_validate(text) for text in texts]
 
 
 class TestByRules:
@@ -174,7 +174,7 @@ class TestByRules:
             {"segment": 1, "material": "glass"},
         )
         assigned = assign(segments, picture, "rules", library(), given, "leather")
-        assert [each.name for each in assigned.materials] == ["water", "ice", "leather", "sand"]
+        assert [material.name for material in assigned.materials] == ["water", "ice", "leather", "sand"]
         assert assigned.reasons == (
             "segment 1: rule 4, 100 % of it blue -> water",
             "segment 2: rule 2, at [25.4, 0] -> ice",
@@ -188,15 +188,15 @@ class TestByRules:
     def test_point_selects_the_pixel_with_the_nearest_centre(self, at: list[float], label: int):
         """Select a pixel; centres are at whole numbers."""
         assigned = assign(quarters()[0], None, "rules", library(), rules({"at": at, "material": "ice"}))
-        assert [each.name for each in assigned.materials].index("ice") == label
+        assert [material.name for material in assigned.materials].index("ice") == label
 
     def test_rest_is_decided_by_name_or_by_roughness(self):
         given = rules({"segment": 2, "material": "glass"})
         assigned = assign(stripes(3), None, {2: "sand", 3: "wood"}, library(), given)
-        assert [each.name for each in assigned.materials] == ["plain", "glass", "wood"]
+        assert [material.name for material in assigned.materials] == ["plain", "glass", "wood"]
         picture = checkers(0.3, 0.0, 0.1)
         alone, ruled = (assign(stripes(3), picture, "roughness", library(), each) for each in ([], given))
-        assert [each.name for each in ruled.materials] == ["brick", "glass", "wood"]
+        assert [material.name for material in ruled.materials] == ["brick", "glass", "wood"]
         assert ruled.reasons[::2] == alone.reasons[::2]
 
     def test_colour_rule_follows_most_pixels(self):

@@ -19,8 +19,8 @@ def parts_of(labels) -> np.ndarray:
 def flood(labels: np.ndarray) -> np.ndarray:
     """Number the regions of each label, by SciPy, in the order of their first pixels."""
     regions = np.zeros(labels.shape, int)
-    for each in np.unique(labels):
-        of_label, _ = ndimage.label(labels == each)
+    for label in np.unique(labels):
+        of_label, _ = ndimage.label(labels == label)
         regions += (of_label > 0) * (of_label + regions.max())
     _, first, places = np.unique(regions, return_index=True, return_inverse=True)
     return np.argsort(np.argsort(first))[places].reshape(labels.shape)

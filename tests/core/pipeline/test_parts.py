@@ -72,11 +72,11 @@ def pipeline(labels: np.ndarray | None = LABELS, cached: bool = False, **parts: 
 
 
 def outcome_kinds(made: Pipeline) -> dict[str, str]:
-    return {each.product: each.outcome for each in made.outcomes}
+    return {outcome.product: outcome.outcome for outcome in made.outcomes}
 
 
 def notes(made: Pipeline, product: str) -> tuple[Note, ...]:
-    return next(each.notes for each in made.outcomes if each.product == product)
+    return next(outcome.notes for outcome in made.outcomes if outcome.product == product)
 
 
 def middle_mm(surface: HapticSurface, number: int) -> float:
@@ -114,7 +114,7 @@ class TestHeights:
         np.testing.assert_array_equal(surface.labels, made.make("parts").labels)
         assert surface.names == ("wall", "", "", "chest")
         assert surface.extent_m == pytest.approx((0.08, 0.08 * ROWS / COLUMNS))
-        assert [each.text for each in notes(made, "relief")] == [
+        assert [note.text for note in notes(made, "relief")] == [
             "no depth is needed: heights are given",
             "no height is given for parts 1 and 3, which lie at 0",
         ]
@@ -139,15 +139,15 @@ class TestHeights:
     def test_guessed_heights_give_a_warning(self, caplog: pytest.LogCaptureFixture):
         made = pipeline(heights="guess")
         made.make("relief")
-        (warning,) = [each for each in notes(made, "relief") if each.kind == "warning"]
+        (warning,) = [note for note in notes(made, "relief") if note.kind == "warning"]
         assert warning.text.startswith("the heights of all 4 parts are guessed, as a picture does not show")
-        assert [each.levelname for each in caplog.records if "guessed" in each.message] == ["WARNING"]
+        assert [record.levelname for record in caplog.records if "guessed" in record.message] == ["WARNING"]
         made = pipeline(heights="guess", parts={1: {"height_m": 0}, 3: {"height_m": 0}})
         made.make("relief")
         assert notes(made, "relief")[-1].text.startswith("the heights of parts 2 and 4 are guessed")
         made = pipeline(heights="guess", parts={number: {"height_m": 0} for number in range(1, 5)})
         made.make("relief")
-        assert [each.kind for each in notes(made, "relief")] == ["decision"]
+        assert [note.kind for note in notes(made, "relief")] == ["decision"]
 
     def test_guessed_hole_in_a_ring_is_known_by_the_colour_beyond(self):
         """A dark ring on blue: its middle is blue too, and lies behind it, or red, as a thing on a plate."""
@@ -167,7 +167,7 @@ class TestSkipped:
     @pytest.mark.parametrize("by", ["given", "guess"])
     def test_depth_and_texture_are_skipped_with_given_segments(self, by: str):
         made = pipeline(heights=by, depth=Ramp(), texture=Same())
-        plan = {each.product: (each.outcome, each.why) for each in made.plan("surface").steps}
+        plan = {step.product: (step.outcome, step.why) for step in made.plan("surface").steps}
         assert "disparity" not in plan and plan["segments"][0] == "given"
         assert "no depth is needed: heights are" in plan["relief"][1]
         assert ran == []
@@ -231,7 +231,7 @@ class TestCached:
         }  # fmt: skip
         if heights == "guess":
             again = self.make_surface(folder, f"{said}heights: {heights}\n")
-            assert [each.kind for each in notes(again, "relief")] == ["decision", "warning"], "also of what is cached"
+            assert [note.kind for note in notes(again, "relief")] == ["decision", "warning"], "also of what is cached"
 
 
 class TestMaterials:
@@ -250,7 +250,7 @@ class TestMaterials:
         )
         found = made.materials
         assert found is not None
-        assert [each.name for each in found.materials] == ["ice", "glass", "wood", "cloth"]
+        assert [material.name for material in found.materials] == ["ice", "glass", "wood", "cloth"]
         assert found.reasons == (
             "part 1 (wall): rule 1, named -> ice",
             "part 2 (left box): its own -> glass",
@@ -265,7 +265,7 @@ class TestMaterials:
             scene(picture=colours), parts={}, materials={"rules": rules, "by": "rules"}, depth=Ramp(), cached=False
         )
         assert made.materials is not None
-        assert [each.name for each in made.materials.materials] == ["plain", "brick", "ice", "plain"]
+        assert [material.name for material in made.materials.materials] == ["plain", "brick", "ice", "plain"]
         assert made.materials.reasons[1] == "part 2: rule 2, 100 % of it red -> brick"
 
     def test_rule_for_an_unknown_segment_is_refused(self):

@@ -65,10 +65,10 @@ def test_pipeline_plans_makes_runs_and_feels(tmp_path: Path):
         render=Proxy(),
         device=Mock(path="circle"),
     )
-    assert [each.product for each in pipeline.plan().steps][-1] == "touch"
+    assert [step.product for step in pipeline.plan().steps][-1] == "touch"
     assert pipeline.disparity is not None and pipeline.disparity.disparity_px.shape == SHAPE
     assert pipeline.surface.extent_m == pytest.approx((0.08, 0.06))
-    assert {each.product for each in pipeline.outcomes} >= {"views", "disparity", "surface"}
+    assert {outcome.product for outcome in pipeline.outcomes} >= {"views", "disparity", "surface"}
     run = pipeline.run(tmp_path / "mine", seconds=0.5)
     assert {path.name for path in run.files} >= {"sheet.png", "outcomes.json", "surface.npz", "recording.npz"}
     assert all(path.exists() for path in run.files)
@@ -223,7 +223,7 @@ class TestWatching:
         threading.Timer(0.2, stop.set).start()
         with pytest.raises(Stopped):
             pipeline.make("disparity", stop=stop)
-        assert [each.outcome for each in pipeline.outcomes if each.product == "disparity"] == ["failed"]
+        assert [outcome.outcome for outcome in pipeline.outcomes if outcome.product == "disparity"] == ["failed"]
 
     @pytest.mark.parametrize("in_real_time", [True, False])
     @pytest.mark.usefixtures("loop_in_thread")

@@ -30,7 +30,7 @@ class Bare(Link):
 
     @property
     def applied(self) -> Force:
-        return next((each for each in reversed(self.commands) if isinstance(each, Force)), NO_FORCE)
+        return next((command for command in reversed(self.commands) if isinstance(command, Force)), NO_FORCE)
 
     def _release(self) -> None:
         self.commands.append("released")

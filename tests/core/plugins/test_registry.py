@@ -44,7 +44,7 @@ def test_method_is_listed_without_being_imported_and_loaded_by_name(install):
 def test_listings_are_sorted_by_kind_and_name(install):
     install("b", {f"tangible.{kind}": {"y": "b:Y", "x": "b:X"} for kind in reversed(KIND_NAMES)})
     install("a", {"tangible.depth": {"y": "a:Y"}, "tangible.other": {"z": "a:Z"}})
-    listings = [(each.kind, each.name, each.distribution) for each in Registry().listings]
+    listings = [(listing.kind, listing.name, listing.distribution) for listing in Registry().listings]
     depth = [("depth", "x", "b"), ("depth", "y", "a"), ("depth", "y", "b")]
     assert listings == depth + [(kind, name, "b") for kind in KIND_NAMES[1:] for name in ("x", "y")]
 
@@ -84,7 +84,7 @@ def test_broken_plugin_leaves_the_others_usable(install, source, complaint):
     install_mine(install)
     registry = Registry()
     assert registry.names("depth") == ["broken", "mine"]
-    assert [type(each.summary) for each in registry.listings] == [str, str]
+    assert [type(listing.summary) for listing in registry.listings] == [str, str]
     with pytest.raises(BrokenMethod, match=rf"depth method 'broken' \(broken:Mine.*{complaint}"):
         registry.load("depth", "broken")
     assert registry.load("depth", "mine")().estimate
@@ -127,7 +127,7 @@ def test_two_plugins_of_one_name_are_chosen_by_distribution(install):
 def test_plugin_with_a_heavy_library_is_listed_without_importing_it(install):
     heavy = "import heavy_library\n" + MINE.replace("\n    ", "\n")
     install("heavy", {"tangible.depth": {"heavy": "heavy:Mine"}}, heavy=heavy, heavy_library="raise AssertionError")
-    assert [each.summary for each in Registry().listings] == ["The same everywhere."]
+    assert [listing.summary for listing in Registry().listings] == ["The same everywhere."]
     with pytest.raises(BrokenMethod, match="AssertionError"):
         Registry().load("depth", "heavy")
 
@@ -138,7 +138,7 @@ def test_method_in_a_package_has_its_summary_read_from_the_file(install):
     (site / "deep" / "__init__.py").write_text("imported = True")
     (site / "deep" / "rooms" / "__init__.py").write_text("class Mine:\n    '''In the folder.'''")
     (site / "deep" / "rooms" / "mine.py").write_text("class Mine:\n    '''In the file.'''")
-    assert [each.summary for each in Registry().listings] == ["In the file.", "In the folder."]
+    assert [listing.summary for listing in Registry().listings] == ["In the file.", "In the folder."]
     assert "deep" not in sys.modules
 
 

@@ -98,7 +98,7 @@ class TestPipeline:
             (self.pipeline(), False),
         ):
             pipeline.make("touch")
-            [touch] = [each for each in pipeline.outcomes if each.product == "touch"]
+            [touch] = [outcome for outcome in pipeline.outcomes if outcome.product == "touch"]
             assert ("brick and stone are felt more gently" in touch.why) == fitted
             assert pipeline.surface.materials[0] == library()["brick"]
 
@@ -106,7 +106,7 @@ class TestPipeline:
         strong = load_method("device", "force-dimension")(model="sigma")
         pipeline = self.pipeline(device=strong)
         felt = pipeline.feel(Mock(), 0.3, in_real_time=False)
-        [touch] = [each for each in pipeline.outcomes if each.product == "touch"]
+        [touch] = [outcome for outcome in pipeline.outcomes if outcome.product == "touch"]
         assert "brick and stone are felt more gently than they are" in touch.why
         configured = self.pipeline(device=Mock()).feel(seconds=0.3, in_real_time=False)
         assert np.array_equal(felt.force_n, configured.force_n)

@@ -49,7 +49,7 @@ def test_sentence_summarises_the_worst_verdicts(verdicts: list[Verdict], sentenc
     found = Preflight.of(verdicts)
     assert (found.sentence, found.grade, found.safe) == (sentence, grade, grade != "unsafe")
     assert repr(found).splitlines()[0] == sentence
-    assert len(repr(found).splitlines()) == 1 + sum(each.verdict != "ok" for each in verdicts)
+    assert len(repr(found).splitlines()) == 1 + sum(verdict.verdict != "ok" for verdict in verdicts)
 
 
 def test_cures_of_one_key_get_the_strictest_value():

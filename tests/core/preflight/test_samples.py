@@ -27,7 +27,9 @@ def sample_files() -> list[Path]:
 
 def complaints(verdicts: Preflight) -> list[str]:
     """Return all complaints except those on the machine that runs the tests."""
-    return [repr(each) for each in verdicts if each.verdict != "ok" and each.check not in ("jitter", "tick")]
+    return [
+        repr(verdict) for verdict in verdicts if verdict.verdict != "ok" and verdict.check not in ("jitter", "tick")
+    ]
 
 
 @pytest.mark.parametrize("path", sample_files(), ids=lambda path: str(path.relative_to(ROOT)))

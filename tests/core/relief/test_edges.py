@@ -91,7 +91,7 @@ def test_pipeline_by_edges_needs_no_depth():
     found = pipeline.relief.height_m
     assert np.array_equal(found, lines_of(block()))
     assert pipeline.config.relief_kind == "edges" and pipeline.config.size[1:3] == (0.002, 0.00025)
-    assert {each.product: each.outcome for each in pipeline.outcomes}["disparity"] == "skipped"
+    assert {outcome.product: outcome.outcome for outcome in pipeline.outcomes}["disparity"] == "skipped"
 
 
 def test_borders_of_regions_are_lines_and_edges_are_not():
@@ -118,7 +118,7 @@ def test_pipeline_draws_the_border_that_people_would_draw():
     assert abs(int(np.argmax(lines)) - 160) <= 4
     assert lines[155:165].max() > lines[40:140].max() + 0.0005
     assert lines[155:165].max() > lines[180:280].max() + 0.0005
-    said = {each.product: each.why for each in pipeline.outcomes}["relief"]
+    said = {outcome.product: outcome.why for outcome in pipeline.outcomes}["relief"]
     assert "borders that people would draw are raised lines" in said
 
 

@@ -23,7 +23,7 @@ def test_relief_lines_areas_are_steps_and_letters_are_left_out():
     assert levels[0] == 0 and min(levels[1:]) > 0.0004 and abs(levels[1] - levels[2]) > 0.0004
     engine = Pipeline(Scene.photo(page(2), kind="lines"), relief="lines")
     assert engine.relief.height_m.max() == 0
-    notes = " ".join(each.why for each in engine.outcomes)
+    notes = " ".join(outcome.why for outcome in engine.outcomes)
     assert "letters are left out of the relief, at 2 places" in notes and "a line drawing" in notes
 
 

@@ -38,8 +38,8 @@ def test_plain_opencv_in_overlapping_threads_stays_until_the_last_ends():
             seen.append((cv2.useOptimized(), cv2.ipp.useIPP(), cv2.getNumThreads()))
 
     threads = [Thread(target=each) for each in (first, second)]
-    for each in threads:
-        each.start()
-    for each in threads:
-        each.join()
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
     assert seen == [(False, False, 1)]

@@ -107,7 +107,7 @@ class TestTransparency:
         assert len(surface.materials) == 3
         assert "transparent in the picture" in pipeline.materials.reasons[ground]
         assert np.isnan(pipeline.disparity.disparity_px[hidden]).all()
-        [why] = [each.why for each in pipeline.outcomes if each.product == "views"]
+        [why] = [outcome.why for outcome in pipeline.outcomes if outcome.product == "views"]
         assert why.endswith(f"{100 * hidden.mean():.0f} % of the array given as photo is transparent: flat ground")
 
     def test_cache_key_depends_on_the_outline(self):

@@ -125,7 +125,7 @@ def test_nothing_outside_of_the_file_is_read(cell: Path):
     scene = Scene.photo(cell.with_name("out.svg"))
     colours = scene.views.left.astype(int)
     assert (np.ptp(colours, axis=2) == 0).all() and scene.kind.kind == PictureKind.lines
-    assert [each.split(" in ")[0].split(",")[0] for each in scene.warnings] == [
+    assert [warning.split(" in ")[0].split(",")[0] for warning in scene.warnings] == [
         f"out.svg refers to {cell.with_name('red.png')}"[:78], "scripts"
     ]  # fmt: skip
 

@@ -60,7 +60,7 @@ def test_kiosk_rotates_scenes_with_their_own_limits(
     first, second = np.flatnonzero(rows[:, FLAGS].astype(int) & TickFlag.SWAPPED)
     assert rows[first, TIME_S] >= 0.2 and rows[second, TIME_S] - rows[first, TIME_S] >= 0.2
     scenes = rows[:first], rows[first:second], rows[second:]
-    found = [(np.median(each[:, PROXY_Z_M]), each[:, FORCE_Z_N].max()) for each in scenes]
+    found = [(np.median(scene[:, PROXY_Z_M]), scene[:, FORCE_Z_N].max()) for scene in scenes]
     np.testing.assert_allclose(found, [(0.05, 0.1), (0.06, 0.08), (0.05, 0.1)], atol=1e-6)
     with closing(heard):
         said = [heard.recv(200).decode() for _ in range(3)]

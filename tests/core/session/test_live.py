@@ -63,7 +63,7 @@ def test_keeping_converts_other_suffixes_at_the_end(touch: Touch, tmp_path: Path
     with keeping(tmp_path / name, About("circling", "proxy", "")) as writer:
         run_in_real_time(touch, Circling(), 0.2, Safety(), lambda _: None, writer.append)
     assert len(Recording.load(tmp_path / name).rows) == 200
-    assert [each.name for each in tmp_path.iterdir()] == [name]
+    assert [path.name for path in tmp_path.iterdir()] == [name]
 
 
 def test_keeping_leaves_the_nc_file_if_the_conversion_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -181,7 +181,7 @@ def test_session_on_ctrl_c_ends_without_force_and_keeps_its_ticks(touch: Touch, 
             )
         writer.close(last.stopped)
     assert last.stopped == INTERRUPTED
-    assert [each for each in reports if each.ticks] == [last]  # it ended before the first one was due
+    assert [report for report in reports if report.ticks] == [last]  # it ended before the first one was due
     assert float(force.read_text()) == 0
     kept = Recording.load(tmp_path / "hand.nc")
     assert kept.stopped == INTERRUPTED

@@ -199,7 +199,7 @@ class TestEndings:
         assert recording.stopped == INTERRUPTED == reports[-1].stopped
         assert recording.time_s.size == 50
         assert (link.held, link.closed) == (NO_FORCE, 1)
-        assert [each.levelname for each in caplog.records] == ["INFO"]
+        assert [record.levelname for record in caplog.records] == ["INFO"]
 
     def test_stop_from_another_thread_ends_the_session_without_force(self):
         stop = Event()

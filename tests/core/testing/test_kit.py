@@ -62,12 +62,12 @@ def source_declaring(*names: str) -> str:
 def test_run_checks_declared_failure_that_passes_is_reported(install):
     source = source_declaring("flat_pair_claims_nothing", "one_view_is_answered", "wall_is_found")
     install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme=source)
-    results = {each.name: each for each in run_checks("depth", "mine", Registry())}
-    assert [name for name, each in results.items() if each.expected_failure and not each.passed] == [
+    results = {run_check.name: run_check for run_check in run_checks("depth", "mine", Registry())}
+    assert [name for name, result in results.items() if result.expected_failure and not result.passed] == [
         "flat_pair_claims_nothing",
         "one_view_is_answered",
     ]
-    assert [name for name, each in results.items() if not each.as_declared] == ["wall_is_found"]
+    assert [name for name, result in results.items() if not result.as_declared] == ["wall_is_found"]
     assert "take wall_is_found out of its expected_failures" in results["wall_is_found"].message
 
 
@@ -78,7 +78,11 @@ def test_run_checks_unknown_declared_check_is_refused(install):
 
 
 def test_run_checks_options_reach_the_method(registry):
-    [result] = [each for each in run_checks("depth", "mine", registry, shift_px=9.0) if each.name == "wall_is_found"]
+    [result] = [
+        run_check
+        for run_check in run_checks("depth", "mine", registry, shift_px=9.0)
+        if run_check.name == "wall_is_found"
+    ]
     assert result == CheckResult("wall_is_found", False, "the wall is shifted by 6 px; the median error is 3 px")
 
 

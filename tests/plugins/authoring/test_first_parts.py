@@ -92,8 +92,10 @@ def test_parts_of_the_figure_that_a_network_sees_are_in_front(tmp_path: Path, mo
     assert [each.name for each in found] == ["", "the figure", ""]
     assert found[1].height_m == pytest.approx(2.1e-3 + (before[1].height_m or 0) / 2, abs=1.1e-4)
     picture[10:50, 60:80] = 240
-    assert [each.name for each in listed_parts(tmp_path, picture)] == [""] * 4
-    lowest_of_figure, highest_of_ground = sorted(each.height_m or 0 for each in listed_parts(tmp_path, picture))[2:0:-1]
+    assert [listed_part.name for listed_part in listed_parts(tmp_path, picture)] == [""] * 4
+    lowest_of_figure, highest_of_ground = sorted(
+        listed_part.height_m or 0 for listed_part in listed_parts(tmp_path, picture)
+    )[2:0:-1]
     assert highest_of_ground <= 2.1e-3 <= lowest_of_figure
 
 

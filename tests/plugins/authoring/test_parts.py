@@ -53,7 +53,7 @@ def test_picture_divided_into_parts_gives_files_that_run(folder: Path):
     done = well(tangible("parts", "still.png", cwd=folder))
     assert "still.png is divided into 3 parts" in done.stdout
     assert all(f"written: {name}" in done.stdout for name in HERE)
-    assert sorted(each.name for each in folder.iterdir()) == sorted([*HERE, "still.png"])
+    assert sorted(path.name for path in folder.iterdir()) == sorted([*HERE, "still.png"])
     text = (folder / "still.yaml").read_text()
     assert "# part 2: in the middle, " in text and "# part 3: along the bottom, " in text
     assert "scene: {photo: still.png, segments: parts.png}" in text, "it can be moved with its pictures"
@@ -134,7 +134,7 @@ def test_pair_has_heights_by_depth(folder: Path):
     done = well(tangible("parts", "left.png", "right.png", "--method", "histogram", "--json", cwd=folder))
     parts = json.loads(done.stdout)["parts"]
     assert "disparity" in parts[0]["why"] and parts[0]["height_m"] == 0
-    assert max(each["height_m"] for each in parts) == pytest.approx(0.0042)
+    assert max(part["height_m"] for part in parts) == pytest.approx(0.0042)
     text = (folder / "left.yaml").read_text()
     assert "scene: {left: left.png, right: right.png, segments: parts.png}" in text and "depth: {use: " in text
     well(tangible("plan", "left.yaml", "--set", "heights.by=depth", cwd=folder))
@@ -200,7 +200,7 @@ def test_full_disk_leaves_whole_files_or_none(folder: Path):
     assert [*found.contents] == [folder / name for name in HERE] and sizes[0] < sizes[1]
     with files_up_to(sizes[0] + 100), pytest.raises(OutputError, match=r"parts-numbered.png: cannot be written"):
         found.write()
-    assert sorted(each.name for each in folder.iterdir()) == ["parts.png", "still.png"], "no file names a missing one"
+    assert sorted(path.name for path in folder.iterdir()) == ["parts.png", "still.png"], "no file names a missing one"
 
     found.write(force=True)
     file = folder / "still.yaml"

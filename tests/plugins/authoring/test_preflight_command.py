@@ -44,7 +44,7 @@ def test_preflight_safe_file_exits_with_0(folder: Path):
     assert done.returncode == 0, done.stdout + done.stderr
     sentence, _, *verdicts, _, summary = done.stdout.splitlines()
     assert re.fullmatch(r".*hills\.npy on mock: Safe(: nothing is wrong|, but .*)\.", sentence)
-    assert {each.split()[0] for each in verdicts} <= GRADES | {"cure:"}
+    assert {verdict.split()[0] for verdict in verdicts} <= GRADES | {"cure:"}
     assert " 700 N/m <= 2400 N/m; 80 % of 3000 N/m; Colgate & Schenkel 1997" in done.stdout
     assert summary.endswith(" 0 unsafe")
 

@@ -278,7 +278,7 @@ class TestScenes:
 
     def test_batch_in_python_yields_rows_and_stops(self, archive: Path, tmp_path: Path):
         pipeline, stop, seen = Pipeline.from_yaml(tmp_path / "mine.yaml"), Event(), []
-        rows = [{"id": each.stem, "scene.photo": str(each)} for each in sorted(archive.glob("*.png"))]
+        rows = [{"id": path.stem, "scene.photo": str(path)} for path in sorted(archive.glob("*.png"))]
         with pytest.raises(Stopped):
             for row in batch(pipeline, rows, tmp_path / "out", stop=stop):
                 seen.append(row["id"])
@@ -348,8 +348,8 @@ class TestScenes:
 
     @pytest.mark.parametrize("name", ['Ä "quoted" one', "two\nlines", "b\udcff"])
     def test_picture_with_any_name_is_made(self, archive: Path, name: str):
-        for each in archive.iterdir():
-            each.unlink()
+        for path in archive.iterdir():
+            path.unlink()
         write_png(archive / f"{name}.png", picture(0))
         tally = [json.loads(self.run(archive.parent, "--json").stdout) for _ in range(2)]
         assert [each["made"] for each in tally] == [1, 0]
@@ -391,7 +391,7 @@ class TestScenes:
         folders = {row["folder"] for row in made}
         assert len(folders) == len(rows)
         assert [row["error"] for row in made] == [None] * len(rows)
-        assert all(Path(tmp_path / "out", each).resolve().parent == tmp_path / "out/scenes" for each in folders)
+        assert all(Path(tmp_path / "out", folder).resolve().parent == tmp_path / "out/scenes" for folder in folders)
 
 
 def _fail(*_: object) -> None:
@@ -443,7 +443,7 @@ def test_pages_and_table_of_many_rows_have_every_one(tmp_path: Path, monkeypatch
     names = [f"s{number}" for number in range(5)]
     figures = [{"of": "n/a", "b": 10**400, "c": [1, "\udcff"]}, {"of": 2.5}, {}, {}, {}]
     lines = [{"id": name, "outcome": "failed", "error": "<b>no</b>", "folder": name} for name in names]
-    text = (json.dumps({**line, "figures": each}) + "\n" for line, each in zip(lines, figures, strict=True))
+    text = (json.dumps({**line, "figures": figure}) + "\n" for line, figure in zip(lines, figures, strict=True))
     (tmp_path / "rows.jsonl").write_text("".join(text))
     pages = [path.read_text() for path in results.write_gallery(tmp_path, names)]
     shown = [[name for name in names if f"<figcaption>{name} <br>" in page] for page in pages]

@@ -114,7 +114,7 @@ def test_ended_batch_leaves_no_worker_and_continues(
     with (tmp_path / "noise").open("w") as noise:
         first = subprocess.Popen(command(), cwd=tmp_path, stdout=noise, stderr=noise, start_new_session=True)
     until(lambda: rows.exists() and rows.read_text().count("\n") >= 3)
-    family = [each.pid for each in psutil.Process(first.pid).children(recursive=True)]
+    family = [child.pid for child in psutil.Process(first.pid).children(recursive=True)]
     assert len(family) >= 2
     if end == signal.SIGKILL:
         first.kill()
@@ -143,7 +143,7 @@ def test_ended_batch_leaves_no_worker_and_continues(
 def test_scheduler_workers_make_the_scenes_and_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     folder = archive(tmp_path, 6)
     pipeline = Pipeline.from_yaml(tmp_path / "mine.yaml")
-    rows = [{"id": each.stem, "scene.photo": str(each)} for each in sorted(folder.iterdir())]
+    rows = [{"id": path.stem, "scene.photo": str(path)} for path in sorted(folder.iterdir())]
     with running("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", tmp_path / "at.json"):
         until(lambda: (tmp_path / "at.json").exists() and (tmp_path / "at.json").read_text().endswith("}"))
         address = json.loads((tmp_path / "at.json").read_text())["address"]

@@ -14,9 +14,9 @@ ROW = Row("k", "depth", "m", "m", {}, "d 1", "s", "digest", "none", (), 0, {}, {
 def rows(seconds: list[float], method: str = "m", bad2: float | None = 5.0, memory: int = 10**8, **more) -> list[Row]:
     return [
         replace(
-            ROW, method=method, repeat=repeat, seconds=each, peak_memory_bytes=memory, measures={"bad2": bad2}, **more
+            ROW, method=method, repeat=repeat, seconds=second, peak_memory_bytes=memory, measures={"bad2": bad2}, **more
         )
-        for repeat, each in enumerate(seconds)
+        for repeat, second in enumerate(seconds)
     ]
 
 

@@ -43,7 +43,7 @@ def test_progress_reports_start_and_end_of_every_measurement(registry: Registry,
         (1, 2, True),
     ]
     assert [each.row.seconds is None for each in heard] == [True, False, True, False]
-    assert {each.method for each in found.results.means()} == {"constant", "half"}
+    assert {mean.method for mean in found.results.means()} == {"constant", "half"}
     assert all(path.exists() for path in found.files)
 
 

@@ -27,8 +27,8 @@ def complaints(text: str, registry: Registry) -> list[str]:
 
 def test_file_sets_every_field_that_has_defaults(registry: Registry):
     found = parse(GOOD, registry)
-    assert [each.label for each in found.methods] == ["constant"]
-    assert list(found.scenes) == ["steps 480x360"] and [each.name for each in found.damages] == ["none"]
+    assert [method.label for method in found.methods] == ["constant"]
+    assert list(found.scenes) == ["steps 480x360"] and [damage.name for damage in found.damages] == ["none"]
     assert (found.protocol.repeats, found.protocol.warmups, found.baseline, found.out) == (5, 1, None, Path("out/c"))
     text = """\
 compare: depth
@@ -46,9 +46,9 @@ baseline: constant
 out: ../results
 """
     found = parse(text, registry)
-    assert [each.label for each in found.methods] == ["constant", "other"]
+    assert [method.label for method in found.methods] == ["constant", "other"]
     assert list(found.scenes) == ["planes 64x48 seed 3", "builtin/motorcycle"]
-    assert [each.name for each in found.damages] == ["none", "noise 2", "noise 5", "shift -0.5", "gain 0.8"]
+    assert [damage.name for damage in found.damages] == ["none", "noise 2", "noise 5", "shift -0.5", "gain 0.8"]
     assert found.finishes == {"fill": {"other"}}
     assert found.baseline == "constant"
     assert found.out == Path("results")
@@ -57,13 +57,13 @@ out: ../results
 def test_sweep_gives_a_method_for_each_grid_point(registry: Registry):
     text = GOOD.replace("[constant]", "[{use: constant, label: c, sweep: {value_px: [1, 2], seconds: [0, 0.5]}}]")
     found = parse(text, registry)
-    assert [each.label for each in found.methods] == [
+    assert [method.label for method in found.methods] == [
         "c value_px=1 seconds=0",
         "c value_px=1 seconds=0.5",
         "c value_px=2 seconds=0",
         "c value_px=2 seconds=0.5",
     ]
-    assert [each.choice.method.model_dump() for each in found.methods][3] == {"value_px": 2.0, "seconds": 0.5}
+    assert [method.choice.method.model_dump() for method in found.methods][3] == {"value_px": 2.0, "seconds": 0.5}
 
 
 def test_file_with_many_mistakes_reports_all_with_places(registry: Registry):
@@ -158,8 +158,8 @@ def test_folder_of_pairs_gives_a_scene_each(registry: Registry, tmp_path: Path):
     (tmp_path / "pairs" / "empty").mkdir()
     found = load("{folder: pairs}")
     assert list(found.scenes) == ["a", "b"]
-    for each in found.scenes.values():
-        pair = each.open()
+    for scene in found.scenes.values():
+        pair = scene.open()
         assert np.isnan(pair.truth_px[0, :5]).all() and (pair.truth_px[1:] == 3).all()
         np.testing.assert_array_equal(pair.visible[1:], np.arange(30) >= 3 + np.zeros((19, 1)))
     with pytest.raises(ConfigError, match="two scenes are called 'b'"):

@@ -160,7 +160,7 @@ def test_scene_names_give_their_options(registry: Registry, tmp_path: Path):
         "map.png 80 mm wide, 5 mm high, 1 mm deep",
         "builtin/motorcycle 80 mm wide, 10 mm high, 1 mm deep",
     ]
-    relief, built = (each.open().surface for each in list(scenes.values())[2:])
+    relief, built = (scene.open().surface for scene in list(scenes.values())[2:])
     assert (relief.height_m.max(), relief.extent_m) == (np.float32(0.005), (0.08, 0.06))
     assert built.height_m[250, 370] > built.height_m[30, 30], "nearer than the wall, so it stands out"
 

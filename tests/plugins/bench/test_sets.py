@@ -155,7 +155,7 @@ def test_kitti_measures_are_weighted_by_pixels():
         row("m", "kitti-2015/c", d1_fg=math.nan, pixels_fg=0.0, d1=6.5, pixels=0.0),
     )
     (table,) = set_tables.set_tables(found)
-    values = dict(zip((each.heading for each in table.columns), table.rows["m"], strict=True))
+    values = dict(zip((column.heading for column in table.columns), table.rows["m"], strict=True))
     assert (values["D1-fg all"], values["D1-all all"]) == (20.0, 6.5)
     assert table.title == "KITTI 2015, 3 pairs"
 

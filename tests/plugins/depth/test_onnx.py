@@ -247,7 +247,7 @@ def test_size_far_from_that_of_the_training_is_reported(networks: Path, card, si
     told = card(networks / "mono.onnx", "input: {trained_px: [40, 50]}\noutput: {means: inverse-depth}")
     with collected() as notes:
         told.estimate(Views(picture(*size)))
-    assert any("trained with" in each and "most_px: 2000" in each for each in notes) == reported
+    assert any("trained with" in note and "most_px: 2000" in note for note in notes) == reported
 
 
 def test_depth_of_a_network_gets_other_heights_than_a_photograph(
@@ -302,8 +302,8 @@ class TestAuto:
 def test_networks_conform(networks: Path, name: str, kept: list[str]):
     """A network without a confidence output is confident in a picture without texture, a known failure."""
     results = list(run_checks("depth", "onnx", model=networks / f"{name}.onnx"))
-    assert [each.name for each in results if not each.passed] == kept
-    assert not any("not asked" in each.message for each in results)
+    assert [result.name for result in results if not result.passed] == kept
+    assert not any("not asked" in result.message for result in results)
 
 
 class TestHostileFiles:

@@ -59,7 +59,7 @@ def test_range_of_either_sign_is_estimated(offset):
     with collected() as notes:
         found = SemiGlobal().estimate(views).disparity_px
     assert share_within(found, truth, 0.5) >= 0.98
-    assert any("as none was found up to 192 px; for nearer things write `max_disparity_px`" in each for each in notes)
+    assert any("as none was found up to 192 px; for nearer things write `max_disparity_px`" in note for note in notes)
 
 
 def test_identical_views_are_not_matched():
@@ -67,7 +67,7 @@ def test_identical_views_are_not_matched():
     with collected() as notes:
         found = SemiGlobal().estimate(Views(left, left.copy()))
     assert (found.disparity_px == 0).all()
-    assert any("identical" in each for each in notes)
+    assert any("identical" in note for note in notes)
     matched = SemiGlobal(skip_identical=False, max_disparity_px=16).estimate(Views(left, left.copy()))
     assert share_within(matched.disparity_px, np.zeros(left.shape), 0.5) >= 0.99
 
@@ -79,12 +79,12 @@ def test_strips_without_texture_are_not_matched():
         each[:256] = 90
     with collected() as notes:
         found = SemiGlobal(max_disparity_px=32).estimate(Views(*pair))
-    assert any("no texture" in each for each in notes)
+    assert any("no texture" in note for note in notes)
     assert (found.confidence[:250] == 0).all()
     assert share_within(found.disparity_px[264:], truth[264:], 0.5) >= 0.98
     with collected() as notes:
         SemiGlobal(max_disparity_px=32, skip_flat=False).estimate(Views(*pair))
-    assert not any("no texture" in each for each in notes)
+    assert not any("no texture" in note for note in notes)
 
 
 def test_preview_at_half_resolution_has_the_full_size():
@@ -92,7 +92,7 @@ def test_preview_at_half_resolution_has_the_full_size():
     with collected() as notes:
         found = SemiGlobal(max_disparity_px=48, resolution="half").estimate(views)
     assert found.disparity_px.shape == truth.shape
-    assert any("full resolution" in each for each in notes)
+    assert any("full resolution" in note for note in notes)
     assert share_within(found.disparity_px, truth, 1.0) >= 0.96
 
 
@@ -106,7 +106,7 @@ def test_noisy_pair_gets_another_cost():
     with collected() as notes:
         chosen = SemiGlobal(max_disparity_px=32).estimate(Views(*noisy)).disparity_px
     sharp = SemiGlobal(max_disparity_px=32, cost="sharp").estimate(Views(*noisy)).disparity_px
-    assert any(each.startswith("cost ") for each in notes)
+    assert any(note.startswith("cost ") for note in notes)
     assert share_within(chosen, truth, 1.0) > share_within(sharp, truth, 1.0)
 
 
@@ -117,11 +117,11 @@ def test_grey_levels_are_compared_at_equal_exposure_only(effort):
     levels = SemiGlobal(max_disparity_px=32, cost="levels", effort=effort)
     with collected() as notes:
         alike = SemiGlobal(max_disparity_px=32, effort=effort).estimate(views)
-    assert not any("grey levels" in each for each in notes)
+    assert not any("grey levels" in note for note in notes)
     assert alike.digest() == levels.estimate(views).digest()
     with collected() as notes:
         other = SemiGlobal(max_disparity_px=32, effort=effort).estimate(darker)
-    assert any("skipped: comparing grey levels" in each for each in notes)
+    assert any("skipped: comparing grey levels" in note for note in notes)
     misled = levels.estimate(darker)
     assert share_within(other.disparity_px, truth, 0.5) > share_within(misled.disparity_px, truth, 0.5)
 

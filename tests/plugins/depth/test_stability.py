@@ -37,9 +37,9 @@ FROM_ONE_PICTURE = ("cues", "luminance")
 OTHERS_ANSWERS = ("auto", "onnx")
 """Methods that forward to others, or to the user's network."""
 METHODS = [
-    each.name
-    for each in default_registry().listings
-    if (each.kind, each.distribution) == ("depth", "tangible-images") and each.name not in OTHERS_ANSWERS
+    listing.name
+    for listing in default_registry().listings
+    if (listing.kind, listing.distribution) == ("depth", "tangible-images") and listing.name not in OTHERS_ANSWERS
 ]
 SLOW_PEERS = {"kornia-zncc", "kornia-report", "report"}
 """Methods that others replace, and that take nine tenths of the time of all: in the nightly tests."""
@@ -249,6 +249,6 @@ def test_method_on_a_case_keeps_its_bound(case: str, name: str):
 def test_simultaneous_calls_are_independent(name: str):
     method = load_method("depth", name)()
     pairs = [planes().views, border().views, jump().views] * 2
-    alone = [method.estimate(each).digest() for each in pairs[:3]] * 2
+    alone = [method.estimate(pair).digest() for pair in pairs[:3]] * 2
     with ThreadPoolExecutor(3) as pool:
         assert [each.digest() for each in pool.map(method.estimate, pairs)] == alone

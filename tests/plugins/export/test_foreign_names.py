@@ -19,7 +19,7 @@ def test_page_and_solid_come_out_whatever_the_file_is_called(tmp_path: Path, nam
     Image.fromarray(HALVES).save(tmp_path / f"{name}.png")
     done = tangible("export", f"{name}.png", "--to", "swell,stl", "--out", "out", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert {each.suffix for each in (tmp_path / "out").iterdir()} >= {".svg", ".pdf", ".stl"}
+    assert {path.suffix for path in (tmp_path / "out").iterdir()} >= {".svg", ".pdf", ".stl"}
     assert ("the title is left out" in done.stderr) is (name == "家")
 
 

@@ -121,7 +121,7 @@ def test_heights_saved_with_8_bits_keep_their_scale(tmp_path: Path):
     Image.fromarray(np.dstack([eight] * 3)).save(files["png"])
     found = read(files["png"])
     assert np.abs(found.relief.height_m - relief.height_m).max() < 0.0088 / 255 * 0.51
-    assert any("its heights are in steps of 0.035 mm" in each for each in found.scene.notes)
+    assert any("its heights are in steps of 0.035 mm" in note for note in found.scene.notes)
 
 
 def test_heights_that_were_painted_over_are_told(tmp_path: Path):
@@ -132,7 +132,7 @@ def test_heights_that_were_painted_over_are_told(tmp_path: Path):
     found = read(files["png"])
     expected_mm = 1.2 + 8.8 * 40_000 / 65_535
     assert found.relief.height_m.max() == pytest.approx(expected_mm / 1e3, abs=TENTH_UM)
-    assert any(f"its highest place is {expected_mm:.4g} mm, and was 10 mm" in each for each in found.scene.notes)
+    assert any(f"its highest place is {expected_mm:.4g} mm, and was 10 mm" in note for note in found.scene.notes)
 
 
 @pytest.mark.parametrize("factor", [25.5, 0.1])
@@ -158,4 +158,4 @@ def test_heights_under_another_name_are_told_to_lose_their_size(tmp_path: Path):
     files = write(tmp_path, bumps())
     for ending in ("png", "json"):
         files[ending].rename(tmp_path / f"copy.{ending}")
-    assert any("copy.json describes hills-heights.png" in each for each in read(tmp_path / "copy.png").scene.notes)
+    assert any("copy.json describes hills-heights.png" in note for note in read(tmp_path / "copy.png").scene.notes)

@@ -21,7 +21,7 @@ from tangible_export.pins import Pins
 
 
 def heights_in(files) -> np.ndarray:
-    [path] = [each for each in files if each.suffix == ".json" and "graphic" not in each.name]
+    [path] = [file for file in files if file.suffix == ".json" and "graphic" not in file.name]
     return np.array(json.loads(path.read_text())["heights"])
 
 
@@ -133,8 +133,8 @@ def test_pins_hexadecimal_digits_fit_dot_pad(tmp_path):
     nibbles = np.zeros(60 * 10, int)
     for row, column in np.argwhere(up):
         nibbles[(column ^ 1) + row // 4 * 60] |= 1 << row % 4
-    [digits] = [each.read_text() for each in files if each.suffix == ".hex"]
-    assert digits == "".join(f"{each:X}" for each in nibbles)
+    [digits] = [file.read_text() for file in files if file.suffix == ".hex"]
+    assert digits == "".join(f"{nibble:X}" for nibble in nibbles)
     assert not [each for each in Pins().write(work_of("coffee", Pins()), tmp_path / "b") if each.suffix == ".hex"]
 
 
@@ -145,7 +145,7 @@ def test_pins_svg_alpha_equals_the_pins(tmp_path, display):
     pins = Pins(display=display)
     files = pins.write(work_of("astronaut", pins), tmp_path / "astronaut")
     heights = heights_in(files)
-    [svg] = [each for each in files if each.suffix == ".svg"]
+    [svg] = [file for file in files if file.suffix == ".svg"]
     assert np.array_equal(alpha(svg, *heights.shape[::-1]) > 0, heights > 0)
 
 
@@ -156,18 +156,18 @@ def test_pins_svg_layers_are_named_parts(tmp_path):
     files = Pins().write(
         labels_work(labels, ("sea & <sky>", ""), title="Bay & <isle>", language="de"), tmp_path / "map"
     )
-    [svg] = [each for each in files if each.suffix == ".svg"]
+    [svg] = [file for file in files if file.suffix == ".svg"]
     root = ElementTree.parse(svg).getroot()
     assert root.get("viewBox") == "0 0 96 40"
     assert [each.tag.rpartition("}")[2] for each in root] == ["title", "g", "g"]
     assert [each.get("data-image-layer") for each in root[1:]] == ["layer-1", "layer-2"]
     assert [each.get("aria-label") for each in root[1:]] == ["sea & <sky>", "Teil 2"]
-    head = json.loads(next(each for each in files if each.name == "map-monarch.json").read_text())
+    head = json.loads(next(file for file in files if file.name == "map-monarch.json").read_text())
     assert head.pop("heights")
     assert [*head.values()] == ["Bay & <isle>", "de", "monarch", 96, 40, 1, ["sea & <sky>", "Teil 2"]]
     assert root[0].text == "Bay & <isle>"
     assert all(len(each) for each in root[1:])  # both sides of a border have it
-    [content] = [json.loads(each.read_text()) for each in files if each.name.endswith("-graphic.json")]
+    [content] = [json.loads(file.read_text()) for file in files if file.name.endswith("-graphic.json")]
     assert content == {"graphic": f"data:image/svg+xml;base64,{base64.b64encode(svg.read_bytes()).decode()}"}
 
 
@@ -176,7 +176,7 @@ def test_pins_note_names_part_without_a_pin(tmp_path):
     labels[:, 300:], labels[10:12, 10:12] = 1, 2
     with collected() as notes:
         files = Pins().write(labels_work(labels, ("left", "right", "speck")), tmp_path / "map")
-    [svg] = [each for each in files if each.suffix == ".svg"]
+    [svg] = [file for file in files if file.suffix == ".svg"]
     assert [layer.get("aria-label") for layer in ElementTree.parse(svg).getroot()[1:]] == ["left", "right"]
     assert notes == ["too small for a pin: speck", "60 x 40 of 96 x 40 pins; 1 % are up"]
 

@@ -190,7 +190,7 @@ class TestRim:
         with collected() as notes:
             mesh = write_and_read(Stl(rim_m=rim_mm / 1000), sample, tmp_path)
         assert is_closed(mesh)
-        assert any("no room for the title and the corner mark" in each for each in notes) == (rim_mm < 4)
+        assert any("no room for the title and the corner mark" in note for note in notes) == (rim_mm < 4)
         wide = 50 + 2 * (rim_mm if rim_mm > 0.1 else 0)
         assert mesh.vertices[:, 0].max() == pytest.approx(wide, abs=1e-3)
 
@@ -233,7 +233,7 @@ class TestNotes:
             mesh = write_and_read(bare(Stl), sample, tmp_path)
         off = np.abs(from_above(mesh, *nodes(sample))[::-1] - 1.5 - 1000 * sample.relief.height_m).max()
         assert is_closed(mesh) and len(mesh.triangles) < 1000
-        assert any(f"the solid is off by up to {off:.2g} mm, as it would take more than 500" in each for each in notes)
+        assert any(f"the solid is off by up to {off:.2g} mm, as it would take more than 500" in note for note in notes)
 
     @pytest.mark.parametrize("turned", [False, True])
     @pytest.mark.parametrize("rows", [2, 40])

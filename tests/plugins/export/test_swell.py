@@ -39,11 +39,11 @@ def exported(request, tmp_path_factory) -> tuple[str, tuple[Path, ...], list[str
 
 def svgs(files) -> list[Path]:
     """The pages for the heater, without the copy in ink."""
-    return [each for each in files if each.suffix == ".svg" and not each.stem.endswith("-ink")]
+    return [file for file in files if file.suffix == ".svg" and not file.stem.endswith("-ink")]
 
 
 def named(files, ending: str) -> Path:
-    return next(each for each in files if each.name.endswith(ending))
+    return next(file for file in files if file.name.endswith(ending))
 
 
 def halves(labels=(0, 1), shape=(300, 400)) -> np.ndarray:
@@ -95,7 +95,7 @@ def test_page_marks_keep_the_gap_of_a_finger(exported):
 
 def test_key_lists_every_part_with_letter_and_fill(exported):
     _, files, _ = exported
-    picture, *keys = (ElementTree.parse(each).getroot() for each in svgs(files))
+    picture, *keys = (ElementTree.parse(svg).getroot() for svg in svgs(files))
     letters, fill_of = {}, {}
     for area in picture:
         if (letter := area.find("./*[@data-mark='braille']")) is not None:
@@ -136,7 +136,7 @@ def test_ink_copy_has_names_and_letters_where_the_parts_are_and_a_scale(tmp_path
     work = labels_work(halves(), ("land", "sea <1> & $x$"), title="Coast", language="de")
     files = Swell().write(work, tmp_path / "map")
     page_root, ink = (ElementTree.parse(each).getroot() for each in (files[0], named(files, "-swell-ink.svg")))
-    for svg in (each for each in files if each.suffix == ".svg"):
+    for svg in (file for file in files if file.suffix == ".svg"):
         root = ElementTree.parse(svg).getroot()
         assert {root.get("lang"), root.get("{http://www.w3.org/XML/1998/namespace}lang")} == {"de"}, svg.name
     texts = {each.text: (float(each.get("x")), float(each.get("y"))) for each in ink.iterfind("{*}text")}
@@ -144,7 +144,7 @@ def test_ink_copy_has_names_and_letters_where_the_parts_are_and_a_scale(tmp_path
         name, letter = area.get("aria-label"), area.find("./*[@data-mark='braille']").get("aria-label")
         at = np.array(re.findall(r"[ML]([\d.]+) ([\d.]+)", area.find("./*[@data-mark='outline']").get("d")), float)
         assert (at.min(axis=0) < texts[f"{letter} {name}"]).all() and (texts[f"{letter} {name}"] < at.max(axis=0)).all()
-    assert {"Coast", "5 cm"} < texts.keys() and any("nicht schwellen" in each for each in texts)
+    assert {"Coast", "5 cm"} < texts.keys() and any("nicht schwellen" in text for text in texts)
     (scale,) = re.findall(r"M([\d.]+) [\d.]+L([\d.]+) ", ink.find(".//*[@data-mark='scale']").get("d"))
     assert float(scale[1]) - float(scale[0]) == 50
     words = ["pdftotext", "-layout", str(named(files, "-swell-ink.pdf")), "-"]
@@ -240,14 +240,14 @@ def test_page_unreadable_by_finger_is_refused(tmp_path, labels, options, message
 def test_neighbours_that_feel_the_same_are_a_warning(tmp_path, monkeypatch, caplog):
     monkeypatch.setattr(page, "choose_fills", lambda neighbours, *_: (["blank"] * len(neighbours), [(0, 1)]))
     Swell().write(labels_work(halves(), ("sea", "land")), tmp_path / "map")
-    [warning] = [each for each in caplog.records if "neighbours with the same fill" in each.getMessage()]
+    [warning] = [record for record in caplog.records if "neighbours with the same fill" in record.getMessage()]
     assert warning.levelname == "WARNING" and {"sea", "land"} <= set(warning.getMessage().split())
 
 
 def test_title_without_braille_is_left_out_of_page_and_key(tmp_path):
     with collected() as notes:
         page, key, *_ = Swell().write(labels_work(halves(), ("sea", "land"), title="東京"), tmp_path / "map")
-    assert any(each.startswith("the title is left out: '東京'") for each in notes)
+    assert any(note.startswith("the title is left out: '東京'") for note in notes)
     plain, plain_key, *_ = Swell().write(labels_work(halves(), ("sea", "land"), title=""), tmp_path / "plain")
     assert page.read_text().replace("東京", "") == plain.read_text()
     assert key.read_text() == plain_key.read_text()

@@ -38,7 +38,7 @@ def stripes(*columns: int, rows: int = 80) -> np.ndarray:
 
 
 def told(verdicts: Sequence[Verdict]) -> list[tuple[str, str, str, str]]:
-    return [(each.check, each.verdict, each.of, each.says) for each in verdicts]
+    return [(verdict.check, verdict.verdict, verdict.of, verdict.says) for verdict in verdicts]
 
 
 def test_steps_of_pairs_have_their_place_and_what_is_lacking():
@@ -77,7 +77,7 @@ def test_borders_no_longer_than_a_gap_are_not_judged(rows: int, judged: bool):
 def test_the_worst_of_many_pairs_have_a_verdict_each_and_the_others_one():
     """Ten stripes, each a little higher than the one before, by 0.1 mm and by ever a hundredth more."""
     heights_m = np.cumsum([0.001, *(0.0001 + 0.00001 * ((7 * n) % 9) for n in range(9))])
-    found = [each for each in steps(given(stripes(*[40] * 10), heights_m=heights_m)) if each.check == "step"]
+    found = [step for step in steps(given(stripes(*[40] * 10), heights_m=heights_m)) if step.check == "step"]
     assert [each.value for each in found] == pytest.approx([0.0001, 0.00011, 0.00012, 0.00013, 0.00014], rel=1e-3)
     assert [each.of.split(",")[0] for each in found[:2]] == ["part 2 next to part 1", "part 6 next to part 5"]
     assert (found[-1].of, found[-1].says) == (
@@ -85,7 +85,7 @@ def test_the_worst_of_many_pairs_have_a_verdict_each_and_the_others_one():
         "5 more pairs of neighbours are of hardly another height",
     )
     assert len(found[-1].at) == 5
-    five = [each for each in steps(given(stripes(*[40] * 6), heights_m=heights_m[:6])) if each.check == "step"]
+    five = [step for step in steps(given(stripes(*[40] * 6), heights_m=heights_m[:6])) if step.check == "step"]
     assert len(five) == 5 and "more" not in five[-1].of
 
 
@@ -113,7 +113,7 @@ def test_narrow_and_small_parts_have_the_width_that_cures_them():
     assert narrow.of.startswith("part 2 (mast), ")
     assert narrow.says.startswith("part 2 (mast) is too narrow for a finger ")
     assert narrow.value == pytest.approx(0.0025, rel=1e-2)
-    assert [(each.key, each.value, each.towards) for each in narrow.changes] == [
+    assert [(change.key, change.value, change.towards) for change in narrow.changes] == [
         ("simplify.gap_m", "0.0032", "at least"),
         ("workspace.width_m", "0.077", "at least"),
     ]
@@ -143,5 +143,5 @@ def test_shape_of_a_part_that_holds_a_finger_needs_half_an_inch(side: int, grade
 def test_a_width_of_more_than_two_metres_is_not_proposed():
     wide = LegibilityInput(PROFILES["swell"], given(stripes(110, 10, 120)).parts, 0.0001, 2.0, None, None, (), None)
     (narrow,) = gap(wide)
-    assert [each.key for each in narrow.changes] == ["simplify.gap_m"]
+    assert [change.key for change in narrow.changes] == ["simplify.gap_m"]
     assert narrow.cure == "`simplify.gap_m: 0.0032`, or have fewer and larger parts"

@@ -53,7 +53,7 @@ def test_verdict_has_part_place_bound_source_and_cure():
     ((x, y),) = small.at
     assert 100 <= 600 * x <= 140
     assert 100 <= 400 * y <= 140
-    assert [(each.key, each.setting) for each in small.changes] == [
+    assert [(change.key, change.setting) for change in small.changes] == [
         ("simplify.part_m", 0.0064),
         ("workspace.width_m", pytest.approx(0.1, abs=0.005)),
     ]
@@ -68,7 +68,7 @@ def test_legibility_width_of_the_cure_passes():
     parts = PartMap(labels, (0, 1, 2))
     found = legibility("swell", parts, width_m(parts))
     (wrong,) = [each for each in found if each.verdict == "illegible"]
-    wider = next(each.setting for each in wrong.changes if each.key == "workspace.width_m")
+    wider = next(change.setting for change in wrong.changes if change.key == "workspace.width_m")
     assert legibility("swell", parts, wider).readable
     assert not legibility("swell", parts, 0.97 * wider).readable
 
@@ -115,4 +115,4 @@ def test_source_of_a_bound_says_when_it_is_a_convention_of_ours():
 
 def test_sizes_of_an_exporter_are_checked_by_the_same_rules():
     assert sizes("print", base=0.0015, line=0.0011, braille_height=DOT_HEIGHT_M).grade == "ok"
-    assert [each.check for each in sizes("print", base=0.0005, line=0.002) if each.verdict == "illegible"] == ["base"]
+    assert [size.check for size in sizes("print", base=0.0005, line=0.002) if size.verdict == "illegible"] == ["base"]

@@ -168,7 +168,11 @@ def test_full_disk_is_told(tmp_path: Path) -> None:
 
 
 def test_task_stands_for_its_recommended_networks(models: Path) -> None:
-    assert [each.name for each in chosen_networks(["faces", "figure"])] == ["face-finder", "face-points", "u2netp"]
+    assert [chosen_network.name for chosen_network in chosen_networks(["faces", "figure"])] == [
+        "face-finder",
+        "face-points",
+        "u2netp",
+    ]
     with pytest.raises(ConfigError, match="did you mean"):
         chosen_networks(["figur"])
 
@@ -192,7 +196,7 @@ def test_commands(models: Path, tmp_path: Path) -> None:
         done = tangible("networks", *words, cwd=tmp_path)
         return done.returncode, done.stdout
 
-    assert {each["name"]: each["state"] for each in json.loads(called("--json")[1])}["own"] == "absent"
+    assert {load["name"]: load["state"] for load in json.loads(called("--json")[1])}["own"] == "absent"
     assert called("add", "own")[0] == 2  # there is no terminal to ask on
     assert called("add", "own", "--json")[0] == 2, "nor does a program fetch without --yes"
     assert called("add", "own", "--from", package)[0] == 0

@@ -99,7 +99,7 @@ class TestSection:
         labels = (np.indices((100, 800))[1] > 400).astype(np.int32)
         with collected() as notes:
             GROOVE.felt(HapticSurface(Relief(np.full((100, 800), HIGH_M, np.float32), (SIDE_M, SIDE_M)), labels))
-        assert ["3 mm is 3.8 cells wide" in each for each in notes] == [True]
+        assert ["3 mm is 3.8 cells wide" in note for note in notes] == [True]
 
 
 class TestForces:

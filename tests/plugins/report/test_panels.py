@@ -43,7 +43,7 @@ class TestTime:
         draw_force_time(axes, recording(line(50, np.linspace(0.005, -0.002, 50)), np.zeros((50, 3))), level())
         lower = axes.child_axes[1]
         assert lower.get_ylim()[0] == pytest.approx(-2)
-        (ground,) = (each for each in lower.collections if each.get_label() == "surface")
+        (ground,) = (collection for collection in lower.collections if collection.get_label() == "surface")
         assert ground.get_paths()[0].vertices[:, 1].max() == pytest.approx(4)
 
 
@@ -60,9 +60,9 @@ class TestForce:
         force_n = np.zeros((100, 3))
         force_n[:, 1], force_n[50, 1] = 0.5, 5
         draw_force_map(axes, level(), recording(line(100), force_n))
-        (arrows,) = (each for each in axes.collections if isinstance(each, Quiver))
+        (arrows,) = (collection for collection in axes.collections if isinstance(collection, Quiver))
         assert sorted({*np.round(arrows.V, 9).tolist()}) == [0.5, 1]
-        (key,) = (each for each in axes.get_children() if isinstance(each, QuiverKey))
+        (key,) = (child for child in axes.get_children() if isinstance(child, QuiverKey))
         assert key.text.get_text() == "0.5 N, cut at 1 N"
 
 
@@ -88,7 +88,7 @@ class TestRelief:
     def test_arrows_point_down_the_slope(self, axes: Axes):
         heights = np.linspace(0, 0.02, 40, dtype=np.float32)[None].repeat(20, axis=0)
         draw_relief(axes, Relief(heights, (0.08, 0.04)))
-        [arrows] = [each for each in axes.collections if hasattr(each, "U")]
+        [arrows] = [collection for collection in axes.collections if hasattr(collection, "U")]
         assert (arrows.U < -0.2).all() and np.abs(arrows.V).max() < 1e-6
 
 

@@ -335,7 +335,7 @@ class TestSheet:
         ]
         _, way, time = figure.axes
         np.testing.assert_allclose(way.lines[0].get_xydata(), 1000 * hand.position_m[:, :2])
-        (quiver,) = [each for each in way.collections if isinstance(each, Quiver)]
+        (quiver,) = [collection for collection in way.collections if isinstance(collection, Quiver)]
         assert len(quiver.U) == arrows
         np.testing.assert_allclose(np.stack([quiver.U, quiver.V, quiver.get_array()]).T, [[0.1, -0.2, 0.5]] * arrows)
         touched = 1000 * hand.position_m[hand.force_n.any(axis=1), :2]
@@ -432,7 +432,7 @@ class TestEveryShape:
             panels = [axes for axes in figure.axes if round(axes.get_position().y1, 6) == row]
             ends = [axes.get_position().x1 for axes in panels]
             ends += [
-                bar.yaxis.label.get_window_extent().x1 / figure.bbox.x1 for each in panels for bar in each.child_axes
+                bar.yaxis.label.get_window_extent().x1 / figure.bbox.x1 for panel in panels for bar in panel.child_axes
             ]
             assert max(ends) > 0.65
 

@@ -51,7 +51,7 @@ def test_text_with_named_parts_describes_the_surface(tmp_path: Path):
     merged = np.where(LABELS < 2, 0, 3).astype(np.int32)
     texts, notes = write_texts(work("ciel", "", "île", "eau", simplified=merged), Text(), tmp_path)
     assert texts.keys() == {".txt", ".html"}
-    assert [each.split(".")[0] for each in items(texts[".txt"])] == ["- eau", "- île", "- partie 2", "- ciel"]
+    assert [item.split(".")[0] for item in items(texts[".txt"])] == ["- eau", "- île", "- partie 2", "- ciel"]
     assert "Le long du bord inférieur" in items(texts[".txt"])[0]
     assert '<html lang="fr">' in texts[".html"]
     assert notes == []
@@ -75,7 +75,7 @@ def test_text_counts_the_people_that_networks_see_in_front(tmp_path: Path):
 def test_text_without_names_describes_the_simplified_parts(tmp_path: Path):
     merged = np.where(LABELS < 2, 0, 3).astype(np.int32)
     texts, notes = write_texts(work(simplified=merged), Text(), tmp_path)
-    assert [each[:11] for each in items(texts[".txt"])] == ["- partie 4.", "- partie 1."]
+    assert [item[:11] for item in items(texts[".txt"])] == ["- partie 4.", "- partie 1."]
     assert notes == ["no part has a name, so parts are described by number; `tangible parts` shows them for naming"]
     texts, notes = write_texts(work(simplified=None), Text(), tmp_path)
     assert items(texts[".txt"]) == [] and "<ul>" not in texts[".html"] and notes == []
@@ -132,4 +132,4 @@ def test_pipeline_exports_text(tmp_path: Path):
     lines = text.read_text().splitlines()
     assert lines[0] == "Rampe"
     assert lines[2].startswith("Eine Fläche, 240 mm breit und 160 mm lang")
-    assert [each[:9] for each in items(text.read_text())] == ["- unten. ", "- oben. A"]
+    assert [item[:9] for item in items(text.read_text())] == ["- unten. ", "- oben. A"]

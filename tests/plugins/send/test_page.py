@@ -78,7 +78,7 @@ def test_policy_allows_this_script_and_style_alone(tmp_path: Path):
     (path,) = Page().write(picture_to_send(), tmp_path / "it")
     page = Elements(path.read_text("utf-8"))
     [policy] = [attrs["content"] for _, attrs, _ in page.found if attrs.get("http-equiv") == "Content-Security-Policy"]
-    allowed = dict(each.strip().split(" ", 1) for each in str(policy).split(";"))
+    allowed = dict(word.strip().split(" ", 1) for word in str(policy).split(";"))
     for kind, text in (("script", page.texts("script")[1]), ("style", page.texts("style")[0])):
         assert allowed.pop(f"{kind}-src") == f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
     assert allowed == {

@@ -175,6 +175,6 @@ def test_command_tells_how_many_participants_are_needed(
     study_of(tmp_path, "parts")
     simulate_study(tmp_path / "study.yaml", sets=["difference=1"], power=True, as_json=True)
     needs = json.loads(capsys.readouterr().out)
-    assert [each["repetitions"] for each in needs] == [3, 6, 12, 24]
+    assert [need["repetitions"] for need in needs] == [3, 6, 12, 24]
     assert needs[0]["participants"] > needs[-1]["participants"] > 2
     assert not (tmp_path / "out").exists()

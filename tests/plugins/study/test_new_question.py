@@ -119,10 +119,10 @@ def _compared(node: ast.Compare | ast.MatchValue | ast.Dict) -> list[ast.expr | 
     if isinstance(node, ast.MatchValue):
         return [node.value]
     if isinstance(node, ast.Dict):
-        known = [each for each in node.keys if isinstance(each, ast.Constant) and each.value in QUESTIONS]
+        known = [key for key in node.keys if isinstance(key, ast.Constant) and key.value in QUESTIONS]
         return list(known) if len(known) > 1 else []
     sides = [node.left, *node.comparators]
-    return [each for side in sides for each in (side.elts if isinstance(side, ast.Tuple | ast.List) else [side])]
+    return [elt for side in sides for elt in (side.elts if isinstance(side, ast.Tuple | ast.List) else [side])]
 
 
 def test_each_kind_has_a_line_in_the_table_of_the_page():

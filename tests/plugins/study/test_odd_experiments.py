@@ -36,9 +36,7 @@ def answers(counts: tuple[int, ...], trials: int, condition: str = "one") -> lis
 
 
 def make_rows(result: Result, whom: str, condition: str = "one") -> dict[str, Row]:
-    return {
-        each.what.measure: each for each in result.rows if (each.participant, each.what.condition) == (whom, condition)
-    }
+    return {row.what.measure: row for row in result.rows if (row.participant, row.what.condition) == (whom, condition)}
 
 
 @pytest.mark.parametrize(("counts", "trials"), EXPERIMENTS.values(), ids=EXPERIMENTS)
@@ -61,7 +59,7 @@ def test_where_all_or_none_is_chosen_there_is_a_bound_and_no_point_of_equality()
     assert sentences(alone)[0] == (
         f"With one, what feels equal to the standard, 0.002 m, is below {below.high:.3g} m (95 %)."
     )
-    assert not any("is noticed" in each or "it is a guess" in each for each in sentences(alone))
+    assert not any("is noticed" in sentence or "it is a guess" in sentence for sentence in sentences(alone))
 
 
 def test_right_answers_alone_leave_an_upper_bound_of_the_threshold():

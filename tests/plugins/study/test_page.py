@@ -51,8 +51,8 @@ def test_whole_study_is_answered_on_the_page(tmp_path: Path):
             assert done.result() == 7
     assert {"Welcher Abschnitt war anders als die übrigen?", "Abschnitt 3."} <= set(said)
     answers = read_answers(tmp_path / "out/sub-P1/beh/sub-P1_task-small_beh.tsv")
-    assert [each.response for each in answers if each.comparison == "odd"] == ["3"] * 5
-    assert [each.response for each in answers if each.comparison == "rate"] == ["7"] * 2
+    assert [answer.response for answer in answers if answer.comparison == "odd"] == ["3"] * 5
+    assert [answer.response for answer in answers if answer.comparison == "rate"] == ["7"] * 2
 
 
 def test_stop_ends_the_force_of_the_interval_and_leave_the_study():

@@ -55,15 +55,15 @@ def run(file: StudyFile, participant: int = 0, seed: int = 1, most: int = 1000) 
 
 def test_each_position_and_each_odd_one_come_equally_often(file: StudyFile):
     tests = [trial for trial, _ in run(file) if trial.comparison == "odd" and trial.phase == "test"]
-    assert set(Counter((each.position, each.intervals[each.position - 1].condition) for each in tests).values()) == {2}
-    assert all(Counter(each.intervals).most_common()[0][1] == 2 for each in tests)
+    assert set(Counter((test.position, test.intervals[test.position - 1].condition) for test in tests).values()) == {2}
+    assert all(Counter(test.intervals).most_common()[0][1] == 2 for test in tests)
     levels = [trial for trial, _ in run(file) if trial.comparison == "levels"]
-    assert set(Counter((each.level, each.position) for each in levels).values()) == {2}
+    assert set(Counter((level.level, level.position) for level in levels).values()) == {2}
 
 
 def test_same_and_different_pairs_come_equally_often(file: StudyFile):
     tests = [trial for trial, _ in run(file) if trial.comparison == "differ" and trial.phase == "test"]
-    pairs = Counter((*(each.condition for each in trial.intervals), trial.target) for trial in tests)
+    pairs = Counter((*(interval.condition for interval in trial.intervals), trial.target) for trial in tests)
     assert pairs == {
         ("one", "two", "different"): 2, ("two", "one", "different"): 2,
         ("one", "one", "same"): 2, ("two", "two", "same"): 2,

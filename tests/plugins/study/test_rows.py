@@ -144,7 +144,7 @@ def test_conditions_differ_in_the_point_of_equality_and_in_what_is_noticed():
     """One curve is steep about 2, the other shallow about 2.25; the second participant answered at one level alone."""
     higher = Comparison(name="c", question="higher", levels=(1.0, 1.5, 2.0, 2.5, 3.0), standard=2.0, unit="N")
     given = {"S01": [*at_levels("one", 0, 1, 10, 19, 20), *at_levels("two", 1, 4, 8, 12, 17)]}
-    given["S02"] = [each for each in at_levels("one", 0, 1, 10, 19, 20) if each.level == 2.0]
+    given["S02"] = [at_level for at_level in at_levels("one", 0, 1, 10, 19, 20) if at_level.level == 2.0]
     result = analyse_comparison(higher, given)
     rows = table(result)
     for measure in ("point of equality", "just noticeable difference"):
@@ -157,20 +157,20 @@ def test_conditions_differ_in_the_point_of_equality_and_in_what_is_noticed():
     assert noticed == pytest.approx(0.6744898 / 3.2897073 * width, rel=1e-5)
     assert rows["point of equality", "one", "", "S01"].chance == 2.0
     assert rows["point of equality", "one", "", "S01"].unit == rows["width", "one", "", "S01"].unit == "N"
-    assert any("S02/one has answers at one level only" in each for each in result.notes)
+    assert any("S02/one has answers at one level only" in note for note in result.notes)
     with pytest.raises(TangibleError, match="c: has answers at one level only; run it to the end"):
         analyse_comparison(higher, {"S02": given["S02"]})
 
 
 def test_threshold_of_a_difference_has_no_noticeable_difference_and_may_be_a_guess():
     same = Comparison(name="c", question="same", levels=(1.0, 1.5, 2.5, 3.0), standard=2.0, unit="N")
-    some = [each for each in at_levels("one", 12, 8, 0, 8, 12) if each.level != 2.0]
+    some = [at_level for at_level in at_levels("one", 12, 8, 0, 8, 12) if at_level.level != 2.0]
     result = analyse_comparison(same, {"S01": some})
     assert {(row.what.measure, row.unit) for row in result.rows} == {("threshold", "N"), ("width", "ln")}
     assert result.curves["S01/one"].chance == 1 / 3 and result.main == "threshold"
     (threshold,) = (row.estimate.value for row in result.rows if row.what.measure == "threshold")
     outside = not 0.5 <= threshold <= 1.0
-    assert any("is outside the levels that were presented" in each for each in result.notes) is outside
+    assert any("is outside the levels that were presented" in note for note in result.notes) is outside
 
 
 @pytest.mark.parametrize(("first", "noted"), [(15, False), (16, True), (5, True), (6, False)])
@@ -180,7 +180,7 @@ def test_answers_that_favour_an_interval_are_noted(first: int, noted: bool):
     pair = Comparison(name="c", question="rougher", conditions=("one", "two"))
     notes = analyse_comparison(pair, {"S01": given}).notes
     assert [
-        each.startswith(f"The first interval was chosen in {100 * first / 21:.0f} % of the trials") for each in notes
+        note.startswith(f"The first interval was chosen in {100 * first / 21:.0f} % of the trials") for note in notes
     ] == ([True] if noted else [])
 
 
@@ -198,7 +198,7 @@ def test_three_conditions_are_on_a_scale_with_wins_on_the_right_side():
     assert rows["difference of scale value", "two", "one", "S01"].estimate.value == pytest.approx(scale[1] - scale[0])
     assert ("difference of scale value", "one", "two", "S01") not in rows
     assert (result.main, rows["scale value", "one", "", "S01"].trials) == ("scale value", 30)
-    assert [each for each in result.notes if "half a choice" in each] == []
+    assert [note for note in result.notes if "half a choice" in note] == []
     assert rows["proportion chosen", "two", "three", "S01"].count == 4
 
 

@@ -118,7 +118,7 @@ def test_session_has_breaks_and_times_and_names_no_condition(study: Path, monkey
     session.wait = waits.append
     session.run()
     assert waits == [7.0, 7.0] and "3 of 7 trials" in " ".join(session.desk.said)
-    assert all(0 <= each.response_time < 60 for each in answers(study))
+    assert all(0 <= answer.response_time < 60 for answer in answers(study))
     said = " ".join(session.desk.said).lower()
     assert "interval 1" in said
     assert not [name for name in ("plain", "mellow", "stiffness", "proxy", "300", "200") if name in said]
@@ -151,9 +151,9 @@ def test_killed_session_loses_no_answer(study: Path):
     helpers = Path(sys.modules["studies"].__file__).parent
     ended = subprocess.run([sys.executable, "-c", code, str(study), str(helpers)], check=False)
     assert ended.returncode == -signal.SIGKILL
-    assert [each.trial for each in answers(study)] == [1, 2, 3]
+    assert [answer.trial for answer in answers(study)] == [1, 2, 3]
     assert sit_down(study, resume=True).run() == 7
-    assert [(each.trial, each.repeat) for each in answers(study)][3] == (4, 1)
+    assert [(answer.trial, answer.repeat) for answer in answers(study)][3] == (4, 1)
 
 
 def test_name_or_study_that_does_not_fit_the_folder_is_refused(study: Path):
@@ -197,7 +197,7 @@ def test_trial_that_the_guard_limited_is_marked_with_the_reason(study: Path):
     session = begin(stimuli.file, stimuli, "P1", out, desk, in_real_time=False)
     session.wait = lambda _: None
     session.run()
-    ratings = {each.condition: each for each in answers(study) if each.comparison == "rate"}
+    ratings = {answer.condition: answer for answer in answers(study) if answer.comparison == "rate"}
     assert (ratings["mellow"].rendered, ratings["plain"].rendered) == (False, True)
     assert "the greatest that is allowed" in ratings["mellow"].why
 

@@ -51,7 +51,7 @@ def test_shares_of_right_answers_are_those_of_theory(
 ):
     file = study_of(tmp_path, comparison)
     answers = simulate(file, make_observer(model, [*sets, "lapse=0", "spread=0"], file), 0, 7)
-    correct = [each.correct for each in answers]
+    correct = [answer.correct for answer in answers]
     assert np.mean(correct) == pytest.approx(share, abs=3.5 * (share * (1 - share) / len(correct)) ** 0.5)
     kept = count_answers(file, [answers, answers])
     assert (kept.trials, kept.training, list(kept.by_participant)) == (2 * len(answers), 0, ["S01", "S02"])

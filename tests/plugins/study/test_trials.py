@@ -42,7 +42,7 @@ def test_line_that_a_crash_cut_off_is_removed(tmp_path: Path):
     assert read_answers(tmp_path / "a.tsv") == [FIRST]
     with AnswerFile(tmp_path / "a.tsv") as table:
         table.add(Answer(**{**vars(FIRST), "trial": 2}))
-    assert [each.trial for each in read_answers(tmp_path / "a.tsv")] == [1, 2]
+    assert [answer.trial for answer in read_answers(tmp_path / "a.tsv")] == [1, 2]
 
 
 def test_full_disk_leaves_the_table_as_it_was_and_the_answer_can_be_added_again(

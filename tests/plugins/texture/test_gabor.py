@@ -55,7 +55,7 @@ def test_colour_differing_between_windows_is_used():
     picture = np.clip(two_tints(0.5 + (grain - 0.5) * 0.2), 0, 1)
     with collected() as notes:
         found = Gabor(segments=2).segment(picture)
-    assert any(each.startswith("colour used") for each in notes)
+    assert any(note.startswith("colour used") for note in notes)
     truth = np.broadcast_to(np.arange(160) // 80, (128, 160))
     assert rand_index(truth, found.labels) > 0.95
 
@@ -63,17 +63,17 @@ def test_colour_differing_between_windows_is_used():
 def test_colour_that_hardly_differs_between_windows_is_left_out():
     with collected() as notes:
         Gabor(segments=3).segment(np.stack([PICTURE, PICTURE, PICTURE * 0.999], axis=2))
-    assert any(each.startswith("colour left out") and "of white, under 0.02" in each for each in notes)
+    assert any(note.startswith("colour left out") and "of white, under 0.02" in note for note in notes)
 
 
 def test_filters_above_the_bandwidth_are_left_out():
     enlarged = cv2.GaussianBlur(cv2.resize(PICTURE, None, fx=3, fy=3, interpolation=cv2.INTER_CUBIC), (0, 0), 2)
     with collected() as notes:
         some = Gabor(segments=3).segment(enlarged)
-    assert any(each.startswith("6 of 24 filters left out") for each in notes)
+    assert any(note.startswith("6 of 24 filters left out") for note in notes)
     with collected() as notes:
         every = Gabor(segments=3, least_energy=0).segment(enlarged)
-    assert not any("filters left out" in each for each in notes)
+    assert not any("filters left out" in note for note in notes)
     assert rand_index(some.labels, every.labels) > 0.95
 
 

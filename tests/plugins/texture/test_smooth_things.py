@@ -151,7 +151,7 @@ class TestHierarchy:
     def test_every_cut_of_the_tree_divides_the_one_before(self):
         tree = Hierarchy().tree(things(0)[0])
         cuts = [tree.cut(count).labels for count in range(1, 30)]
-        assert [int(each.max()) + 1 for each in cuts] == list(range(1, 30))
+        assert [int(cut.max()) + 1 for cut in cuts] == list(range(1, 30))
         for coarse, fine in pairwise(cuts):
             assert np.unique(np.stack([fine.ravel(), coarse.ravel()]), axis=1).shape[1] == fine.max() + 1
 

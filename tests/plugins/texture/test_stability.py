@@ -20,9 +20,9 @@ from tangible_core.testing.checks import exact_variants
 from tangible_core.testing.synthetic.scenes import two_textures
 
 METHODS = [
-    each.name
-    for each in default_registry().listings
-    if (each.kind, each.distribution) == ("texture", "tangible-images")
+    listing.name
+    for listing in default_registry().listings
+    if (listing.kind, listing.distribution) == ("texture", "tangible-images")
 ]
 SLOW_PEERS = {"kornia-gabor", "kornia-gradient", "report"}
 """Methods that others replace, and that take nine tenths of the time of all: in the nightly tests."""
@@ -142,6 +142,6 @@ def test_borders_do_not_wrap_around(name: str, upright: bool):
 def test_calls_in_parallel_do_not_disturb_each_other(name: str):
     method = load_method("texture", name)()
     pictures = [two(), two()[::-1].copy(), board(4)] * 2
-    alone = [method.segment(each).digest() for each in pictures[:3]] * 2
+    alone = [method.segment(picture).digest() for picture in pictures[:3]] * 2
     with ThreadPoolExecutor(3) as pool:
         assert [each.digest() for each in pool.map(method.segment, pictures)] == alone

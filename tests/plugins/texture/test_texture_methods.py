@@ -51,7 +51,7 @@ class TestReport:
         grey, truth = quarters(400)
         with collected() as notes:
             found = Report(segments=4, seed=1, memory_mb=16).segment(grey)
-        assert any("features every 2 pixels only" in each for each in notes)
+        assert any("features every 2 pixels only" in note for note in notes)
         assert found.labels.shape == (400, 400)
         assert rand_index(found.labels, truth) > 0.9
 

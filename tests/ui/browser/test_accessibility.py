@@ -146,7 +146,7 @@ def violations(page: "Page", *within: str, colours: bool = True) -> list[str]:
     found: list[str] = []
 
     def look(where: str, rules: dict[str, Any]) -> None:
-        found.extend(f"{where}: {each}" for each in axe_finds(page, rules, within))
+        found.extend(f"{where}: {axe_find}" for axe_find in axe_finds(page, rules, within))
 
     for name, media in THEMES.items() if colours else [("light", THEMES["light"])]:
         page.emulate_media(**media)

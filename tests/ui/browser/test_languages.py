@@ -55,7 +55,7 @@ def test_the_page_in_german_has_no_english(opened: Callable[..., str], open_page
     show_everything(page)
     texts = page.evaluate(TEXTS, "body")
     assert len(texts) > 500
-    assert [each for each in texts if english_of(each) or untranslated(each, "de")] == []
+    assert [text for text in texts if english_of(text) or untranslated(text, "de")] == []
 
 
 def test_the_main_tasks_in_french_have_no_english(
@@ -74,6 +74,6 @@ def test_the_main_tasks_in_french_have_no_english(
     page.evaluate("document.querySelectorAll('.exporters .more, ul.devices').forEach((each) => each.remove())")
     texts = page.evaluate(TEXTS, "#head, #left, #strip, #bottom, #preflight, #stages, #view, #overlay-panel")
     assert len(texts) > 300
-    english = [each for each in texts if english_of(each) or untranslated(each, "fr")]
+    english = [text for text in texts if english_of(text) or untranslated(text, "fr")]
     assert not english, "\n".join(english)
     assert "partie 1" in page.locator("#description").inner_text()

@@ -40,7 +40,7 @@ def test_draft_of_a_killed_program_is_offered_once(serve, open_page, tmp_path: P
     page.evaluate("text => window.page.net.ask('edit', { text })", TEXT)
     page.wait_for_function("text => window.page.document?.text === text", arg=TEXT)
     drafts = tmp_path / "data/unsaved"
-    until(lambda: any("431" in each.read_text() for each in drafts.glob("*.json")), "the draft is kept")
+    until(lambda: any("431" in path.read_text() for path in drafts.glob("*.json")), "the draft is kept")
     first.kill()
     page.close()
     assert mine.read_text() == "scene: builtin/brick\n"
@@ -105,13 +105,13 @@ def test_tab_that_is_frozen_or_closed_gives_no_force(opened, open_page, browser,
     session = browser.new_browser_cdp_session()
     found = session.send("SystemInfo.getProcessInfo")["processInfo"]
     renderers = [each["id"] for each in found if each["type"] == "renderer"]
-    for each in renderers:
-        os.kill(each, signal.SIGSTOP)
+    for renderer in renderers:
+        os.kill(renderer, signal.SIGSTOP)
     try:
         until(lambda: not has_force(), "a tab that stands still holds the hand")
     finally:
-        for each in renderers:
-            os.kill(each, signal.SIGCONT)
+        for renderer in renderers:
+            os.kill(renderer, signal.SIGCONT)
     page.mouse.up()
     press()
     page.close()

@@ -136,8 +136,10 @@ async def test_study_of_both_laws_is_a_study_that_can_be_run(session: Session, q
     stimuli.check()
     study = stimuli.file.study
     assert (study.language, study.comparisons[0].question) == ("de", question)
-    configs = {key[1].condition: config_of_recipe(each, default_registry()) for key, each in stimuli.recipes.items()}
-    laws: Any = {name: each.render and each.render.method for name, each in configs.items()}
+    configs = {
+        key[1].condition: config_of_recipe(recipe, default_registry()) for key, recipe in stimuli.recipes.items()
+    }
+    laws: Any = {name: config.render and config.render.method for name, config in configs.items()}
     assert {name: law.stiffness_n_per_m for name, law in laws.items()} == {"penalty (a)": 400, "penalty (b)": 800}
 
 

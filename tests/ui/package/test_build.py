@@ -203,7 +203,7 @@ class TestPage:
 
     def test_page_requests_nothing_from_other_machines(self):
         text = "".join(
-            each.read_text("utf-8") for each in built_page().iterdir() if each.suffix in (".js", ".css", ".html")
+            path.read_text("utf-8") for path in built_page().iterdir() if path.suffix in (".js", ".css", ".html")
         )
         assert set(re.findall(r"(?:https?|wss?)://[\w.-]+[^\s\"'`)\\]*", text)) <= NAMES
         assert not re.search(r"""["'(]//[\w-]+\.\w""", text)

@@ -316,7 +316,11 @@ class TestSaving:
         assert pipeline.config.materials.by == kept
         if kept == "rules":
             chosen = pipeline.materials
-            assert chosen is not None and [each.name for each in chosen.materials] == ["plain", "glass", "plain"]
+            assert chosen is not None and [material.name for material in chosen.materials] == [
+                "plain",
+                "glass",
+                "plain",
+            ]
 
     @pytest.mark.parametrize(("key", "warned"), [("3", True), ("hat", False)])
     async def test_materials_by_a_number_that_moved_are_warned_of(
@@ -432,8 +436,8 @@ def kept_parcels(monkeypatch: pytest.MonkeyPatch, *methods: str) -> list[bytes]:
         kept.append(Path(made["parcel"]).read_bytes())
         Path(made["parcel"]).unlink()
 
-    for each in methods:
-        monkeypatch.setattr(Session, each, feel)
+    for method in methods:
+        monkeypatch.setattr(Session, method, feel)
     return kept
 
 

@@ -143,7 +143,7 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
     until(lambda: page.locator("#parts-editor").count() == 0, "closed")
 
     parts, labels = read_parts(photo.with_suffix(".yaml"))
-    assert {each.name for each in parts.values()} == {"wall", "ball", "table", "lamp", "door"}
+    assert {part.name for part in parts.values()} == {"wall", "ball", "table", "lamp", "door"}
     assert parts[int(labels[90, 150]) + 1].name == "ball"
     assert parts[int(labels[170, 20]) + 1].name == "table"
 
@@ -218,7 +218,7 @@ def name_part(page: "Page", name: str) -> None:
 def cross(page: "Page", x: int, y: int) -> None:
     """Bring the crosshair to a pixel, by keys, as it says itself where it is."""
     page.keyboard.press("i")
-    across, down = (int(each.split(" %")[0]) for each in page.locator("#parts-told").inner_text().split(", ")[:2])
+    across, down = (int(word.split(" %")[0]) for word in page.locator("#parts-told").inner_text().split(", ")[:2])
     steps = [(x - round(across * WIDTH / 100), "Right", "Left"), (y - round(down * HEIGHT / 100), "Down", "Up")]
     for by, forward, back in steps:
         page.keyboard.down("Shift")

@@ -170,7 +170,7 @@ class TestProposals:
             rim = proposals._rim(proposals.Window(*window), stroke, SHAPE)
             for deep in (0, 1):
                 ends = rim[deep, 5], rim[-1 - deep, 5], rim[4, deep], rim[4, -1 - deep]
-                assert [bool(each) for each in ends] == sides
+                assert [bool(end) for end in ends] == sides
             assert not rim[2:-2, 2:-2].any()
             stroke[:, 6] = True
             assert not proposals._rim(proposals.Window(*window), stroke, SHAPE)[:, 6].any()

@@ -25,7 +25,7 @@ def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCapt
     with PageServer(tmp_path, monkeypatch) as page:
         yield page
         assert page.ask("/").status == 200
-    assert not [each for each in caplog.get_records("call") if each.exc_info]
+    assert not [record for record in caplog.get_records("call") if record.exc_info]
 
 
 FRAMES = {

@@ -109,7 +109,7 @@ class TestDevices:
         monkeypatch.setattr(devices, "asyncio", SimpleNamespace(sleep=rest))
         await devices._wait(session)  # pyright: ignore[reportPrivateUsage]
         assert pauses == [1.0, 2.0, 4.0, 8.0, 8.0, 8.0]
-        told = [(each["why"], each["waiting"]) for each in tab.events if each["event"] == "loop"]
+        told = [(event["why"], event["waiting"]) for event in tab.events if event["event"] == "loop"]
         assert told == [("unplugged", True), ("in use", True), ("unplugged", True)]
 
     async def test_limits_are_counted(self, session: Session, ask: Ask) -> None:

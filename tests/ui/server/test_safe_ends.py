@@ -266,9 +266,9 @@ def test_servers_next_to_each_other_import_nothing_that_computes_and_print_their
     looks = f"import atexit, sys; atexit.register(lambda: print('has', [n for n in {FORBIDDEN} if n in sys.modules])); "
     servers = [home.server("level.yaml", "--log-level", "debug", start=HEARING + looks + START) for _ in range(2)]
     presses = [Press(home, each) for each in servers]
-    for each in presses:
-        each.tab.until(event="answer", number=each.tab.ask("devices"))
-        each.close()
+    for press in presses:
+        press.tab.until(event="answer", number=press.tab.ask("devices"))
+        press.close()
     for server in servers:
         assert server.stop() == 128 + signal.SIGTERM
         assert "has []" in server.lines

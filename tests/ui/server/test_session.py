@@ -70,7 +70,7 @@ async def test_touch_that_fails_is_told_as_the_end_of_a_loop_only_if_it_ended(
     session.feeling, felt = feeling(running, error), Touch()
     with pytest.raises(type(error)):
         await session.put(felt)  # pyright: ignore[reportArgumentType]
-    found = [(each["running"], each["why"], each["lost"]) for each in tab.events if each["event"] == "loop"]
+    found = [(event["running"], event["why"], event["lost"]) for event in tab.events if event["event"] == "loop"]
     assert found == ([] if told is None else [told])
 
 

@@ -110,7 +110,7 @@ class TestExport:
             assert {each: packed.read(each) for each in packed.namelist()} == {
                 each: (at / each).read_bytes() for each in ("mine.3mf", "mine.stl")
             }
-        assert {each.name for each in at.iterdir()} == {"mine.3mf", "mine.stl", "mine.zip", LISTED}
+        assert {path.name for path in at.iterdir()} == {"mine.3mf", "mine.stl", "mine.zip", LISTED}
 
     async def test_zip_of_another_folder_is_refused(self, ask: Any) -> None:
         for folder in ("", "..", "export-0000000000000000", "export-x/../../secret", "drawn"):

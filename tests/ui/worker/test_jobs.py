@@ -177,7 +177,7 @@ async def test_stopped_job_ends_at_once_and_the_loop_goes_on(tmp_path: Path):
         assert servo is not None
         await ask("set", changes={"depth.use": "ssd", "depth.window_px": 19})
         making = asyncio.ensure_future(ask("make"))
-        await happened(lambda: any(each["event"] == "stage" and each["method"] == "ssd" for each in tab.events))
+        await happened(lambda: any(event["event"] == "stage" and event["method"] == "ssd" for event in tab.events))
         assert not making.done()
         ticks, swapped = servo.ring.count, tab.names().count("touch")
         await ask("stop_making")

@@ -90,8 +90,8 @@ def test_make_of_depth_or_texture_alone_is_shown(worker_state: WorkerState, scen
     assert len(told["segments"]) == 3
     assert sum(each["share"] for each in told["segments"]) == pytest.approx(1)
     assert all(each["why"].startswith(name_part(each["label"], noun="segment")) for each in told["segments"])
-    assert {each["product"] for each in events(worker_state, "stage")} >= {"segments", "materials"}
-    assert "disparity" not in {each["product"] for each in events(worker_state, "stage")}
+    assert {event["product"] for event in events(worker_state, "stage")} >= {"segments", "materials"}
+    assert "disparity" not in {event["product"] for event in events(worker_state, "stage")}
     make(worker_state, TEXT, scene, "relief")
     low, high = events(worker_state, "scene")[-1]["height_m"]
     assert high > low
@@ -155,12 +155,12 @@ def test_newer_job_waits_only_for_a_stage_that_it_needs_too(
     go.set()
     old.join(LONGEST_S)
     assert isinstance(ended[0], Stopped)
-    assert [each["product"] for each in events(worker_state, "stage") if each["done"]] == ["disparity"]
+    assert [event["product"] for event in events(worker_state, "stage") if event["done"]] == ["disparity"]
     with pytest.raises(Stopped):  # nor does one begin that waited in the queue
         make(worker_state, TEXT, scene, number=1)
     forget(worker_state)
     assert make(worker_state, number=2, **{name: newer[name] for name in ("text", "path")})
-    again = {each["product"]: each["done"]["outcome"] for each in events(worker_state, "stage") if each["done"]}
+    again = {event["product"]: event["done"]["outcome"] for event in events(worker_state, "stage") if event["done"]}
     assert again["disparity"] == ("ran" if at_once else "cached")
 
 

@@ -124,7 +124,7 @@ class TestShown:
         assert [each["name"] for each in found] == ["broken.nc", "old.nc"]
         assert found[0]["trouble"] and found[1]["figures"]["ticks"] == 5
         monkeypatch.setattr(records, "MAX_LISTED", 1)
-        assert [each["name"] for each in records.records(worker_state)] == ["broken.nc"]
+        assert [record["name"] for record in records.records(worker_state)] == ["broken.nc"]
 
 
 def test_two_recordings_are_compared_place_by_place(worker_state: WorkerState, tmp_path: Path) -> None:

@@ -189,7 +189,7 @@ class TestSee:
         np.testing.assert_array_equal(found.layers["disparity"].values, pair.disparity.disparity_px)
         error_px = absolute_error(pair.disparity.disparity_px, pair.truth)
         np.testing.assert_array_equal(found.layers["error"].values, error_px.astype(np.float32))
-        spans = {name: (each.unit, each.low, each.high) for name, each in found.layers.items()}
+        spans = {name: (layer.unit, layer.low, layer.high) for name, layer in found.layers.items()}
         assert spans == {
             "disparity": ("px", 3.0, 6.0),
             "confidence": ("", 0.0, 1.0),

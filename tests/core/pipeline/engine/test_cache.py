@@ -75,7 +75,7 @@ def test_entry_with_invalid_notes_is_damaged(
 
 def test_folder_is_that_of_the_environment_variable(cache_dir: Path):
     Cache().put("k", RECORDS[1])
-    assert [each.name for each in cache_dir.glob("*.npz")] == ["k.npz"]
+    assert [path.name for path in cache_dir.glob("*.npz")] == ["k.npz"]
 
 
 def flip_a_bit(path: Path) -> None:

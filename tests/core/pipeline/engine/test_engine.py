@@ -159,7 +159,7 @@ def pipeline(folder: Path, cached: bool = True, plugins: pluggy.PluginManager | 
 
 
 def outcome_kinds(pipe: Engine) -> dict[str, str]:
-    return {each.product: each.outcome for each in pipe.outcomes}
+    return {outcome.product: outcome.outcome for outcome in pipe.outcomes}
 
 
 class Soft(HapticDevice):
@@ -200,13 +200,17 @@ def test_touch_on_another_device_is_limited_by_that_device_and_shares_all_else(f
     pipe = pipeline(folder, device=name_method(Soft(most_n_per_m=50.0)))
     touches = [pipe.make(), pipe.touch_on(Soft(most_n_per_m=20.0)), pipe.touch_on(Soft(most_n_per_m=90.0)), pipe.make()]
     assert ran == ["disparity", "segments", "touch", "touch", "touch"], "the own touch is not made again"
-    limits = [{each.stiffness_n_per_m for each in touch.surface.materials} for touch in touches]
+    limits = [{material.stiffness_n_per_m for material in touch.surface.materials} for touch in touches]
     assert limits == [{40.0}, {16.0}, {72.0}, {40.0}], "the safety margin is 0.8"
     assert touches[3] is touches[0]
-    assert min(each.stiffness_n_per_m for each in pipe.make("surface").materials) > 90.0, "ice and sand as they are"
+    assert min(material.stiffness_n_per_m for material in pipe.make("surface").materials) > 90.0, (
+        "ice and sand as they are"
+    )
     first = pipeline(folder)
     first.touch_on(Soft(most_n_per_m=20.0))
-    assert max(each.stiffness_n_per_m for each in first.make().surface.materials) > 20.0, "the engine has its own touch"
+    assert max(material.stiffness_n_per_m for material in first.make().surface.materials) > 20.0, (
+        "the engine has its own touch"
+    )
 
 
 def test_engine_with_other_products_makes_what_depends_on_them_and_neither_keeps_nor_tells_it(folder: Path):
@@ -222,7 +226,7 @@ def test_engine_with_other_products_makes_what_depends_on_them_and_neither_keeps
     assert other.make("segments") is pipe.make("segments")
     assert (set((folder / "cache").iterdir()), heard) == (kept, before)
     assert pipe.make().surface is first
-    assert "disparity" not in {each.product for each in other.outcomes if each.outcome == "ran"}
+    assert "disparity" not in {outcome.product for outcome in other.outcomes if outcome.outcome == "ran"}
     fresh = pipeline(folder)
     fresh.plan()
     fresh.with_products(disparity=down).make("segments")
@@ -234,7 +238,9 @@ def test_make_makes_each_needed_product_once(folder: Path):
     pipe = pipeline(folder)
     assert pipe.make("relief") is not None
     assert ran == ["disparity"]
-    unneeded = [each.product for each in pipe.outcomes if each.outcome == "skipped" and "not needed" in each.why]
+    unneeded = [
+        outcome.product for outcome in pipe.outcomes if outcome.outcome == "skipped" and "not needed" in outcome.why
+    ]
     assert unneeded == ["segments", "materials", "surface", "touch"]
     surface = pipe.make().surface
     assert ran == ["disparity", "segments", "touch"]
@@ -263,7 +269,7 @@ def test_parts_of_the_scene_stand_for_products(folder: Path):
 def test_skipped_and_unneeded_methods_are_not_called(folder: Path):
     pipe = pipeline(folder, depth=name_method(Never()))
     assert np.ptp(pipe.make("relief").height_m) == 0
-    assert {each.product: each.why for each in pipe.outcomes}["disparity"] == "nothing to see"
+    assert {outcome.product: outcome.why for outcome in pipe.outcomes}["disparity"] == "nothing to see"
     pipe = pipeline(folder, render=name_method(FeelHeights()))
     assert pipe.make().surface.materials is None
     assert "segments" not in ran
@@ -273,7 +279,9 @@ def test_failed_stage_is_noted_and_not_kept(folder: Path):
     pipe = pipeline(folder, texture=name_method(Fails()))
     with pytest.raises(ZeroDivisionError):
         pipe.make()
-    assert {each.product: each.why for each in pipe.outcomes}["segments"] == "ZeroDivisionError: a bug of its own"
+    assert {outcome.product: outcome.why for outcome in pipe.outcomes}[
+        "segments"
+    ] == "ZeroDivisionError: a bug of its own"
     assert outcome_kinds(pipe)["segments"] == "failed"
     assert pipe.key("segments") not in pipe.cache
 
@@ -307,11 +315,11 @@ def test_outcome_of_a_cached_product_repeats_its_notes(folder: Path, caplog: pyt
         again = pipeline(folder, **parts)
         assert again.plan(want).steps[-1].notes == tuple(noticed)
         again.make(want)
-        found = {each.product: each for each in again.outcomes}
+        found = {outcome.product: outcome for outcome in again.outcomes}
         assert outcome_kinds(again)["disparity"] == ("cached" if want == "disparity" else "skipped")
         assert list(found["disparity"].notes) == noticed
         assert found["disparity"].why.endswith("; every row is strange; hardly worth it")
-        assert [each.message for each in caplog.records] == ["every row is strange", "hardly worth it"]
+        assert [record.message for record in caplog.records] == ["every row is strange", "hardly worth it"]
     assert found["segments"].why.endswith("; skipped: everything")
     again.make("disparity")
     assert len(caplog.records) == 2, "each note is logged once"
@@ -336,7 +344,7 @@ def test_second_run_takes_the_surface_from_the_cache(folder: Path, monkeypatch: 
     assert outcome_kinds(again)["disparity"] == "skipped"
     assert again.make("disparity") is not None
     assert outcome_kinds(again)["disparity"] == "cached"
-    assert {each.seconds for each in again.outcomes if each.outcome in ("ran", "cached")} == {1}
+    assert {outcome.seconds for outcome in again.outcomes if outcome.outcome in ("ran", "cached")} == {1}
     other = pipeline(folder, materials=MaterialChoice(by={1: "sand", 2: "ice"}))
     other.make()
     assert ran == ["touch"] * 2
@@ -365,21 +373,21 @@ def test_changed_input_is_never_answered_from_the_cache(folder: Path, change: di
     "parts", [{}, {"depth": name_method(Never())}, {"texture": None}, {"render": name_method(FeelHeights())}]
 )
 def test_plan_equals_the_outcomes(folder: Path, parts: dict):
-    foreseen = {each.product: each.outcome for each in pipeline(folder, **parts).plan().steps}
+    foreseen = {step.product: step.outcome for step in pipeline(folder, **parts).plan().steps}
     assert ran == []
     pipe = pipeline(folder, **parts)
     pipe.make()
-    happened = {each.product: each.outcome for each in pipe.outcomes if "not needed" not in each.why}
+    happened = {outcome.product: outcome.outcome for outcome in pipe.outcomes if "not needed" not in outcome.why}
     assert {name: foreseen.get(name, "skipped") for name in happened} == happened
     for again in (pipeline(folder, cached=False, **parts), pipeline(folder, **parts)):
         steps, _ = again.plan().steps, again.make()
-        told = {each.product: each for each in again.outcomes}
-        assert [(each.outcome, each.method) for each in steps] == [
-            (told[each.product].outcome, told[each.product].method) for each in steps
+        told = {outcome.product: outcome for outcome in again.outcomes}
+        assert [(step.outcome, step.method) for step in steps] == [
+            (told[step.product].outcome, told[step.product].method) for step in steps
         ]
-        foretold = {each.product: each.why.partition("; the relief is flat")[0] for each in steps}  # a skipped depth
+        foretold = {step.product: step.why.partition("; the relief is flat")[0] for step in steps}  # a skipped depth
         assert all(told[name].why.startswith(why) for name, why in foretold.items()), "notes are known afterwards"
-    assert {each.product: each.outcome for each in pipeline(folder, **parts).plan().steps}["surface"] == "cached"
+    assert {step.product: step.outcome for step in pipeline(folder, **parts).plan().steps}["surface"] == "cached"
 
 
 class Pairs(Ramp):
@@ -404,7 +412,7 @@ def test_plan_ends_with_a_refusal_before_anything_runs(folder: Path, parts: dict
     with pytest.raises(error) as raised:
         pipe.make()
     assert str(raised.value) == plan.refusal
-    assert plan.refusal in [each.why for each in pipe.outcomes]
+    assert plan.refusal in [outcome.why for outcome in pipe.outcomes]
     assert ran == []
     assert outcome_kinds(pipe)[product] == "refused"
     assert not pipeline(folder).plan().refusal
@@ -448,11 +456,11 @@ class TestWorkingGrid:
         assert pipe.make("disparity").disparity_px[0, 15] == pytest.approx(15, abs=1)
         assert pipe.make("disparity").disparity_px.shape == (20, 30)
         assert pipe.make("segments").labels.tolist() == [[0] * 14 + [1] * 16] * 20, "half of 15 columns is 7"
-        whys = {each.product: each.why for each in pipe.outcomes}
+        whys = {outcome.product: outcome.why for outcome in pipe.outcomes}
         assert all("at 1/2 of the size" in whys[product] for product in ("disparity", "segments"))
         whole = pipeline(folder, workspace=Workspace(width_m=0.03, finest_m=0))
         assert whole.make("segments").labels.tolist() == [[0] * 15 + [1] * 15] * 20
-        assert "of the size" not in "".join(each.why for each in whole.outcomes)
+        assert "of the size" not in "".join(outcome.why for outcome in whole.outcomes)
 
     def test_full_size_products_of_the_scene_make_an_equally_coarse_surface(self, folder: Path):
         labels = np.zeros((20, 30), np.uint8)
@@ -467,7 +475,7 @@ class TestWorkingGrid:
             materials=MaterialChoice(rules=[{"at": [4, 3], "material": "sand"}], by={1: "ice", 3: "wood"}),
         )
         surface = pipe.make("surface")
-        assert [each.name for each in surface.materials] == ["ice", "sand", "wood"]
+        assert [material.name for material in surface.materials] == ["ice", "sand", "wood"]
         assert surface.labels.tolist() == [[0] * 2 + [int(row == 1)] + [0] * 7 + [2] * 5 for row in range(10)]
         np.testing.assert_allclose(surface.height_m[0], np.linspace(0, 0.01, 15), atol=1e-8)
         assert pipe.make("segments").labels.shape == (20, 30)

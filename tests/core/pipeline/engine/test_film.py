@@ -73,7 +73,7 @@ def test_each_frame_equals_the_still_of_its_disparity_and_scale(film_pipeline, w
 def test_box_of_the_video_walks_in_the_reliefs(film_pipeline):
     pipeline = film_pipeline(workspace={"smooth_m": 0}, relief={"slope": 0})
     with Feeling(pipeline).reliefs as reliefs:
-        film = [each.relief.height_m for each in reliefs]
+        film = [relief.relief.height_m for relief in reliefs]
     assert len(film) == COUNT
     for number in (0, COUNT - 1):
         box = true_disparity(max(0, number - 1)) == 16
@@ -90,7 +90,7 @@ def test_exchanged_views_stay_exchanged_in_later_frames(walk, tmp_path, monkeypa
     scene = Scene.video(tmp_path, layout="side-by-side", fps=20, repeat=False)
     pipeline = Pipeline(scene, depth=SemiGlobal(resolution="half"), workspace={"smooth_m": 0}, cached=False)
     with Feeling(pipeline).reliefs as reliefs:
-        film = [each.relief.height_m for each in reliefs]
+        film = [relief.relief.height_m for relief in reliefs]
     assert all(each[5, 64] < 0.002 for each in film), "the ground is low"
     assert all(each.max() > 0.0045 for each in film)
 

@@ -21,8 +21,8 @@ class Rules:
 def registry(*rules: Rules) -> Registry:
     plugins = pluggy.PluginManager("tangible")
     plugins.add_hookspecs(hooks.Specs)
-    for each in rules:
-        plugins.register(each)
+    for rule in rules:
+        plugins.register(rule)
     return Registry(plugins)
 
 

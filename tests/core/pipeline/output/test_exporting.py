@@ -137,7 +137,7 @@ class TestWork:
         said = report_of(tmp_path)
         assert (said["title"], said["language"], said["names"]) == ("Ein Stück", "de-AT", ["wall", "box", ""])
         assert said["extent_m"][0] == 0.1
-        assert [each.outcome for each in done.outcomes] == ["ran"]
+        assert [outcome.outcome for outcome in done.outcomes] == ["ran"]
         assert done.files == {"Report": (tmp_path / "Ein Stück.report",)}
 
     def test_work_without_a_title_has_the_name_of_the_scene(self, tmp_path: Path):
@@ -149,7 +149,7 @@ class TestWork:
     def test_work_has_the_width_of_the_exporter(self, tmp_path: Path):
         exporters = [Report(), Report(width_m=0.16), Report(width_m=0.16)]
         done = pipeline(**SAID).export(tmp_path, exporters)
-        widths = [json.loads(each.files[0].read_text())["extent_m"][0] for each in done.exports]
+        widths = [json.loads(export.files[0].read_text())["extent_m"][0] for export in done.exports]
         assert widths == [0.08, 0.16, 0.16]
         made = [[each.product for each in one.made if each.outcome == "ran"] for one in done.exports]
         assert made == [["parts", "relief"], ["relief"], []]
@@ -193,7 +193,7 @@ class TestWork:
     def test_legibility_is_judged_at_the_width_of_the_files(self, tmp_path: Path):
         thing = pipeline(**SAID)
         small, large = thing.export(tmp_path, [Fingers(width_m=0.01), Fingers(width_m=0.16)]).exports
-        assert (small.legible.readable, [each.kind for each in small.outcome.notes]) == (False, ["warning"])
+        assert (small.legible.readable, [note.kind for note in small.outcome.notes]) == (False, ["warning"])
         assert (large.legible.readable, large.outcome.notes) == (True, ())
         assert Feeling(thing).legible("swell", 0.16).readable
         assert not Feeling(thing).legible("swell", 0.01).readable
@@ -230,7 +230,7 @@ class TestFiles:
             said = [f"title={title}"]
             config = parse_config("scene: {height: map.npy}", tmp_path / "coins.yaml", default_registry(), said)
             done = Pipeline.from_config(config, default_registry(), None).export(tmp_path, ["heights"])
-            assert [each.outcome for each in done.outcomes] == ["ran"]
+            assert [outcome.outcome for outcome in done.outcomes] == ["ran"]
         assert json.loads((tmp_path / "coins-heights.json").read_text())["title"] == "two"
 
     @pytest.mark.parametrize("before", ["somebody's", "edited", "of another"])

@@ -38,11 +38,11 @@ def run(out: Path, want: Product = "touch", heights: np.ndarray = HEIGHTS):
 
 
 def names(folder: Path) -> set[str]:
-    return {each.name for each in folder.iterdir()}
+    return {path.name for path in folder.iterdir()}
 
 
 def digests(folder: Path) -> dict[str, bytes]:
-    return {each.name: each.read_bytes() for each in folder.iterdir()}
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
 def test_run_deletes_only_the_files_of_earlier_runs(tmp_path: Path):
@@ -50,14 +50,14 @@ def test_run_deletes_only_the_files_of_earlier_runs(tmp_path: Path):
     out.mkdir()
     (out / "notes.txt").write_text("my own")
     first = run(out)
-    assert names(out) == {each.name for each in first.files} | {"manifest.json", "notes.txt"}
+    assert names(out) == {file.name for file in first.files} | {"manifest.json", "notes.txt"}
     assert "surface.npz" in names(out)
     shutil.copytree(out, other, copy_function=shutil.copy)
     second = run(out, "relief")
-    assert names(out) == {each.name for each in second.files} | {"manifest.json", "notes.txt"}
+    assert names(out) == {file.name for file in second.files} | {"manifest.json", "notes.txt"}
     assert "surface.npz" not in names(out)
     manifest = read_manifest(out)
-    assert manifest is not None and manifest.complete and manifest.files.keys() == {each.name for each in second.files}
+    assert manifest is not None and manifest.complete and manifest.files.keys() == {file.name for file in second.files}
     run(other, "relief")
     assert "surface.npz" not in names(other), "a copied folder"
 
@@ -98,7 +98,7 @@ def test_killed_run_leaves_no_wrong_description(tmp_path: Path, monkeypatch: pyt
     left = names(tmp_path) & set(NAMES)
     assert len(left) == written and "outcomes.json" not in left
     done = run(tmp_path, "relief")
-    assert names(tmp_path) == {each.name for each in done.files} | {"manifest.json"}
+    assert names(tmp_path) == {file.name for file in done.files} | {"manifest.json"}
 
 
 def test_failed_run_keeps_the_earlier_results(tmp_path: Path):
@@ -149,7 +149,7 @@ def test_second_run_into_a_folder_is_refused_during_the_first(tmp_path: Path, wh
 
     with when(run_another):
         first = run(tmp_path)
-    assert names(tmp_path) == {each.name for each in first.files} | {"manifest.json"}
+    assert names(tmp_path) == {file.name for file in first.files} | {"manifest.json"}
     assert run(tmp_path, "relief").files
 
 

@@ -19,10 +19,10 @@ from tangible_core.preflight.verdict import check_bound
 def test_checks_all_yield_verdicts_and_failures_have_cures(law: str, surface: HapticSurface):
     verdicts = judge(fly(surface, law))
     assert len(verdicts) >= len(CHECKS) - 3
-    for each in verdicts:
-        assert (each.verdict == "ok") == (each.cure == "") == (each.says == ""), each
-        assert "proxy" not in each.cure or law != "proxy", each
-        assert math.isfinite(each.value)
+    for verdict in verdicts:
+        assert (verdict.verdict == "ok") == (verdict.cure == "") == (verdict.says == ""), verdict
+        assert "proxy" not in verdict.cure or law != "proxy", verdict
+        assert math.isfinite(verdict.value)
 
 
 @pytest.mark.parametrize("relation", ["<=", ">="])

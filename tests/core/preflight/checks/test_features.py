@@ -45,7 +45,7 @@ class TestTextures:
         labels = np.where(np.arange(32) < 16, 0, 2).astype(np.int32)
         others = material("smooth"), material("elsewhere", texture="stochastic", roughness_m=1e-4), slipping
         surface = level(labels=np.tile(labels, (32, 1)), materials=others)
-        assert [each.of for each in textures(fly(surface))] == ["shortest wave", "slipping"]
+        assert [texture.of for texture in textures(fly(surface))] == ["shortest wave", "slipping"]
 
 
 class TestFeatures:
@@ -69,7 +69,7 @@ class TestFeatures:
         ):
             for turned in (False, True):
                 relief = Relief(noise.T.copy(), extent_m[::-1]) if turned else Relief(noise, extent_m)
-                widths = [each.of for each in features(fly(HapticSurface(relief, None, None)))]
+                widths = [feature.of for feature in features(fly(HapticSurface(relief, None, None)))]
                 assert widths == found
 
     def test_feature_below_the_threshold_has_a_cure(self):

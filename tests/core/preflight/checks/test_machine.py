@@ -39,9 +39,9 @@ class TestDevice:
         reach_m = (0.2, 0.05, 0.1) if turned else (0.1, 0.2, 0.015)
         found = list(workspace(fly(surface, workspace_m=reach_m, relief_m=0.03)))
         assert grades(found) == (["ok", "warn", "ok"] if turned else ["warn", "ok", "warn"])
-        assert [(each.key, each.value) for each in of(found, of_).changes] == [("workspace.width_m", "0.1")]
+        assert [(change.key, change.value) for change in of(found, of_).changes] == [("workspace.width_m", "0.1")]
         if not turned:
-            assert [(each.key, each.value) for each in found[2].changes] == [("workspace.relief_m", "0.022")]
+            assert [(change.key, change.value) for change in found[2].changes] == [("workspace.relief_m", "0.022")]
 
 
 class TestJitter:

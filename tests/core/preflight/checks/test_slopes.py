@@ -90,14 +90,14 @@ class TestSlopes:
         proxy = of(cliffs(fly(half_slope(5.0), "proxy", **stroke)), "too sudden")
         assert (penalty.verdict, proxy.verdict, proxy.value) == ("warn", "ok", 0)
         assert float(re.search(r"up to ([\d.]+) N in a tick", proxy.note)[1]) < 0.5
-        assert [each.of for each in cliffs(fly(half_slope(1.0), "grey-level"))] == ["a wall", "too sudden"]
+        assert [cliff.of for cliff in cliffs(fly(half_slope(1.0), "grey-level"))] == ["a wall", "too sudden"]
 
     def test_wall_is_cured_by_slope_then_rounding_then_height(self):
         surface = waves(0.02)
         limited = of(cliffs(fly(surface, slope=0.0)), "a wall")
-        assert [(each.key, float(each.value)) for each in limited.changes] == [("relief.slope", 2.0)]
+        assert [(change.key, float(change.value)) for change in limited.changes] == [("relief.slope", 2.0)]
         rounded = of(cliffs(fly(surface)), "a wall")
-        assert [each.key for each in rounded.changes] == ["workspace.smooth_m"]
+        assert [change.key for change in rounded.changes] == ["workspace.smooth_m"]
         rounder = smooth(surface.relief, value_in_cure(rounded, "workspace.smooth_m"))
         assert np.mean(slopes(rounder) > 2) <= 0.001
         given = of(cliffs(fly(surface, smoothed=False)), "a wall")
@@ -108,7 +108,7 @@ class TestSlopes:
         assert (of_parts.cure, of_parts.changes) == ("lower parts (`height_m` under `parts:`)", ())
         both = of(cliffs(fly(surface, of_parts=True)), "a wall")
         assert both.cure.endswith(", or lower parts (`height_m` under `parts:`)")
-        assert [each.key for each in both.changes] == ["workspace.smooth_m"]
+        assert [change.key for change in both.changes] == ["workspace.smooth_m"]
 
     def test_slopes_take_the_greater_side(self):
         step = HapticSurface.from_heights(np.array([[0, 0, 0.01, 0.01]], np.float32), 0.04)

@@ -48,9 +48,11 @@ class TestStiffness:
     def test_lowest_ceiling_is_after_the_margin(self):
         """3300 N/m by friction leave 2640; the specification of the device, 3000 N/m, has no margin."""
         coarse = {"safety": Safety(friction_n=0.033), "resolution_m": 2e-5, "max_stiffness_n_per_m": 3000.0}
-        left = [each.most_n_per_m for each in fly(level(), **coarse).ceilings]
+        left = [ceiling.most_n_per_m for ceiling in fly(level(), **coarse).ceilings]
         assert left == pytest.approx([2400, 2640, 3000])
-        limits = [each.limit_n_per_m for each in fly(level(), max_stiffness_n_per_m=3000.0, period_s=0.00025).ceilings]
+        limits = [
+            ceiling.limit_n_per_m for ceiling in fly(level(), max_stiffness_n_per_m=3000.0, period_s=0.00025).ceilings
+        ]
         assert sorted(limits) == pytest.approx([3000, 12_000])
         undamped = fly(level(), device={"damping_n_s_per_m": 0.0}, max_stiffness_n_per_m=1000.0)
         assert undamped.ceilings[0].limit_n_per_m == 1000
@@ -81,7 +83,7 @@ class TestStiffness:
         assert "`hard: {stiffness_n_per_m: 3200}`" in law.cure
         assert "soft" not in law.cure
         verdicts = list(material_stiffness(flight))
-        assert [(each.of, each.verdict) for each in verdicts] == [("soft", "ok"), ("hard", "unsafe")]
+        assert [(verdict.of, verdict.verdict) for verdict in verdicts] == [("soft", "ok"), ("hard", "unsafe")]
         assert value_in_cure(verdicts[1], "stiffness_n_per_m") == 3200
 
     def test_texture_is_clean_up_to_900_n_per_m(self):

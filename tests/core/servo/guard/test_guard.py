@@ -46,7 +46,7 @@ class TestSlew:
     def test_slew_limited_steps_are_exact(self):
         forces, flags, _ = ticks(Safety(max_step_n=0.5, **BARE), [(0.0, 0.0, 1.75)] * 5)
         assert forces[:, 2].tolist() == [0.5, 1.0, 1.5, 1.75, 1.75]
-        assert [TickFlag.SLEW_LIMITED in each for each in flags] == [True] * 3 + [False] * 2
+        assert [TickFlag.SLEW_LIMITED in flag for flag in flags] == [True] * 3 + [False] * 2
 
     @pytest.mark.parametrize("axis", [0, 1, 2])
     def test_step_starts_at_the_last_force_along_each_axis(self, axis: int):
@@ -70,7 +70,7 @@ class TestRamp:
     def test_force_fades_in_by_the_clock(self):
         forces, flags, _ = ticks(Safety(ramp_s=0.004, passivity="off"), [(0.0, 0.0, 0.4)] * 5)
         np.testing.assert_allclose(forces[:, 2], [0.1, 0.2, 0.3, 0.4, 0.4], rtol=1e-15)
-        assert [TickFlag.RAMPING in each for each in flags] == [True] * 3 + [False] * 2
+        assert [TickFlag.RAMPING in flag for flag in flags] == [True] * 3 + [False] * 2
 
     def test_swapped_scene_fades_in_from_the_current_force(self):
         settings, memory = Safety(ramp_s=0.1, passivity="off", max_step_n=0.25).arrays(SPEC, 0.0)

@@ -44,8 +44,8 @@ def play():
         return players[-1]
 
     yield play
-    for each in players:
-        each.stop()
+    for player in players:
+        player.stop()
 
 
 def test_player_shows_frames_in_order_and_stops_at_the_end_of_the_source(play):
@@ -102,7 +102,7 @@ def test_player_opens_a_missing_source_again(caplog, monkeypatch):
     player.start()
     until(lambda: film.frames == [0])
     player.stop()
-    assert sum("camera 0 is not there" in each.message for each in caplog.records) == 1
+    assert sum("camera 0 is not there" in record.message for record in caplog.records) == 1
 
 
 class Faulty(FrameMaker):
@@ -183,4 +183,4 @@ def test_by_clock_repeats_reliefs_and_skips_damaged_frames(caplog):
         for tick in range(700):
             show(tick / 1000)
     assert film.frames == [0, 0, 0, 3, 3, 3] and show.counts.damaged == 2
-    assert sum("frame is damaged" in each.message for each in caplog.records) == 1
+    assert sum("frame is damaged" in record.message for record in caplog.records) == 1

@@ -23,7 +23,7 @@ NEARER[4:8, 8:11] = 120
 def heights(*pictures):
     """Return the heights of the frames of a film."""
     with Reliefs(lambda: GivenFrames(greys(*pictures)), NearnessOfGrey()) as reliefs:
-        return [each.relief.height_m for each in reliefs]
+        return [relief.relief.height_m for relief in reliefs]
 
 
 def test_scale_of_the_first_frame_is_kept():
@@ -57,7 +57,7 @@ def test_cut_determines_range_and_cameras_again():
     maker = NearnessOfGrey()
     other = 200 - BOX / 2
     with Reliefs(lambda: GivenFrames(greys(BOX, BOX, other, other)), maker) as reliefs:
-        film = [each.relief.height_m for each in reliefs]
+        film = [relief.relief.height_m for relief in reliefs]
     assert maker.begun == 2
     assert np.array_equal(film[2], film[1]), "one frame late"
     assert film[3][0, 0] == pytest.approx(0.01) and film[3][2, 3] == 0

@@ -29,14 +29,14 @@ def test_error_of_one_frame_is_filtered_out():
 
 
 def test_change_is_adopted_at_the_second_frame_without_a_trail():
-    felt = [each[2, 3] for each in filter_maps(FLAT, at(20), at(20.5), at(20.5), FLAT, FLAT, FLAT)]
+    felt = [filter_map[2, 3] for filter_map in filter_maps(FLAT, at(20), at(20.5), at(20.5), FLAT, FLAT, FLAT)]
     assert felt[:3] == [10, 10, 20.5]
     assert felt[4] == 20.5, "seen once"
     assert felt[5:] == [10, 10]
 
 
 def test_value_that_changes_in_each_frame_is_adopted_after_a_few():
-    felt = [each[2, 3] for each in filter_maps(*(at(10 + 5 * number) for number in range(9)))]
+    felt = [filter_map[2, 3] for filter_map in filter_maps(*(at(10 + 5 * number) for number in range(9)))]
     assert all(abs(value - (10 + 5 * number)) <= 5 * MAX_DOUBTS for number, value in enumerate(felt))
     assert felt[-1] >= 40
 
@@ -50,14 +50,14 @@ def test_noise_is_averaged():
 
 def test_flickering_hole_is_filled_and_lasting_hole_stays():
     flickers = filter_maps(FLAT, at(np.nan), FLAT, at(np.nan), at(np.nan), FLAT)
-    assert all(np.array_equal(each, FLAT) for each in flickers)
-    stays = [each[2, 3] for each in filter_maps(FLAT, *[at(np.nan)] * (MAX_MISSING + 2))]
+    assert all(np.array_equal(flicker, FLAT) for flicker in flickers)
+    stays = [filter_map[2, 3] for filter_map in filter_maps(FLAT, *[at(np.nan)] * (MAX_MISSING + 2))]
     assert np.isfinite(stays[: MAX_MISSING + 1]).all()
     assert np.isnan(stays[MAX_MISSING + 1 :]).all()
 
 
 def test_unknown_value_must_be_seen_twice():
-    felt = [each[2, 3] for each in filter_maps(at(np.nan), at(30), at(np.nan), at(12), at(12))]
+    felt = [filter_map[2, 3] for filter_map in filter_maps(at(np.nan), at(30), at(np.nan), at(12), at(12))]
     assert np.isnan(felt[:4]).all()
     assert felt[4] == 12
 
@@ -73,7 +73,7 @@ def test_cut_adopts_the_second_frame_as_a_whole():
 
 
 def test_value_that_differs_by_the_gate_is_noise():
-    felt = [each[2, 3] for each in filter_maps(FLAT, at(10 + GATE_PX), FLAT, at(10.18 + GATE_PX))]
+    felt = [filter_map[2, 3] for filter_map in filter_maps(FLAT, at(10 + GATE_PX), FLAT, at(10.18 + GATE_PX))]
     assert felt == pytest.approx([10, 10.2, 10.16, 10.16])
 
 

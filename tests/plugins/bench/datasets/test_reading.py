@@ -42,7 +42,7 @@ def only(name: str, folder: Path, **more: object) -> StandardPair:
 
 
 def names(name: str, folder: Path, **more: object) -> list[str]:
-    return [each.name for each in pairs(name, folder, **more)]
+    return [pair.name for pair in pairs(name, folder, **more)]
 
 
 def make_set(name: str, folder: Path, k: Known) -> Layout:

@@ -21,8 +21,8 @@ def written_out(disparity: np.ndarray, grey: np.ndarray) -> np.ndarray:
             continue
         middle = (near.min() + near.max()) // 2
         voters = [(v, u) for v in range(y - 4, y + 5, 2) for u in range(x - 4, x + 5, 2) if 0 <= v < h and 0 <= u < w]
-        weights = np.array([max(24 - abs(greys[each] - greys[y, x]), 0) for each in voters])
-        theirs = np.array([values[each] for each in voters])
+        weights = np.array([max(24 - abs(greys[voter] - greys[y, x]), 0) for voter in voters])
+        theirs = np.array([values[voter] for voter in voters])
         front = theirs > middle
         ahead = weights[front].sum() - weights[~front].sum()
         if ahead != 0 and (ahead > 0) != (values[y, x] > middle):

@@ -58,9 +58,9 @@ def test_probes_are_the_first_rows_of_strips_in_the_middles_of_equal_parts():
     rows = [(y, min(y + 100, 1150)) for y in range(0, 1150, 100)]
     probes, rest = module._probes(rows)
     assert probes == [(200, 264), (600, 664), (1000, 1064)]
-    assert [each for each in rows if each not in rest] == [(200, 300), (600, 700), (1000, 1100)]
+    assert [row for row in rows if row not in rest] == [(200, 300), (600, 700), (1000, 1100)]
     assert sorted([*probes, *rest]) == sorted(
-        [each for each in rows if each[0] not in (200, 600, 1000)]
+        [row for row in rows if row[0] not in (200, 600, 1000)]
         + [part for y in (200, 600, 1000) for part in ((y, y + 64), (y + 64, y + 100))]
     )
     assert module._probes([(0, 50)]) == ([(0, 50)], [])
@@ -96,7 +96,7 @@ def test_order_alone_is_not_tried_where_noise_is_far_too_strong(
     assert (costs, found.cost.name) == (tried, chosen)
     assert np.mean(np.abs(found.left.matches.disparity[:, 8:-8] - 48) <= 8) > 0.8
     why = "cost heavy: 40% of the matches are speckles"
-    assert [each for each in caplog.messages if each.startswith("cost")] == [why] * (chosen == "heavy")
+    assert [message for message in caplog.messages if message.startswith("cost")] == [why] * (chosen == "heavy")
 
 
 def trial(pair: Pair, cost=LEVELS):

@@ -28,7 +28,7 @@ MAPS = arrays(
 def test_parabola_through_samples_gives_its_vertex(vertex, bend, level):
     samples = [bend * (x - vertex) ** 2 + level for x in (-1, 0, 1)]
     assert parabola(*samples) == pytest.approx(vertex, abs=1e-6)
-    assert parabola(*[-each for each in samples]) == pytest.approx(vertex, abs=1e-6)
+    assert parabola(*[-sample for sample in samples]) == pytest.approx(vertex, abs=1e-6)
 
 
 @given(st.floats(-0.5, 0.5), st.floats(0.1, 100), st.floats(-100, 100))

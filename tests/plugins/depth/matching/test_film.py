@@ -76,7 +76,8 @@ def test_unrectified_film_is_rectified_by_its_first_frame(monkeypatch):
     frames = [layered(number, 1.0, generator, (180, 240)) for number in range(3)]
     roll = cv2.getRotationMatrix2D((120, 90), 3, 1)
     rolled = [
-        Views(each.left, cv2.warpAffine(each.right, roll, (240, 180), borderMode=cv2.BORDER_REFLECT)) for each in frames
+        Views(frame.left, cv2.warpAffine(frame.right, roll, (240, 180), borderMode=cv2.BORDER_REFLECT))
+        for frame in frames
     ]
     alone = [SemiGlobal().estimate(each).disparity_px for each in rolled]
     counted = []

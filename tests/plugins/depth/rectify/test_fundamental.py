@@ -136,7 +136,7 @@ def test_chance_matches_are_outliers(count):
 def test_equations_are_weighed_by_the_lengths_of_both_lines():
     matches = seen_points(count=30)
     matrix = np.random.default_rng(0).normal(size=(3, 3))
-    rows = [np.column_stack([each, np.ones(30)]) for each in matches]
+    rows = [np.column_stack([match, np.ones(30)]) for match in matches]
     value = np.abs(np.einsum("ni,ij,nj->n", rows[0], matrix, rows[1]))
     weights = pixel_weights(matrix, matches)
     assert weights.max() == 1

@@ -116,7 +116,7 @@ class TestDominantPlane:
         shift = rectified.left_place_px(left) - rectified.right_place_px(right)
         assert np.percentile(np.abs(shift[:, 1]), 95) <= 0.05
         assert np.abs(shift[:, 0] + rectified.offset_px - scene.disparity_px().ravel()).max() <= 0.1
-        assert [each.startswith("one plane explains the matches") for each in notes] == [True, False]
+        assert [note.startswith("one plane explains the matches") for note in notes] == [True, False]
 
     @pytest.mark.parametrize(("box", "seed"), [((0.0375, 0.05), 1), ((0.0125, 0.3), 3)], ids=["small", "thin"])
     def test_small_object_before_a_wall_resolves_the_poses(self, box, seed):

@@ -83,8 +83,8 @@ def test_common_offset_is_corrected_without_rectification():
     views = known_pair("planes", 320, 240).views
     with collected() as notes:
         found = Zncc().estimate(shift_right_view(views, 1)).disparity_px
-    assert any(each.startswith("rows realigned by") for each in notes)
-    assert not any(each.startswith("rectified") for each in notes)
+    assert any(note.startswith("rows realigned by") for note in notes)
+    assert not any(note.startswith("rectified") for note in notes)
     straight = Zncc().estimate(views).disparity_px
     assert np.mean(np.abs(found - straight)[2:-2] <= 1) >= 0.98
 
@@ -97,7 +97,7 @@ def test_raw_pair_is_matched_nearly_as_well_as_a_rectified_one():
     straight = Zncc().estimate(Views(SCENE.left(), SCENE.right())).disparity_px
     with collected() as notes:
         raw = Zncc().estimate(roll_camera(2)).disparity_px
-    assert any(each.startswith("rectified: ") for each in notes)
+    assert any(note.startswith("rectified: ") for note in notes)
     assert share_right(raw) >= share_right(straight) - 0.03
     never = Zncc(rectify="never").estimate(roll_camera(2)).disparity_px
     assert share_right(never) < 0.8
@@ -108,7 +108,7 @@ def test_calibrated_pair_is_not_tested():
     calibrated = Views(views.left, views.right, Calibration(300.0, 0.1))
     with collected() as notes:
         found = Zncc(max_disparity_px=16).estimate(calibrated)
-    assert not any("rows" in each or "rectified" in each for each in notes)
+    assert not any("rows" in note or "rectified" in note for note in notes)
     assert found.digest() == Zncc(max_disparity_px=16, rectify="never").estimate(views).digest()
 
 

@@ -70,7 +70,9 @@ def check_opens_again(bus: Bus, clock: SimulatedClock) -> None:
 def loud(caplog: pytest.LogCaptureFixture) -> list[str]:
     """Warnings, but for the guide to homing."""
     return [
-        each.message for each in caplog.records if each.levelno >= logging.WARNING and "pull its" not in each.message
+        record.message
+        for record in caplog.records
+        if record.levelno >= logging.WARNING and "pull its" not in record.message
     ]
 
 

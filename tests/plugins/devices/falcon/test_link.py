@@ -35,8 +35,8 @@ class TestHoming:
         sent = record_writes(bus, monkeypatch)
         open_on(bus, clock)
         packets = [each for each in sent if len(each) == 16 and each != NULL]
-        assert {each[1:13] for each in packets} == {b"A" * 12}
-        infos = [each[13] - 0x41 for each in packets]
+        assert {packet[1:13] for packet in packets} == {b"A" * 12}
+        infos = [packet[13] - 0x41 for packet in packets]
         assert sorted(infos, reverse=True) == infos
         assert set(infos) == {HOMING | RED, HOMING | GREEN}
 
@@ -59,7 +59,7 @@ class TestForce:
 
             x, y, z = body.tip[:3].tolist()
             rows = kinematics.jacobian(*kinematics.inverse(x, y, z), x, y, z)
-            fx, fy, fz = kinematics.force(rows, tuple(-each / 1e4 for each in body.torque_counts))
+            fx, fy, fz = kinematics.force(rows, tuple(-torque_count / 1e4 for torque_count in body.torque_counts))
             assert (fx, -fz, fy) == pytest.approx(PUSH, abs=0.05)
 
     def test_force_ends_with_null_packets(self, monkeypatch: pytest.MonkeyPatch):

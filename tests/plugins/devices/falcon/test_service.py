@@ -73,7 +73,7 @@ class TestDoctor:
 
     def test_doctor_without_device_has_not_asked(self):
         bus, clock = held_bus(())
-        assert [each.verdict for each in findings(Falcon().settings(), None, bus, clock)] == [
+        assert [finding.verdict for finding in findings(Falcon().settings(), None, bus, clock)] == [
             "fine",
             "not asked",
             "not asked",

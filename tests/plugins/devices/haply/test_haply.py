@@ -124,7 +124,7 @@ def service() -> Iterator[MockService]:
 
 
 def test_haply_conforms(service: MockService):
-    failed = [each for each in run_checks("device", "haply", uri=service.uri) if not each.passed]
+    failed = [run_check for run_check in run_checks("device", "haply", uri=service.uri) if not run_check.passed]
     assert not failed
     assert service.force() == NO_FORCE
 

@@ -79,10 +79,10 @@ def test_liblouis_and_our_tables_agree_on_every_letter_and_digit(installed: Loui
     """Small and capital, within words; accents of all languages where theirs stand before the letter."""
     letters = [
         *LETTERS,
-        *(each for each in code_of(language).signs if each.isalpha() and each.upper().lower() == each),
+        *(sign for sign in code_of(language).signs if sign.isalpha() and sign.upper().lower() == sign),
         *("éèêñčōŭïåç" if code_of(language).marks else ""),
     ]
-    for word in (word for each in letters for word in (f"a{each}a", f"{each.upper()}a", f"m{each}")):
+    for word in (word for letter in letters for word in (f"a{letter}a", f"{letter.upper()}a", f"m{letter}")):
         if language == "en" and word[0] in "ÆŒ":  # liblouis repeats the sign of capitals within the ligature
             continue
         if language == "fr" and word[0] == "Ø":  # liblouis has another letter for the capital

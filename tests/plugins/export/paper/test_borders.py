@@ -33,7 +33,7 @@ def segments_of(polygons) -> list[bytes]:
         ends = np.stack([at[:-1], at[1:]], axis=1)
         swap = (ends[:, 0, 0] > ends[:, 1, 0]) | ((ends[:, 0, 0] == ends[:, 1, 0]) & (ends[:, 0, 1] > ends[:, 1, 1]))
         ends[swap] = ends[swap][:, ::-1]
-        pieces += [each.tobytes() for each in ends]
+        pieces += [end.tobytes() for end in ends]
     return pieces
 
 

@@ -52,11 +52,11 @@ def test_strokes_as_short_as_dots_are_left_out_and_so_is_a_fill_of_few():
     assert fills._clear_strokes(pieces, Lines(0.8, 4.3, 0)) == pieces[:0:-1], "the longest first"
     assert fills._clear_strokes(pieces, Lines(0.8, 6.2, 90, least_mm=11)) == pieces[3:]
     assert not KINDS["level lines"](shapely.box(0, 0, 6.1, 10)), "three of 5.3 mm are shorter than 16 mm together"
-    assert [each.length for each in KINDS["level lines"](shapely.box(0, 0, 6.2, 10)).strokes] == pytest.approx(
+    assert [stroke.length for stroke in KINDS["level lines"](shapely.box(0, 0, 6.2, 10)).strokes] == pytest.approx(
         [5.4] * 3
     )
     assert len(fills._lines(shapely.box(0, 0, 8.5, 9.5), Lines(0.5, 4, 0)).strokes) == 2, "of 8 mm are just enough"
-    assert {each.length > 11 for each in KINDS["waves"](shapely.box(0, 0, 40, 20)).strokes} == {True}
+    assert {stroke.length > 11 for stroke in KINDS["waves"](shapely.box(0, 0, 40, 20)).strokes} == {True}
     assert not KINDS["waves"](shapely.box(0, 0, 40, 10)), "a wave this short is felt as a line"
 
 

@@ -22,7 +22,7 @@ def boxes(page) -> list[tuple[float, float, float, float]]:
 def test_key_is_in_the_order_of_letters_and_names_without_one_come_last():
     entries = [Entry("zebra", "", "blank"), Entry("ant", "b", "dots"), Entry("bee", "a", "blank")]
     [page] = key_pages([*entries, Entry("cow", "", "waves")], "Map", "en", "a4", UPRIGHT)
-    assert [each.label for each in page.areas] == ["bee: blank", "ant: dots", "cow: waves", "zebra: blank"]
+    assert [area.label for area in page.areas] == ["bee: blank", "ant: dots", "cow: waves", "zebra: blank"]
     assert page.description == "a bee; b ant; cow; zebra"
 
 

@@ -16,8 +16,8 @@ NAMES = st.lists(st.text("abcxyz éü7Ж", max_size=6), max_size=MAX_NAMES)
 def test_key_letters_are_different_for_all_names(names):
     letters = key_letters(names)
     assert len(letters) == len(set(letters)) == len(names)
-    assert {len(each) for each in letters} <= {1 if len(names) <= 26 else 2}
-    assert all(set(each) <= set(LETTERS) for each in letters)
+    assert {len(letter) for letter in letters} <= {1 if len(names) <= 26 else 2}
+    assert all(set(letter) <= set(LETTERS) for letter in letters)
 
 
 def test_key_letter_is_the_first_free_letter_of_the_name():

@@ -27,7 +27,7 @@ def test_groups_of_parts_are_the_largest_first_and_their_neighbours_all_around()
     labels = np.array([[0, 0, 1, 1, 1], [2, 2, 3, 3, 1]], np.int32)
     work = labels_work(labels, ("land", "sea", "isle", "land"))
     groups = group_by_name(work, work.simplified)
-    assert [(each.name, each.numbers) for each in groups] == [("land", (0, 3)), ("sea", (1,)), ("isle", (2,))]
+    assert [(group.name, group.numbers) for group in groups] == [("land", (0, 3)), ("sea", (1,)), ("isle", (2,))]
     assert page._neighbours(work.simplified, groups) == [{1, 2}, {0}, {0}]
     corner = labels_work(np.array([[0, 0, 1], [2, 2, 1]], np.int32))
     assert page._neighbours(corner.simplified, group_by_name(corner, corner.simplified)) == [{1, 2}, {0, 2}, {0, 1}]
@@ -45,7 +45,10 @@ def test_key_has_the_letters_and_fills_that_are_on_the_page():
     areas = (Area("sea", box, letter=Braille("s", np.zeros((1, 2)))), Area("land", box))
     drawing = Drawing(SHEET, "", "", "en", "", areas, ())
     entries = page._entries([symbols("sea", 0, kind="dots"), symbols("land", 1)], drawing)
-    assert [(each.name, each.letter, each.fill) for each in entries] == [("sea", "s", "blank"), ("land", "", "blank")]
+    assert [(entry.name, entry.letter, entry.fill) for entry in entries] == [
+        ("sea", "s", "blank"),
+        ("land", "", "blank"),
+    ]
 
 
 def test_page_names_the_colour_of_its_marks_unless_it_is_black():

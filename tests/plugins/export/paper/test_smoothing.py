@@ -39,7 +39,7 @@ def test_smooth_border_of_a_disc_is_the_circle_without_stairs(columns, radius_mm
 def test_smooth_borders_are_shared_and_fill_the_picture():
     parts = disc_and_halves(400, 30)
     shapes = smooth_borders(parts, WIDTH_MM)
-    assert sum(each.area for each in shapes) == pytest.approx(WIDTH_MM**2, rel=1e-9)
+    assert sum(shape.area for shape in shapes) == pytest.approx(WIDTH_MM**2, rel=1e-9)
     assert all(one.intersection(other).area == 0 for one in shapes for other in shapes if one is not other)
     assert shapely.union_all(shapes).equals(shapely.box(-90, -90, 90, 90))
     assert shapely.coverage_is_valid(list(shapes))

@@ -52,9 +52,9 @@ def test_facts_of_parts_on_another_grid_are_known():
     assert cup.size_m == pytest.approx((0.024, 0.028))
     assert cup.height_m == pytest.approx(0.00425)
     fine = PartMap(np.kron(LABELS, np.ones((9, 9), np.int32)), (0, 1, 2))
-    assert [each._replace(name="") for each in facts(surface, parts=fine)] == [
-        each._replace(name="", share=pytest.approx(each.share, rel=0.02), size_m=pytest.approx(each.size_m, rel=0.02))
-        for each in facts(still_life())
+    assert [fact._replace(name="") for fact in facts(surface, parts=fine)] == [
+        fact._replace(name="", share=pytest.approx(fact.share, rel=0.02), size_m=pytest.approx(fact.size_m, rel=0.02))
+        for fact in facts(still_life())
     ]
 
 
@@ -103,9 +103,9 @@ def test_description_names_four_neighbours():
 
 def test_facts_use_materials_that_the_surface_lacks():
     bare = replace(still_life(), materials=None)
-    assert {each.material for each in facts(bare)} == {""}
+    assert {fact.material for fact in facts(bare)} == {""}
     of_segments = MaterialMap((GLASS, GLASS, WOOD), ("", "", ""))
-    assert [each.material for each in facts(bare, of_segments)] == ["wood", "glass", "glass"]
+    assert [fact.material for fact in facts(bare, of_segments)] == ["wood", "glass", "glass"]
 
 
 def test_description_has_exactly_these_lines():
@@ -157,7 +157,7 @@ class Page(HTMLParser):
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.tags.append(tag)
-        self.attributes += [(tag, *each) for each in attrs]
+        self.attributes += [(tag, *attr) for attr in attrs]
         if tag != "meta":
             self.open.append((tag, dict(attrs).get("lang") or self.open[-1][1]))
 

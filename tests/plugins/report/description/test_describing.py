@@ -136,4 +136,4 @@ def test_scene_kinds_all_have_words():
     hill = surface(bump(0.5, 0.5))
     starts = {kind: describe(hill, "x\n", "en", kind) for kind in ("photograph", "depth", "heights")}
     assert len(set(starts.values())) == 3
-    assert all("\n" not in each for each in starts.values())
+    assert all("\n" not in start for start in starts.values())

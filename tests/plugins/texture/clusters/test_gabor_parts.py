@@ -103,7 +103,7 @@ def test_halves_of_one_group_cost_the_least_to_join(random: np.random.Generator,
     costs = measure_pairs(planes, thirds, interior_shares(thirds, shape)).joining_costs(0.4)
     assert np.unravel_index(costs.argmin(), costs.shape) == (1, 0)
     steps = list(join_clusters([planes], thirds, shape, renewed))
-    assert [each.clusters for each in steps] == [3, 2, 1]
+    assert [step.clusters for step in steps] == [3, 2, 1]
     np.testing.assert_array_equal(steps[1].labels, labels)
     assert steps[-1].cost == np.inf
     sizes = np.bincount(thirds)
@@ -276,7 +276,9 @@ def test_memberships_are_those_of_evidence_and_four_times_the_neighbours(offset:
 def test_border_of_pixels_lies_between_the_centres_of_cells(turned: bool):
     memberships = np.array([[[0.9, 0.1]], [[0.1, 0.9]]], np.float32)
     if turned:
-        labels, confidence = (each.T for each in pixel_labels(memberships.transpose(0, 2, 1).copy(), 4, (8, 2)))
+        labels, confidence = (
+            pixel_label.T for pixel_label in pixel_labels(memberships.transpose(0, 2, 1).copy(), 4, (8, 2))
+        )
     else:
         labels, confidence = pixel_labels(memberships, 4, (2, 8))
     np.testing.assert_array_equal(labels, [[0, 0, 0, 0, 1, 1, 1, 1]] * 2)
@@ -298,9 +300,12 @@ def test_probability_of_a_number_is_that_of_all_joinings_before_and_not_of_the_n
     """Log-odds here: 0.5 + log D + 2 log size + 3 log cells."""
     weights = Weights(constant=0.5, distance=1, size=2, cells=3)
     odds = [0.5 + log(distance) + 2 * log(size) + 3 * log(4) for distance, size in ((1, 0.25), (2, 0.125), (3, 0.125))]
-    two = [1 / (1 + exp(-each)) for each in odds]
+    two = [1 / (1 + exp(-odd)) for odd in odds]
     expected = [two[0], (1 - two[0]) * two[1], (1 - two[0]) * (1 - two[1]) * two[2]]
-    found = [exp(each) for each in number_likelihoods(steps((1, 0.25), (2, 0.125), (3, 0.125), cells=4), weights)]
+    found = [
+        exp(number_likelihood)
+        for number_likelihood in number_likelihoods(steps((1, 0.25), (2, 0.125), (3, 0.125), cells=4), weights)
+    ]
     assert found == pytest.approx([*expected, 1 - sum(expected)])
 
 

@@ -151,7 +151,9 @@ def test_printed_frequencies_for_a_power_of_two_match_the_paper():
 
 def test_printed_frequencies_for_other_widths_stay_in_range():
     assert len(printed_wavelengths(511)) == len(printed_wavelengths(256)) == 10
-    assert max(1 / each for each in printed_wavelengths(300)) == pytest.approx(0.25 + 2**4.5 / 300)
+    assert max(1 / printed_wavelength for printed_wavelength in printed_wavelengths(300)) == pytest.approx(
+        0.25 + 2**4.5 / 300
+    )
     for width in (1, 7, 15):
         assert printed_wavelengths(width) == (4.0,)
     for width in range(16, 2000, 37):

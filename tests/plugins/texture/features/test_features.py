@@ -143,7 +143,7 @@ def scene() -> KnownSegments:
 @pytest.mark.parametrize("turn", [np.fliplr, np.flipud, np.rot90, np.transpose])
 def test_flips_and_quarter_turns_leave_distances(turn: Callable[[np.ndarray], np.ndarray], scene: KnownSegments):
     plain, turned = values(scene.picture[:256, :256]), values(np.ascontiguousarray(turn(scene.picture[:256, :256])))
-    places = np.moveaxis(np.stack([turn(each) for each in np.indices((32, 32))]), 0, 2).reshape(-1, 2)
+    places = np.moveaxis(np.stack([turn(index) for index in np.indices((32, 32))]), 0, 2).reshape(-1, 2)
     there = plain[tuple(places.T)]
     here = turned.reshape(there.shape)
     sample = np.arange(0, len(here), 37)

@@ -73,7 +73,9 @@ def test_saturate_scales_torques_slightly_too_large(axis: int, most: float, sign
     wanted[axis] = sign * most
     *counts, factor = packet.saturate(*wanted)
     half = round(0.5 * 4095)
-    assert [abs(each) for each in counts] == [4095 if each == axis else pytest.approx(half, abs=1) for each in range(3)]
+    assert [abs(count) for count in counts] == [
+        4095 if each == axis else pytest.approx(half, abs=1) for each in range(3)
+    ]
     assert np.array_equal(np.sign(counts), [sign] * 3)
     assert factor == pytest.approx(4095 / most)
 

@@ -29,7 +29,7 @@ def test_gap_is_measured_within_a_pixel_in_any_direction(gap_mm, x, y):
     if gap_mm > 3.2:
         assert not pairs
     else:
-        assert [each.gap_mm for each in pairs] == pytest.approx([gap_mm], abs=0.11)
+        assert [pair.gap_mm for pair in pairs] == pytest.approx([gap_mm], abs=0.11)
 
 
 def stroke(*at: tuple[float, float]) -> str:
@@ -70,15 +70,15 @@ def test_gap_within_one_net_of_outlines_is_measured():
     throat = [(10, 10), (70, 10), (70, 50), (10, 50), (10, 33), (40, 33), (40, 30), (10, 30)]
     pairs = near(line(*throat))
     assert pairs
-    assert min(each.gap_mm for each in pairs) == pytest.approx(2, abs=0.4)
-    assert all(each.between_outlines for each in pairs)
+    assert min(pair.gap_mm for pair in pairs) == pytest.approx(2, abs=0.4)
+    assert all(pair.between_outlines for pair in pairs)
 
 
 def test_gap_within_a_part_names_this_part_and_not_one_around_it():
     frame = line((2, 2), (78, 2), (78, 58), (2, 58)).replace('"part"', '"frame"')
     upper, lower = [(10, 10), (30, 10), (30, 28.5), (50, 28.5), (50, 10), (70, 10)], [(70, 50), (50, 50), (50, 31.5)]
     pairs = near(frame + line(*upper, *lower, (30, 31.5), (30, 50), (10, 50)))
-    assert {mark.label for each in pairs for mark in each.marks} == {"part"}
+    assert {mark.label for pair in pairs for mark in pair.marks} == {"part"}
 
 
 @pytest.mark.parametrize("shapes", ["<text>a</text>", '<path d="M0 0h5z"/>'])

@@ -52,10 +52,7 @@ RINGS = ("whole", "nightly")
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
-    """None beside this process where files are named: a debugger works, nothing is waited for.
-
-    Otherwise one more for two processors: a third of the time, a worker waits for a browser or another process.
-    """
+    """None beside this process where files are named: a debugger works, nothing is waited for."""
     if config.args_source is pytest.Config.ArgsSource.ARGS:
         return 0
     processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -127,10 +124,7 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 @pytest.fixture(autouse=True)
 def own_dir(folders: Iterator[Path]) -> Iterator[Path]:
-    """A folder for what a test would read from, and leave in, the developer's own; one fixture, as all pay it.
-
-    It is not there at first, nor are those in it: whoever needs one makes it, and most tests need none.
-    """
+    """A folder for what a test would read from, and leave in, the developer's own; one fixture, as all pay it."""
     folder = next(folders)
     with patch.dict(os.environ, {f"TANGIBLE_{kind.upper()}_DIR": f"{folder}/{kind}" for kind in OWN}):
         yield folder

@@ -1,7 +1,4 @@
-"""If one of these fails, a hostile file costs a user of the command line time, memory or a traceback.
-
-What each is limited by is tested in its room; here, that every command stands on these rooms.
-"""
+"""If one of these fails, a hostile file costs a user of the command line time, memory or a traceback."""
 
 import os
 import zipfile

@@ -99,7 +99,6 @@ def test_plugins_import_from_the_rooms_that_the_contributing_page_names():
 
 @pytest.mark.parametrize("words", [None, [], ["--help"], ["plugins"], ["plugins", "--json"], ["run", "--help"]])
 def test_listing_imports_nothing_heavy(words):
-    """None of what is heavy is imported, and no method's module either."""
     call = "" if words is None else f"sys.argv[1:] = {words}; from tangible_core.cli import main; main()"
     code = f"import atexit, sys, tangible_core; atexit.register(lambda: print(*sys.modules, file=sys.stderr)); {call}"
     imported = set(run("-c", code).stderr.split())
@@ -133,7 +132,6 @@ def test_tests_lie_in_the_folder_of_their_house():
 
 
 def test_texts_never_advise_to_delete_compiled_kernels():
-    """What a compiled kernel depends on is known: tangible_core/provenance."""
     texts = [*ROOT.glob("*.md"), *ROOT.joinpath("docs").rglob("*.md")]
     texts += [path for each in (ROOT / "tangible_core", ROOT / "plugins") for path in each.rglob("*.py")]
     assert [path for path in texts if "__pycache__" in path.read_text()] == []
@@ -152,10 +150,7 @@ def test_hooks_are_called_somewhere(moment):
 
 
 def concrete_methods():
-    """(kind, package.module:Class) of every class that derives from an interface, by the source of the plugins.
-
-    An abstract class of a family, from which others of its classes derive, is not a method itself.
-    """
+    """(kind, package.module:Class) of every class that derives from an interface, by the source of the plugins."""
     kinds = {cls.__name__: kind for kind, cls in KINDS.items()}
     for package in (*PACKAGES.values(), REPORT, SEND):
         classes = {

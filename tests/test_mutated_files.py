@@ -1,7 +1,4 @@
-"""If one of these fails, a damaged file ends the program, hangs, fills the memory or leaves a traceback.
-
-The damage is the same in each run, by the reader's name and the file's number; at night there are many more files.
-"""
+"""If one of these fails, a damaged file ends the program, hangs, fills the memory or leaves a traceback."""
 
 import os
 import sys

@@ -22,10 +22,7 @@ HERE = {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}
 
 
 class Environment:
-    """A virtual environment: the examples' wheels are installed in it, the rest, ours and pip too, is borrowed.
-
-    A wheel of ours would compile its kernels anew in each run; `.ci/run` builds, installs and uses one.
-    """
+    """A virtual environment: the examples' wheels are installed in it, the rest, ours and pip too, is borrowed."""
 
     def __init__(self, folder: Path) -> None:
         venv.create(folder, with_pip=find_spec("pip") is None, symlinks=os.name != "nt")
@@ -83,7 +80,6 @@ def test_third_party_plugin_conforms(environment, tmp_path):
 
 @pytest.mark.whole
 def test_third_party_tests_pass(environment, tmp_path):
-    """Those of all examples, in one process."""
     folders = [example / "tests" for example in EXAMPLES]
     command = [environment.python, "-m", "pytest", "-v", "-p", "no:cacheprovider", *folders]
     ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
@@ -94,7 +90,6 @@ def test_third_party_tests_pass(environment, tmp_path):
 
 @pytest.mark.whole
 def test_third_party_force_law_and_device_work_together(environment, tmp_path):
-    """The example's surface is felt with the example's law on the example's device."""
     law = ["--set", "render.use=acme-cushion-compiled"]
     ran = environment.run("feel", DEVICE / "handle.yaml", *law, "--seconds", "0.5", "--verbose", cwd=tmp_path)
     assert ran.returncode == 0, ran.stdout + ran.stderr
@@ -134,7 +129,6 @@ def test_third_party_option_misspelt_is_reported_with_place_and_hint(environment
 
 
 def test_broken_plugin_leaves_the_others_working(environment, tmp_path):
-    """Installed as a folder of its own on the path: it cannot be imported, its hooks neither."""
     methods = {"broken": "broken:Method", "acme-blocks": "broken:Blocks"}
     points = {"tangible.depth": methods, "tangible.hooks": {"broken": "broken"}}
     distribution(tmp_path, "broken", points, broken="import a_module_that_is_not_there\n")

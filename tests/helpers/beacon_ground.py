@@ -6,10 +6,7 @@ import numpy as np
 
 from tangible_core.data import HapticSurface, Relief
 from tangible_core.servo import beacon_kernels, beacon_to
-from tangible_core.servo.beacon import (
-    RAMP_S,
-    BeaconMemory,
-)
+from tangible_core.servo.beacon import RAMP_S, BeaconMemory
 from tangible_core.servo.guard import layout
 
 WIDTH_M, LENGTH_M = 0.08, 0.06

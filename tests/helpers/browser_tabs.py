@@ -66,10 +66,7 @@ class Chromium:
 
 @contextmanager
 def tabs(browser: "Browser", complaints: list[str]) -> Iterator[OpenPage]:
-    """Yield a function that opens an address in a context of its own; at the end no page may have complained.
-
-    A page draws its surface only if it is opened so: shaders and frames in software are most of a page's time.
-    """
+    """Yield a function that opens an address in a context of its own; at the end no page may have complained."""
     contexts = []
 
     def open_page(url: str, draws: bool = False, **options: Any) -> "Page":

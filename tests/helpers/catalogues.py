@@ -1,7 +1,4 @@
-"""The catalogues of translations, brought up to date: `python tests/helpers/catalogues.py` after a change of a text.
-
-It adds the texts that a catalogue lacks, with an empty `msgstr` to fill in, and removes those that are gone.
-"""
+"""The catalogues of translations, brought up to date: `python tests/helpers/catalogues.py` after a change of a text."""
 
 import json
 import re
@@ -122,10 +119,7 @@ def stale(language: str) -> Iterator[str]:
 
 
 def misfits(language: str) -> Iterator[str]:
-    """Yield the texts whose translations have other placeholders, or tear apart what stands side by side.
-
-    Of placeholders side by side, the text itself does not tell where the first one ends.
-    """
+    """Yield the texts whose translations have other placeholders, or tear apart what stands side by side."""
     for english, own in entries(language).values():
         known, used = (
             {match[1] for match in PLACEHOLDER.finditer(each.replace("!s}", "}"))} for each in (english, own)

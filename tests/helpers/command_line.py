@@ -49,10 +49,7 @@ def as_at_first() -> Iterator[None]:
 
 
 class Program:
-    """A small process of its own that is called as often as wanted; `peak_kib` is the most that it ever held.
-
-    A process begins with the peak of the one that it comes from, so that a small one lies between.
-    """
+    """A small process of its own that is called as often as wanted; `peak_kib` is the most that it ever held."""
 
     _BETWEEN = "import subprocess, sys; sys.exit(subprocess.call(sys.argv[1:]))"
 

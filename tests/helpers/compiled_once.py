@@ -6,10 +6,7 @@ from typing import Any
 
 
 def compile_once() -> None:
-    """Lock the file in which a kernel stands, wherever numba would compile one that is kept on disk.
-
-    No two processes wait for each other: files import each other in no circle, and so do kernels call each other.
-    """
+    """Lock the file in which a kernel stands, wherever numba would compile one that is kept on disk."""
     from numba.core.compiler_lock import global_compiler_lock
     from numba.core.dispatcher import Dispatcher
 

@@ -24,14 +24,7 @@ from tangible_core.data import DisparityMap, HapticSurface, Relief, SegmentMap, 
 from tangible_core.data.pictures import to_grey, to_rgb8
 from tangible_core.materials.assignment import library, relative_roughness
 from tangible_core.materials.rules import segment_colours
-from tangible_core.parts import (
-    HeightChoice,
-    Layering,
-    depth_heights,
-    find_parts,
-    guess_heights,
-    reduced_parts,
-)
+from tangible_core.parts import HeightChoice, Layering, depth_heights, find_parts, guess_heights, reduced_parts
 from tangible_core.plugins.interfaces import Filming
 from tangible_core.plugins.registry import default_registry
 from tangible_core.preflight.bumps import feature_m

@@ -29,10 +29,7 @@ def work_of(name: str, exporter: Exporter) -> Work:
     rows, columns = made.parts.labels.shape
     width_m = exporter.picture_width_m(columns / rows)
     heights = np.float32(made.heights_m)[made.parts.labels]
-    products = {
-        "simplified": simplified(name, width_m),
-        "relief": Relief(heights, (width_m, width_m * rows / columns)),
-    }
+    products = {"simplified": simplified(name, width_m), "relief": Relief(heights, (width_m, width_m * rows / columns))}
     needed = {need: products[need] for need in exporter.needs}
     return Work(name.capitalize(), "en", needed, made.picture, made.names)
 

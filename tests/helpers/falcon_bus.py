@@ -33,12 +33,7 @@ class Line:
     """The faults of a line: damage to the byte at this place from the processor, once unless `again`; late replies."""
 
     def __init__(
-        self,
-        damage: str = "",
-        at: int = 0,
-        again: bool = False,
-        late_reply: int = -1,
-        swallowed: int = 0,
+        self, damage: str = "", at: int = 0, again: bool = False, late_reply: int = -1, swallowed: int = 0
     ) -> None:
         self.damage, self.at, self.again, self.late_reply = damage, at, again, late_reply
         self.swallowed = swallowed

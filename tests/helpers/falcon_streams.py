@@ -71,10 +71,7 @@ def feed(data, size, begun, fixed, state, true, sent, found):
 
 @njit(cache=True)
 def fuzz(streams, kinds, damage, seed, fixed):
-    """Return (positions, positions never sent, the worst error in counts, streams without recovery in time).
-
-    A stream is two whole answers, some damaged ones and two whole ones, the last of which must be taken.
-    """
+    """Return (positions, positions never sent, the worst error in counts, streams without recovery in time)."""
     np.random.seed(seed)
     stream, true, one = np.zeros(16, np.uint8), np.zeros((SENT, 3), np.int64), np.zeros(64 * SENT, np.uint8)
     begun, state, found = np.zeros(16, np.uint8), np.zeros(7), np.zeros(3)

@@ -1,7 +1,4 @@
-"""Firefox without a window, driven by WebDriver BiDi over its own websocket.
-
-Playwright drives a Firefox of its own, and asks Debian's for what it does not know.
-"""
+"""Firefox without a window, driven by WebDriver BiDi over its own websocket."""
 
 import itertools
 import json

@@ -28,10 +28,7 @@ SPEC = DeviceSpec(
 
 
 def fly(surface: HapticSurface, law: str = "proxy", device: Any = None, **changes: Any) -> Flight:
-    """Return a flight over a surface; `changes` are options of the law, or fields of the hand, device or flight.
-
-    device: fields of the device that a law has too.
-    """
+    """Return a flight over a surface; `changes` are options of the law, or fields of the hand, device or flight."""
     method = load_method("render", law)
     options = {name: changes.pop(name) for name in list(changes) if name in method.model_fields}
     of_spec = {name: changes.pop(name) for name in list(changes) if name in vars(SPEC)}

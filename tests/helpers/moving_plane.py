@@ -1,7 +1,4 @@
-"""A film whose answer is known: a level plane on a spring, which goes evenly from one height to the next.
-
-It is a module of its own, as the loop's process imports its kernel.
-"""
+"""A film whose answer is known: a level plane on a spring, which goes evenly from one height to the next."""
 
 import numpy as np
 from numba import float64, njit, types

@@ -209,10 +209,7 @@ class Damage:
         return path, self.reader.repair(data) if self.reader.repair and chance.random() < 0.5 else data
 
     def findings(self, numbers: range) -> Iterator[Finding]:
-        """Read these files in forks of this process, and yield what should not be.
-
-        The process has no threads: a fork has none of them, and waits for ever for a lock or a pool of theirs.
-        """
+        """Read these files in forks of this process, and yield what should not be."""
         at = mmap.mmap(-1, 8)
         while numbers:
             with (self.folder.parent / f"{self.folder.name}.findings").open("w+b") as report:

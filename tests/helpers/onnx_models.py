@@ -37,10 +37,7 @@ def points(path: Path) -> Path:
 
 
 def stereo(path: Path, disparities: int = 16, size: tuple[int, int] | None = None) -> Path:
-    """left, right -> `disparity` (1, 1, h, w): absolute differences in windows of 9 x 9, and the mean of the best.
-
-    size: the only one that it takes.
-    """
+    """left, right -> `disparity` (1, 1, h, w): absolute differences in windows of 9 x 9, and the mean of the best."""
     h, w = size or ("h", "w")
     nodes = [
         _node("Conv", ["left", "grey"], "gl"),

@@ -38,12 +38,7 @@ def fuzz(
     stiffness_n_per_m: float = 800.0,
     ball_m: tuple[float, float] = (0.0, 0.0),
 ) -> Worst:
-    """Move a random hand at 0.05 mm/s to 0.5 m/s over a surface, its sides and bottom; return the worst responses.
-
-    Once in 2000 ticks the hand leaps, once in 1000 a number of the state is NaN or infinite, and the velocity is that
-    of a clock that jitters fivefold. ball_m: radius and z of the centre of a ball, if the surface is one.
-    Compiled on the first use of a force law on a machine.
-    """
+    """Move a random hand at 0.05 mm/s to 0.5 m/s over a surface, its sides and bottom; return the worst responses."""
     import random_hand_kernels
 
     worst, half_m = np.zeros(6), np.array(surface.extent_m) / 2

@@ -145,10 +145,10 @@ def _has_help(annotation: ast.AST) -> bool:
 
 def _inside(node: ast.AST) -> Iterator[ast.AST]:
     """Yield the texts that are already part of a template; not those of calls and lists in its placeholders."""
-    for iter_child_node in ast.iter_child_nodes(node):
-        yield iter_child_node
-        if isinstance(iter_child_node, ast.Constant | ast.JoinedStr | ast.BinOp | ast.IfExp | ast.FormattedValue):
-            yield from _inside(iter_child_node)
+    for child in ast.iter_child_nodes(node):
+        yield child
+        if isinstance(child, ast.Constant | ast.JoinedStr | ast.BinOp | ast.IfExp | ast.FormattedValue):
+            yield from _inside(child)
 
 
 def _forms(node: ast.AST) -> list[str] | None:

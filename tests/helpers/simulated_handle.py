@@ -1,8 +1,4 @@
-"""The handle of `tangible_bench.metrics.stability` under a compiled force law, with a guard, in three axes.
-
-A hand pushes the handle with a constant force. The handle moves exactly as under a force that is held from tick to
-tick, so that only the force law and its sampling can make it unstable.
-"""
+"""The handle of `tangible_bench.metrics.stability` under a compiled force law, with a guard, in three axes."""
 
 import math
 from collections.abc import Callable
@@ -79,10 +75,7 @@ def ride(
 def comes_to_rest(
     touch: CompiledTouch, loop: HandleLoop, start_m: tuple[float, float, float], guard: Guard | None = None
 ) -> bool:
-    """Test whether the handle, nudged where it rests under the force law, moves less and less.
-
-    It is brought to rest by tenfold damping, nudged upwards, and watched for six seconds.
-    """
+    """Test whether the handle, nudged where it rests under the force law, moves less and less."""
     damped = loop.handle._replace(damping_n_s_per_m=10 * loop.handle.damping_n_s_per_m)
     still = replace(loop, handle=damped, delay_ticks=0)
     rest = ride(touch, still, np.array([*start_m, 0.0, 0.0, 0.0]), 10.0, guard).state
@@ -98,10 +91,7 @@ def stiffest_stable_n_per_m(
     start_m: tuple[float, float, float] = (0.0, 0.0, 0.0),
     guard: Callable[[CompiledTouch], Guard] | None = None,
 ) -> float:
-    """Return the largest stiffness at which the handle comes to rest, from 1 to 1e6 N/m, within 0.5 %.
-
-    make: stiffness -> force law. guard: force law -> guard; none if left out.
-    """
+    """Return the largest stiffness at which the handle comes to rest, from 1 to 1e6 N/m, within 0.5 %."""
     low, high = 1.0, 1e6
     while high > 1.005 * low:
         middle = math.sqrt(low * high)
@@ -114,10 +104,7 @@ def stiffest_stable_n_per_m(
 
 
 def exact_stiffness_limit(handle: Handle, delay_ticks: int, damping_n_s_per_m: float = 0.0) -> float:
-    """Return the stiffness at which an eigenvalue of the handle on a spring leaves the unit circle, in N/m.
-
-    The state is place, speed and the forces on their way. damping_n_s_per_m: of the spring.
-    """
+    """Return the stiffness at which an eigenvalue of the handle on a spring leaves the unit circle, in N/m."""
     mass_kg, damping, period_s = handle
     decay = math.exp(-damping * period_s / mass_kg)
     moved, pushed = (period_s - (1 - decay) * mass_kg / damping) / damping, (1 - decay) / damping

@@ -1,7 +1,4 @@
-"""`pytest --since REVISION`: the tests that import, however indirectly, what has changed since a revision.
-
-A plugin that is loaded by its name is no import: after a change of a method, a plain `pytest` is what tells.
-"""
+"""`pytest --since REVISION`: the tests that import, however indirectly, what has changed since a revision."""
 
 import subprocess
 from collections.abc import Iterable

@@ -173,7 +173,6 @@ def test_failure_log_that_cannot_be_written_is_mentioned(folder: Path, monkeypat
 
 
 def test_failure_log_is_bounded_and_the_users_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    """A traceback has paths and values of a user's work in it."""
     monkeypatch.setattr("tangible_core.runtime.failure_log.MAX_BYTES", 10)
     monkeypatch.setenv("TANGIBLE_LOG_DIR", str(tmp_path / "logs"))
     for secret in "abc":

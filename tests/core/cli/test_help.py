@@ -5,7 +5,6 @@ import sys
 
 
 def test_help_imports_neither_numpy_nor_the_pipeline():
-    """It appears at once, whatever packages add commands."""
     code = (
         "import sys; sys.argv[1:] = ['--help']\nfrom tangible_core.cli import main\ntry: main()\nfinally: "
         "print([name for name in sys.modules if name in ('numpy', 'tangible_core.pipeline')], file=sys.stderr)"

@@ -3,16 +3,7 @@
 import numpy as np
 import pytest
 
-from tangible_core import (
-    Calibration,
-    DisparityMap,
-    HapticSurface,
-    Material,
-    MaterialMap,
-    Relief,
-    SegmentMap,
-    Views,
-)
+from tangible_core import Calibration, DisparityMap, HapticSurface, Material, MaterialMap, Relief, SegmentMap, Views
 from tangible_core.data import digest_of
 from tangible_core.data.outcome import text_table
 from tangible_core.errors import GeometryError, MaterialError, PictureError
@@ -53,7 +44,6 @@ def test_records_of_different_kinds_have_different_digests():
 
 
 def test_digest_differs_for_different_contents():
-    """Of another type, two other shapes, and another last pixel."""
     last = np.where(np.indices(GREY.shape).sum(0) == 8, 101, 100).astype(np.uint8)
     for other in (GREY.astype(np.uint16), GREY.reshape(6, 4), GREY.reshape(3, 8), last):
         assert Views(other).digest() != Views(GREY).digest()

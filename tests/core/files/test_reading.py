@@ -6,14 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tangible_core.files.reading import (
-    MAX_BYTES,
-    MAX_PIXELS,
-    TooLargeError,
-    check_size,
-    content_digest,
-    read_bytes,
-)
+from tangible_core.files.reading import MAX_BYTES, MAX_PIXELS, TooLargeError, check_size, content_digest, read_bytes
 
 
 def test_file_within_the_limit_is_read_whole(tmp_path: Path):

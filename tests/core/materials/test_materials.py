@@ -186,7 +186,6 @@ class TestByRules:
         ("at", "label"), [([19.4, 19.4], 0), ([19.6, 19.4], 1), ([19.4, 19.6], 2), ([39, 39], 3), ([0, 39.4], 2)]
     )
     def test_point_selects_the_pixel_with_the_nearest_centre(self, at: list[float], label: int):
-        """Select a pixel; centres are at whole numbers."""
         assigned = assign(quarters()[0], None, "rules", library(), rules({"at": at, "material": "ice"}))
         assert [material.name for material in assigned.materials].index("ice") == label
 

@@ -77,10 +77,7 @@ def regions(seed: int, shape: tuple[int, int] = (61, 83)) -> np.ndarray:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_guess_is_the_solution_of_its_equations(seed: int):
-    """A part's nearness is between its own cues and the weighted mean of its neighbours' with the cues between them.
-
-    Each cue is counted pixel by pixel, and the equations are solved at once. What nearly ties has no order.
-    """
+    """A part's nearness is between its own cues and the weighted mean of its neighbours' with the cues between them."""
     parts = parts_of(regions(seed))
     labels, count, (rows, columns) = parts.labels, parts.count, parts.labels.shape
     pixels = [[(y, x) for y in range(rows) for x in range(columns) if labels[y, x] == each] for each in range(count)]

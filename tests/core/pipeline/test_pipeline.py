@@ -9,12 +9,7 @@ from PIL import Image
 
 from tangible_core import Calibration, DisparityMap, Pipeline, Recording, Scene, Views, Workspace, load_method, show
 from tangible_core.data import TICK_COLUMNS
-from tangible_core.errors import (
-    ArgumentError,
-    ConfigError,
-    OutputError,
-    Stopped,
-)
+from tangible_core.errors import ArgumentError, ConfigError, OutputError, Stopped
 from tangible_core.pipeline.engine.stage import StageEvent
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.pipeline.starter import suited_config

@@ -55,7 +55,6 @@ def test_starter_values_suit_the_picture(folder: Path, monkeypatch: pytest.Monke
 
 
 def test_starter_of_a_video_is_as_high_as_its_edges_allow(folder: Path):
-    """Edges would flicker; what is lighter is higher."""
     for name, most_mm in (("calm", 8.0), ("my steep: one", 3.9)):
         (folder / name).mkdir()
         picture = cv2.imread(f"{name}.png")

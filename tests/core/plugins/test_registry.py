@@ -115,8 +115,7 @@ def test_two_plugins_of_one_name_are_chosen_by_distribution(install):
     registry = Registry()
     assert registry.names("depth") == ["acme/mine", "rival/mine", "other"]
     with pytest.raises(
-        BrokenMethod,
-        match=r"'mine' is offered by acme 1\.0 and rival 1\.0; write acme/mine or rival/mine",
+        BrokenMethod, match=r"'mine' is offered by acme 1\.0 and rival 1\.0; write acme/mine or rival/mine"
     ):
         registry.load("depth", "mine")
     assert registry.load("depth", "rival/mine").__module__ == "rival"

@@ -60,7 +60,6 @@ def half_cliff():
 
 
 def test_hand_that_is_held_up_lifts_and_goes_on():
-    """Each of the strokes towards the wall is held up for a while, and not to its end."""
     cliff = shape(lambda x, y: np.where(x > -0.02, 0.005, 0.0))
     found = strokes_of(cliff).held_up.reshape(2 * LINES, -1)
     towards = found[:LINES:2]

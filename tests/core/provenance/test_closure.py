@@ -52,7 +52,6 @@ METHOD = {
 )
 @pytest.mark.parametrize("folder", ["work", INSTALLED])
 def test_digest_changes_with_imported_modules_only(write: Write, folder: str, changed: str, same: bool):
-    """The own package counts wherever it lies; another package where it may be edited."""
     site = write(folder, **METHOD)
     before = digest("acme.method")
     (site / changed).write_text((site / changed).read_text() + "\n")
@@ -159,10 +158,7 @@ def test_closure_of_a_module_alone_leaves_out_its_imports(write: Write):
 
 
 def test_closure_includes_compiled_modules_and_invalid_sources(write: Write):
-    site = write(
-        "work",
-        **{"a.py": "import fast, torn", "fast.abi3.so": "1", "torn.py": "import ("},
-    )
+    site = write("work", **{"a.py": "import fast, torn", "fast.abi3.so": "1", "torn.py": "import ("})
     (site / "old").mkdir()
     (site / "old" / "__init__.py").write_text("import fast\nprint 'as it was'")
     (site / "a.py").write_text("import fast, torn\ntry:\n    from old import fast\nexcept SyntaxError: pass\n")
@@ -187,7 +183,6 @@ def test_closure_reads_a_loaded_module_from_its_own_file(write: Write, tmp_path:
 
 
 def test_closure_reads_a_loaded_module_that_no_finder_finds(write: Write, monkeypatch: pytest.MonkeyPatch):
-    """Scripts and tests are such modules."""
     site = write("work", **{"helper.py": ""})
     loaded = ModuleType("loaded_by_hand")
     loaded.__file__ = str(site / "by_hand.py")

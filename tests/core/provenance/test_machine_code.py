@@ -44,12 +44,7 @@ class Machine:
         """Call the kernel in a process of its own: its words, and its warnings."""
         environment = {**os.environ, "NUMBA_CACHE_DIR": str(self.cache), "PYTHONDONTWRITEBYTECODE": "1"}
         ran = subprocess.run(
-            [sys.executable, "-c", CALL],
-            cwd=self.folder,
-            env=environment,
-            text=True,
-            capture_output=True,
-            check=True,
+            [sys.executable, "-c", CALL], cwd=self.folder, env=environment, text=True, capture_output=True, check=True
         )
         return ran.stdout.strip(), ran.stderr
 

@@ -58,7 +58,6 @@ def test_uneven_light_is_evened_and_steps_stay():
 
 
 def test_edges_of_colour_alone_are_lines():
-    """Both sides are as light as each other."""
     picture = np.full((240, 320, 3), (200, 90, 90), np.uint8)
     picture[:, 160:] = (60, 139, 60)
     found = lines_of(picture)[120]
@@ -137,7 +136,6 @@ def test_ridges_of_a_map_of_borders_are_lines_and_edges_are_not():
 
 
 def test_pipeline_draws_what_a_network_sees(tmp_path, monkeypatch):
-    """The network sees the bright line alone, and not the block, which is an edge."""
     monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path))
     picture = block(0, 130)
     picture[:, 30:33] = 255

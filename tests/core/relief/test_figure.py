@@ -143,7 +143,6 @@ class TestPipeline:
             _ = Pipeline(Scene.photo(picture), relief="figure").relief
 
     def test_cut_out_leaves_the_ground_away(self, models: Path) -> None:
-        """Of heights and of parts; without the network, or without a figure, a sentence says so."""
         picture = np.zeros((*SHAPE, 3), np.uint8)
         picture[DISK] = 255
         picture[:20] = 100
@@ -164,7 +163,6 @@ class TestPipeline:
         assert np.array_equal(cut.labels, np.where(DISK, 2, 3))
 
     def test_figure_stays_apart_where_parts_are_simplified(self, models: Path) -> None:
-        """Its colour is that of a part of the ground: without the network they are one texture."""
         picture = np.full((*SHAPE, 3), 120, np.uint8)
         picture[:120] = 0
         labels = np.where(DISK, 2, picture[..., 0] // 120).astype(np.int32)

@@ -120,7 +120,6 @@ def test_narrow_bar_keeps_a_share_of_its_height(width_m, kept):
 
 
 def test_accent_raises_what_stands_before_and_lowers_what_lies_behind():
-    """Two blocks of middle depth before ground, and something nearer far away."""
     values = np.full((300, 800), 10, np.float32)
     values[100:200, 200:400] = 14
     values[:, 700:] = 30
@@ -146,7 +145,6 @@ def test_unknown_places_are_filled_from_behind_or_cut():
 
 
 def test_given_scale_is_that_of_the_relief():
-    """A thing that stands still keeps its height, whatever else is in the frame."""
     values = two_levels()
     scale = ReliefScale(ValueRange(0, 40), STRAIGHT**2)
     found = shaped(values, {"accent_m": 0}, scale=scale)

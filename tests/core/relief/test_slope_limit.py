@@ -38,7 +38,6 @@ def test_limited_heights_are_those_of_all_pairs_of_cells(height_m, slope):
 
 @given(HEIGHTS, SLOPES)
 def test_negated_heights_give_the_negated_surface(height_m, slope):
-    """Neither what stands out nor what lies deep is kept at the cost of the other."""
     assert np.array_equal(limit_slopes(-height_m, PITCH_M, slope), -limit_slopes(height_m, PITCH_M, slope))
 
 

@@ -36,7 +36,6 @@ def test_order_of_depths_is_kept(nearness, share, one, other):
 
 
 def test_each_border_counts_once_however_high_it_is():
-    """The tall border is spread over three times as many depths, so thrice as thinly."""
     slopes = np.diff(relief_tones(steps(0.0, 0.6, 0.6, 0.8, 0.8), 0.2)) - 0.8 / BINS
     assert slopes[160:200].mean() == pytest.approx(3 * slopes[10:150].mean(), rel=0.05)
 

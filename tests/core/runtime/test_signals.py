@@ -37,7 +37,6 @@ def test_signal_first_raises_keyboard_interrupt_and_then_nothing(number: signal.
 
 
 def test_signal_ignored_before_stays_ignored():
-    """So it is under nohup."""
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     with end_as_ctrl_c():
         os.kill(os.getpid(), signal.SIGHUP)

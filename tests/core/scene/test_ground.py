@@ -152,7 +152,6 @@ class TestScale:
         np.testing.assert_allclose(relief.height_m, (HEIGHTS - 100) * 0.3048 * 2 / 2000, atol=1e-8)
 
     def test_tiles_of_one_range_fit_together(self):
-        """Two halves of a map have at their seam the heights of the whole."""
         workspace = {"scale": "1:10000", "exaggeration": 3, "low_m": 90}
         whole = relief_of(Scene.heights(HEIGHTS, cell_m=10), **workspace)
         halves = [relief_of(Scene.heights(part, cell_m=10), **workspace) for part in (HEIGHTS[:16], HEIGHTS[16:])]

@@ -13,7 +13,6 @@ from tangible_core.scene.formats.bands import reduced
 def test_squares_at_the_right_and_lower_rim_are_cut_short(
     shape: tuple[int, int], channels: tuple[int, ...], dtype: type, high: int
 ):
-    """What lacks of a square there is as its last row and column."""
     picture = np.random.default_rng(0).integers(0, 200, (*shape, *channels)).astype(dtype)
     bands = (picture[first : first + high] for first in range(0, shape[0], high))
     found = reduced(bands, *shape, 3)

@@ -113,10 +113,7 @@ def test_rectified_pictures_show_the_points_of_their_pixels(lens: str):
 
 @pytest.mark.parametrize("finest_m", [0, 8e-4])
 def test_vertical_pair_is_felt_upright_at_the_disparity_of_its_depths(finest_m: float):
-    """A box at 1 m stands before a wall at 4 m; the second camera stands 10 cm below the first one.
-
-    With a focal length of 160 px, they are 16 and 4 px higher in the lower camera.
-    """
+    """A box at 1 m stands before a wall at 4 m; the second camera stands 10 cm below the first one."""
     random = np.random.default_rng(0)
     left = random.integers(0, 100, (120, 200), np.uint8)
     right = np.roll(left, -4, axis=0)
@@ -232,7 +229,6 @@ class TestFiles:
         assert in_mm.translation_m == pytest.approx([-1e-4, 1e-5, 5e-6], rel=1e-12)
 
     def test_kalibr_pose_turns_points_of_the_left_camera_into_the_right_one(self, tmp_path: Path):
-        """What lies ahead of the left camera lies to the left of the right one."""
         pose = [[0.6, 0, -0.8, -0.064], [0, 1.0, 0, -0.01], [0.8, 0, 0.6, -0.077], [0, 0, 0, 1.0]]
         before = KALIBR[KALIBR.index("  - [1.0") : KALIBR.index("  camera_model: pinhole\n  intrinsics: [115")]
         text = KALIBR.replace(before, "".join(f"  - {row}\n" for row in pose))

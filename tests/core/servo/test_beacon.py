@@ -11,15 +11,7 @@ from tangible_core.data import Force, HapticState, HapticSurface, Relief, TickFl
 from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.plugins.registry import load_method
 from tangible_core.servo import Beacon, Safety, beacon_to
-from tangible_core.servo.beacon import (
-    BRAKED_FROM,
-    MAX_N,
-    PULL_N,
-    RAMP_S,
-    SOFT_M,
-    BeaconMemory,
-    BeaconState,
-)
+from tangible_core.servo.beacon import BRAKED_FROM, MAX_N, PULL_N, RAMP_S, SOFT_M, BeaconMemory, BeaconState
 from tangible_core.servo.guard import layout
 from tangible_core.servo.ticks.python_tick import GuardedForce, guard_touch
 
@@ -49,7 +41,6 @@ class TestPull:
 
     @pytest.mark.parametrize("part", PARTS)
     def test_pull_within_the_part_is_zero(self, part: int):
-        """Anywhere in its cells, to the bit, however fast; a part of one cell included."""
         assert SURFACE.labels is not None
         random, (across_m, along_m) = np.random.default_rng(0), SURFACE.relief.pitch_m
         cells = np.argwhere(SURFACE.labels == part)[random.integers(0, np.count_nonzero(SURFACE.labels == part), 400)]
@@ -184,7 +175,6 @@ class TestBeaconInGuard:
         assert abs(memory[layout.ENERGY_J]) < 2e-3
 
     def test_pull_on_a_wall_leaves_the_force_along_z(self):
-        """The pull is lateral, and TOUCHING is about the wall alone, also in the air."""
         states = [(-0.03, -0.02, 0.004 - 0.003 * math.sin(0.01 * i)) for i in range(900)]
         (with_it, *_), (without, *_) = (loop_of(b, Safety(ramp_s=0)) for b in (beacon_to(SURFACE, 1), None))
         found = [(with_it(HapticState(s), T), without(HapticState(s), T)) for s in states]

@@ -18,17 +18,8 @@ from tangible_core.data.ticks import BEACON_SHIFT
 from tangible_core.errors import ConfigError, DeviceError, GeometryError
 from tangible_core.plugins.registry import load_method
 from tangible_core.servo import Beacon, Safety, Servo, beacon_to, null_touch
-from tangible_core.servo.beacon import (
-    BeaconState,
-)
-from tangible_core.session import (
-    Recording,
-    Slot,
-    beacons_felt,
-    parts_felt,
-    run_kiosk,
-    run_simulated,
-)
+from tangible_core.servo.beacon import BeaconState
+from tangible_core.session import Recording, Slot, beacons_felt, parts_felt, run_kiosk, run_simulated
 from tangible_devices import Mock
 from waiting import until
 

@@ -99,7 +99,6 @@ class TestInterruptedStart:
 
     @pytest.mark.parametrize("delay_s", [0.05, *(pytest.param(each, marks=pytest.mark.whole) for each in (0.3, 0.6))])
     def test_ctrl_c_during_the_start_ends_both_processes(self, tmp_path: Path, delay_s: float) -> None:
-        """As by the keyboard, even if the program was started with SIGINT ignored."""
         record, ready = tmp_path / "force", tmp_path / "ready"
         script = HOST.format(record=str(record), ready=str(ready), fault="none", at=0)
         program = subprocess.Popen(
@@ -148,10 +147,7 @@ with Servo(FaultyTouch({fault!r}, {at}), device, Safety(ramp_s=0, max_step_n=10)
 
 
 class TestStandstill:
-    """A loop without ticks has 0.14 s; then its process lets the device go.
-
-    If it cannot, it is killed after 0.2 s, and the device is opened once more to release it.
-    """
+    """A loop without ticks has 0.14 s; then its process lets the device go."""
 
     def feel(self, record: Path, law: Touch, fault: Any = "none", opens: Any = "always") -> Servo:
         return Servo(law, Failing(fault=fault, record=str(record), simulated=False, opens=opens), AT_ONCE)
@@ -210,7 +206,6 @@ class TestStandstill:
 
     @pytest.mark.usefixtures("loop_in_thread")
     def test_law_that_compiles_on_first_use_is_not_a_standstill(self) -> None:
-        """The law compiles before the first tick: its half second is not missing in the ticks."""
         with Servo(FaultyTouch("begins slowly"), Failing(fault="none"), AT_ONCE, seconds=0.2) as servo:
             until(lambda: not servo.running)
             assert servo.report().stopped == "the time is over"
@@ -267,7 +262,6 @@ class TestStandstill:
             assert held_force(record) == 0
 
     def test_signal_ignored_by_the_program_does_not_end_the_loop(self, tmp_path: Path) -> None:
-        """Under nohup, when the terminal is closed."""
         with handle_signal(signal.SIGHUP, signal.SIG_IGN), self.feel(tmp_path / "force", FaultyTouch()) as servo:
             os.kill(servo.process_id, signal.SIGHUP)
             there = servo.report().ticks
@@ -338,8 +332,6 @@ class TestPluginErrors:
         assert held_force(record) == 0
 
     def test_message_that_cannot_be_read_ends_the_loop(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        """If the host cannot read a message, the loop has ended when the error is raised."""
-
         def deaf(_: object) -> object:
             raise EOFError("half a message")
 

@@ -88,7 +88,6 @@ class TestPacked:
 class TestFaults:
     @pytest.mark.parametrize("fault", ["no number", pytest.param("exits", marks=pytest.mark.whole)])
     def test_law_that_fails_under_a_film_and_a_beacon_leaves_no_force(self, tmp_path: Path, fault: Fault) -> None:
-        """While frames are shown, and the beacon pulls to a part that the hand is not on."""
         record, labels = tmp_path / "force", np.zeros((64, 64), np.int32)
         labels[:8, :8] = 1
         surface = HapticSurface(Relief(np.zeros((64, 64), np.float32), (0.08, 0.08)), labels, None, ("wall", "door"))

@@ -89,7 +89,6 @@ class TestSwap:
 
     @pytest.mark.parametrize("device", [Circling(z_m=0.0), Failing(fault="none")])
     def test_swapped_scene_fades_in(self, device) -> None:
-        """By the clock of the ticks: late ones have a greater share."""
         fading = Safety(ramp_s=0.1, stale_s=1.0, max_step_n=10, passivity="off")
         with Servo(proxy(DEEP_M, stiffness_n_per_m=SOFT_N_PER_M), device, fading) as servo:
             until(lambda: len(ticks(servo)) > 50 and not int(ticks(servo)[-1, FLAGS]) & TickFlag.RAMPING)
@@ -147,7 +146,6 @@ class TestNoForceIsLeft:
 
     @pytest.mark.parametrize("killed_by", [signal.SIGKILL, pytest.param(signal.SIGINT, marks=pytest.mark.whole)])
     def test_killed_host_leaves_no_force_and_no_memory(self, tmp_path: Path, killed_by: signal.Signals) -> None:
-        """In the middle of a film, whose memory the host shares."""
         record = tmp_path / "force"
         script = [*HEARING, sys.executable, "-c", HOST.format(record=str(record))]
         host = subprocess.Popen(script, stderr=subprocess.DEVNULL, start_new_session=True)

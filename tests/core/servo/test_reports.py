@@ -70,7 +70,6 @@ class TestReport:
         assert found.period_us is not None and found.period_us.most == pytest.approx(5000)
 
     def test_report_contact_matches_the_recording(self, small: Ring) -> None:
-        """Ticks with a force, whatever the law gave before its force was limited."""
         for force_n in (0.0, 2.0004, 5.0, 5.0, 1e9):
             row = np.zeros(len(TICK_COLUMNS))
             row[11], row[cycle.FLAGS] = force_n, TickFlag.TOUCHING

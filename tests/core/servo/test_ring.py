@@ -51,7 +51,6 @@ class TestReading:
         assert following == 16
 
     def test_ring_that_is_not_full_has_no_made_up_ticks(self, small: Ring) -> None:
-        """The mark of a slot that is being written is not the number of a tick."""
         put(small, *range(15))
         small.stamps[15] = -1
         assert small.since(-1)[0][:, 0].tolist() == list(range(15))

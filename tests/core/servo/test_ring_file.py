@@ -81,7 +81,6 @@ class TestFile:
     def test_files_of_killed_processes_are_deleted_and_no_others(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        """Not those of the living, of other names, folders and links."""
         monkeypatch.setattr(shared_memory, "shared_folder", lambda: tmp_path)
         stays = [f"tangible-{os.getpid()}-x.ring", "tangible-²-x.ring", "tangible-999999999-x.txt", "tangible--.ring"]
         for name in (*stays, "tangible-999999996-x.parcel", "tangible-999999999-x.ring"):

@@ -29,7 +29,6 @@ AT_ONCE = Safety(ramp_s=0, max_step_n=10)
 
 @pytest.mark.parametrize("kept", [0, 4, 8, -1])
 def test_receive_of_half_a_message_is_none(kept: int) -> None:
-    """Such as by a process that was killed while it wrote."""
     whole = io.BytesIO()
     send(whole, StartReply("how"))
     assert receive(io.BytesIO(whole.getvalue())) == StartReply("how")
@@ -59,7 +58,6 @@ class TestSwaps:
         ],
     )
     def test_swaps_leave_no_descriptors_or_memory(self, device: HapticDevice, few: int, many: int) -> None:
-        """Of touches and films, in the loop's process and in this one, which maps each film too."""
         with Servo(proxy(), device, AT_ONCE) as servo:
 
             def swap(times: int) -> list[tuple[int, int, int]]:

@@ -38,7 +38,6 @@ def no_pause(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_kiosk_rotates_scenes_with_their_own_limits(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Each is named in the log, and to systemd, which also hears that the program lives."""
     heard = socket(AF_UNIX, SOCK_DGRAM)
     heard.bind(str(tmp_path / "systemd"))
     heard.setblocking(False)

@@ -78,7 +78,6 @@ def test_keeping_leaves_the_nc_file_if_the_conversion_fails(tmp_path: Path, monk
 
 @pytest.mark.usefixtures("unchecked_shapes")
 def test_drain_logs_overwritten_ticks_and_keeps_the_others(caplog: pytest.LogCaptureFixture) -> None:
-    """Of every five, a ring that is too small for so slow a host still has the last three."""
     firsts: list[int] = []
 
     def since(first: int) -> tuple[np.ndarray, int]:

@@ -91,7 +91,6 @@ def test_parts_felt_have_share_and_peak_force():
 
 @pytest.mark.usefixtures("loop_in_thread")
 def test_reports_name_the_part_of_the_current_scene():
-    """The first scene is all door, the second all wall; the loop is told neither."""
     said: list[str] = []
     both = Event()
 

@@ -62,7 +62,7 @@ def source_declaring(*names: str) -> str:
 def test_run_checks_declared_failure_that_passes_is_reported(install):
     source = source_declaring("flat_pair_claims_nothing", "one_view_is_answered", "wall_is_found")
     install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme=source)
-    results = {run_check.name: run_check for run_check in run_checks("depth", "mine", Registry())}
+    results = {check.name: check for check in run_checks("depth", "mine", Registry())}
     assert [name for name, result in results.items() if result.expected_failure and not result.passed] == [
         "flat_pair_claims_nothing",
         "one_view_is_answered",
@@ -78,11 +78,7 @@ def test_run_checks_unknown_declared_check_is_refused(install):
 
 
 def test_run_checks_options_reach_the_method(registry):
-    [result] = [
-        run_check
-        for run_check in run_checks("depth", "mine", registry, shift_px=9.0)
-        if run_check.name == "wall_is_found"
-    ]
+    [result] = [check for check in run_checks("depth", "mine", registry, shift_px=9.0) if check.name == "wall_is_found"]
     assert result == CheckResult("wall_is_found", False, "the wall is shifted by 6 px; the median error is 3 px")
 
 

@@ -12,7 +12,6 @@ from tangible_report.numbered_parts import Before
 
 
 def test_rows_have_place_share_height_and_material_of_each_part():
-    """A speck between the cells on which places are found has its place all the same."""
     labels = np.zeros((100, 2 * MAX_CELLS + 100), np.int32)
     labels[:, 900:], labels[99, 1], labels[40:60, 500:600] = 1, 2, 3
     heights = PartHeights((0.001, 0.002, 0.0, 0.003), ("a", "b", "c", "d"))

@@ -34,7 +34,6 @@ def test_pair_has_its_left_view_on_the_left(tmp_path: Path, ends: tuple[str, str
 
 
 def test_films_of_a_folder_without_pictures_are_scenes(tmp_path: Path):
-    """A phone lays a film of the same name beside each photo."""
     greys(tmp_path / "walk.avi", 2)
     assert scenes(tmp_path) == {"walk": (f'scene.video="{tmp_path / "walk.avi"}"',)}
     touch(tmp_path, "1.jpg", "1.png", "2.png", "a_left.png", "a_right.png", "a.jpg")

@@ -68,10 +68,7 @@ def test_measures_are_errors_against_the_truth(registry: Registry, tmp_path: Pat
 def test_option_given_by_the_scene_is_set_for_that_method_only(
     registry: Registry, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ):
-    """Disparities of this scene end below 16: the next multiple of 16, for the method with `given:` only.
-
-    One whose range ends below the truth is named in the log.
-    """
+    """Disparities of this scene end below 16: the next multiple of 16, for the method with `given:` only."""
     methods = "{use: ranged, max_disparity_px: 2}, {use: ranged, label: told, given: [max_disparity_px]}"
     rows = measure_rows(registry, tmp_path / "r.jsonl", methods)
     assert [(row.method, row.options) for row in rows] == [
@@ -151,7 +148,6 @@ def test_key_depends_on_what_is_measured(registry: Registry, methods: str, more:
 
 @pytest.mark.parametrize("part", ["closure", "versions", "machine"])
 def test_key_depends_on_code_libraries_and_machine(registry: Registry, monkeypatch: pytest.MonkeyPatch, part: str):
-    """The code and all that it imports, the libraries, the machine."""
     other = {"closure": SimpleNamespace(digest="other"), "versions": {"python": "3.99"}, "machine": {"cores": 1000}}
     first = measurements(comparison(registry, "constant"))[0].row.key
     monkeypatch.setattr(plan, part, lambda *_: other[part])

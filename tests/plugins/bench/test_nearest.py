@@ -28,7 +28,6 @@ def hands(name: str, count: int = 40) -> np.ndarray:
 
 @pytest.mark.parametrize("name", [*SMOOTH, "ridge"])
 def test_nearest_point_no_other_point_is_nearer(name: str):
-    """Points of a fine grid around each hand are compared, each hand alone."""
     known = SURFACES[name].surface((16, 16))
     offsets = np.linspace(-0.004, 0.004, 81)
     for hand in hands(name):

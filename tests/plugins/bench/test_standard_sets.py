@@ -26,7 +26,6 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_set_scene_gives_left_right_truth_and_cameras(folder: Path):
-    """The folder is next to the file, with the name of the set."""
     scene = parse(folder, "{set: kitti-2015, name: 000000_10}").scene
     assert isinstance(scene, SceneFiles)
     assert scene.left == folder / "kitti-2015/training/image_2/000000_10.png"

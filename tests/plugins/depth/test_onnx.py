@@ -1,7 +1,4 @@
-"""Depth by a network that the user brings: else its map is wrong, or a bad file harms.
-
-Networks whose answer is known.
-"""
+"""Depth by a network that the user brings: else its map is wrong, or a bad file harms."""
 
 import hashlib
 import signal
@@ -91,7 +88,6 @@ def test_stereo_network_gives_pixels(networks: Path, runtime):
 
 
 def test_input_is_normalised_as_in_the_card(tmp_path: Path, card):
-    """The network gives the mean of what it gets."""
     model, seen = onnx_models.mono(tmp_path / "m.onnx"), picture()
     plain = "output: {means: disparity-px}"
     told = card(model, f"input: {{white: 255, mean: [100, 0, 0], std: [2, 4, 1], order: bgr}}\n{plain}")
@@ -144,7 +140,6 @@ def test_strips_bound_the_input_and_blend(networks: Path, monkeypatch: pytest.Mo
 
 
 def test_metres_with_known_cameras_become_disparity(card, networks: Path):
-    """The network gives what is in the picture."""
     depth = np.linspace(1, 5, 2000).reshape(40, 50).astype(np.float32)
     seen = np.repeat(depth[..., None] / 5, 3, axis=2)
     told = card(networks / "mono.onnx", "input: {white: 5}\noutput: {means: depth-m}")
@@ -353,7 +348,6 @@ class TestHostileFiles:
         self.demand_refusal(model, card, "fetch it again")
 
     def test_weights_of_a_loops_own_graph_are_checked(self, tmp_path: Path, card):
-        """A loop's body has weights of its own, and a node has constants."""
         bad = onnx.numpy_helper.from_array(np.zeros(1, np.float32), "bad")
         bad.dims[0] = -1
         model = onnx.load(onnx_models.endless(tmp_path / "m.onnx"))
@@ -381,7 +375,6 @@ class TestHostileFiles:
 @pytest.mark.whole
 @pytest.mark.timeout(60)
 def test_network_without_end_hears_ctrl_c(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    """Pressed while it computes, not while its library is imported."""
     model = onnx_models.endless(tmp_path / "m.onnx")
     (tmp_path / "m.yaml").write_text("output: {means: inverse-depth}")
     submit = ThreadPoolExecutor.submit

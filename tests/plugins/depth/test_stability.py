@@ -1,7 +1,4 @@
-"""Pairs that break matchers: with a failure here a depth method claims what is not there, or misses what is.
-
-One table of cases, each demanding a bound of every method that is shipped.
-"""
+"""Pairs that break matchers: with a failure here a depth method claims what is not there, or misses what is."""
 
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -212,9 +209,7 @@ CASES: dict[str, Case] = {
     "half of one view saturated": Case(lambda: change(right=half_white), HALF_LIT),
     "range over the width": Case(planes, (right(0.95),), {"max_disparity_px": 500}),
     "negative range": Case(
-        lambda: mirror(border()),
-        (right(0.95), within_px(-24, 0)),
-        {"min_disparity_px": -24, "max_disparity_px": 1},
+        lambda: mirror(border()), (right(0.95), within_px(-24, 0)), {"min_disparity_px": -24, "max_disparity_px": 1}
     ),
     "range beside the truth": Case(planes, (within_px(30, 40),), {"min_disparity_px": 30, "max_disparity_px": 40}),
     "n x 1": Case(lambda: unknown(noise(0, 80, 1), noise(1, 80, 1)), (within_px(0, 0),)),

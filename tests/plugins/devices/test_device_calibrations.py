@@ -34,8 +34,7 @@ def test_every_serial_number_has_its_own_file(config_dir: Path, serial: str):
 
 
 @pytest.mark.parametrize(
-    ("text", "place"),
-    [('{"gain": "x"}', "gain"), ('{"offset_deg": [1, 2]}', r"offset_deg\.2"), ("", "the file")],
+    ("text", "place"), [('{"gain": "x"}', "gain"), ('{"offset_deg": [1, 2]}', r"offset_deg\.2"), ("", "the file")]
 )
 def test_damaged_calibration_is_named_and_not_ignored(text: str, place: str):
     path = save_calibration("arm", "F123", Measured())

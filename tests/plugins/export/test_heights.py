@@ -147,7 +147,6 @@ def test_exact_heights_with_other_numbers_are_refused(tmp_path: Path, factor: fl
 
 
 def test_heights_whose_text_went_by_mail_are_the_same(tmp_path: Path):
-    """With a mark of the order of bytes and other line ends."""
     files = write(tmp_path, bumps())
     files["json"].write_bytes(b"\xef\xbb\xbf" + files["json"].read_bytes().replace(b"\n", b"\r\n"))
     for ending in ("json", "png"):

@@ -50,7 +50,6 @@ def shares(up: np.ndarray, want: np.ndarray) -> tuple[float, float]:
 
 @given(st.data())
 def test_pins_of_fields_show_all_borders(tmp_path_factory, data):
-    """Fields at least three pins wide, on displays of any size."""
     columns, rows = data.draw(st.integers(12, 90)), data.draw(st.integers(12, 60))
     fields = np.random.default_rng(data.draw(st.integers(0, 99))).integers(0, 9, (rows // 4, columns // 4))
     grain = data.draw(st.integers(3, 9))

@@ -47,7 +47,6 @@ def test_relief_is_sampled_at_the_middles_of_cells():
 
 @pytest.mark.parametrize("turns", range(4))
 def test_vote_counts_in_the_corners_of_the_map_too(turns: int):
-    """The nearest cell of the corner is of the one label, and the many around it of the other."""
     labels, removed = np.zeros((6, 6), np.int32), np.zeros((6, 6), np.bool_)
     labels[0, 1] = 1
     removed[:2, 0] = True

@@ -43,7 +43,6 @@ def test_map_loses_its_padding_and_leading_dimensions():
 
 
 def test_map_of_half_the_size_is_enlarged_with_its_padding():
-    """The padding is on the right: half of the map belongs to it."""
     values = np.float32([[1, 1, 9, 9]] * 4)
     found = restore_size(values, Fit((8, 4), (8, 8)), (8, 4))
     assert found is not None

@@ -89,7 +89,6 @@ def test_text_that_is_not_utf_8_is_refused_wherever_it_stands(tmp_path: Path, da
 
 
 def test_kornia_builds_both_networks_of_its_cards_and_downloads_nothing(tmp_path: Path, monkeypatch):
-    """Weights are random, and made here."""
     import torch
     from kornia.core import download
     from kornia.filters.dexined import DexiNed

@@ -41,11 +41,7 @@ def section(distance_m: np.ndarray, method: Engraved = GROOVE) -> np.ndarray:
 
 
 def straight(cells: int, degrees: float) -> tuple[HapticSurface, np.ndarray, np.ndarray]:
-    """Two halves; the distance of each cell from the line between them; the cells whose nearest point is in sight.
-
-    A line along the cells runs between them, any other one past their centres: at 45 degrees no grid can tell apart
-    lines that are as far from each other as its diagonals.
-    """
+    """Two halves; the distance of each cell from the line between them; the cells whose nearest point is in sight."""
     turn, (x, y) = np.radians(degrees), grid(cells)
     aside_m = 0.0 if degrees % 90 == 0 else 0.31 * SIDE_M / cells
     distance_m = y * np.cos(turn) - x * np.sin(turn) - aside_m
@@ -150,7 +146,6 @@ class TestBase:
 
 
 def test_preflight_judges_the_grooves():
-    """On two parts of equal height the only slope is the groove's."""
     labels = (np.indices((80, 80))[1] > 40).astype(np.int32)
     scene = Scene.photo(np.full((80, 80, 3), 128, np.uint8), segments=labels)
     level_m = {number: {"height_m": 0.004} for number in (1, 2)}

@@ -35,7 +35,6 @@ class TestOmissions:
 
     @pytest.mark.parametrize(("part", "name"), [("friction", "sticky"), ("texture", "grainy"), ("damping", "oily")])
     def test_effects_are_disabled_one_by_one(self, part: str, name: str):
-        """With the only effect of a material disabled, forces are the inner force law's."""
         material = {"sticky": STICKY, "grainy": GRAINY, "oily": replace(PLAIN, damping_n_s_per_m=3.0)}[name]
         on, off = (WithMaterials(law="penalty", **{part: value}).touch(level(material)) for value in (True, False))
         path = stroke() + np.linspace(0, 1e-3, 5000)[:, None] * [0, 0, -1]
@@ -143,7 +142,6 @@ class TestPlainLaw:
 
     @pytest.mark.parametrize("copy", [deepcopy, lambda touch: pickle.loads(pickle.dumps(touch))])
     def test_copy_of_a_touch_has_its_own_memory(self, copy):
-        """One copy is asked for its stiffness while another runs in the loop's process."""
         first = WithMaterials(law="in-python").touch(level(STICKY))
         path = stroke(ticks=50)
         first.path(path[:20])

@@ -71,7 +71,6 @@ class TestAccuracy:
     def test_proxy_on_an_oblong_surface_is_the_nearest_point(
         self, shape: tuple[int, int], extent_m: tuple[float, float]
     ):
-        """On a plane the nearest point within the borders is known exactly."""
         width, length = extent_m
         rows, columns = np.indices(shape) + 0.5
         x, y = (columns / shape[1] - 0.5) * width, (0.5 - rows / shape[0]) * length
@@ -118,7 +117,6 @@ class TestMaterials:
         assert at(touch, 0.001, 0.0, 0.009) == pytest.approx((-1200 * 0.002, 0, 1200 * 0.001), abs=1e-5)
 
     def test_touch_reports_the_greatest_stiffness(self):
-        """The guard of a loop softens the touch by it."""
         soft = Material("soft", 300.0, 0.0, 0.0, 0.0)
         labels = np.arange(4096, dtype=np.int32).reshape(64, 64) % 3
         for other in ({}, {"damping_n_s_per_m": 1.0}, {"roughness_m": 1e-4}):

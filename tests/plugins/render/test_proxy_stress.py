@@ -24,7 +24,6 @@ def rough(request) -> HapticSurface:
 
 class TestStress:
     def test_proxy_at_rest_has_the_hand_along_its_normal(self, rough: HapticSurface):
-        """The search gets stuck on no rough ground."""
         coefficients, *_, across, down = spline_surface(rough, "auto")
         for x, y in RNG.uniform(-0.03, 0.03, (60, 2)):
             hand = np.array([x, y, spline.height(coefficients, across, down, x, y) - 0.003])

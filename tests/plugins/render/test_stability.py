@@ -1,7 +1,4 @@
-"""A hand would be kicked: on surfaces that break a careless law nothing runs away, gains energy or loses its track.
-
-CI feels four million ticks in all; `pytest --nightly tests/plugins/render/test_stability.py` forty times as many.
-"""
+"""A hand would be kicked: on surfaces that break a careless law nothing runs away, gains energy or loses its track."""
 
 import numpy as np
 import pytest

@@ -79,7 +79,6 @@ class TestHeights:
         assert np.allclose(Proxy().touch(level(lines)).path(path)[1:], [0, 0, K * 0.001], atol=1e-6)
 
     def test_first_tick_anywhere_has_the_whole_texture(self):
-        """A hand without a last position did not come from the middle."""
         low = in_stripes(HapticSurface.from_heights(np.full((64, 64), 0.001)), GRAINY)
         touch, state = Proxy().touch(low), HapticState((0.0012, 0.0016, 0.0005))
         assert touch.force(state) == touch.force(state) != NO_FORCE

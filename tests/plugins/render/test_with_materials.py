@@ -91,9 +91,7 @@ class TestFriction:
     @pytest.mark.parametrize("material", [STICKY, RUBBER], ids=lambda each: each.name)
     @pytest.mark.parametrize("law", PUSHING + LATERAL)
     @pytest.mark.parametrize(
-        "between",
-        [(0.05, 0.0, 0.009), (np.nan, 0.0, 0.009), (0.003, 0.0052, 0.009)],
-        ids=["beside", "lost", "leapt"],
+        "between", [(0.05, 0.0, 0.009), (np.nan, 0.0, 0.009), (0.003, 0.0052, 0.009)], ids=["beside", "lost", "leapt"]
     )
     def test_contact_after_another_is_like_the_first(
         self, law: str, material: Material, between: tuple[float, float, float]
@@ -124,7 +122,6 @@ def test_table_leaves_out_what_is_off_and_friction_of_textures_that_stick():
 
 
 def test_table_of_one_material_is_one_row():
-    """Of the labels that occur; those of two materials are kept where they differ in anything."""
     whole, halves = np.int32([[1, 1]]), np.int32([[0, 1]])
     for labels, size in ((whole, 1), (halves, 2)):
         surface = HapticSurface.from_heights(np.zeros((1, 2)), 0.02, labels, (STICKY, PLAIN))
@@ -137,7 +134,6 @@ class TestTexture:
     @pytest.mark.parametrize("smooth", [PLAIN, STICKY], ids=lambda each: each.name)
     @pytest.mark.parametrize("law", PUSHING)
     def test_force_is_that_of_the_inner_law_transformed(self, law: str, smooth: Material):
-        """Friction included: it goes along with the hand as the law sees it."""
         turn = np.linspace(0, 6, 6000)
         path = np.column_stack([0.03 * np.sin(3 * turn), 0.03 * np.cos(2 * turn), 0.003 + 0.002 * np.sin(9 * turn)])
         t, tx, ty = grain(path)

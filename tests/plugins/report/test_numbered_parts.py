@@ -9,14 +9,7 @@ from PIL import Image
 from tangible_core.data import PartMap, SegmentMap
 from tangible_core.parts import find_parts
 from tangible_legibility.cells import largest_disc
-from tangible_report.numbered_parts import (
-    LONGEST_PX,
-    SHORTEST_PX,
-    Before,
-    Drawn,
-    _coarse,
-    numbered_parts,
-)
+from tangible_report.numbered_parts import LONGEST_PX, SHORTEST_PX, Before, Drawn, _coarse, numbered_parts
 
 
 def draw(picture: np.ndarray, labels: np.ndarray, names: tuple[str, ...] = ()) -> np.ndarray:

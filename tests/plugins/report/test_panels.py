@@ -77,7 +77,6 @@ class TestRelief:
             assert relief.draw_surface(Figure().subplots(), level(high_m, extent_m)) == says
 
     def test_slope_is_lit_or_dark_by_the_side_that_it_faces(self, axes: Axes):
-        """The light is at the upper left; level ground is in between."""
         x = np.linspace(0, 0.08, 81, dtype=np.float32)
         heights = np.interp(x, [0, 0.02, 0.03, 0.05, 0.06, 0.08], [0, 0, 0.005, 0.005, 0, 0])[None].repeat(40, axis=0)
         draw_relief(axes, Relief(heights.astype(np.float32), (0.08, 0.04)))

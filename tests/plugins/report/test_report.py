@@ -475,7 +475,6 @@ class TestFiles:
 
     @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
     def test_sheet_file_has_a_description(self, tmp_path: Path, suffix: str) -> None:
-        """The description is in the file, which is the same each time."""
         run: dict[str, Any] = {name: whole_run()[name] for name in ("views", "segments", "materials", "relief")}
         for name in "xy":
             assert draw_sheet(tmp_path / f"{name}.{suffix}", title="a & b", **run) == self.SAYS

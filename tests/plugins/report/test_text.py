@@ -120,7 +120,6 @@ def test_name_without_braille_is_refused_for_braille_only(tmp_path: Path):
 
 
 def test_pipeline_exports_text(tmp_path: Path):
-    """The files have the width of a page."""
     picture = np.repeat(np.linspace(0, 255, 64).astype(np.uint8)[:, None], 96, axis=1)
     scene = Scene.photo(picture, segments=np.repeat(np.arange(2), 32)[:, None].repeat(96, axis=1))
     pipeline = Pipeline(

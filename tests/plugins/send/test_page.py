@@ -88,7 +88,6 @@ def test_policy_allows_this_script_and_style_alone(tmp_path: Path):
 
 @pytest.mark.whole
 def test_file_is_as_small_as_is_asked(tmp_path: Path):
-    """Rough heights and a picture of noise, which do not become smaller."""
     work = finer(picture_to_send(), 8)
     work = replace(work, picture=np.random.default_rng(1).integers(0, 255, (900, 1200, 3), dtype=np.uint8))
     with collect_notes() as notes:
@@ -143,7 +142,6 @@ def test_data_describe_the_surface_that_is_sent(tmp_path: Path):
 
 
 def test_surface_without_parts_is_sent_plainly(tmp_path: Path):
-    """It is large enough to be made coarser."""
     whole = finer(picture_to_send(""), 8)
     bare = replace(whole.surface, labels=None, materials=None, names=None)
     data = data_of(replace(whole, products={"surface": bare, "materials": None}, names=()), tmp_path)

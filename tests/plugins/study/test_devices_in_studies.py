@@ -37,7 +37,6 @@ comparisons: [{name: rate, question: rating, repetitions: 1}]
 def test_device_that_is_pulled_out_holds_no_force_and_the_trial_begins_again(
     tmp_path: Path, loop_in_thread: None, monkeypatch: pytest.MonkeyPatch
 ):
-    """The device fails at its first read after a force, once."""
     study, held = write_study(tmp_path, RATING), tmp_path / "held.txt"
     file, failed = parse_study(RATING, study), list[int]()
     stimuli, of_study, read = Stimuli(file), Stimuli.feeling, FailingLink._read
@@ -161,8 +160,6 @@ def test_nothing_is_felt_between_intervals(tmp_path: Path, loop_in_thread: None)
 
 
 def test_recording_that_cannot_be_kept_ends_the_loop(tmp_path: Path, loop_in_thread: None):
-    """No force goes on while the participant reads that the disk is full."""
-
     def fail(rows: np.ndarray) -> None:
         raise OutputError("the disk is full")
 

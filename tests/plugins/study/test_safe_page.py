@@ -124,7 +124,6 @@ NO_ANSWERS = (
 
 
 def test_answer_that_is_none_is_refused(page: Page):
-    """The question stays open: the right answer is taken afterwards."""
     with ThreadPoolExecutor(1) as background, Participant(page) as tab:
         asked = background.submit(page.ask, "Which?", {"1": ""})
         question = tab.hear()

@@ -72,7 +72,6 @@ def test_participant_who_left_resumes_at_the_next_trial(study: Path):
 
 
 def test_device_pulled_out_repeats_the_trial_and_marks_it(study: Path, monkeypatch: pytest.MonkeyPatch):
-    """In the second interval of the second trial, once."""
     calls, run = [], Feeling.run
 
     def pulled(self: Feeling, *args: object, **options: object) -> Recording:
@@ -94,7 +93,6 @@ def test_device_pulled_out_repeats_the_trial_and_marks_it(study: Path, monkeypat
 
 
 def test_full_disk_tells_so_and_keeps_the_answer(study: Path, monkeypatch: pytest.MonkeyPatch):
-    """Once at an answer and once at a recording."""
     add, append, full = AnswerFile.add, Writer.append, {"add": 2, "append": 5}
 
     def strain(name: str) -> None:
@@ -111,7 +109,6 @@ def test_full_disk_tells_so_and_keeps_the_answer(study: Path, monkeypatch: pytes
 
 
 def test_session_has_breaks_and_times_and_names_no_condition(study: Path, monkeypatch: pytest.MonkeyPatch):
-    """A clock that is set does not change the times of answers."""
     jumps = iter(range(10**6))
     monkeypatch.setattr("time.time", lambda: 1e9 * (-1) ** next(jumps))
     session, waits = sit_down(study), list[float]()

@@ -134,7 +134,6 @@ def compared(question: str, **more) -> Comparison:
     ],
 )
 def test_observer_without_noise_answers_by_what_differs(asked: Trial, answer: str):
-    """Conditions are one standard deviation apart."""
     observer = Detection(difference=1.0, lapse=0.0)
     levels = LEVELS if asked.question == "equal" else ()
     assert observer.answer(asked, compared(asked.question, levels=levels), Still(0.5)) == answer

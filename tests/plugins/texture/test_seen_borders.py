@@ -57,7 +57,6 @@ def test_network_sees_pictures_of_any_size(models: Path, shape: tuple[int, int])
 
 @pytest.mark.nightly
 def test_published_network_finds_what_people_drew(models: Path) -> None:
-    """On pictures that neither the network nor the weights have seen."""
     drawings = [drawn_parts.drawn(name) for name in ("astronaut", "camera", "chelsea", "coffee", "rocket")]
 
     def cover() -> list[float]:

@@ -156,7 +156,6 @@ class TestHierarchy:
             assert np.unique(np.stack([fine.ravel(), coarse.ravel()]), axis=1).shape[1] == fine.max() + 1
 
     def test_weak_border_is_kept_at_a_low_level_alone(self):
-        """People do not agree about a faint shadow."""
         picture = np.full((90, 120, 3), (120, 110, 100), np.uint8)
         picture[:, 60:] = 150, 140, 130
         picture[:20, :20] = 250, 20, 20
@@ -170,7 +169,6 @@ class TestHierarchy:
         assert np.unique(found.confidence[truth == 0]).size == 1
 
     def test_estimate_is_limited(self):
-        """A hundred squares of other colours."""
         numbers = np.kron(np.arange(100).reshape(10, 10) * 37 % 100, np.ones((20, 20), int))
         colours = np.random.default_rng(0).permutation(np.indices((5, 5, 4)).reshape(3, -1).T * [60, 60, 80])
         picture = colours[numbers].astype(np.uint8)

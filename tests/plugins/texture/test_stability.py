@@ -1,7 +1,4 @@
-"""Pictures that break segmenters: with a failure here a method finds segments where there are none, or loses some.
-
-One table of pictures, each with a demand on every method that is shipped.
-"""
+"""Pictures that break segmenters: with a failure here a method finds segments where there are none, or loses some."""
 
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -129,7 +126,6 @@ def test_labels_under_gain_offset_and_any_kind_of_array_agree(name: str):
 @by_method
 @pytest.mark.parametrize("upright", [True, False])
 def test_borders_do_not_wrap_around(name: str, upright: bool):
-    """Pixels at one border get the label of their neighbours, not that of the other border."""
     picture, truth = two_textures((120, 200))
     labels = load_method("texture", name)(segments=2).segment(picture if upright else picture.transpose(1, 0, 2)).labels
     labels = labels if upright else labels.T

@@ -65,10 +65,7 @@ def focus(page: "Page") -> str:
 class TestSeen:
     @pytest.mark.parametrize("locale", ["en-GB", "de-DE"])
     def test_page_with_results_has_no_violations_by_axe_and_fits_every_size(self, show: Show, locale: str):
-        """Every panel is open, with verdicts, cures, files, decisions and a refusal.
-
-        In English in all themes; in German, where colours are the same and words longer, from a phone to a wall.
-        """
+        """Every panel is open, with verdicts, cures, files, decisions and a refusal."""
         page = show(locale=locale)
         assert page.evaluate("document.documentElement.lang") == locale[:2]
         wait_for_force(page)
@@ -312,7 +309,6 @@ class TestSaid:
 
 class TestTasks:
     def test_first_visit_works_with_the_keyboard_alone(self, show: Show, tmp_path: Path):
-        """Open, look, feel, ask, hear, record, stop, feel again, save, and find the keys."""
         page = show(SPY)
         wait_for_force(page)
         enter(page, "left", "#open .examples button:nth-child(2)")
@@ -375,10 +371,7 @@ def enter(page: "Page", region: str, what: str) -> None:
 
 
 def drag(page: "Page", enough: Callable[[], bool]) -> None:
-    """Press the hand onto the surface and move it over the parts until it is enough, then let go.
-
-    It moves two dozen times a second: the page tells once a second, and more moves only take the processor.
-    """
+    """Press the hand onto the surface and move it over the parts until it is enough, then let go."""
     box = page.locator("#terrain").bounding_box()
     assert box
     x, y, width = box["x"] + box["width"] / 2, box["y"] + box["height"] * 0.6, box["width"]

@@ -86,7 +86,6 @@ def test_surface_keeps_half_of_a_small_screen_and_the_stop_button_covers_nothing
 
 
 def test_start_without_a_file_offers_three_tiles_until_a_file_is_opened(page: "Page"):
-    """The server tells so with its first message; here the page is told by hand."""
     page.evaluate("page.hub.tell('hello', { ...page.hub.last('hello'), history: [], scene: null, empty: true })")
     start = page.get_by_role("region", name="What do you want to feel?")
     start.wait_for()

@@ -15,7 +15,6 @@ CARD = f"title: Mine\ntask: figure\nsha256: {DIGEST}\nlicence: ours\noutput: {{m
 
 
 def test_network_is_added_from_a_file_checked_and_removed(serve, open_page, tmp_path: Path) -> None:
-    """Also the sentences for a file of another network, and for one that was damaged since."""
     built_page()
     models = tmp_path / "models"
     models.mkdir()

@@ -1,8 +1,4 @@
-"""The drawing at the pixels where the numbers put it: otherwise hand and force are seen elsewhere than they are.
-
-The surface is a step: level ground on the left and in front, level and 6 mm higher on the far right. The view gives the
-place of a point on the screen; that the view itself is the right way round is tested first.
-"""
+"""The drawing at the pixels where the numbers put it: otherwise hand and force are seen elsewhere than they are."""
 
 import io
 from collections.abc import Iterator
@@ -133,7 +129,6 @@ def test_surface_is_drawn_the_right_way_round_and_in_place(shown: Shown):
 
 @pytest.mark.parametrize("hand", [(LEFT, 0.015, 0.004), (RIGHT, -0.002, HIGH_M - 0.001), (LEFT, -0.02, -0.002)])
 def test_cursor_is_drawn_at_the_hand(shown: Shown, hand: Vec):
-    """The cursor is drawn under the surface too, through which it is seen."""
     shown.only("device")
     shown.state(hand)
     found = centroid(colour_mask(shown.pixels(), DEVICE))

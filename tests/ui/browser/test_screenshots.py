@@ -83,7 +83,6 @@ TASKS = {"parts": "parts-task", "feel": "feel", "hand-on": "export-task"}
 def test_screenshots_of_start_and_tasks(
     opened: Callable[..., str], serve: Callable[..., Any], open_page: Callable[..., Any], tmp_path: Path
 ):
-    """The start without a file, and each task, in light, in dark and on a phone."""
     empty, url = serve().url, opened(astronaut_file(tmp_path))
     for variant, options in VARIANTS.items():
         page = open_page(empty, draws=True, **options)
@@ -140,7 +139,6 @@ def shot(page: Any, **options: Any) -> Image.Image:
 
 
 def test_screenshot_of_each_panel(open_page: Callable[..., Any], url: str, tmp_path: Path):
-    """Each panel has its contents once a surface is felt; a long panel is cut."""
     size = {"width": 1440, "height": 1100}
     page = open_page(url, draws=KEPT, viewport=size, color_scheme="light", reduced_motion="reduce")
     wait_for_force(page)
@@ -161,7 +159,6 @@ def test_screenshot_of_each_panel(open_page: Callable[..., Any], url: str, tmp_p
 
 
 def test_screenshots_of_the_parts_editor(opened: Callable[..., str], open_page: Callable[..., Any], tmp_path: Path):
-    """A photograph with parts that were drawn by hand; and one that is proposed."""
     page = open_page(
         opened(astronaut_file(tmp_path)), draws=True, viewport={"width": 1180, "height": 720}, color_scheme="light"
     )

@@ -84,10 +84,7 @@ def participant(folder: Path, text: str, open_page: OpenPage, pipeline: str) -> 
     hand = new_hand()
     file = parse_study(text, path)
 
-    with (
-        Page("en", lambda text: text, hand, file.study.sounds) as page,
-        ThreadPoolExecutor(1) as background,
-    ):
+    with Page("en", lambda text: text, hand, file.study.sounds) as page, ThreadPoolExecutor(1) as background:
 
         def run() -> int:
             session = begin(file, Stimuli(file, hand_changes(hand)), "P1", folder / "out", page)

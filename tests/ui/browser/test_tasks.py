@@ -1,8 +1,4 @@
-"""The main tasks of the page that no other test does, by the keyboard alone: judge, record, compare, open again.
-
-That a first visit and an option's way from its form to the file need no mouse is tested in `test_accessibility` and
-`test_forms_in_browser`.
-"""
+"""The main tasks of the page that no other test does, by the keyboard alone: judge, record, compare, open again."""
 
 import shlex
 from pathlib import Path

@@ -69,10 +69,7 @@ def test_beacon_ends_by_a_button_a_scene_and_a_stop() -> None:
     tag = [0]
 
     def pulls(button: int = 0) -> bool:
-        """Move the hand, as a page does all the time, and return True if it is pulled with this button held.
-
-        Tags are not buttons.
-        """
+        """Move the hand, as a page does all the time, and return True if it is pulled with this button held."""
         tag[0] += 1
         feeling.hand.point((-0.03, -0.03, 0.02), button, tag[0])
         assert feeling.servo is not None
@@ -112,7 +109,6 @@ def test_beacon_ends_by_a_button_a_scene_and_a_stop() -> None:
 
 
 async def test_beacon_that_ends_is_announced_with_the_reason() -> None:
-    """The polling of the loop asks a hundred times a second, and reports each end once."""
     told: list[dict[str, Any]] = []
     ends = iter(["", "button", "", "ended"])
     feeling = SimpleNamespace(

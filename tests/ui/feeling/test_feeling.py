@@ -175,7 +175,6 @@ class TestSwaps:
         assert feeling.loop_end() is None
 
     def test_swap_to_a_missing_device_raises_and_can_be_repeated(self, feeling: Feeling, tmp_path: Path) -> None:
-        """Says so; it is felt once it is there."""
         device = Failing(fault="none", opens="second", record=str(tmp_path / "held"))
         with pytest.raises(DeviceError, match="in use by another program"):
             feeling.feel(loop_input(feeling, device))
@@ -266,5 +265,4 @@ class TestStop:
         assert self.stops(feeling, feeling.start) == [None]
 
     def test_stop_while_a_device_is_homed_kills_its_process(self, feeling: Feeling) -> None:
-        """The device never answers: its process is killed."""
         assert self.stops(feeling, lambda: feeling.feel(loop_input(feeling, Failing(opens="late")))) == [None]

@@ -244,7 +244,6 @@ class TestOpening:
     def test_place_of_a_part_between_the_sampled_pixels_is_its_first_pixel(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        """Four squares, of which every second pixel is looked at, and two parts in odd rows."""
         monkeypatch.setattr(opening, "MAX_LOOKED_AT", 100)
         labels = np.zeros((20, 20), np.int32)
         labels[:, 10:], labels[10:, :10], labels[10:, 10:] = 1, 2, 3
@@ -445,7 +444,6 @@ class TestHeights:
     async def test_changed_heights_feel_as_the_saved_document(
         self, small: SmallSession, ask: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        """Surfaces and the loop's whole input are the same to the bit."""
         sent_to_the_loop = kept_parcels(monkeypatch, "feel", "feel_on")
         for render in ("{use: penalty}", "{use: proxy}"):
             await ask("set", written={"render": render})

@@ -65,7 +65,6 @@ def read_parts(path: Path) -> tuple[Mapping[int, PartChoice], Any]:
 
 
 def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], open_page: OpenPage, photo: Path):
-    """Opened as a photograph; what is drawn is spoken, saved, and kept as a pipeline file."""
     page = open_page("about:blank")
     page.add_init_script(SPY)
     page.goto(opened(photo) + "&measure")

@@ -35,10 +35,7 @@ FRAMES = {
     "text that is not UTF-8, and a close": (frame(TEXT, b"\xff") + frame(CLOSE, b"\x03\xe8"), 1000),
     "close with a code that nobody may send": (frame(CLOSE, b"\x03\xed"), 1002),
     "text of one byte too many": (frame(TEXT, size=MAX_MESSAGE_BYTES + 1), 1009),
-    "parts of one byte too many": (
-        frame(BINARY, bytes(MAX_MESSAGE_BYTES), last=False) + frame(0, b"\0"),
-        1009,
-    ),
+    "parts of one byte too many": (frame(BINARY, bytes(MAX_MESSAGE_BYTES), last=False) + frame(0, b"\0"), 1009),
     "compressed text, which was not agreed": (frame(TEXT, b"x", rsv=4), 1002),
     "frame without a mask": (frame(TEXT, b"x", mask=False), 1002),
 }
@@ -73,7 +70,6 @@ def test_body_that_breaks_off_is_refused(page: PageServer, path: str, after_answ
 
 @pytest.mark.parametrize("count", [40, pytest.param(2000, marks=pytest.mark.nightly)])
 def test_server_survives_broken_messages(page: PageServer, count: int) -> None:
-    """One tab is there from the beginning to the end, and is answered."""
     random = Random(53)
     paths = ("/", "/stop", f"/stop?token={KEY}", f"/live?token={KEY}", f"/scene/a/b?token={KEY}")
     with page.tab() as witness:

@@ -106,7 +106,6 @@ class TestAsks:
     @given(JSON, st.sampled_from(sorted(REQUESTS)))
     @settings(suppress_health_check=[HealthCheck.too_slow])
     def test_request_of_any_json_is_parsed_or_refused(self, told: Any, name: str) -> None:
-        """Every JSON is parsed or refused; nothing else happens."""
         for said in (told, {"number": 1, "ask": told}, {"number": 1, "ask": name, "path": told, "text": told}):
             try:
                 asked = parse(json.dumps(said), find_request)

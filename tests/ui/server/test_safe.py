@@ -54,7 +54,6 @@ def with_key(path: str) -> str:
 
 class TestWhoIsLetIn:
     def test_routes_but_the_built_page_need_the_key(self, page: PageServer) -> None:
-        """Every route is tried: a new one cannot forget the key."""
         seen = set()
         for route in routes.routes(lambda: page.session, KEY):
             if isinstance(route, WebSocketRoute | Mount):

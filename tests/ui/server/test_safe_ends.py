@@ -167,7 +167,6 @@ def children(server: UiServer, name: str) -> list[int]:
 
 
 def test_force_ends_with_the_tab_the_loop_and_a_frozen_server(home: Home) -> None:
-    """The page and its parts, one after the other on one server, which goes on."""
     server = home.server("level.yaml")
     press = Press(home, server)
     found: dict[str, float] = {}
@@ -262,7 +261,6 @@ def test_server_that_is_killed_leaves_no_force_and_its_draft_is_offered(home: Ho
 
 @pytest.mark.whole
 def test_servers_next_to_each_other_import_nothing_that_computes_and_print_their_keys_once(home: Home) -> None:
-    """A failed request leaves no warning, and no key is printed."""
     looks = f"import atexit, sys; atexit.register(lambda: print('has', [n for n in {FORBIDDEN} if n in sys.modules])); "
     servers = [home.server("level.yaml", "--log-level", "debug", start=HEARING + looks + START) for _ in range(2)]
     presses = [Press(home, each) for each in servers]

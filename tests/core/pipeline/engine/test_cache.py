@@ -141,7 +141,6 @@ def test_entry_of_any_content_is_made_again(tmp_path: Path, tree: object, caplog
 
 
 def test_pruning_of_many_entries_keeps_those_used_last(tmp_path: Path):
-    """The order in which the folder lists the entries does not matter."""
     cache = Cache(tmp_path)
     names = {age: f"{age * 5 % 12:x}{age}" for age in (7, 2, 9, 4, 0, 11, 5, 1, 10, 3, 8, 6)}
     for age, name in names.items():
@@ -159,7 +158,6 @@ def test_pruning_of_many_entries_keeps_those_used_last(tmp_path: Path):
 
 @pytest.mark.parametrize("place", ["file", "file/below", "loop"])
 def test_unwritable_folder_gives_one_warning(tmp_path: Path, place: str, caplog: pytest.LogCaptureFixture):
-    """A process has many results, and several caches of one folder."""
     (tmp_path / "file").write_text("")
     (tmp_path / "loop").symlink_to("loop")
     for key in "abc":

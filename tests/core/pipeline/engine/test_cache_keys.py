@@ -133,7 +133,6 @@ class TestKeys:
             assert fine.make(product).disparity_px[0].tolist() == list(range(30))
 
     def test_relief_of_edges_depends_on_a_texture_method_that_makes_a_tree_alone(self, folder: Path):
-        """Its borders are raised lines; a method without a tree has no part in it."""
         parts = {"want": "relief", "relief": ReliefChoice(by="edges"), "scene": SceneFiles(photo=Path("left.npy"))}
         found = [
             keys(folder, **parts, texture=NamedMethod(name, version, load_method("texture", name)()))["relief"]
@@ -144,7 +143,6 @@ class TestKeys:
 
     @pytest.mark.parametrize("product", ["disparity", "segments"])
     def test_keys_differ_for_the_mask_of_known_pixels(self, folder: Path, product: str):
-        """The pictures are the same once they are filled."""
         whole, torn = (
             pipeline(folder, scene=SceneFiles(photo=Path(f"{each}.npy"), non_finite="mask"))
             for each in ("left", "torn")

@@ -57,7 +57,6 @@ def test_first_frame_equals_the_relief_of_the_still(film_pipeline, walk):
 
 
 def test_each_frame_equals_the_still_of_its_disparity_and_scale(film_pipeline, walk):
-    """A later frame is a still with the scale of the first frame, as nothing is averaged."""
     pipeline = film_pipeline()
     later = Pipeline(Scene.pair(walk / "004.png", layout="side-by-side"), depth=pipeline.config.depth.method)
     maker = PipelineFrames(pipeline.config, pipeline.scene)
@@ -82,7 +81,6 @@ def test_box_of_the_video_walks_in_the_reliefs(film_pipeline):
 
 
 def test_exchanged_views_stay_exchanged_in_later_frames(walk, tmp_path, monkeypatch):
-    """The box shows no contour, and the judgement is given."""
     monkeypatch.setattr(pair_checks, "view_order", lambda *_: pair_checks.ViewOrder(True, "exchanged"))
     for path in walk.iterdir():
         left, right = np.split(cv2.imread(str(path)), 2, axis=1)

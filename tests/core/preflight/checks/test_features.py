@@ -60,7 +60,6 @@ class TestFeatures:
         return fly(relief, relief_m=2 * amplitude_m, **changes)
 
     def test_widths_are_those_that_cells_and_surface_hold_along_both_axes(self):
-        """From two of the longer cells to half of the shorter side."""
         noise = np.random.default_rng(2).random((40, 400)).astype(np.float32)
         for extent_m, found in (
             ((0.1, 0.02), ["1 mm wide", "3.2 mm wide", "10 mm wide"]),

@@ -60,7 +60,6 @@ def test_request_without_rights_sets_shortest_slack_and_slice_and_keeps_niceness
 
 @pytest.mark.parametrize("policy", [3, 5, 0x40000000])
 def test_thread_of_another_class_stays_in_it(policy: int, linux: FakeCalls, monkeypatch: pytest.MonkeyPatch):
-    """SCHED_BATCH, SCHED_IDLE, and a class that children do not inherit."""
     monkeypatch.setattr(priority.os, "sched_getscheduler", lambda _: policy)
     priority.shorten_slice()
     assert linux.calls == []

@@ -48,7 +48,6 @@ def test_process_that_is_looked_for_lives_on():
 
 
 def test_library_that_is_loaded_finds_nothing_to_read_in_standard_input():
-    """A thread reads the pipe meanwhile, and gets what comes."""
     code = (
         "from tangible_core.runtime.system.console import take_input; import sys; pipe = take_input(); "
         "print(sys.stdin.read() == '', pipe.read(3))"

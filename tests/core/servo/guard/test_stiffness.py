@@ -123,7 +123,6 @@ class TestMeasuredStiffness:
         assert find_stiffness(slope, SPEC).n_per_m == pytest.approx(1000, rel=0.01)
 
     def test_wall_is_measured_sideways(self) -> None:
-        """A constant force up, and a stiff spring along x that does not depend on the depth."""
         law = Law(lambda x, y, z: (-3000.0 * x, 0.0, 2.0) if z < LEVEL_M else NO_FORCE)
         assert find_stiffness(law, SPEC).n_per_m == pytest.approx(3000, rel=1e-6)
 

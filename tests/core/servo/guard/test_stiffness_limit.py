@@ -5,14 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simulated_handle import (
-    HandleLoop,
-    comes_to_rest,
-    exact_stiffness_limit,
-    ride,
-    stiffest_stable_n_per_m,
-    wall,
-)
+from simulated_handle import HandleLoop, comes_to_rest, exact_stiffness_limit, ride, stiffest_stable_n_per_m, wall
 from tangible_bench.metrics.stability import Handle
 from tangible_core.data import DeviceSpec
 from tangible_core.servo.guard.safety import Safety, stiffness_limit_n_per_m

@@ -134,7 +134,6 @@ class TestSurfaceWork:
         assert felt.memory[[at.GIVEN_J, at.SURFACE_FORCE_N, at.LAST_RISE_M]].tolist() == [0, 0, 0]
 
     def test_surface_at_rest_has_the_same_forces_to_the_bit(self):
-        """To the last bit."""
         random = np.random.default_rng(0)
         steps = np.cumsum(random.normal(0, 2e-5, (500, 3)), axis=0)
         given: list[list[tuple[float, ...]]] = []
@@ -190,7 +189,6 @@ def damped_share(
 class TestMovedHand:
     @pytest.mark.parametrize(("rate_hz", "coupling"), [(0.5, "auto"), (2.0, None)])
     def test_hand_moved_by_surface_is_not_damped(self, rate_hz: float, coupling):
-        """Once the force has faded in, which lifts a hand by itself."""
         assert damped_share(MovingPlane(0.012, STIFF), rate_hz, coupling, 5.0, 1.5) < 0.01
 
     def test_hand_shaken_by_surface_is_damped(self):

@@ -72,14 +72,11 @@ def mach(number: int, base: int) -> tuple[Simulated, Timer]:
         return 0
 
     return system, Timer(
-        (number, base, 0),
-        system.add(ctypes.c_uint64)(system.look),
-        system.add(ctypes.c_int32, ctypes.c_uint64)(until),
+        (number, base, 0), system.add(ctypes.c_uint64)(system.look), system.add(ctypes.c_int32, ctypes.c_uint64)(until)
     )
 
 
 def test_compiled_clock_is_the_programs():
-    """The ring's times are compared with times that Python reads."""
     here = clock.clock()
     before = now_ns()
     assert before <= clock.now_ns(here) <= now_ns()

@@ -49,7 +49,6 @@ def test_csv_keeps_every_digit_of_the_ticks(tmp_path: Path, count: int):
 
 
 def test_csv_is_read_by_its_column_names(tmp_path: Path):
-    """Old files have ten columns; the others are unknown."""
     names = [name for name in TICK_COLUMNS if not name.startswith(("proxy", "late", "flags", "buttons", "frame"))]
     (tmp_path / "old.csv").write_text(
         "\ufeff" + ",".join(["note", *reversed(names)]) + "\n" + "9,9,8,7,6,5,4,3,2,1,0\n" * 2

@@ -26,7 +26,6 @@ def random(seed: int = 0) -> np.random.Generator:
 
 
 def test_without_grey_values_are_the_same_for_all_textures():
-    """Every texture has exactly the same values, and no part is brighter than another."""
     made = [without_grey(family((256, 256), random())) for family in builtin_textures().values()]
     for each in made[1:]:
         np.testing.assert_array_equal(np.sort(each, axis=None), np.sort(made[0], axis=None))

@@ -192,12 +192,7 @@ def test_part_and_size_are_those_of_the_nearest_folder(tmp_path: Path, k: Known)
         ("middlebury-2003", ("conesH/im2.png", "conesH/im6.png", "conesH/disp2.png"), "H", 80),
         ("middlebury-2003", ("cones/im2.png", "cones/im6.png", "cones/disp2.png"), "Q", 40),
         ("middlebury-2001", ("map/im0.pgm", "map/im1.pgm", "map/disp0.pgm"), None, 20),
-        (
-            "middlebury-2001",
-            ("t/scene1.row3.col3.ppm", "t/scene1.row3.col4.ppm", "t/truedisp.row3.col3.pgm"),
-            None,
-            10,
-        ),
+        ("middlebury-2001", ("t/scene1.row3.col3.ppm", "t/scene1.row3.col4.ppm", "t/truedisp.row3.col3.pgm"), None, 10),
     ],
 )
 def test_grey_levels_of_old_sets_follow_size_and_scene(name, files, resolution, truth_px, tmp_path: Path, k: Known):

@@ -37,7 +37,6 @@ def test_delay_of_some_ticks_is_a_lag():
 
 
 def test_lag_is_along_the_central_difference():
-    """A hand that turns a corner moves along its diagonal there."""
     hand = rows((0, 0, 0), (1, 0, 0), (1, 1, 0))
     nearest = hand + rows((0, 0, 0), (0, 0, 1), (0, 0, 0))
     assert proxy_lag(hand, nearest - (0.5, 0, 0), nearest) == pytest.approx(0.5 / math.sqrt(2))

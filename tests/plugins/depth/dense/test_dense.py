@@ -34,7 +34,6 @@ def written_out(disparity: np.ndarray, grey: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("greys", [[90], [0, 7, 20], [0, 10, 40, 255]])
 @pytest.mark.parametrize("disparities", [[-31, 0, 24, 331], [-720, -413, -400, -376], [-32000, 31999]])
 def test_edges_of_any_map_move_as_the_votes_say(disparities: list[int], greys: list[int]):
-    """Of either sign, up to the border, with ties and with steps of exactly the least height."""
     random = np.random.default_rng(2)
     for shape in ((11, 14), (9, 3), (1, 8)):
         disparity = random.choice(disparities, shape).astype(np.int16)

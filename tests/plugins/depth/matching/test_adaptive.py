@@ -79,7 +79,6 @@ def test_probes_are_the_first_rows_of_strips_in_the_middles_of_equal_parts():
 def test_order_alone_is_not_tried_where_noise_is_far_too_strong(
     loss: float, tried: list[str], chosen: str, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ):
-    """Levels lose this share of their matches, and the order alone none."""
     costs: list[str] = []
 
     def health(one: module._Trial, rows: module.Rows) -> module._Health:

@@ -77,7 +77,6 @@ def test_island_of_steps_of_a_whole_pixel_is_one(turned: bool):
 
 @pytest.mark.parametrize(("far_px", "alone_px", "left"), [(50, 60, 0), (50, 100, 0), (80, 60, 80), (80, 100, 0)])
 def test_island_is_removed_by_size_and_share_of_matches_near_it(far_px: int, alone_px: int, left: int):
-    """The same islands among many matches and far from any."""
     disparity = np.full((100, 300), UNKNOWN)
     disparity[:, :150] = 100
     island = np.s_[40:50, : far_px // 10]
@@ -146,7 +145,6 @@ def test_gap_takes_the_candidate_of_the_best_score():
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize(("gap", "filled_in"), [(1, 64), (2, 64), (3, 0)])
 def test_short_gap_between_similar_ends_takes_the_farther(gap, filled_in, mirrored):
-    """Short gaps ignore the rows above if the picture has no edge; longer ones do not."""
     disparity = np.zeros((9, 40), np.int16)
     disparity[4] = 80
     disparity[4, :20] = 64
@@ -162,11 +160,7 @@ def test_short_gap_between_similar_ends_takes_the_farther(gap, filled_in, mirror
 
 @pytest.mark.parametrize(("left", "right", "levels", "near"), [(320, 64, 60, [0, 1, 2, 3]), (64, 320, 120, [11])])
 def test_grey_steps_on_a_path_add_up(left, right, levels, near):
-    """A gap of twelve columns over stripes: beside it alone the nearer end is believed in.
-
-    It lies 16 px before the other, -0.48, which is the farther of the row, 0.7; on the right both views contradict
-    it, too, -3.4. So the roots of both ways' steps are to differ by 6.6, or by 25.4.
-    """
+    """A gap of twelve columns over stripes: beside it alone the nearer end is believed in."""
     disparity = np.full((1, 90), right, np.int16)
     disparity[:, :40], disparity[:, 40:52] = left, UNKNOWN
     grey = np.where(np.arange(90) % 2, 100, 100 + levels).astype(np.uint8)[None]
@@ -180,7 +174,6 @@ def test_median_takes_25_pixels():
 
 
 def test_confidence_of_a_kept_match_is_read_from_the_table():
-    """Far from steps and gaps."""
     matched = np.full((1, 60), 160, np.int16)
     table = 1 - np.arange(256) / 255
     quality = np.tile(np.array([0, 51, 255], np.uint8), 20)[None]
@@ -231,7 +224,6 @@ def test_steps_within_a_pixel_are_enlarged_to_a_slope_and_larger_ones_to_a_step(
 
 @pytest.mark.parametrize(("value", "large"), [(20000, 32767), (-20000, -32767), (-16384, -32767), (-16383, -32766)])
 def test_disparity_beyond_16_bits_is_enlarged_to_the_largest(value: int, large: int):
-    """Of either sign, and next to the value of unknown ones."""
     small = DenseMatches(np.full((4, 6), np.int16(value)), np.ones((4, 6), np.float32))
     assert (enlarge(small, np.full((8, 12), 9, np.uint8)).disparity == large).all()
 

@@ -134,7 +134,6 @@ class TestDominantPlane:
 
 @pytest.mark.parametrize("degrees", [0.0, 1.0])
 def test_left_picture_without_need_stays_unchanged(degrees):
-    """A picture that is not resampled is not blurred."""
     left, right = seen_points(turn=(0, 0, 0), move_m=(-0.3, 0, 0), noise_px=0.1)
     rolls = (roll_and_tilt((HEIGHT, WIDTH), each, (0, 0)) for each in (degrees, 2.0))
     turned = Matches(*(transform(roll, points) for roll, points in zip(rolls, (left, right), strict=True)))
@@ -160,7 +159,6 @@ class TestSkippedPair:
 
     @pytest.mark.parametrize(("after_px", "turned"), [(0.29, True), (0.31, False), (0.6, False)])
     def test_rectification_needs_a_gain_of_a_fifth_of_a_pixel(self, after_px, turned, monkeypatch):
-        """The rows start half a pixel apart."""
         rectified = rectify(Views(BLANK, BLANK), matches=offset_matches(0.5, after_px, monkeypatch))
         assert rectified.skipped != turned
         assert f"offset 0.50 px, {'now' if turned else 'then'} {after_px:.2f}" in rectified.why
@@ -298,7 +296,6 @@ class TestEvidence:
         assert rectify(Views(BLANK, BLANK), matches=self.matches(slice(count))).skipped != believed
 
     def test_held_out_matches_that_disagree_are_not_trusted(self):
-        """Every other match belongs to an object that moved by itself."""
         left, right = (points.copy() for points in self.matches())
         right[1::2, 1] += np.random.default_rng(0).uniform(20, 200, len(right[1::2]))
         assert "of the held-out matches" in rectify(Views(BLANK, BLANK), matches=Matches(left, right)).why

@@ -189,7 +189,6 @@ def test_corners_of_a_higher_or_lower_view_are_corrected_up_to_the_most(rows: fl
 
 @pytest.mark.parametrize("reach", [1, 7])
 def test_profiles_correlate_over_the_rows_that_both_have(reach: int):
-    """At each shift, over the energy of these rows alone."""
     left, right = np.random.default_rng(0).normal(size=(2, 30))
     expected = []
     for shift in range(-reach, reach + 1):

@@ -77,10 +77,7 @@ def test_pair_without_matches_has_the_default_range(monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.parametrize("factor", [1, 2])
 def test_verified_range_goes_on_by_steps_while_a_hundredth_of_the_matches_lies_there(factor: int, monkeypatch):
-    """Verified are 20..52 px; steps have 8 px, and 2 of 200 matches are enough: 2 lie before 60, 68 and 76 px.
-
-    Downwards 2 lie from 12 px on. A step lies beside these at either end; all lanes are filled.
-    """
+    """Verified are 20..52 px; steps have 8 px, and 2 of 200 matches are enough: 2 lie before 60, 68 and 76 px."""
     near = np.concatenate([np.full(190, 30.0), [53, 59, 60, 67, 68, 75, 76, 13, 14, 5]])
     estimated(monkeypatch, Span(-99, 99), found=bands_of(near, factor))
     span = find_disparity_range(PAIR, "auto", "auto", (20, 52)).span
@@ -167,7 +164,6 @@ def test_wider_search_counts_where_it_alone_matches_enough(revealed: int, wider:
 @pytest.mark.parametrize("share", [0.4, 0.62])
 @pytest.mark.parametrize("exchanged", [False, True])
 def test_thing_at_half_the_width_of_disparity_is_found(share: float, exchanged: bool):
-    """A tenth of a textured picture is so near that the two views show it at opposite ends."""
     random = np.random.default_rng(0)
     left = random.integers(0, 128, (120, 240), np.uint8)
     right = np.roll(left, -4, axis=1)
@@ -256,7 +252,6 @@ def test_exchanged_pair_has_the_same_disparity():
 
 
 def test_both_views_are_brightened_alike_by_a_power_of_two():
-    """The left one reaches a third of white, the right one a ninth: both are doubled."""
     left, right = np.array([[0.0, 1 / 3]]), np.array([[1 / 9, 0.0]])
     found = grey_pair(Views(left, right), "test")
     assert found.left.tolist() == [[0, 170]]

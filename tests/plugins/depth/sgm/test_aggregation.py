@@ -27,7 +27,6 @@ def test_sweep_equals_plain_semi_global_matching(span, tolerance):
 
 @pytest.mark.parametrize("span", [Span(0, 15), Span(-6, 9)])
 def test_sweep_of_noise_equals_plain_semi_global_matching(span):
-    """Few greys, so that sums are often equal, and as large as they can be."""
     left, right = np.random.default_rng(1).choice([0, 90, 255], (2, 14, 37)).astype(np.uint8)
     dear = SHARP.penalties._replace(p1=np.uint8(200), p2_by_step=p2_by_grey_step(230, 200, 0.1))
     for penalties in (SHARP.penalties, dear):

@@ -194,7 +194,6 @@ def test_flat_windows_and_ranges_beyond_the_picture_are_unknown():
 
 @pytest.mark.parametrize("shift", [-4.3, -2.0, 0.25, 3.3, 5.7])
 def test_fraction_of_a_disparity_has_its_sign(shift):
-    """Of a wave that both views show; its peak is found to a tenth of a pixel."""
     rows, columns = np.indices((11, 60))
     left, right = (np.sin((columns + by) / 3 + rows / 5).astype(np.float32) for by in (0, shift))
     disparity, _ = search(left, right, np.array([[30, 5], [25, 4]]), -8, 8)

@@ -89,7 +89,6 @@ class TestForce:
         assert bus.units[0].chip.processor.body.torque_counts == (0, 0, 0)
 
     def test_force_above_limit_is_scaled_down(self):
-        """Upwards, the motors could give more."""
         bus, clock = held_bus()
         with open_on(bus, clock) as link:
             link.read()
@@ -133,7 +132,6 @@ class TestRate:
             assert link.health().rate_hz == pytest.approx(hertz, rel=0.02)
 
     def test_silences_with_answers_between_are_tolerated(self):
-        """Four at a time, of five that are one too many."""
         bus, clock = held_bus()
         with open_on(bus, clock) as link:
             chip = bus.units[0].chip

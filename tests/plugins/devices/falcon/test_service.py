@@ -39,7 +39,7 @@ class TestDoctor:
         listed = examine()
         assert {each.verdict for each in listed} == {"fine"}
         assert [each.check.rpartition(": ")[2] for each in listed] == [
-            *("libusb", "firmware file", "permission", "driver", "in use", "firmware", "rate"),
+            *("libusb", "firmware file", "permission", "driver", "in use", "firmware", "rate")
         ]
         assert "SIM0001" in listed[2].says
         assert float(listed[-1].says.split()[0]) == pytest.approx(1000, rel=0.1)

@@ -86,7 +86,7 @@ def missing(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_force_dimension_conforms(dhd: Library):
-    assert not [run_check for run_check in run_checks("device", "force-dimension") if not run_check.passed]
+    assert not [check for check in run_checks("device", "force-dimension") if not check.passed]
     assert dhd.opened == set()
     assert dhd.forces[-1] == (0, 0, 0)
 

@@ -124,7 +124,7 @@ def service() -> Iterator[MockService]:
 
 
 def test_haply_conforms(service: MockService):
-    failed = [run_check for run_check in run_checks("device", "haply", uri=service.uri) if not run_check.passed]
+    failed = [check for check in run_checks("device", "haply", uri=service.uri) if not check.passed]
     assert not failed
     assert service.force() == NO_FORCE
 

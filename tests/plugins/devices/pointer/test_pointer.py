@@ -1,7 +1,4 @@
-"""A mouse or robot that moves the pointer would feel a force that nobody holds, or keep one after it died.
-
-The exchange of two processes: torn blocks, silence, killed processes, second users.
-"""
+"""A mouse or robot that moves the pointer would feel a force that nobody holds, or keep one after it died."""
 
 import io
 import json

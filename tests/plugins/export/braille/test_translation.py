@@ -142,10 +142,7 @@ def test_contracted_braille_is_refused_with_the_cure(without, library: object, l
 
 
 def odd(size: int = 4, cells: tuple[int, ...] = (1, 3, 9), works: int = 10**9, unread: int = 0) -> object:
-    """A library with liblouis's names that writes these cells whatever it is given, so many times.
-
-    unread: the number of characters that it leaves unread.
-    """
+    """A library with liblouis's names that writes these cells whatever it is given, so many times."""
 
     class Library:
         def __init__(self) -> None:

@@ -68,7 +68,6 @@ def test_page_has_the_sides_of_the_picture_though_parts_have_others():
 
 
 def test_outline_of_the_figure_is_heavier_and_one_for_all_its_parts():
-    """Without what networks see, the page is as ever."""
     labels = np.zeros((60, 80), np.int32)
     labels[15:45, 20:60] = 1
     labels[15:45, 40:60] = 2

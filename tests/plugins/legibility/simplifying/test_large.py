@@ -30,7 +30,6 @@ def test_speck_joins_its_most_similar_neighbour():
 
 @pytest.mark.parametrize(("columns", "joins"), [(slice(18, 26), 39), (slice(14, 22), 0)])
 def test_speck_of_a_colour_between_joins_along_its_longest_border(columns: slice, joins: int):
-    """Two of its eight columns are on one side, and six on the other."""
     labels = np.repeat([[0, 1]], 20, axis=1).repeat(30, 0).astype(np.int32)
     labels[10:13, columns] = 2
     picture = np.array([(60, 60, 60), (140, 140, 140), (100, 100, 100)], np.uint8)[labels]

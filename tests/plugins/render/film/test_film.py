@@ -133,7 +133,6 @@ class TestSlots:
 class TestSpeed:
     @pytest.mark.parametrize(("law", "most_m"), [("spring", 1e-4), ("stiff", 0.08 / 2500)])
     def test_places_move_within_their_speed_and_the_rest_in_time(self, law: str, most_m: float):
-        """An edge jumps by the whole relief; away from it the surface has arrived with the frame."""
         heights = relief(0.3).height_m.copy()
         heights[:, 30:] = 0.02
         film = start(LAWS[law])
@@ -160,7 +159,6 @@ class TestSpeed:
 class TestForces:
     @pytest.mark.parametrize("name", LAWS)
     def test_force_of_a_lost_hold_falls_step_by_step(self, name: str):
-        """A ridge that held the hand sinks, and the ground beside it falls away."""
         ridge = 0.002 + 0.014 * np.exp(-(((COLUMN - 20.4) / 2) ** 2))
         film = start(LAWS[name], Relief(ridge.astype(np.float32), EXTENT_M))
         slide = np.linspace(-0.012, 0.0021, 1500)

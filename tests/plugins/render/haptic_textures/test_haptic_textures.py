@@ -1,7 +1,4 @@
-"""A material's texture would feel wrong, buzz, or push the hand on.
-
-Exact against formulas, passive, sampled without aliasing, the same on every machine.
-"""
+"""A material's texture would feel wrong, buzz, or push the hand on."""
 
 import math
 from dataclasses import replace
@@ -15,13 +12,7 @@ from hypothesis import strategies as st
 from tangible_core.data import Material
 from tangible_core.errors import MaterialError
 from tangible_core.materials.assignment import library
-from tangible_render.haptic_textures import (
-    compile_textures,
-    peak_wavelength_m,
-    radial_spectrum,
-    sample_tile,
-    stroke,
-)
+from tangible_render.haptic_textures import compile_textures, peak_wavelength_m, radial_spectrum, sample_tile, stroke
 from tangible_render.haptic_textures.forces import STATE, along, texture_force
 from tangible_render.haptic_textures.heights import GONE, WHOLE, remaining, texture_height
 from tangible_render.haptic_textures.sample import line_spectrum
@@ -209,10 +200,7 @@ class TestStickSlip:
 
     @pytest.mark.parametrize("static_friction", [0.5, 0.6, 5.0])
     def test_bristle_stores_no_more_than_the_hand_puts_in(self, static_friction: float):
-        """Take a tick from any state: k m |z|^2 / 2 must grow by -F.dx at most.
-
-        Every other hand is the worst case: it eases, and goes back by half of the bristle's shortening.
-        """
+        """Take a tick from any state: k m |z|^2 / 2 must grow by -F.dx at most."""
         sticky = replace(RUBBER, static_friction=static_friction)
         table, random = compile_textures([sticky]), np.random.default_rng(4)
         k, swing = sticky.stiffness_n_per_m, min(static_friction / sticky.dynamic_friction - 1, 0.9)
@@ -267,7 +255,6 @@ class TestStickSlip:
         ids=["lifted", "under tension", "no number", "no speed", "flung away", "on another", "on none"],
     )
     def test_each_contact_starts_afresh(self, material: int, between: tuple[float, ...]):
-        """Expect no trace of bristle, level and phase, however the previous contact ended."""
         table, state = compile_textures([RUBBER, replace(RUBBER, name="soft"), PLAIN]), np.zeros(STATE)
         way_m = np.append(np.linspace(0, 0.0034, 100), np.linspace(0.0034, 0.0022, 30))[:, None] * (0.6, -0.8)
 

@@ -41,7 +41,6 @@ def test_facts_are_sorted_from_near_to_far():
 
 
 def test_facts_of_parts_on_another_grid_are_known():
-    """Parts made simpler are larger or smaller maps, in which some of the numbers are gone."""
     surface = replace(still_life(), names=None)
     coarse = PartMap(np.where(LABELS[::4, ::4] == 2, 5, 3).astype(np.int32), tuple(range(7)))
     cup, rest = facts(surface, parts=coarse, names=("", "", "", " table ", "", "cup"))

@@ -12,18 +12,8 @@ from tangible_texture.clusters.classes import Weights, largest_number, likeliest
 from tangible_texture.clusters.discriminants import discriminant_axes, evidence, one_hot, scatters
 from tangible_texture.clusters.full_size import pixel_labels
 from tangible_texture.clusters.joining import Step, axes_between, join_clusters, measure_pairs
-from tangible_texture.clusters.neighbourhood import (
-    INSIDE_CELLS,
-    interior_shares,
-    mean_field,
-    smooth_memberships,
-)
-from tangible_texture.clusters.planes import (
-    combine_planes,
-    inner_products,
-    scatter_matrix,
-    scatter_matrix_in_kernel,
-)
+from tangible_texture.clusters.neighbourhood import INSIDE_CELLS, interior_shares, mean_field, smooth_memberships
+from tangible_texture.clusters.planes import combine_planes, inner_products, scatter_matrix, scatter_matrix_in_kernel
 from tangible_texture.features.patterns import COUNTERS, RADII, pattern_frequencies
 from tangible_texture.signal.smoothing import gaussian
 
@@ -222,7 +212,6 @@ def plain_patterns(grey: np.ndarray, radius: int) -> np.ndarray:
 
 @pytest.mark.parametrize("step", [5e-4, 0.4])
 def test_frequencies_are_those_of_patterns_counted_one_by_one(random: np.random.Generator, step: float):
-    """Of greys that often are equal, or differ by rounding."""
     grey = (step * random.integers(0, 4, (14, 11))).astype(np.float32)
     found = pattern_frequencies(grey).reshape(len(RADII), COUNTERS, 4, 3)
     np.testing.assert_allclose(found[0], plain_patterns(grey, 1), atol=1e-6)

@@ -8,13 +8,7 @@ from scipy.signal import fftconvolve
 
 from tangible_core.plugins.notes import collected
 from tangible_texture.energies.filter_choice import are_strongest, filters_within_bandwidth, needed_filters
-from tangible_texture.energies.gabor_bank import (
-    bank,
-    kernel,
-    octaves,
-    printed_wavelengths,
-    sigma_of_bandwidth,
-)
+from tangible_texture.energies.gabor_bank import bank, kernel, octaves, printed_wavelengths, sigma_of_bandwidth
 from tangible_texture.energies.local_energy import (
     REACH,
     energy_planes,

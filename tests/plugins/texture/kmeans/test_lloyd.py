@@ -70,7 +70,6 @@ def test_cluster_without_any_row_is_dropped(empty: int):
 
 
 def test_rows_differing_by_rounding_are_one_cluster():
-    """The threshold is a hundred thousandth of the longest row; a ten thousandth is above it."""
     away = np.random.default_rng(0).random((100, 3))
     assert len(kmeans((7 + 3e-5 * away).astype(np.float32), 5).centres) == 1
     assert len(kmeans((7 + 7e-4 * away).astype(np.float32), 5).centres) == 5

@@ -142,7 +142,6 @@ def test_strength_is_the_root_of_the_steepest_change_whatever_its_direction():
 
 
 def test_borders_that_are_seen_are_as_strong_in_every_direction():
-    """Cells, and pairs of cells across an upright border and a lying one."""
     seen = np.full((6, 8), 0.7, np.float32)
     both, flat = border_tensors(seen), np.zeros((8, 6, 8), np.float32)
     weights = np.float32([2, 3])

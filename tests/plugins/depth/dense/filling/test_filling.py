@@ -27,7 +27,6 @@ def plane(across: float, down: float, offset: float = 400.0) -> np.ndarray:
 @pytest.mark.parametrize(("across", "down"), [(1.0, 0.0), (0.0, -1.2), (0.7, 0.9), (-1.1, 0.4)])
 @pytest.mark.parametrize("gap", [np.s_[30:50, 40:60], np.s_[:, 84:], np.s_[:12, :12]])
 def test_gap_in_a_slanted_plane_is_slanted(across: float, down: float, gap: tuple[slice, slice]):
-    """Gaps inside, along a border and in a corner: a third of a pixel off, not one."""
     truth, grey = plane(across, down), np.full(SHAPE, 90, np.uint8)
     disparity = truth.copy()
     disparity[gap] = UNKNOWN

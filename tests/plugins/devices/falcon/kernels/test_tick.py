@@ -208,10 +208,7 @@ def test_rate_is_that_of_the_longest_straight_window(arm: int):
     assert rate([5]) == 0
 
 
-@given(
-    st.tuples(*[st.floats(-0.025, 0.025)] * 3),
-    st.tuples(*[st.floats(allow_nan=True, allow_infinity=True)] * 3),
-)
+@given(st.tuples(*[st.floats(-0.025, 0.025)] * 3), st.tuples(*[st.floats(allow_nan=True, allow_infinity=True)] * 3))
 def test_force_never_reverses(place: tuple[float, float, float], force: tuple[float, float, float]):
     """For any force, the torques on the wire are those of a force along it, to half a count."""
     falcon = Falcon()

@@ -231,3 +231,10 @@ def loop_in_thread(monkeypatch: pytest.MonkeyPatch, patient: None) -> None:
     from loop_in_thread import loops_in_threads  # after `check`
 
     loops_in_threads(monkeypatch)
+
+
+@pytest.fixture
+def models(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of networks, empty."""
+    monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path))
+    return tmp_path

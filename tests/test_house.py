@@ -114,7 +114,6 @@ def test_listing_imports_nothing_heavy(words):
     [("core", ROOT / "tangible_core"), *((f"plugins/{path.parent.name}", path) for path in PACKAGES.values())],
 )
 def test_folders_of_tests_mirror_rooms(tests: str, house: Path):
-    """A test lies in the folder of the room that it tests, and a room's in a room of this name."""
     folder = ROOT / "tests" / tests
     rooms = {
         path.relative_to(house).with_suffix("") for path in house.rglob("*") if path.is_dir() or path.suffix == ".py"

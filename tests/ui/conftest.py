@@ -24,7 +24,8 @@ from ui_server import UiServer
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
-    from sessions import SmallSession
+    from sessions import Heard, SmallSession
+    from tangible_ui.state.session import Session
     from tangible_ui.worker.state import WorkerState
 
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -195,3 +196,13 @@ def worker_state(tmp_path: Path) -> "WorkerState":
     made = WorkerState(tmp_path, lambda event, **told: heard.append((event, told)), Cache(tmp_path / "cache"))
     made.heard = heard  # pyright: ignore[reportAttributeAccessIssue]
     return made
+
+
+@pytest.fixture
+def tab(session: "Session") -> "Heard":
+    """A tab of the session."""
+    from sessions import Heard
+
+    tab = Heard()
+    session.tabs.enter(tab)
+    return tab

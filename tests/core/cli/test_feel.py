@@ -115,7 +115,6 @@ def test_endless_feel_stops_at_a_signal_with_a_complete_recording(folder: Path, 
 
 @pytest.mark.whole
 def test_loop_ended_alone_is_a_failure_and_not_an_interruption(folder: Path):
-    """Somebody ended the loop's process: the user did not stop the program, and is told what happened."""
     with recording(folder, "feel", "a.yaml", "--seconds", "inf", "--record", "hand.nc") as program:
         [loop] = subprocess.check_output(["pgrep", "-g", str(program.pid), "-f", "servo.child"], text=True).split()
         os.kill(int(loop), signal.SIGTERM)

@@ -184,8 +184,7 @@ class TestGeometry:
     def test_rotated_region_fills_the_workspace_unless_a_scale_is_given(self):
         assert WorkspaceMapping(region_m=(0, 0, 0.02, 0.01), scale=2).placement(SPEC.workspace_m).scale == 2
         place = WorkspaceMapping(region_m=(0.01, -0.005, 0.02, 0.01)).placement((0.08, 0.08, 0.08))
-        assert place.scale == 4
-        assert to_picture(place, (-0.04, 0.02, 0.004)) == (0.0, 0.0, 0.001)
+        assert (place.scale, to_picture(place, (-0.04, 0.02, 0.004))) == (4, (0.0, 0.0, 0.001))
         place = WorkspaceMapping(region_m=(0, 0, 0.02, 0.01), rotation_deg=90).placement((0.08, 0.16, 0.08))
         assert place.scale == 8
         assert to_hand(place, (0.01, 0.005, 0.0)) == pytest.approx((-0.04, 0.08, 0.0), abs=1e-15)

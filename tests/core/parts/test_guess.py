@@ -150,7 +150,6 @@ def test_a_thousandth_of_the_picture_takes_a_step_and_less_does_not(rows: int, s
 
 
 def test_certainty_falls_with_the_angle_of_the_border():
-    """A border that bends at the junction: its part has so much more or less than a half of the disc."""
     row, column = np.indices((400, 400)) - 199.5
     for degrees in (0, 10, 20, -10, -20, 40):
         bent = np.where(column > 0, row > column * np.tan(np.radians(degrees)), row > 0)

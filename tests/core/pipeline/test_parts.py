@@ -172,8 +172,7 @@ class TestSkipped:
         assert "no depth is needed: heights are" in plan["relief"][1]
         assert ran == []
         made.make("surface")
-        assert ran == []
-        assert outcome_kinds(made)["disparity"] == "skipped"
+        assert (ran, outcome_kinds(made)["disparity"]) == ([], "skipped")
 
     def test_texture_without_a_label_picture_runs_before_depth(self):
         made = pipeline(None, heights="depth", depth=Ramp(), texture=Same())
@@ -331,8 +330,7 @@ class TestComplaints:
         made = pipeline(None, parts={10: "ghost"}, depth=Ramp(), texture=Same(), **parts)
         with pytest.raises(ConfigError, match="there is no part 10"):
             made.make("surface")
-        assert ran == ["segments"]
-        assert outcome_kinds(made)["parts"] == "failed"
+        assert (ran, outcome_kinds(made)["parts"]) == (["segments"], "failed")
 
     @pytest.mark.parametrize("key", ["heights: given", "parts: {1: wall}"])
     def test_parts_without_segments_are_refused_with_the_cure(self, folder: Path, key: str):

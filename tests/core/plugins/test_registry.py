@@ -154,8 +154,7 @@ def test_names_from_a_hook_are_listed_and_loaded(install):
             """,
     )
     registry = Registry()
-    assert registry.names("depth") == ["computed", "lost"]
-    assert registry.names("texture") == []
+    assert (registry.names("depth"), registry.names("texture")) == (["computed", "lost"], [])
     assert "acme" not in sys.modules
     assert registry.find("depth", "computed").origin == "computed by a hook"
     assert registry.load("depth", "computed").__name__ == "Mine"

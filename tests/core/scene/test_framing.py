@@ -103,15 +103,13 @@ class TestTransparency:
         assert surface.labels is not None and surface.materials is not None
         ground = len(surface.materials) - 1
         assert np.array_equal(surface.labels == ground, hidden)
-        assert surface.materials[ground].name == "plain"
-        assert len(surface.materials) == 3
+        assert (surface.materials[ground].name, len(surface.materials)) == ("plain", 3)
         assert "transparent in the picture" in pipeline.materials.reasons[ground]
         assert np.isnan(pipeline.disparity.disparity_px[hidden]).all()
         [why] = [outcome.why for outcome in pipeline.outcomes if outcome.product == "views"]
         assert why.endswith(f"{100 * hidden.mean():.0f} % of the array given as photo is transparent: flat ground")
 
     def test_cache_key_depends_on_the_outline(self):
-        """Two photos: in one a corner pixel is transparent and its neighbour not finite, in the other the reverse."""
         photos = [np.full((8, 8, 4), 0.5), np.full((8, 8, 4), 0.5)]
         for photo, (clear, torn) in zip(photos, [(0, 1), (1, 0)], strict=True):
             photo[4:, :, :3] = 0.2

@@ -70,7 +70,6 @@ class TestUndeclaredNoData:
         assert line_of(Scene.heights(voids)) == "nodata: -9999"
 
     def test_map_that_is_no_terrain_has_no_mark(self):
-        """Labels, a mask, an ignored label, flat maps, maps of few pixels, an unknown one, and both signs."""
         labels = [np.arange(36).reshape(6, 6) % 5, np.eye(6) * 65535, np.where(np.eye(20) > 0, 255, np.arange(20))]
         flat = [np.zeros((4, 4)), np.full((4, 4), -9999), np.ones((1, 1)), np.array([[-5.0, 5.0]])]
         for heights in (*labels, *flat, np.full((3, 3), np.nan), np.linspace(-3, 3, 30).reshape(5, 6)):

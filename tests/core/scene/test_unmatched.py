@@ -19,8 +19,7 @@ def matched(share: float, **kind: str) -> DisparityMap:
 
 def test_few_matches_warns_where_most_of_the_map_is_filled_in():
     assert "found for 20% of the left one" in few_matches(matched(0.2))
-    assert few_matches(matched(0.3)) == ""
-    assert few_matches(matched(0.2, unit="relative")) == ""
+    assert (few_matches(matched(0.3)), few_matches(matched(0.2, unit="relative"))) == ("", "")
 
 
 def test_few_matches_ignores_unknown_pixels():

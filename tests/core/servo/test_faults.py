@@ -71,7 +71,6 @@ class TestInterruptedStart:
     def test_interrupt_at_any_line_of_the_start_leaves_no_force(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, every: int
     ) -> None:
-        """Every line of the start, one run each: few ticks more, no force, no loop, no file; some with a process."""
         if every == 1:
             loops_in_threads(monkeypatch)
         before, ran_through, line = left_behind(), False, 1 - every
@@ -168,8 +167,7 @@ class TestStandstill:
             assert servo.report().stopped == watchdog.STOOD_STILL
             assert servo.device_lost
             assert servo.report().peak_force_n > 0
-            assert held_force(record) == 0
-            assert servo.report().ticks == 99
+            assert (held_force(record), servo.report().ticks) == (0, 99)
 
     @pytest.mark.parametrize(
         ("first_s", "then_s", "law", "limit_s"),

@@ -17,8 +17,7 @@ class TestFile:
     def test_attached_ring_has_the_same_contents(self, small: Ring) -> None:
         put(small, 0, 1)
         other = Ring.attach(small.path)
-        assert other.header[COUNT] == 2
-        assert other.header[SLOTS] == 16
+        assert (other.header[COUNT], other.header[SLOTS]) == (2, 16)
         np.testing.assert_array_equal(other.since(0)[0], small.since(0)[0])
 
     @pytest.mark.parametrize("content", [b"", bytes(100_000)])
@@ -45,8 +44,7 @@ class TestFile:
             odd.remove()
         at = 8 * (64 + 64 + 128 + 4096 + 4096 + 32768)
         assert np.frombuffer(data, np.int64, 5, at).tolist() == [5, 6, 2, 3, 4]
-        assert np.frombuffer(data, np.float64, 1, at + 64)[0] == 5
-        assert len(data) % 64 == 0
+        assert (np.frombuffer(data, np.float64, 1, at + 64)[0], len(data) % 64) == (5, 0)
 
     @pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="this system does not allocate files")
     @pytest.mark.usefixtures("own_memory")

@@ -112,8 +112,7 @@ def test_recording_has_the_names_of_parts(tmp_path: Path, suffix: str):
     Recording(np.zeros((2, 17)), "", About("mock", parts=said, materials=of)).save(tmp_path / f"a{suffix}")
     about = Recording.load(tmp_path / f"a{suffix}").about
     assert read_names(about.parts) == [{0: 'a "wall"\n', 6: "Gräser [hoch]"}]
-    assert read_names(about.materials) == [{6: "moss"}]
-    assert about.device == "mock"
+    assert (read_names(about.materials), about.device) == ([{6: "moss"}], "mock")
 
 
 @pytest.mark.parametrize(

@@ -49,8 +49,7 @@ out: ../results
     assert [method.label for method in found.methods] == ["constant", "other"]
     assert list(found.scenes) == ["planes 64x48 seed 3", "builtin/motorcycle"]
     assert [damage.name for damage in found.damages] == ["none", "noise 2", "noise 5", "shift -0.5", "gain 0.8"]
-    assert found.finishes == {"fill": {"other"}}
-    assert found.baseline == "constant"
+    assert (found.finishes, found.baseline) == ({"fill": {"other"}}, "constant")
     assert found.out == Path("results")
 
 

@@ -59,14 +59,12 @@ def test_method_without_result_on_a_scene_has_no_mean():
     rows = [row("m", 0, 1.0, "a", measures={"bad2": 2.0}), row("m", 0, None, "b", error="no")]
     (m,) = lines(cells(rows, None), "none", ["a", "b"])
     assert math.isnan(m.seconds)
-    assert m.measures == {}
-    assert (m.done, m.scenes) == (1, 2)
+    assert (m.measures, m.done, m.scenes) == ({}, 1, 2)
 
 
 def test_spread_is_scaled_median_deviation():
     assert spread([1, 2, 3, 4, 100]) == pytest.approx(1.4826)
-    assert spread([5]) == 0
-    assert spread([]) == 0
+    assert (spread([5]), spread([])) == (0, 0)
 
 
 points = st.lists(st.tuples(st.integers(0, 5), st.integers(0, 5)), max_size=12)

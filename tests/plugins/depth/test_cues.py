@@ -10,11 +10,7 @@ from tangible_core import Views
 from tangible_core.errors import PictureError
 from tangible_depth.cues import Cues, order_probability, score_nearness
 
-
-@pytest.fixture(autouse=True)
-def models(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path))
-    return tmp_path
+pytestmark = pytest.mark.usefixtures("models")
 
 
 def room() -> np.ndarray:
@@ -33,8 +29,7 @@ def test_what_stands_lower_is_nearer_from_top_to_bottom() -> None:
     light, red, wall = nearness[70:115, 50:60].mean(), nearness[70:115, 210:220].mean(), nearness[70:95, 120].mean()
     assert light > red > wall, "at the same rows"
     assert (np.diff(nearness[110:200, 150]) > 0).all(), "the floor recedes"
-    assert nearness.min() == 0
-    assert nearness.max() == 1
+    assert (nearness.min(), nearness.max()) == (0, 1)
 
 
 def test_scores_of_two_regions_are_the_formula() -> None:

@@ -106,15 +106,13 @@ class TestDoctor:
         with pytest.raises(typer.Exit):
             command.doctor("arm", ["state=wrong"], as_json=True)
         [_, permission] = json.loads(capsys.readouterr().out)["arm"]
-        assert permission["check"] == "permission"
-        assert permission["verdict"] == "failed"
+        assert (permission["check"], permission["verdict"]) == ("permission", "failed")
 
     def test_doctor_without_a_name_examines_all_devices(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
         with pytest.raises(typer.Exit):
             command.doctor(as_json=True)
         results = json.loads(capsys.readouterr().out)
-        assert list(results) == ["arm", "lost"]
-        assert results["lost"][0]["verdict"] == "failed"
+        assert (list(results), results["lost"][0]["verdict"]) == (["arm", "lost"], "failed")
 
 
 class TestSettingUp:

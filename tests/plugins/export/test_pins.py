@@ -77,11 +77,9 @@ def test_pins_with_heights_keep_areas_below_borders(tmp_path):
     pins = Pins(display="graphiti")
     work = labels_work(labels)
     work.products["relief"] = Relief(np.float32([0, 0.006])[labels], (0.15, 0.1))
-    assert pins.needs == ("simplified", "relief")
-    assert Pins().needs == ("simplified",)
+    assert (pins.needs, Pins().needs) == (("simplified", "relief"), ("simplified",))
     heights = heights_in(pins.write(work, tmp_path / "step"))
-    assert set(heights[:, :29].ravel()) == {0}
-    assert set(heights[:, 29]) == {4}
+    assert (set(heights[:, :29].ravel()), set(heights[:, 29])) == ({0}, {4})
     assert set(heights[:, 30:].ravel()) == {3}
     text = pins.write(work, tmp_path / "step")
     [patterns] = [each.read_text() for each in text if each.suffix == ".txt"]
@@ -149,7 +147,6 @@ def test_pins_svg_alpha_equals_the_pins(tmp_path, display):
 
 
 def test_pins_svg_layers_are_named_parts(tmp_path):
-    """By the rules of the IMAGE services: layers and their labels, one title, and nothing outside of a layer."""
     labels = np.zeros((40, 60), np.int32)
     labels[:, 30:] = 1
     files = Pins().write(

@@ -254,8 +254,7 @@ class TestThreeMF:
         sample = work(rough(), 0.05, title, language='de"><x/>')
         (path,) = ThreeMF(braille=False).write(sample, tmp_path / "k")
         model, (body,) = read_3mf(path)
-        assert model.GetUnit().name == "MilliMeter"
-        assert body.GetName() == 'Kaffee & <Kuchen> "Ü" 🍰'
+        assert (model.GetUnit().name, body.GetName()) == ("MilliMeter", 'Kaffee & <Kuchen> "Ü" 🍰')
         assert body.IsManifoldAndOriented()
         assert model.GetBuildItems().Count() == 1
 
@@ -306,8 +305,7 @@ class TestGlb:
             (path,) = Glb(braille=False).write(work(rough(8, 9), 0.05, title), tmp_path / "g")
             data = path.read_bytes()
             length = int.from_bytes(data[12:16], "little")
-            assert length % 4 == 0
-            assert data[24 + length : 28 + length] == b"BIN\0"
+            assert (length % 4, data[24 + length : 28 + length]) == (0, b"BIN\0")
 
 
 def judge(program: str) -> Callable[..., str]:

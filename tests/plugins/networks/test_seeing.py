@@ -24,12 +24,6 @@ from tangible_networks.store import KnownNetwork
 FACES = [KnownNetwork(name, Card(output={"means": "faces"}), Path(name)) for name in ("finder", "points")]
 
 
-@pytest.fixture
-def models(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path))
-    return tmp_path
-
-
 def bright_square(shape: tuple[int, int] = (120, 160)) -> np.ndarray:
     picture = np.zeros((*shape, 3), np.uint8)
     picture[30:90, 40:120] = 255

@@ -58,7 +58,6 @@ def test_text_with_named_parts_describes_the_surface(tmp_path: Path):
 
 
 def test_text_counts_the_people_that_networks_see_in_front(tmp_path: Path):
-    """A face without a figure is not in front of anything, and a figure without a face is not a person."""
     figure, faces = np.ones((8, 8), np.float32), np.zeros((2, 468, 3), np.float32)
     for seen, says in (
         (Figure(figure, None, faces), "2 people are in front of the ground."),

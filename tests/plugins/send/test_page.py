@@ -195,7 +195,6 @@ def test_script_that_would_end_its_element_is_refused():
 
 
 def test_film_is_sent_by_its_first_frame(tmp_path: Path):
-    """A file of a video, through the whole pipeline: its first frame is dark on the left, the others on the right."""
     first, other = (np.zeros((48, 64, 3), np.uint8) for _ in range(2))
     first[:, 32:], other[:, :32] = 200, 200
     write_video(tmp_path / "film.avi", [first, other, other])

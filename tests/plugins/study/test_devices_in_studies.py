@@ -121,8 +121,7 @@ def test_procedure_of_another_package_runs_a_study(tmp_path: Path, monkeypatch: 
 def test_command_checks_and_names_a_level_that_the_device_cannot_render(tmp_path: Path):
     study = write_study(tmp_path, RATING.replace("200", "90000"))
     done = tangible("study", "check", "study.yaml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.count("study.yaml:4:25: mock cannot render this: ") == 1
+    assert (done.returncode, done.stderr.count("study.yaml:4:25: mock cannot render this: ")) == (2, 1)
     study.write_text(RATING)
     done = tangible("study", "check", "study.yaml", cwd=tmp_path)
     assert (done.returncode, done.stdout.split(".")[0]) == (0, "study")
@@ -178,5 +177,4 @@ def test_recording_that_cannot_be_kept_ends_the_loop(tmp_path: Path, loop_in_thr
 def test_stop_of_one_trial_does_not_end_the_next(tmp_path: Path):
     session = sit_down(write_study(tmp_path))
     session.desk.stop.set()
-    assert session.run() == 7
-    assert session.faults == []
+    assert (session.run(), session.faults) == (7, [])

@@ -18,8 +18,7 @@ def test_surface_is_packed_without_what_would_name_it():
     meta = sent["meta"]
     assert np.array_equal(np.frombuffer(b64decode(sent["heights"]), "<f4").reshape(3, 4), heights)
     assert np.frombuffer(b64decode(sent["labels"]), "<u2").tolist() == labels.ravel().tolist()
-    assert sent["kinds"] == [0, 1]
-    assert [each["name"] for each in meta.pop("materials")] == ["", ""]
+    assert (sent["kinds"], [each["name"] for each in meta.pop("materials")]) == ([0, 1], ["", ""])
     assert meta == {
         "digest": "7", "name": "", "shows": "surface", "rows": 3, "columns": 4, "extent_m": pytest.approx([0.08, 0.06]),
         "height_m": pytest.approx([0.0, 0.011]), "levels": [{"step": 1, "rows": 3, "columns": 4}], "labels": 2,

@@ -15,12 +15,6 @@ from tangible_networks.store import known_networks
 from tangible_texture import Hierarchy
 
 
-@pytest.fixture
-def models(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path))
-    return tmp_path
-
-
 def scene() -> np.ndarray:
     """A grey corner on a dark ground, and a bright line, which is what a network of brightness sees."""
     picture = np.zeros((120, 160, 3), np.uint8)

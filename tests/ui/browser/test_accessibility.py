@@ -91,7 +91,6 @@ class TestSeen:
             assert_fits_every_size(page, "#terrain", "#left", "#right", "#bottom")
 
     def test_parts_editor_has_no_violations_by_axe_in_any_size(self, show: Show):
-        """The language is German, whose words are longer; a proposal, a complaint and all folded controls are open."""
         page = show(locale="de-DE")
         bring(page, "parts").locator("#parts-edit").click()
         page.wait_for_selector("#parts-list [role=option]")

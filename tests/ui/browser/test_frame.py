@@ -60,8 +60,7 @@ def test_lost_connection_is_said_until_it_is_back_and_then_what_is_felt(page: "P
     until(lambda: page.evaluate("head.at(-1)") == "Feeling: penalty", "what is felt is said again")
     head = page.evaluate("head")
     back, felt = head[head.index(lost) + 1 :]
-    assert back == "Connected again. Feeling: penalty"
-    assert felt == "Feeling: penalty"
+    assert (back, felt) == ("Connected again. Feeling: penalty", "Feeling: penalty")
     assert page.locator("#status").get_attribute("data-state") == "felt"
 
 

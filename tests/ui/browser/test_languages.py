@@ -37,7 +37,6 @@ def untranslated(text: str, language: str) -> bool:
 
 
 def test_the_page_in_german_has_no_english(opened: Callable[..., str], open_page: OpenPage, tmp_path: Path) -> None:
-    """All panels are open; verdicts, places, cures, files with decisions, warnings and a mistake are on the page."""
     page = open_page("about:blank", locale="de-DE")
     page.goto(opened(striped_scene(tmp_path)) + "&measure")
     wait_for_force(page)

@@ -110,7 +110,6 @@ def test_sheet_of_the_demo(tmp_path: Path):
 
 
 def test_film_of_the_page(opened: Callable[..., str], open_page: Callable[..., Any], tmp_path: Path):
-    """Ten seconds: a photograph opens, the hand strokes it, the arrow of the force follows, a part is named."""
     page = open_page(opened(astronaut_file(tmp_path)), draws=True, viewport={"width": 1180, "height": 720})
     wait_for_force(page)
     page.locator("#tab-feel").click()

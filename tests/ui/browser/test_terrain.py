@@ -117,7 +117,6 @@ def test_layers_have_the_colours_of_their_values(url: str, open_page):
 
 
 def test_large_relief_is_drawn_coarsely_and_finer_where_one_looks(opened, open_page, tmp_path: Path):
-    """The relief has a grain of two cells: from afar it is even, from near it is seen, and the hand feels it."""
     rows, columns = np.indices((1400, 1500)) // 2
     heights = np.where((rows + columns) % 2, 1000, 0).astype(np.uint16)
     heights[0, 0] = 65535

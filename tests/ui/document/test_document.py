@@ -42,8 +42,7 @@ async def test_complaint_names_its_field_and_leaves_the_text(small: SmallSession
     said = small.tab.last("document")
     assert said["values"] is None
     (complaint,) = said["complaints"]
-    assert tuple(complaint["location"]) == ("render", "stiffness_n_per_m")
-    assert complaint["line"] == 7
+    assert (tuple(complaint["location"]), complaint["line"]) == (("render", "stiffness_n_per_m"), 7)
     assert said["said"]["render"]["stiffness_n_per_m"] == -5
     assert "-5}  # soft" in small.session.document.text
     await ask("edit", text="scene: [")

@@ -241,8 +241,7 @@ class TestStop:
         server.at = INSIDE
         until(lambda: newest(feeling)[FORCE][2] > 0.5)
         feeling.cut()
-        assert servo.ring.header[STOP] == 1
-        assert state(feeling)[13:16] == (0, 0, 0)
+        assert (servo.ring.header[STOP], state(feeling)[13:16]) == (1, (0, 0, 0))
         until(lambda: not servo.running)
         assert feeling.loop_end() is None
         assert feeling.feel(loop_input(feeling)) is None  # what is made later is not felt

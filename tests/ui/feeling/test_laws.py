@@ -57,14 +57,6 @@ async def session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, loop_in_threa
         await session.close()
 
 
-@pytest.fixture
-def tab(session: Session) -> Heard:
-    """A tab of the session."""
-    tab = Heard()
-    session.tabs.enter(tab)
-    return tab
-
-
 def forces(session: Session) -> tuple[float, float]:
     """Upwards: of the law that is felt, and of the other one, as a page has them."""
     frame = session.feeling.frame(1, 0, session.laws.other_law())
@@ -93,8 +85,7 @@ async def test_second_law_is_computed_on_the_same_hand(session: Session, tab: He
     await press_until(session, lambda: np.allclose(forces(session), (0.4, 0.8), atol=0.02))
     await asks.switch_law(session, None, "b")
     await press_until(session, lambda: np.allclose(forces(session), (0.8, 0.4), atol=0.02))
-    assert tab.events[-1]["named"] == ["penalty (a)", "penalty (b)"]
-    assert tab.events[-1]["felt"] == 1
+    assert (tab.events[-1]["named"], tab.events[-1]["felt"]) == (["penalty (a)", "penalty (b)"], 1)
     session.feeling.hand.release()
 
     def release_and_look() -> bool:

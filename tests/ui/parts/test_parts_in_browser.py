@@ -150,7 +150,6 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
 def test_photograph_becomes_three_named_parts_on_swell_paper_in_fifteen_actions(
     opened: Callable[..., str], open_page: OpenPage, photo: Path, tmp_path: Path
 ):
-    """From her photograph to the page, its key and the copy in ink; every action is one that a person does."""
     (tmp_path / "before.yaml").write_text(f"scene: {{photo: {photo}}}\ndepth: luminance\n{RELIEF}")
     page = open_page(opened(tmp_path / "before.yaml") + "&measure")
     wait_for_force(page)

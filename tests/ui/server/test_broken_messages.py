@@ -53,7 +53,6 @@ def test_frame_that_breaks_the_standard_closes_the_connection(page: PageServer) 
 @pytest.mark.parametrize("path", [f"/stop?token={KEY}", f"/upload/{'0' * 16}/a.png?token={KEY}"])
 @pytest.mark.parametrize("after_answer", [False, True], ids=["at once", "after an answer"])
 def test_body_that_breaks_off_is_refused(page: PageServer, path: str, after_answer: bool) -> None:
-    """Together with its head: while the answer is made; or later, when an answer is sent already."""
     method = "PUT" if "upload" in path else "POST"
     head = f"{method} {path} HTTP/1.1\r\nHost: {page.host}\r\nOrigin: http://{page.host}\r\nTransfer-Encoding: chunked"
     with socket.create_connection((HOST, page.port), timeout=LONGEST_S) as raw:

@@ -68,14 +68,6 @@ async def session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Session:
 
 
 @pytest.fixture
-def tab(session: Session) -> Heard:
-    """A tab of the session."""
-    tab = Heard()
-    session.tabs.enter(tab)
-    return tab
-
-
-@pytest.fixture
 def ask(session: Session, tab: Heard) -> Ask:
     """Sends requests of the tab."""
 

@@ -228,7 +228,6 @@ def test_server_ended_by_a_signal_leaves_no_force_and_no_file(home: Home, name: 
 
 
 def test_server_that_is_killed_leaves_no_force_and_its_draft_is_offered(home: Home) -> None:
-    """The next one clears away what it left, and offers what was not saved; a recording can be read."""
     server = home.server("level.yaml")
     press = Press(home, server)
     press.press()

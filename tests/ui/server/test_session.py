@@ -27,14 +27,6 @@ async def session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Session:
     return Session(tmp_path, Feeling("none"), ["device={use: mock}"])
 
 
-@pytest.fixture
-def tab(session: Session) -> Heard:
-    """A tab of the session."""
-    tab = Heard()
-    session.tabs.enter(tab)
-    return tab
-
-
 class Touch(SimpleNamespace):
     """The input of a loop that keeps whether its file was removed."""
 

@@ -76,8 +76,7 @@ class TestExport:
         ):
             with pytest.raises(ConfigError, match=says):
                 await ask("export", exports=exports)
-            assert small.tab.last("made")["outcome"] == "failed"
-            assert folders(small) == []
+            assert (small.tab.last("made")["outcome"], folders(small)) == ("failed", [])
 
     async def test_stopped_export_returns_none_and_leaves_no_files(
         self, small: SmallSession, ask: Any, monkeypatch
@@ -174,7 +173,6 @@ class TestLegible:
         assert small.session.document.text == before
 
     async def test_legibility_of_the_panel_is_judged_at_the_width_of_the_export(self, ask: Any) -> None:
-        """A picture that is legible on its page is so in both panels, and what is not is so in both."""
         await ask("set", changes={"simplify": {}})
         await ask("set", changes={"export": [{"use": "swell", "width_m": 0.05}]})
         exported = await ask("export", exports=[{"use": "swell", "width_m": 0.05}])

@@ -198,8 +198,7 @@ async def test_stop_making_kills_the_worker_only_during_a_job(small: SmallSessio
     await ask("stop_making")
     go.set()
     assert await making is None  # who stops is not told of an error
-    assert small.worker.kills == 1
-    assert small.tab.last("made")["outcome"] == "stopped"
+    assert (small.worker.kills, small.tab.last("made")["outcome"]) == (1, "stopped")
     assert "error" not in small.tab.names()
     await ask("make")
     assert small.tab.last("made")["outcome"] == "made"

@@ -184,8 +184,7 @@ class TestSee:
     def test_layer_has_its_unit_and_span(self, pair: Scene):
         pipeline = Pipeline(pair, render=made("render", "proxy"), cached=False)
         found = make_view(pipeline, "surface")
-        assert found.shows == "surface"
-        assert set(found.layers) == {"disparity", "confidence", "error"}
+        assert (found.shows, set(found.layers)) == ("surface", {"disparity", "confidence", "error"})
         np.testing.assert_array_equal(found.layers["disparity"].values, pair.disparity.disparity_px)
         error_px = absolute_error(pair.disparity.disparity_px, pair.truth)
         np.testing.assert_array_equal(found.layers["error"].values, error_px.astype(np.float32))
@@ -208,8 +207,7 @@ class TestSee:
         pipeline = of_photo(picture)
         pipeline.make("segments")
         found = make_view(pipeline, "segments")
-        assert found.shows == "segments"
-        assert found.relief.height_m.max() == 0
+        assert (found.shows, found.relief.height_m.max()) == ("segments", 0)
         assert not is_at_hand(pipeline.engine, "relief")
         np.testing.assert_array_equal(found.labels, pipeline.segments.labels)
 

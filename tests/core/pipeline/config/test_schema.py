@@ -149,8 +149,7 @@ def test_method_schema_imports_no_other_method():
             loaded.append(name)
             return super().load(kind, name)
 
-    assert method_schema("depth", "zncc", Watched())["title"] == "zncc"
-    assert loaded == ["zncc"]
+    assert (method_schema("depth", "zncc", Watched())["title"], loaded) == ("zncc", ["zncc"])
     with pytest.raises(UnknownMethod, match="did you mean 'depth'"):
         stage_schema("depht")
     with pytest.raises(UnknownMethod, match="did you mean 'zncc'"):

@@ -219,8 +219,7 @@ class TestKilledWriter:
             with halfway(tmp_path) as writer:
                 writer.kill()
             assert Cache(tmp_path).size() == (number + 1, 100_000 * (number + 1))
-        assert Cache(tmp_path).clear() == (3, 300_000)
-        assert bytes_in(tmp_path) == 0
+        assert (Cache(tmp_path).clear(), bytes_in(tmp_path)) == ((3, 300_000), 0)
 
     def test_unfinished_file_is_deleted_by_pruning_after_a_minute(self, tmp_path: Path):
         with halfway(tmp_path) as writer:

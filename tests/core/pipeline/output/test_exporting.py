@@ -215,7 +215,6 @@ class TestSimplify:
         assert part_heights(simple.engine).heights_m == part_heights(plain.engine).heights_m
 
     def test_simplified_parts_are_felt_in_their_places(self):
-        """Cell by cell of the nearest, though their grid is another one; and no more of them than are there."""
         parts = PartMap(np.int32([[0, 3, 2]]), (0, 1, 2, 3))
         felt = parts_on_grid(parts, (1, 8), "simplified")
         assert felt.labels.tolist() == [[0, 0, 0, 3, 3, 2, 2, 2]]
@@ -244,8 +243,7 @@ class TestFiles:
             path.write_text("mine")
         kept = path.read_text()
         (one,) = pipeline(**SAID).export(out, [Report()]).exports
-        assert one.outcome.outcome == "refused"
-        assert one.files == ()
+        assert (one.outcome.outcome, one.files) == ("refused", ())
         assert "is there already" in one.outcome.why
         assert "--force" in one.outcome.why
         assert path.read_text() == kept
@@ -391,8 +389,7 @@ class TestEnding:
         halfway = Does(do=lambda stem: stop.set() or write_file(stem.with_suffix(".txt")))
         with pytest.raises(Stopped):
             pipeline(**SAID).export(tmp_path, [halfway, Report()], lambda stage: heard.append(stage.product), stop=stop)
-        assert list(tmp_path.iterdir()) == []
-        assert heard == ["export: Does"]
+        assert (list(tmp_path.iterdir()), heard) == ([], ["export: Does"])
 
     @pytest.mark.parametrize("error", [KeyboardInterrupt, Stopped])
     def test_interrupted_export_leaves_no_partial_files(self, tmp_path: Path, error: type[BaseException]):

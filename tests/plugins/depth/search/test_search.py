@@ -254,14 +254,12 @@ def test_exchanged_pair_has_the_same_disparity():
 def test_both_views_are_brightened_alike_by_a_power_of_two():
     left, right = np.array([[0.0, 1 / 3]]), np.array([[1 / 9, 0.0]])
     found = grey_pair(Views(left, right), "test")
-    assert found.left.tolist() == [[0, 170]]
-    assert found.right.tolist() == [[57, 0]]
+    assert (found.left.tolist(), found.right.tolist()) == ([[0, 170]], [[57, 0]])
 
 
 def test_negative_values_are_lifted_to_black():
     found = grey_pair(Views(np.array([[-0.5, 0.5]]), np.array([[-0.25, 0.25]])), "test")
-    assert found.left.tolist() == [[0, 255]]
-    assert found.right.tolist() == [[64, 191]]
+    assert (found.left.tolist(), found.right.tolist()) == ([[0, 255]], [[64, 191]])
 
 
 def pair(kind: str, shape: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:

@@ -82,8 +82,7 @@ def test_strip_whose_paths_begin_at_the_ends_of_the_picture_is_part_of_the_whole
 
 
 def test_span_fits_lanes_and_pictures():
-    assert Span(0, 63).lanes == 64
-    assert Span(0, 64).lanes == 80
+    assert (Span(0, 63).lanes, Span(0, 64).lanes) == (64, 80)
     assert Span(2, 68).fill_lanes() == Span(2, 81)
     assert Span(2, 68).widen() == Span(2, 129)
     assert Span(-3, 3).lanes == 16

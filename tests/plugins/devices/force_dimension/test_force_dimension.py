@@ -87,8 +87,7 @@ def missing(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_force_dimension_conforms(dhd: Library):
     assert not [check for check in run_checks("device", "force-dimension") if not check.passed]
-    assert dhd.opened == set()
-    assert dhd.forces[-1] == (0, 0, 0)
+    assert (dhd.opened, dhd.forces[-1]) == (set(), (0, 0, 0))
 
 
 class TestAxes:
@@ -97,8 +96,7 @@ class TestAxes:
         dhd.velocity = [1.0, 2.0, 3.0]
         with ForceDimension().open() as link:
             state = link.read()
-        assert state[:2] == ((0.02, -0.01, 0.03), (2.0, -1.0, 3.0))
-        assert state.buttons == 5
+        assert (state[:2], state.buttons) == (((0.02, -0.01, 0.03), (2.0, -1.0, 3.0)), 5)
 
     def test_force_is_rotated_into_device_axes(self, dhd: Library):
         with ForceDimension().open() as link:
@@ -176,8 +174,7 @@ class TestService:
         dhd.busy.add(1)
         first, second = ForceDimension().connected()
         assert first == Unit("omega.3", "1234", "index 0")
-        assert second.problem == "the words of the library"
-        assert dhd.opened == set()
+        assert (second.problem, dhd.opened) == ("the words of the library", set())
 
     def test_doctor_lists_library_and_devices(self, dhd: Library):
         dhd.busy.add(1)

@@ -157,8 +157,7 @@ class TestMessages:
             with Haply(uri=service.uri, centre_m=(0.0, -0.14, 0.1)).open() as link:
                 state = link.read()
         assert state.position_m == pytest.approx((0.01, 0.02, 0.03))
-        assert state.velocity_m_per_s == (0.1, 0.2, 0.3)
-        assert state.buttons == 1
+        assert (state.velocity_m_per_s, state.buttons) == ((0.1, 0.2, 0.3), 1)
 
     def test_velocity_of_service_without_velocities_is_estimated(self, service: MockService):
         service.tells_velocity = False

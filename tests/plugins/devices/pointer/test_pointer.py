@@ -51,8 +51,7 @@ class TestExchange:
         with PointerClient() as client:
             client.send((0.01, -0.02, 0.003), buttons=5, velocity_m_per_s=(1.0, 2.0, 3.0))
             state = link.read()
-            assert state[:2] == ((0.01, -0.02, 0.003), (1.0, 2.0, 3.0))
-            assert state.buttons == 5
+            assert (state[:2], state.buttons) == (((0.01, -0.02, 0.003), (1.0, 2.0, 3.0)), 5)
             link.write(Force(1.0, -2.0, 3.0))
             assert client.force() == link.applied == Force(1.0, -2.0, 3.0)
 
@@ -210,8 +209,7 @@ class TestLettingGo:
         _, spring = grip
         forces = spring.ticks(200)
         assert 90 < (end := forces.index(0.0)) <= 90 + 20, "100 reads of a sample, ten of which were; then 20 ms"
-        assert set(forces[:end]) == {2.0}
-        assert set(forces[end:]) == {0.0}
+        assert (set(forces[:end]), set(forces[end:])) == ({2.0}, {0.0})
 
 
 @pytest.mark.parametrize("tag", [0, 0x2AAAAA, 0x7FFFFF])
@@ -372,8 +370,7 @@ class TestTorn:
             assert run_tick(link)[0] == 0
             assert link.read().position_m == HIGH_M
             words[channel.SAMPLE + word] ^= np.uint64(1 << bit)
-            assert run_tick(link)[0] == 1
-            assert link.read().position_m == (0.5, 0.25, 0.125)
+            assert (run_tick(link)[0], link.read().position_m) == (1, (0.5, 0.25, 0.125))
 
     @pytest.mark.parametrize("word", range(channel.FORCE_WORDS + 1))
     def test_force_with_one_wrong_bit_is_zero(self, link: CompiledLink, word: int):

@@ -38,8 +38,7 @@ def test_fills_of_planar_neighbours_differ(seed, count):
 
 def test_fills_of_few_parts_all_differ_and_largest_is_blank():
     kinds, _ = choose_fills([set()] * 5, [list(KINDS)] * 5, [1, 2, 9, 4, 5])
-    assert len(set(kinds)) == 5
-    assert kinds[2] == "blank"
+    assert (len(set(kinds)), kinds[2]) == (5, "blank")
 
 
 def test_fills_without_room_are_blank_and_neighbours_are_filled():

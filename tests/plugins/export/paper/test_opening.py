@@ -32,6 +32,5 @@ def test_parts_have_a_grid_of_a_quarter_of_a_millimetre_and_lost_ones_are_named(
     work = labels_work(labels, ("left", "right", "thread"))
     with collected() as notes:
         opened = open_parts(work, work.simplified, 0.2)
-    assert opened.labels.shape == (100, 800)
-    assert np.unique(opened.labels).tolist() == [0, 1]
+    assert (opened.labels.shape, np.unique(opened.labels).tolist()) == ((100, 800), [0, 1])
     assert notes == ["no room for thread: narrower than 4.2 mm between the middles of outlines"]

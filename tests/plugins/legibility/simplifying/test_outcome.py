@@ -99,9 +99,7 @@ def test_textures_that_add_least_to_the_spread_become_one():
     def kinds(textures: int, names: tuple[str, ...] = (), picture: np.ndarray | None = picture) -> list[int]:
         return texture_kinds(parts, names, textures, picture).tolist()
 
-    assert kinds(5) == [0, 1, 2, 3, 4]
-    assert kinds(4) == [0, 1, 2, 2, 3]
-    assert kinds(3) == [0, 0, 1, 1, 2]
+    assert (kinds(5), kinds(4), kinds(3)) == ([0, 1, 2, 3, 4], [0, 1, 2, 2, 3], [0, 0, 1, 1, 2])
     assert kinds(2) == [0, 0, 1, 1, 1]
     assert kinds(1) == [0] * 5
     assert kinds(3, ("", "", "", "a")) == [0, 0, 1, 2, 3]

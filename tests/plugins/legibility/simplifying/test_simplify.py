@@ -78,8 +78,7 @@ def house(size: int, window: int, name: str = "") -> tuple[PartMap, list[str]]:
 def test_simplify_small_part_goes_to_its_neighbour():
     parts, names = house(400, 40)
     found = simplify(parts, 0.06, CHOICE, names)
-    assert np.unique(found.labels).tolist() == [0, 1]
-    assert found.count == 3
+    assert (np.unique(found.labels).tolist(), found.count) == ([0, 1], 3)
     assert found.labels[found.labels.shape[0] // 2, found.labels.shape[1] // 2] == 1
 
 

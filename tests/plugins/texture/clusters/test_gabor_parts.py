@@ -67,8 +67,7 @@ def test_discriminants_of_two_groups_find_the_separating_feature(random: np.rand
     planes, labels = two_groups(random)
     fit = scatters(planes, one_hot(labels, 2))
     axes = discriminant_axes(fit, 20)
-    assert axes.shape == (1, 5)
-    assert np.abs(axes[0]).argmax() == 2
+    assert (axes.shape, np.abs(axes[0]).argmax()) == ((1, 5), 2)
     np.testing.assert_allclose(axes @ fit.within @ axes.T, [[1]], rtol=1e-6)
     assert np.mean(evidence(planes, fit).argmax(axis=0) == labels) > 0.99
 

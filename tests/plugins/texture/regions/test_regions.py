@@ -64,20 +64,11 @@ class TestRefining:
 class TestBasins:
     HEIGHT = np.array([[1, 1, 9, 3, 3, 9, 2], [1, 1, 9, 3, 3, 9, 2], [9, 9, 9, 9, 9, 9, 9]], np.float32)
 
-    def test_higher_level_adds_parts_without_a_basin(self):
-        found, count = basins(self.HEIGHT, [1, 3], 4)
-        assert count == 2
-        assert found.tolist() == [[0, 0, -1, 1, 1, -1, -1]] * 2 + [[-1] * 7]
-
-    def test_part_with_one_basin_belongs_to_it(self):
-        found, count = basins(self.HEIGHT, [1, 9], 4)
-        assert count == 1
-        assert np.all(found == 0)
-
-    def test_part_with_several_basins_stays_as_it_is(self):
-        found, count = basins(self.HEIGHT, [3, 9], 4)
-        assert count == 2
-        assert found.tolist() == [[0, 0, -1, 1, 1, -1, -1]] * 2 + [[-1] * 7]
+    def test_part_of_a_higher_level_is_a_basin_without_one_in_it(self):
+        apart = [[0, 0, -1, 1, 1, -1, -1]] * 2 + [[-1] * 7]
+        for levels, basin_count, labels in (([1, 3], 2, apart), ([1, 9], 1, [[0] * 7] * 3), ([3, 9], 2, apart)):
+            found, count = basins(self.HEIGHT, levels, 4)
+            assert (count, found.tolist()) == (basin_count, labels)
 
     def test_part_smaller_than_asked_for_is_no_basin(self):
         for smallest_px, count in ((1, 3), (2, 3), (3, 2), (4, 2), (5, 0)):

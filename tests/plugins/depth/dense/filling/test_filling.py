@@ -183,8 +183,7 @@ def test_path_follows_the_surface_around_a_corner():
 def test_path_length_is_its_steps_and_grey_changes():
     disparity = np.array([[UNKNOWN, UNKNOWN, UNKNOWN, 80, 80]], np.int16)
     found = geodesic_candidates(disparity, np.array([[10, 40, 35, 35, 0]], np.uint8))
-    assert found.first.tolist() == [3]
-    assert found.values[:, :3].tolist() == [[80, 80, 80]]
+    assert (found.first.tolist(), found.values[:, :3].tolist()) == ([3], [[80, 80, 80]])
     assert found.lengths[:, :3].tolist() == [[3 + 35, 2 + 5, 1]]
 
 

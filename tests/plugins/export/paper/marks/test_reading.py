@@ -25,8 +25,7 @@ def test_page_with_another_view_box_than_its_size_is_refused(box: str):
 def test_closed_line_ends_where_it_begins():
     [mark] = page('<path data-mark="outline" stroke="#000" stroke-width="1" d="M1 1L5 1L5 4Z"/>').marks
     assert np.asarray(mark.shape.vertices).tolist() == [[1, 1], [5, 1], [5, 4], [1, 1]]
-    assert np.asarray(mark.shape.codes).tolist() == [1, 2, 2, 79]
-    assert mark.stroke_mm == 1
+    assert (np.asarray(mark.shape.codes).tolist(), mark.stroke_mm) == ([1, 2, 2, 79], 1)
 
 
 def test_title_of_a_page_is_read_and_may_be_missing():

@@ -65,7 +65,6 @@ def _picture(seed: int, shape: tuple[int, int]) -> np.ndarray:
 
 
 def _run(folder: Path, name: str, text: str, rows: list[dict[str, str]], workers: int) -> dict[str, Any]:
-    """Return what a process of its own prints."""
     config, manifest = folder / f"{name}.yaml", folder / f"{name}.csv"
     config.write_text(text)
     with manifest.open("w", newline="") as file:

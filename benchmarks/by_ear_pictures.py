@@ -76,7 +76,6 @@ def _without_specks(labels: Int32[np.ndarray, "r c"]) -> Int32[np.ndarray, "r c"
 
 
 def _grid() -> tuple[np.ndarray, np.ndarray]:
-    """Return x and y of the cells, from 0 to 4 and from 0 to 3."""
     y, x = np.mgrid[:ROWS, :COLUMNS]
     return 4 * (x + 0.5) / COLUMNS, 3 * (y + 0.5) / ROWS
 

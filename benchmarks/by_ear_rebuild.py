@@ -1,7 +1,4 @@
-"""Rebuild a picture from what was said about it: which parts touch, and their order in height.
-
-It reads English sentences and nothing else: no map, no times, no code of the page.
-"""
+"""Rebuild a picture from the English sentences said about it alone: which parts touch, and their order in height."""
 
 import re
 from collections import defaultdict
@@ -53,13 +50,11 @@ def _rise_mm(stepped: re.Match[str]) -> float:
 
 
 def _name(what: str) -> str:
-    """Return what tells a part from others: its number, or its name before its material."""
     numbered = NUMBERED.match(what)
     return f"part {numbered[1]}" if numbered else what.split(",")[0]
 
 
 def _heights(steps: dict[tuple[str, str], list[float]]) -> dict[str, float]:
-    """Return the heights that fit the steps best, by least squares; each pair weighs by how often it was crossed."""
     names = sorted({name for pair in steps for name in pair})
     if not names:
         return {}

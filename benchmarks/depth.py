@@ -34,12 +34,7 @@ def section() -> str:
     accuracy = part("errors and times", depth_accuracy.figures)
     robustness, by_damage = part("damaged pairs", depth_robustness.measured)
     growth, sizes = part("growth", depth_growth.measured)
-    single = (
-        depth_confidence,
-        depth_pandora,
-        depth_range,
-        depth_raw,
-    )
+    single = (depth_confidence, depth_pandora, depth_range, depth_raw)
     others = [part(each.__name__.removeprefix("benchmarks."), each.figures) for each in single]
     figures = [*accuracy, *robustness, *chain.from_iterable(others), *growth]
     return "\n".join(
@@ -80,8 +75,4 @@ def _conditions() -> list[str]:
         if os.environ.get(depth_pairs.FOLDER)
         else f" {depth_pairs.FOLDER} was not set: no other photographs were measured."
     )
-    return [
-        f"Photographs: {scenes}; synthetic: planes, steps, spheres, bars of 480 x 360.{given}",
-        "",
-        PROTOCOL,
-    ]
+    return [f"Photographs: {scenes}; synthetic: planes, steps, spheres, bars of 480 x 360.{given}", "", PROTOCOL]

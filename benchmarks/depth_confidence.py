@@ -63,10 +63,7 @@ def rows() -> list[str]:
 
 
 def _by_probability(scene: KnownScene) -> np.ndarray:
-    """Return by range of probability the share of pixels with truth, their mean probability, and those that are right.
-
-    The second and third are in shares of all pixels as well.
-    """
+    """Return by range of probability the shares of pixels with truth, of what is stated, and of what is right."""
     found, truth_px = SemiGlobal().estimate(scene.pair.views), scene.pair.truth_px
     measured = np.isfinite(truth_px)
     stated = probability(found.confidence[measured])

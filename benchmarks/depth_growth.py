@@ -57,10 +57,7 @@ def _promises(effort: Effort, rows: list[Size]) -> list[Figure]:
 
 
 def _sizes(effort: Effort) -> list[Size]:
-    """Megapixels, nanoseconds a pixel and disparity, peak bytes, and time over 3WAY's, for each of TILES.
-
-    The time is the least of the rounds: what else the machine does can only add, and hits short calls by chance.
-    """
+    """Megapixels, least ns a pixel and disparity, peak bytes, and time over 3WAY's, for each of TILES."""
     scenes = [_tiled(count) for count in TILES]
     method = SemiGlobal(max_disparity_px=DISPARITIES, effort=effort)
     calls = [partial(method.estimate, each.views) for each in scenes]

@@ -103,7 +103,6 @@ def _view(surfaces: list[Surface], materials: list[np.ndarray], where: Where) ->
 
 
 def _sampled(material: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return the bilinear values of a repeated material at (x, y)."""
     left, top = np.floor(x).astype(int), np.floor(y).astype(int)
     u, v = x - left, y - top
     rows, columns = (top % TILE_PX, (top + 1) % TILE_PX), (left % TILE_PX, (left + 1) % TILE_PX)

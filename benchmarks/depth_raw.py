@@ -121,7 +121,6 @@ def _warped(picture: np.ndarray, camera: Taken) -> np.ndarray:
 
 
 def _bricks() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return a wall and a pillar before it, of similar bricks: left, right, disparity where both show it."""
     y, x = np.indices(SHAPE)
     wall_px, pillar_px = 20, 52
 

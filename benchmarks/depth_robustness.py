@@ -92,7 +92,6 @@ def _methods(scene: KnownScene) -> Iterator[DepthEstimator]:
 
 
 def _shares() -> Iterator[tuple[tuple[str, str], float]]:
-    """(damage, scene) -> time of ours over 3WAY's."""
     for name, scene in large().items():
         for kind, value in DAMAGES:
             each = _damaged(scene, kind, value)

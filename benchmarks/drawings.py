@@ -66,13 +66,14 @@ def _kinds() -> Iterator[Figure]:
     yield Figure("processor time for a kind", "<= 0.3 s", f"{seconds:.2f} s", seconds <= 0.3)
     photos = [path for end in ("jpg", "png") for path in Path(PHOTOS).rglob(f"*.{end}")] if PHOTOS else []
     if photos:
-        taken = [picture_kind(cv2.imread(str(photo))[..., ::-1]).likely != "photograph" for photo in photos]
-        text = f"{sum(taken)} of {len(taken)}"
-        yield Figure("photographs taken for a drawing", "<= 1 %", text, np.mean(taken) <= 0.01)
+        taken = sum(
+            picture_kind(np.asarray(Image.open(photo).convert("RGB"))).likely != "photograph" for photo in photos
+        )
+        share = f"{taken} of {len(photos)}"
+        yield Figure("photographs taken for a drawing", "<= 1 %", share, taken <= 0.01 * len(photos))
 
 
 def _count_right(kind: str, seed: int) -> tuple[int, float]:
-    """Return how many drawings of a chunk have the right kind, and the seconds that took."""
     cv2.setNumThreads(1)
     right, seconds = 0, 0.0
     for made in made_drawings("told", kind, CHUNK, seed):
@@ -96,7 +97,7 @@ def score_areas(made: Made) -> np.ndarray:
     """Return areas found and all, true and all found ones, pixels beyond edges, and the edges' length."""
     known = made.labels >= 0
     unknown, by_pixel = (~known).astype(np.uint8), cv2.DIST_LABEL_PIXEL
-    _, nearest = cv2.distanceTransformWithLabels(unknown, cv2.DIST_L2, 5, labelType=by_pixel)
+    nearest = cv2.distanceTransformWithLabels(unknown, cv2.DIST_L2, 5, labelType=by_pixel)[1].astype(np.int32)
     at = np.zeros(int(nearest.max()) + 1, np.int64)
     at[nearest[known]] = np.flatnonzero(known)
     truth = made.labels.reshape(-1)[at[nearest]]
@@ -118,7 +119,6 @@ def score_areas(made: Made) -> np.ndarray:
 
 
 def _pieces(labels: np.ndarray) -> np.ndarray:
-    """Return the connected pieces by number from 1, 0 for specks."""
     pieces, count = np.zeros(labels.shape, np.int32), 0
     for label in np.unique(labels):
         number, of, about, _ = cv2.connectedComponentsWithStats((labels == label).astype(np.uint8), connectivity=4)
@@ -151,7 +151,6 @@ def _lines() -> Iterator[Figure]:
 
 
 def _raised(made: Made, drawn: np.ndarray) -> np.ndarray:
-    """Return the pixels of lines, and those raised by half the height: by edges, and by lines."""
     views, size = Views(made.picture), Workspace().size("lines")
     edges = edge_relief(views, size, ReliefChoice(by="edges")).height_m
     lines, _ = line_relief(views, size, ReliefChoice(by="lines"), areas=False)
@@ -206,7 +205,6 @@ def _labels() -> Iterator[Figure]:
 
 
 def _area(labels: np.ndarray) -> int:
-    """Return the commonest area, -1 without one."""
     counts = np.bincount(labels[labels >= 0], minlength=1)
     return int(counts.argmax()) if counts.any() else -1
 

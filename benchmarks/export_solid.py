@@ -107,7 +107,6 @@ def _works() -> dict[str, Work]:
 
 
 def _huge() -> Iterator[Figure]:
-    """Yield the motorcycle with so many nodes, and grain of 0.1 mm on it."""
     heights = cv2.resize(_works()["motorcycle, stereo"].relief.height_m, (HUGE, HUGE), interpolation=cv2.INTER_CUBIC)
     wave = np.sin(np.arange(HUGE, dtype=np.float32) * np.float32(2 * np.pi / 51))
     heights += np.float32(5e-5) * wave * wave[:, None]
@@ -126,7 +125,6 @@ def _huge() -> Iterator[Figure]:
 
 
 def _judges() -> Iterator[Figure]:
-    """admesh, and a slicer."""
     with tempfile.TemporaryDirectory() as folder:
         for name, work in _works().items():
             (path,) = Stl().write(work, Path(folder) / "solid")

@@ -62,7 +62,7 @@ THINGS: Mapping[str, Mapping[str, Edit]] = {
             '    dequantise: Filter = "auto"\n',
             "    share: Annotated[float, Field(gt=0, le=1)] = 1.0\n"
             '    """Share of the stiffness."""\n    dequantise: Filter = "auto"\n',
-        )(swap("surface, self.stiffness_n_per_m)", "surface, self.share * self.stiffness_n_per_m)")(text)),
+        )(swap("surface, self.stiffness_n_per_m)", "surface, self.share * self.stiffness_n_per_m)")(text))
     },
 }
 """The edits that add a thing, by the files that they touch; texts in other languages are in the catalogue."""
@@ -88,7 +88,6 @@ def add(thing: str, folder: Path) -> dict[str, str]:
 
 
 def _install(folder: Path) -> None:
-    """Write the metadata by which the methods of the copy are found."""
     project = tomllib.loads((folder / "pyproject.toml").read_text("utf-8"))["project"]
     info = folder / f"tangible_images-{project['version']}.dist-info"
     info.mkdir()

@@ -112,7 +112,6 @@ def _passes(parts: PartMap, names: tuple[str, ...]) -> bool:
 
 
 def _many() -> list[Figure]:
-    """Segments in great number."""
     picture = drawn_parts.drawn("coffee").picture
     whole = cv2.resize(np.arange(160, dtype=np.int32).reshape(10, 16), (600, 400), interpolation=cv2.INTER_NEAREST)
     fine = cv2.resize(np.arange(10_000, dtype=np.int32).reshape(100, 100), (800, 800), interpolation=cv2.INTER_NEAREST)

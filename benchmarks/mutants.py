@@ -123,7 +123,6 @@ def run(root: Path, chosen: Sequence[Mutant], jobs: int, patience_s: float = PAT
 
 @contextmanager
 def _folder(parent: Path | None) -> Generator[Path]:
-    """Provide a new folder there, or among temporary ones, that goes with all in it."""
     with tempfile.TemporaryDirectory(prefix="mutants-", dir=parent, ignore_cleanup_errors=True) as folder:
         yield Path(folder)
 
@@ -195,7 +194,6 @@ def complete(root: Path, words: Sequence[str], jobs: int) -> list[Result]:
 
 
 def _all(root: Path, chosen: Sequence[Mutant], jobs: int) -> list[Result]:
-    """Return what becomes of the mutants, each printed as it is done."""
     results: list[Result] = []
     try:
         with closing(run(root, chosen, jobs)) as done:
@@ -237,7 +235,6 @@ def _say(text: str) -> None:
 
 
 def _jobs() -> int:
-    """Return the number of workers: tests of real time need a core next to their own."""
     return max(1, (os.cpu_count() or 1) // 2)
 
 

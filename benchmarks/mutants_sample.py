@@ -100,7 +100,6 @@ class Source:
 
 
 def _changes(node: Any) -> Iterator[tuple[Any, Any]]:
-    """Yield every node below this one with what takes its place."""
     import libcst as cst
     import libcst.matchers as m
     from mutmut.mutation.mutators import mutation_operators

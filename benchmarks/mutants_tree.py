@@ -47,10 +47,7 @@ def copy_of(root: Path, tree: Path) -> None:
 
 @final
 class Tree:
-    """A copy of the sources and an environment in which nothing is imported from the checkout.
-
-    `PYTHONPATH` would not do: a test may start a program with an environment of its own.
-    """
+    """A copy of the sources in an environment of its own, as a test may start a program without our `PYTHONPATH`."""
 
     def __init__(self, folder: Path, shared: Path) -> None:
         """shared: where its force loops have their memory; a mutant may take away whatever lies there."""
@@ -73,7 +70,6 @@ class Tree:
             script.chmod(0o755)
 
     def _own(self) -> list[str]:
-        """Return the folders that packages are imported from."""
         return self._config().get("tool", {}).get("hatch", {}).get("build", {}).get("dev-mode-dirs", ["."])
 
     def _config(self) -> dict[str, Any]:
@@ -86,10 +82,7 @@ class Tree:
         return self._venv / "bin" / "python"
 
     def environ(self) -> dict[str, str]:
-        """Chance is the same each time, a test that hangs is ended, and what is left behind goes with the tree.
-
-        Bytecode is written: each tree begins with that of the tree without a fault.
-        """
+        """Chance is the same each time; bytecode is written: each tree begins with that of the tree without a fault."""
         places = {"TMPDIR": str(self._temporary), "TANGIBLE_SHARED_DIR": str(self._shared)}
         ours = {**places, "CI": "1", "PYTEST_TIMEOUT": "120"}
         unset = ("PYTHONPATH", "NUMBA_CACHE_DIR", "PYTHONDONTWRITEBYTECODE")
@@ -115,7 +108,6 @@ class Tree:
         return ended.code == 0 and all(Path(line).is_relative_to(self.sources) for line in ended.said.splitlines())
 
     def _package(self, file: Path) -> str:
-        """Return the package or module of a file; "" for none."""
         home = max((each for each in map(Path, self._own()) if file.is_relative_to(each)), key=lambda at: len(at.parts))
         first = file.relative_to(home).parts[0]
         is_package = first.endswith(".py") or (self.sources / home / first / "__init__.py").exists()

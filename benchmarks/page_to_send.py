@@ -53,7 +53,6 @@ def _figures() -> Iterator[Figure]:
 
 
 def _sent(folder: Path) -> Path:
-    """Export the picture of the astronaut, enlarged as a camera would have taken it."""
     from PIL import Image
     from skimage import data
 
@@ -67,7 +66,6 @@ def _sent(folder: Path) -> Path:
 
 
 def _opened(chromium: "Browser", path: Path) -> tuple[float, float, float]:
-    """Return the seconds until the page can be explored, and two percentiles of a stroke's answers, ms."""
     context = window(chromium)
     try:
         page = context.new_page()

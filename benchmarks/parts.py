@@ -12,13 +12,7 @@ import numpy as np
 from tangible_authoring.first_parts import SEGMENTS_PER_PART
 from tangible_core import DisparityMap, Views, load_method
 from tangible_core.data import PartMap, Relief, SegmentMap
-from tangible_core.parts import (
-    HeightChoice,
-    Layering,
-    depth_heights,
-    find_parts,
-    guess_heights,
-)
+from tangible_core.parts import HeightChoice, Layering, depth_heights, find_parts, guess_heights
 from tangible_core.scene.geometry import smooth
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.workspace import SUITS, Workspace
@@ -58,7 +52,6 @@ def section() -> str:
 
 
 def _borders() -> tuple[list[str], list[Figure]]:
-    """Each relief against the borders of the parts that it has, and against those drawn."""
     rows: list[tuple[str, ...]] = []
     figures: list[Figure] = []
     of_automatic: list[tuple[float, float]] = []
@@ -139,7 +132,6 @@ def _times() -> tuple[list[str], list[Figure]]:
 
 
 def _works(shape: tuple[int, int]) -> dict[str, Callable[[], Any]]:
-    """Return the timed calls on the drawn motorcycle at a size."""
     drawn = drawn_parts.drawn("motorcycle")
     segments = SegmentMap(cv2.resize(drawn.parts.labels, shape[::-1], interpolation=cv2.INTER_NEAREST))
     picture = cv2.resize(drawn.picture, shape[::-1])
@@ -159,13 +151,11 @@ def _works(shape: tuple[int, int]) -> dict[str, Callable[[], Any]]:
 
 @cache
 def _luminance(name: str) -> np.ndarray:
-    """From 0 to 1, as a photograph is made a relief without parts."""
     return load_method("depth", "luminance")().estimate(Views(drawn_parts.drawn(name).picture)).disparity_px
 
 
 @cache
 def _automatic(name: str) -> PartMap:
-    """As `tangible parts` finds them."""
     picture = drawn_parts.drawn(name).picture
     segments = Hierarchy(segments=ceil(SEGMENTS_PER_PART * MAX_PARTS)).segment(picture)
     return large_parts(segments, picture, MIN_WIDTH * max(picture.shape[:2]), MAX_PARTS)

@@ -123,7 +123,6 @@ def _figures(taken: dict[int, Taken]) -> Iterator[Figure]:
 
 
 def _lost(file: Path) -> Iterator[Figure]:
-    """Yield the surface as it is felt, against one of every pixel of the photo, both smoothed by 0.5 mm."""
     pipeline = load_pipeline(file, ["workspace.smooth_m=0.0005", "workspace.relief_m=0.005"])
     pipeline.engine.cache = None
     size, disparity, law = pipeline.config.workspace, pipeline.disparity, pipeline.config.render

@@ -145,7 +145,6 @@ def measure(name: str, scene: Scene) -> dict[tuple[str, int], Felt]:
 
 
 def _scenes() -> Iterator[tuple[str, Scene]]:
-    """Yield what scikit-image ships, and some of the photographs that people drew regions in, where these are here."""
     for name in NAMED:
         yield name, Scene.photo(np.asarray(drawn_parts.drawn(name).picture))
     yield PAIR, Scene.builtin(f"builtin/{PAIR}")
@@ -155,14 +154,12 @@ def _scenes() -> Iterator[tuple[str, Scene]]:
 
 
 def _means(results: Sequence[Felt]) -> Iterator[str]:
-    """Yield the means of lights, points off and overlap as text."""
     yield _mean([result.lights for result in results if result.has_face], "{:.1f}")
     yield _mean([100 * result.off for result in results if not math.isnan(result.off)], "{:.1f}")
     yield _mean([result.overlap for result in results if not math.isnan(result.overlap)], "{:.2f}")
 
 
 def _mean(values: Sequence[float], form: str) -> str:
-    """Return the mean of values with its standard error as text."""
     if len(values) < 2:
         return form.format(values[0]) if values else "-"
     return f"{form.format(fmean(values))} ± {form.format(stdev(values) / math.sqrt(len(values)))}"
@@ -211,7 +208,6 @@ def stroke_surface(surface: HapticSurface, seconds: float) -> np.ndarray:
 
 
 def _stiffness(positions: np.ndarray, forces: np.ndarray) -> float:
-    """Return the stiffness that the hand feels while it comes down on one place, N/m."""
     pressed = forces[:, 2] > 0
     return float(np.ptp(forces[pressed, 2]) / np.ptp(positions[pressed, 2]))
 
@@ -250,10 +246,7 @@ def recognise(heights_m: np.ndarray, pitch_m: float, seen: Seen, shape: tuple[in
 
 
 def _off(found: np.ndarray, face: np.ndarray) -> float:
-    """Return the mean distance of the nearest face's points, over the face's width; infinite without a face.
-
-    found: (n, 468, 2), pixels, as the first two values of a face's points.
-    """
+    """Return the mean distance of the nearest face's (n, 468, 2) points over its width; infinite without a face."""
     width = float(np.ptp(face[:, 0]))
     return min((float(np.linalg.norm(each - face[:, :2], axis=1).mean()) / width for each in found), default=math.inf)
 

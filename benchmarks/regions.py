@@ -124,7 +124,6 @@ def _quality(given: Mapping[str, Photograph]) -> tuple[list[str], list[Figure]]:
 
 
 def _gradient_cuts(picture: np.ndarray) -> list[Labels]:
-    """Return what `gradient` makes of each number of COUNTS."""
     return [Gradient(segments=count).segment(picture).labels for count in COUNTS]
 
 
@@ -158,7 +157,6 @@ def _with_network() -> tuple[list[str], list[Figure]]:
 
 
 def _raised(photo: Photograph, borders: np.ndarray | None) -> float:
-    """Return the F of the middles of the raised lines, which alone are above .6 of the height."""
     size = FeltSize(0.08, 1.0, 0.0, 3e-5, "fill")
     heights = edge_relief(Views(photo.picture), size, ReliefChoice(slope=0), borders=borders).height_m
     return border_f(cv2.ximgproc.thinning(255 * (heights > 0.599).astype(np.uint8)) > 0, photo)
@@ -167,7 +165,6 @@ def _raised(photo: Photograph, borders: np.ndarray | None) -> float:
 def _crossed(
     given: Mapping[str, Photograph], seen: bool = False
 ) -> tuple[list[Mapping[str, float]], list[Mapping[str, float]]]:
-    """Return the measures of trees whose weights were fitted to other photographs: at a cost of 0, and the best."""
     prepared = [prepare(each, seen) for each in given.values()]
     default: dict[int, Mapping[str, float]] = {}
     best: dict[int, Mapping[str, float]] = {}
@@ -191,7 +188,6 @@ def _best(cuts: Sequence[Labels], photo: Photograph) -> Mapping[str, float]:
 
 
 def _measures(labels: Labels, photo: Photograph) -> Mapping[str, float]:
-    """Return the mean of each measure over the people."""
     counts = [contingency(labels, drawn) for drawn in photo.drawn]
     means = {name: fmean(measure(count) for count in counts) for name, measure in COUNTED.items()}
     return means | {"F": border_f(border_pixels(labels), photo)}
@@ -247,7 +243,6 @@ def _milliseconds(work: Callable[[], object], runs: int = RUNS) -> float:
 
 
 def _memory_mib() -> int:
-    """Return the peak of a process that divides a large picture, beyond the picture itself, MiB."""
     script = (
         "import numpy as np; from tangible_bench.memory import start_peak; from tangible_core import load_method;"
         f"rows, columns = np.indices({LARGE}, np.int32);"

@@ -157,7 +157,6 @@ def _add_between(bounds, ends, strengths, pairs, cues):
 
 
 def _cells(prepared: Prepared, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Return the strength of each cue at some cells, and the share of people with a border there."""
     away = [np.asarray(distance_transform_edt(~border_pixels(each))) for each in prepared.drawn]
     near = np.mean([each <= NEAR_CELLS for each in away], axis=0).ravel()
     at = np.flatnonzero((near > 0) | (np.min(away, axis=0) > FAR_CELLS).ravel())
@@ -167,7 +166,6 @@ def _cells(prepared: Prepared, rng: np.random.Generator) -> tuple[np.ndarray, np
 
 
 def _each_alone(cues: Tensors) -> list[np.ndarray]:
-    """Return weights that take one cue each."""
     return list(np.eye(len(cues), dtype=np.float32))
 
 
@@ -177,7 +175,6 @@ def _stacked(rows: Sequence[tuple[np.ndarray, ...]]) -> list[np.ndarray]:
 
 
 def _leaves(joins: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the first and last place of each node's smallest regions, in an order in which they are neighbours."""
     count = len(joins) + 1
     sizes, first = np.ones(count + len(joins), int), np.zeros(count + len(joins), int)
     for at, (one, other) in enumerate(joins):
@@ -189,7 +186,6 @@ def _leaves(joins: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _nodes(counts: np.ndarray, joins: np.ndarray) -> np.ndarray:
-    """Return the shares of a person's regions in each node."""
     nodes = np.vstack([counts, np.zeros((len(joins), counts.shape[1]))])
     for at, (one, other) in enumerate(joins):
         nodes[len(counts) + at] = nodes[one] + nodes[other]
@@ -199,7 +195,6 @@ def _nodes(counts: np.ndarray, joins: np.ndarray) -> np.ndarray:
 def _logistic(
     terms: np.ndarray, wanted: np.ndarray, weights: np.ndarray | None = None, positive: int | None = None
 ) -> tuple[np.ndarray, float]:
-    """Fit a logistic regression of shares; the first weights, or all of them, are not negative."""
     middle, spread = terms.mean(axis=0), terms.std(axis=0) + 1e-9
     scaled = np.c_[(terms - middle) / spread, np.ones(len(terms))]
     heavy = np.ones(len(terms)) if weights is None else weights

@@ -88,13 +88,11 @@ def _size(**changes: Any) -> FeltSize:
 
 
 def _pairs() -> dict[str, depth_pairs.KnownScene]:
-    """Return all pairs, photographs first."""
     return {**depth_pairs.real(), **depth_pairs.synthetic()}
 
 
 @cache
 def _scenes() -> dict[str, tuple[DisparityMap, DisparityMap, Calibration | None, Truth]]:
-    """Return found and true disparity, calibration and truth of each pair, photographs first."""
     found: dict[str, tuple[DisparityMap, DisparityMap, Calibration | None, Truth]] = {}
     for name, each in _pairs().items():
         pair = each.pair
@@ -193,7 +191,6 @@ def _times() -> Iterator[Figure]:
 
 
 def _flicker() -> Iterator[Figure]:
-    """Noise of a quarter of a pixel in two frames of one scale."""
     matched, random = _scenes()["motorcycle"][0], np.random.default_rng(0)
     scale = relief_scale(matched, None, WIDTH_M, CHOICE)
     one, other = (
@@ -208,7 +205,6 @@ def _flicker() -> Iterator[Figure]:
 
 
 def _draw() -> None:
-    """Write the motorcycle's truth, before and now, and a photograph by brightness and by edges, lit from one side."""
     matched, exact, _, _ = _scenes()["motorcycle"]
     DOCS.mkdir(exist_ok=True)
     calibration = Scene.builtin("motorcycle").views
@@ -231,7 +227,6 @@ def _draw() -> None:
 
 
 def _lit(relief: Relief, columns: int) -> np.ndarray:
-    """Return the relief from above, lit from the upper left at 35 degrees."""
     rows = round(columns * relief.extent_m[1] / relief.extent_m[0])
     heights = cv2.resize(relief.height_m, (columns, rows), interpolation=cv2.INTER_AREA)
     down, right = np.gradient(heights, relief.extent_m[0] / columns)

@@ -13,12 +13,7 @@ def section() -> str:
             "ns a tick are those of `path`, compiled, with the velocity of each step, in processor time, in turns.",
             "",
             *judged(
-                [
-                    *render_waves.figures(),
-                    *render_ticks.figures(),
-                    *render_guard.figures(),
-                    *render_beacon.figures(),
-                ]
+                [*render_waves.figures(), *render_ticks.figures(), *render_guard.figures(), *render_beacon.figures()]
             ),
         ]
     )

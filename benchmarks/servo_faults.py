@@ -66,7 +66,6 @@ def _interrupted(record: Path, share: float) -> float:
 
 
 def _gone_s(record: Path, law: FaultyTouch, fault: Callable[[Servo], None]) -> float:
-    """Seconds from a fault under force to no force."""
     record.unlink(missing_ok=True)
     device = Failing(fault="none", record=str(record), simulated=False)
     with Servo(law, device, LIMITS) as servo:
@@ -119,7 +118,6 @@ def _swaps() -> Iterator[Figure]:
 
 
 def _usage(process: int) -> tuple[int, float]:
-    """Descriptors, and megabytes of memory of its own."""
     of = Path(f"/proc/{process}")
     kibibytes = of.joinpath("status").read_text().partition("RssAnon:")[2].split()[0]
     return len(list(of.joinpath("fd").iterdir())), int(kibibytes) / 1000

@@ -58,7 +58,6 @@ def section() -> str:
 
 
 def _in_turn(kinds: dict[str, Callable[[], Round]]) -> Rounds:
-    """So many rounds, the order changed from one to the next."""
     found: Rounds = {name: [] for name in kinds}
     for number in range(ROUNDS):
         for name in list(kinds)[:: 1 if number % 2 else -1]:

@@ -49,7 +49,6 @@ def figures() -> Iterator[Figure]:
 
 
 def _arguments(ring: Ring) -> tuple[Any, ...]:
-    """Return the arguments of `cycle.step`, for a Falcon on waves of one material."""
     turn = np.linspace(0, 8 * np.pi, 1024)
     heights = (0.002 + 0.001 * np.sin(turn)[:, None] * np.sin(turn)).astype(np.float32)
     labels = np.zeros(heights.shape, np.int32)
@@ -80,7 +79,6 @@ def _buffers(calibration: Calibration) -> tick.Buffers:
 
 
 def _packets() -> np.ndarray:
-    """Return the packets of a Falcon whose hand circles at 80 mm/s, a millimetre under the middle of the waves."""
     calibration = Calibration()
     frame, arms = calibration.frame(), calibration.arms()
     turn = 0.08 * 1e-3 / 0.02 * np.arange(TICKS)
@@ -96,7 +94,6 @@ def _packets() -> np.ndarray:
 
 @njit(**WITHOUT_CACHE)
 def _fill(packets, i, link, now):
-    """Return the state after an exchange with the device."""
     of_link = link[0]
     for k in range(packets.shape[1]):
         of_link[0][k] = packets[i, k]
@@ -107,7 +104,6 @@ def _fill(packets, i, link, now):
 
 @njit(**WITHOUT_CACHE)
 def _batch(packets, now, link, law, limits, shared, state, row):
-    """Return a tick for each packet."""
     for i in range(packets.shape[0]):
         _fill(packets, i, link, now)
         step(link, law, limits, shared, state, row, now[0], 0)

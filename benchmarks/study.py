@@ -80,7 +80,6 @@ def _holds(result: Result, what: What, truth: float) -> bool:
 
 
 def _curves(folder: Path) -> Iterator[Held]:
-    """Yield whether functions of single participants hold the truth; widths are 1/4 to all of the range."""
     generator = np.random.default_rng(1)
     choices = _study(
         folder, f"name: x, question: higher, procedure: constant, conditions: [a], {LEVELS}, repetitions: 40"
@@ -104,7 +103,6 @@ def _curves(folder: Path) -> Iterator[Held]:
 
 
 def _counts(folder: Path) -> Iterator[Held]:
-    """Yield whether shares, and the scale, of single participants hold the truth."""
     generator = np.random.default_rng(2)
     odd = _study(folder, "name: x, question: same, conditions: [a, b], repetitions: 60")
     pairs = _study(folder, "name: x, question: rougher, repetitions: 40")
@@ -125,7 +123,6 @@ def _counts(folder: Path) -> Iterator[Held]:
 
 
 def _groups(folder: Path) -> Iterator[Held]:
-    """Yield whether means over 8 participants, who differ, hold the truth of the population."""
     odd = _study(folder, "name: x, question: same, conditions: [a, b], repetitions: 30")
     rating = _study(folder, "name: x, question: rating, conditions: [a, b], repetitions: 8")
     draws = np.random.default_rng(3).normal(1.6, 0.3 * 1.6, 100_000)

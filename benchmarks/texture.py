@@ -4,13 +4,7 @@ TANGIBLE_TEXTURES names folders with pictures of one texture each; the first has
 on. Without it, mosaics of the builtin textures stand in for them.
 """
 
-from . import (
-    texture_gradient,
-    texture_growth,
-    texture_opencv,
-    texture_scenes,
-    texture_unseen,
-)
+from . import texture_gradient, texture_growth, texture_opencv, texture_scenes, texture_unseen
 from .figures import judged, part
 
 PROTOCOL = (

@@ -73,13 +73,11 @@ def variant(grey: np.ndarray, random: np.random.Generator) -> np.ndarray:
 
 
 def _enlarged(grey: np.ndarray, repeats: bool) -> np.ndarray:
-    """Continue a texture to LARGE_PX: once more from its start, or by its mirror image."""
     missing = [(0, max(0, LARGE_PX - side)) for side in grey.shape]
     return np.pad(grey, missing, mode="wrap") if repeats else np.pad(grey, missing, mode="symmetric")
 
 
 def _repeats(grey: np.ndarray) -> bool:
-    """Return True if the ends of a texture fit its beginnings, as those of games mostly do."""
     values = grey.astype(np.float64)
     inside = sum(np.abs(np.diff(values, axis=axis)).mean() for axis in (0, 1))
     return bool(np.abs(values[0] - values[-1]).mean() + np.abs(values[:, 0] - values[:, -1]).mean() < 1.8 * inside)
@@ -170,7 +168,6 @@ def _tied(blocks: torch.Tensor) -> torch.Tensor:
 
 
 def _means(planes: torch.Tensor, sigma: float) -> torch.Tensor:
-    """Compute Gaussian means, mirrored outside."""
     if not sigma:
         return planes
     down, across = (_window(side, sigma) for side in planes.shape[1:])

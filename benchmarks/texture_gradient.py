@@ -1,7 +1,4 @@
-"""`gradient` on piecewise-smooth scenes, beside scikit-image's Sobel and watershed.
-
-Both find regions that hold together. Where a scene's warp tears one into pieces that do not touch, each is one.
-"""
+"""`gradient` on piecewise-smooth scenes, beside scikit-image's Sobel and watershed; a torn region counts as several."""
 
 from functools import partial
 
@@ -68,5 +65,5 @@ def figures() -> list[Figure]:
             f"boundary {boundary_px:.2f} px, {1e3 * np.median([time.seconds for time in times]):.1f} ms, at "
             f"1/{1 / share:.1f} (scikit-image: {np.mean(list(theirs.values())):.4f}, {min(theirs.values()):.3f})",
             below == 0 and share <= 1 / 5,
-        ),
+        )
     ]

@@ -152,7 +152,6 @@ def _letter(letter: str, square: int) -> np.ndarray:
 
 
 def _distances(points: np.ndarray, side: int) -> np.ndarray:
-    """Return the squared distance of every pixel from each point."""
     row, column = np.indices((side, side))
     return np.stack([(row - down) ** 2 + (column - right) ** 2 for down, right in points])
 

@@ -1,7 +1,4 @@
-"""Textures among the pictures of folders and archives, for fitting: those that look the same everywhere.
-
-Free games have thousands. Names that tell of something else are passed over, and so are pictures that repeat others.
-"""
+"""Textures in folders and archives, for fitting: pictures that look the same everywhere, none a repeat of another."""
 
 import io
 import re
@@ -53,7 +50,6 @@ def find_textures(folders: list[Path], processes: int = 2) -> list[np.ndarray]:
 
 
 def _names(folders: list[Path]) -> Iterator[tuple[Path, str]]:
-    """Yield files, and the members of archives by name."""
     for path in (path for folder in folders for path in folder.rglob("*") if path.is_file()):
         if path.suffix.lower() in ENDINGS and not OTHER.search(str(path)):
             yield path, ""
@@ -69,7 +65,6 @@ def _names(folders: list[Path]) -> Iterator[tuple[Path, str]]:
 
 @cache
 def _archive(path: Path) -> ZipFile:
-    """Return an archive, whose list of members is read once in each process of the pool."""
     return ZipFile(path)
 
 
@@ -102,7 +97,6 @@ def _texture(grey: np.ndarray) -> Texture:
 
 
 def _is_even(grey: np.ndarray) -> bool:
-    """Return True if energy and direction in four octaves are about the same in all 16 parts of a picture."""
     detail = grey - cv2.GaussianBlur(grey, (0, 0), 24)
     contrast = np.sqrt(cv2.GaussianBlur(detail**2, (0, 0), 24))
     if np.percentile(contrast, 5) < FLATTEST:

@@ -43,7 +43,6 @@ def _magnitude(values: np.ndarray, even: np.ndarray, odd: np.ndarray) -> np.ndar
 
 
 def _kernels(wavelength_px: float) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Even and odd, of each orientation."""
     found = []
     for i in range(ORIENTATIONS):
         theta = i * np.pi / ORIENTATIONS

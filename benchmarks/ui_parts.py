@@ -52,7 +52,6 @@ def editor() -> Iterator[Figure]:
 
 
 def _large() -> tuple[list[float], list[float]]:
-    """Milliseconds from a mouse that moved to what it painted, and from each stroke to the part that it proposes."""
     from PIL import Image
     from skimage import data
 
@@ -69,7 +68,6 @@ def _large() -> tuple[list[float], list[float]]:
 
 
 def _dragged() -> list[float]:
-    """Milliseconds from each height to its force, one after the other, while the page draws what is felt."""
     with scene_640() as config, _editor(config.parent / "left.png") as page:
         count = page.locator("#parts-list [role=option]").count()
         page.evaluate("figures.waits = false")  # a page that nobody measures draws beside what it sends and hears
@@ -79,7 +77,6 @@ def _dragged() -> list[float]:
 
 @contextmanager
 def _editor(photo: Path) -> "Generator[Page]":
-    """Provide the editor, open on the first parts of a photograph, which are felt."""
     words = [tangible(), "parts", str(photo), "--out", str(photo.parent / "parts")]
     subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
     (config,) = (photo.parent / "parts").glob("*.yaml")

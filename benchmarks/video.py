@@ -59,7 +59,6 @@ def section() -> str:
 
 
 def _pipeline(folder: Path, size: tuple[int, int], fps: float, **scene: Any) -> Pipeline:
-    """Return the film of this size, as a file and a pipeline."""
     path = folder / f"{size[0]}-{fps:g}.avi"
     if not path.exists():
         _write(path, size, fps)
@@ -68,7 +67,6 @@ def _pipeline(folder: Path, size: tuple[int, int], fps: float, **scene: Any) -> 
 
 
 def _write(path: Path, size: tuple[int, int], fps: float) -> None:
-    """Return a pair that moves by a tenth of its width to and fro, and noise that is new in each frame."""
     from skimage.data import stereo_motorcycle
 
     (width, height), generator = size, np.random.default_rng(0)
@@ -165,7 +163,6 @@ def _steadiness() -> Iterator[Figure]:
 
 
 def _memory() -> Iterator[Figure]:
-    """Resident memory of both processes, from a fifth of the time on."""
     import psutil
 
     seen = list[tuple[float, float]]()

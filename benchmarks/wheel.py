@@ -67,7 +67,6 @@ def _figures(folder: Path) -> Iterator[Figure]:
 
 
 def _demos(folder: Path) -> tuple[float, float]:
-    """Seconds of a first and of a second demo."""
     with tempfile.TemporaryDirectory() as kernels:
         times: list[float] = []
         for _ in range(2):

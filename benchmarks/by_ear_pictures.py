@@ -64,7 +64,7 @@ def _picture(kind: str, labels: np.ndarray, rng: np.random.Generator, named: boo
     relief = Layering(parts, WIDTH_M, HeightChoice(by="given"), picture).relief(heights_m.tolist())
     height_m = ndimage.gaussian_filter(relief.height_m, SMOOTH_M / PITCH_M, mode="nearest").astype(np.float32)
     names = tuple(rng.permutation(NAMES)[: parts.count].tolist()) if named else None
-    materials = tuple(MATERIALS[integer] for integer in rng.integers(0, len(MATERIALS), parts.count))
+    materials = tuple(MATERIALS[index] for index in rng.integers(0, len(MATERIALS), parts.count))
     return Picture(kind, parts, height_m, names, materials)
 
 

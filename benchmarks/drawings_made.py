@@ -48,7 +48,7 @@ class Paper:
 
     def __init__(self, rng: np.random.Generator, half: str, paper: tuple[int, int, int] = (255, 255, 255)) -> None:
         self.rng, self.half = rng, half
-        self.width, self.height = (int(integer) for integer in rng.integers(*SIDES, 2))
+        self.width, self.height = (int(side) for side in rng.integers(*SIDES, 2))
         self.fine = np.full((self.height * FINER, self.width * FINER, 3), paper, np.uint8)
         self.areas = np.zeros(self.fine.shape[:2], np.int32)
         self.letters = np.zeros(self.fine.shape[:2], np.uint8)

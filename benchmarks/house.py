@@ -147,7 +147,7 @@ def demo(folder: Path, kernels: Path) -> tuple[float, str]:
     start = perf_counter()
     done = subprocess.run(command, capture_output=True, text=True, check=True, env={**os.environ, **own})
     seconds = perf_counter() - start
-    return seconds, ", ".join(f"{load['product']} {load['outcome']}" for load in json.loads(done.stdout)["outcomes"])
+    return seconds, ", ".join(f"{run['product']} {run['outcome']}" for run in json.loads(done.stdout)["outcomes"])
 
 
 def tangible() -> str:

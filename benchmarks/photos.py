@@ -159,7 +159,7 @@ def photo(columns: int, rows: int) -> np.ndarray:
             (int(rng.integers(columns)), int(rng.integers(rows))),
             int(rng.integers(columns // 60, columns // 10)),
         )
-        colour = tuple(float(integer) for integer in rng.integers(20, 240, 3))
+        colour = tuple(float(level) for level in rng.integers(20, 240, 3))
         if number % 2:
             cv2.circle(picture, centre, radius, colour, -1)
         else:

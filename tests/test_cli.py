@@ -170,7 +170,7 @@ def test_check_of_a_declared_failure_reports_it_and_succeeds(monkeypatch: pytest
     monkeypatch.setattr(Penalty, "expected_failures", {"pickle_is_small": "a mistake"})
     done = tangible("check", "render", "penalty", "--json", cwd=Path())
     assert done.returncode == 1
-    odd = [load for load in json.loads(done.stdout) if load["passed"] == bool(load["expected_failure"])]
+    odd = [check for check in json.loads(done.stdout) if check["passed"] == bool(check["expected_failure"])]
     assert {each["name"]: each["passed"] for each in odd} == {"springs_are_exact": False, "pickle_is_small": True}
     assert "did you mean 'depth'" in mistake("check", "depht", "x", cwd=Path())
 

@@ -196,7 +196,7 @@ def test_commands(models: Path, tmp_path: Path) -> None:
         done = tangible("networks", *words, cwd=tmp_path)
         return done.returncode, done.stdout
 
-    assert {load["name"]: load["state"] for load in json.loads(called("--json")[1])}["own"] == "absent"
+    assert {network["name"]: network["state"] for network in json.loads(called("--json")[1])}["own"] == "absent"
     assert called("add", "own")[0] == 2  # there is no terminal to ask on
     assert called("add", "own", "--json")[0] == 2, "nor does a program fetch without --yes"
     assert called("add", "own", "--from", package)[0] == 0

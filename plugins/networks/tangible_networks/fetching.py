@@ -162,7 +162,7 @@ def _download_package(package: Package, folder: Path, progress: Progress) -> Pat
         try:
             while process.poll() is None:
                 check_stopped()
-                have, whole = _size_of(folder), package.download_bytes
+                have, whole = _folder_size(folder), package.download_bytes
                 progress(min(have, whole or have), whole)  # a client may have its file twice for a moment
                 time.sleep(POLL_S)
         except BaseException:
@@ -178,7 +178,7 @@ def _download_package(package: Package, folder: Path, progress: Progress) -> Pat
     return packages[0]
 
 
-def _size_of(folder: Path) -> int:
+def _folder_size(folder: Path) -> int:
     """Return the size of all files in a folder while another process writes there, bytes."""
     total = 0
     for place, _, names in os.walk(folder):

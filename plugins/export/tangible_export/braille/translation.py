@@ -64,7 +64,7 @@ def translate(text: str, language: str = "en") -> Cells:
     >>> translate("a cab") == (1, 0, 9, 1, 3)
     True
     """
-    code_language = _language_of(language)
+    code_language = _base_language(language)
     text = _plain(text, code_language)
     library = louis()
     if isinstance(library, str):
@@ -81,7 +81,7 @@ def written_by(language: str = "en") -> str:
 
     An exporter that writes braille into a file reports it once, by `note`.
     """
-    library, code_language = louis(), _language_of(language)
+    library, code_language = louis(), _base_language(language)
     is_own = language.partition("-")[0].lower() == code_language
     other = "" if is_own else f", for want of one for {quoted(language)}"
     if isinstance(library, str):
@@ -90,7 +90,7 @@ def written_by(language: str = "en") -> str:
     return f"liblouis {library.version}, {tables[code_language]}{other}"
 
 
-def _language_of(tag: str) -> str:
+def _base_language(tag: str) -> str:
     language = tag.partition("-")[0].lower()
     return language if language in LANGUAGES else "en"
 

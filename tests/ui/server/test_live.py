@@ -56,9 +56,9 @@ class TestFrames:
                 continue
             live, hand = tab()
             hand.point((0.01, 0.0, 0.0), 0, 0)
-            held = hand._held
+            held = hand._position
             live._handle_frame(damaged)
-            assert (hand._held, live._last_drawn) == (held, 0)
+            assert (hand._position, live._last_drawn) == (held, 0)
 
     @given(st.binary(min_size=1, max_size=100))
     def test_frame_of_any_bytes_leaves_a_finite_hand(self, frame: bytes) -> None:
@@ -68,7 +68,7 @@ class TestFrames:
 def check(frame: bytes) -> None:
     live, hand = tab()
     live._handle_frame(frame)
-    assert all(abs(part) <= 1.0 for part in hand._held.at)
+    assert all(abs(part) <= 1.0 for part in hand._position.at)
     assert 0 <= live._last_drawn <= live._seq
 
 

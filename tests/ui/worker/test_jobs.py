@@ -74,7 +74,7 @@ class TestHandle:
         starts: list[Worker] = []
 
         def start(self: Worker) -> None:
-            self._ready = self._killed = False  # pyright: ignore[reportPrivateUsage]
+            self._ready = self._was_killed = False  # pyright: ignore[reportPrivateUsage]
             starts.append(self)
 
         monkeypatch.setattr(handle.Worker, "_start", start)

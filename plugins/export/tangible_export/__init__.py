@@ -1,7 +1,4 @@
-"""Exporters: files for printers, swell paper and pin displays.
-
-Each exporter is imported when it is first used.
-"""
+"""Exporters: files for printers, swell paper and pin displays, each imported when it is first used."""
 
 import lazy_loader
 

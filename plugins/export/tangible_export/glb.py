@@ -33,9 +33,7 @@ class Glb(SolidExporter):
 
 
 RIM_GREY = 225
-"""Grey level of the rim in the texture."""
-MAX_PX = 4096
-"""Largest side of the texture in pixels: graphics processors of phones take no more."""
+MAX_PX = 4096  # graphics processors of phones take no larger textures
 _ARRAY, _ELEMENTS = 34962, 34963
 _FLOAT, _UINT = 5126, 5125
 _CLAMP = 33071

@@ -16,8 +16,7 @@ from tangible_core.scene.formats import MM, HeightsMetadata, levels
 
 log: logging.Logger = logging.getLogger(__name__)
 
-FINE_MM = 2e-4
-"""Largest step of the PNG's 16-bit numbers that keeps rounding below a tenth of a micrometre."""
+FINE_MM = 2e-4  # keeps rounding to 16 bits below a tenth of a micrometre
 
 
 @final

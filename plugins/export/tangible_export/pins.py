@@ -27,9 +27,7 @@ class Raised(NamedTuple):
     """The pins of a display that are up, and the parts that they show."""
 
     pins: UInt8[np.ndarray, "rows columns"]
-    """Height of each pin."""
     place: "Place"
-    """Rows and columns of the display that the picture takes."""
     most: Int32[np.ndarray, "r c"]
     """The part that has most of each pin's place."""
     labels: dict[int, str]
@@ -92,7 +90,6 @@ class Pins(Exporter, Previewing):
         return discs(self._raised(work).pins, self._array.levels)
 
     def _raised(self, work: Work) -> "Raised":
-        """Return the pins of the display, and what they show. Raises: as `write`."""
         from .pin_display import raising
 
         array, parts = self._array, _parts(work, self._array)

@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from .solid.plate import Layout
 
 
-FACETS_AT_ONCE = 65_536
-"""Facets in memory at a time: a solid may have millions."""
+FACETS_AT_ONCE = 65_536  # a solid may have millions
 HEAD = b"tangible-images; unit: millimetre"
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attributes", "<u2")])
 

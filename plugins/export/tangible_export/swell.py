@@ -20,8 +20,7 @@ from .paper.sheet import Page, check_readable, sheet_for
 if TYPE_CHECKING:
     from .paper.marks.svg import Drawing
 
-PREVIEW_PER_MM = 3
-"""Pixels of a preview in a millimetre: enough for dots of braille."""
+PREVIEW_PER_MM = 3  # enough for dots of braille
 
 
 @final
@@ -92,7 +91,6 @@ class Swell(Exporter, Previewing):
         return np.where(ink, 0, 255).astype(np.uint8)
 
     def _pages(self, work: Work) -> "list[Drawing]":
-        """Return the page and the pages of its key. Raises: as `write`."""
         try:
             from .paper.opening import open_parts
             from .paper.page import drawn_lines, drawn_pages
@@ -118,6 +116,5 @@ class Swell(Exporter, Previewing):
 
 
 def _aspect(work: Work, parts: PartMap) -> float:
-    """Return width by length of the picture, by its own pixels: the parts' grid may be half a cell off."""
     rows, columns = parts.labels.shape if work.picture is None else work.picture.shape[:2]
     return columns / rows

@@ -32,11 +32,8 @@ _PARTS = {
     ),
 }
 _NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""Characters that an XML file cannot hold."""
-_LANGUAGE = re.compile("[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*")
-"""Language tags that `xml:lang` takes."""
-ROWS_AT_ONCE = 65_536
-"""Vertices or triangles written at a time: a solid may have millions."""
+_LANGUAGE = re.compile("[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*")  # as `xml:lang` takes them
+ROWS_AT_ONCE = 65_536  # a solid may have millions
 
 
 class ThreeMF(SolidExporter):

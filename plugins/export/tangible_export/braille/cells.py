@@ -1,8 +1,4 @@
-"""Cells of six dots as numbers, and their dots in metres.
-
-A cell is a number whose bit i says whether dot i + 1 is raised: dots 1 to 3 are the left column from the top, 4 to 6
-the right one.
-"""
+"""Cells of six dots as numbers, whose bit i says whether dot i + 1 is raised, and their dots in metres."""
 
 from typing import TypeAlias
 
@@ -14,18 +10,12 @@ from tangible_legibility.rules import CELL_PITCH_M, DOT_DIAMETER_M, DOT_PITCH_M,
 Cells: TypeAlias = tuple[int, ...]
 
 _UNICODE = 0x2800
+# By the number of the cell: North American Braille Computer Code, which embossers print.
 _ASCII = " A1B'K2L@CIF/MSP\"E3H9O6R^DJG>NTQ,*5<-U8V.%[$+X!&;:4\\0Z7(_?W]#Y)="
-"""Characters by the number of their cell: North American Braille Computer Code, which embossers print."""
 
 
 def dots(cells: Cells, at_m: tuple[float, float] = (0.0, 0.0)) -> Float64[np.ndarray, "n 2"]:
-    """Return the centres of the raised dots of one line: metres to the right, and metres down.
-
-    at_m: centre of dot 1 of the first cell, raised or not.
-
-    >>> (1000 * dots((0b001001,))).round(2).tolist()
-    [[0.0, 0.0], [2.34, 0.0]]
-    """
+    """Return the centres of raised dots, metres to the right and down; dot 1 of the first cell is at `at_m`."""
     x_m, y_m = at_m
     centres = [
         (x_m + place * CELL_PITCH_M + (dot // 3) * DOT_PITCH_M, y_m + (dot % 3) * DOT_PITCH_M)
@@ -47,18 +37,10 @@ def height_m(lines: int = 1) -> float:
 
 
 def as_unicode(cells: Cells) -> str:
-    """Return cells as the characters of Unicode's braille patterns.
-
-    >>> as_unicode((0b000001, 0b000011))
-    '⠁⠃'
-    """
+    """Return cells as the characters of Unicode's braille patterns."""
     return "".join(chr(_UNICODE + cell) for cell in cells)
 
 
 def as_ascii(cells: Cells) -> str:
-    """Return cells as the characters of embossers and of `.brf` files.
-
-    >>> as_ascii((0b000001, 0b111100, 0))
-    'A# '
-    """
+    """Return cells as the characters of embossers and of `.brf` files."""
     return "".join(_ASCII[cell] for cell in cells)

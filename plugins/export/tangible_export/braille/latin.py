@@ -1,7 +1,4 @@
-"""Uncontracted braille of Latin letters by our own tables, used where liblouis is not installed.
-
-The tables are `codes/LANGUAGE.toml`, with their sources.
-"""
+"""Uncontracted braille of Latin letters by the tables `codes/LANGUAGE.toml`, where liblouis is not installed."""
 
 import re
 import tomllib
@@ -19,15 +16,10 @@ from .cells import Cells
 from .louis import missing_character
 
 LANGUAGES = ("en", "de", "fr")
-"""Languages that have a table."""
 
 
 def _cells(text: str) -> Cells:
-    """Read cells as tables have them: the numbers of the raised dots, a cell a word; 0 for an empty one.
-
-    >>> _cells("14 0 6")
-    (9, 0, 32)
-    """
+    """Read the numbers of the raised dots, a cell a word; 0 for an empty one."""
     return tuple(sum(1 << int(dot) - 1 for dot in cell if dot != "0") for cell in text.split())
 
 
@@ -42,25 +34,17 @@ class Code:
 
     title: str
     signs: Mapping[str, Cells]
-    """Punctuation, and letters that are not in `LETTERS`."""
     quotes: tuple[Cells, Cells]
-    """Opening and closing quotation mark."""
     quoting: str
     """Characters that open or close a quotation according to their place."""
     number: Cells
-    """Sign before the first digit."""
     digits: Cells
-    """Digits from 0 to 9."""
     within_number: str
-    """Characters between digits that do not end the number."""
     before_number: str
     """Characters before a digit that belong to the number: the number sign stands before them."""
     after_number: Cells = ()
-    """Sign between a number and one of the characters `read_as_digit`."""
     read_as_digit: str = ""
-    """Characters that would be read as a digit after a number."""
     thousands: Cells = (0,)
-    """Cells for the space between groups of three digits."""
     capital: Cells = ()
     capital_word: Cells = ()
     capital_end: Cells = ()
@@ -72,36 +56,25 @@ class Code:
 
 
 _TEXTS = frozenset({"title", "quoting", "within_number", "before_number", "read_as_digit", "no_space_before"})
-"""Fields of a code that are not cells."""
 _UPPER = "A-ZÀ-ÖØ-Þ"
 _PASSAGE = re.compile(rf"(?<![^ ])[{_UPPER}]+(?: [{_UPPER}]+){{2,}}(?![^ ])")
-"""Three words or more in capitals."""
 
 
 @cache
 def code_of(language: str) -> Code:
-    """Read the table of a language, one of `LANGUAGES`.
-
-    >>> code_of("fr").number == _cells("6")
-    True
-    """
+    """Read the table of a language, one of `LANGUAGES`."""
     text = files("tangible_export.braille").joinpath("codes", f"{language}.toml").read_text(encoding="utf-8")
     return Code(**{name: value if name in _TEXTS else _parse(value) for name, value in tomllib.loads(text).items()})
 
 
 def _parse(value: Any) -> Any:
-    """Return cells for each text in a value of a table."""
     if isinstance(value, dict):
         return {character: _cells(cells) for character, cells in value.items()}
     return tuple(map(_cells, value)) if isinstance(value, list) else _cells(value)
 
 
 def translate_by_table(text: str, language: str) -> Cells:
-    """Translate one line of composed characters. Raises: BrailleError for a character that is not in the table.
-
-    >>> translate_by_table("1a", "en") == _cells("3456 1 56 1")
-    True
-    """
+    """Translate one line of composed characters. Raises: BrailleError for a character that is not in the table."""
     code, cells = code_of(language), list[int]()
     if code.no_space_before:
         text = re.sub(f" +([{code.no_space_before}])", r"\1", text)

@@ -1,7 +1,4 @@
-"""Liblouis, where it is installed: the library by which embossers and screen readers translate, and its tables.
-
-The library is called by ctypes. The package `louis` on PyPI is something else.
-"""
+"""Liblouis, where it is installed, by ctypes; the package `louis` on PyPI is something else."""
 
 import ctypes
 from functools import cache
@@ -13,18 +10,16 @@ from tangible_core.runtime.system import library_names
 
 from .cells import Cells
 
+# Unified English Braille, German Basisschrift, French Braille uniformisé.
 TABLES = {"en": "en-ueb-g1.ctb", "de": "de-g0.utb", "fr": "fr-bfu-comp6.utb"}
-"""Tables of uncontracted braille: Unified English Braille, German Basisschrift, French Braille uniformisé."""
+# Unified English Braille, German Kurzschrift, French Braille abrégé.
 CONTRACTED = {"en": "en-ueb-g2.ctb", "de": "de-g2.ctb", "fr": "fr-bfu-g2.ctb"}
-"""Tables of contracted braille: Unified English Braille, German Kurzschrift, French Braille abrégé."""
 VERSION = 20
-"""The version of the library's binary interface."""
 _PROBE = "abc"
 _PROBED: Cells = (1, 3, 9)
 _DOTS, _UNICODE, _KNOWN_ALONE = 4, 64, 128
 """Modes `dotsIO`, `ucBrl` and `noUndefined` of liblouis: return cells, and nothing for a character not in the table."""
 _SILENT = 60_000
-"""Log level `LOU_LOG_OFF` of liblouis."""
 
 _turn = Lock()
 """Lock around each call: liblouis keeps its tables and buffers in global variables."""
@@ -36,13 +31,9 @@ class Louis(NamedTuple):
     library: Any
     version: str
     character: Any
-    """Type of a character, of 2 or 4 bytes."""
 
     def translate(self, text: str, language: str, grade: int = 1) -> Cells:
-        """Translate text, contracted in grade 2.
-
-        Raises: BrailleError for a character that is not in the table, OSError if the table fails.
-        """
+        """Translate text. Raises: BrailleError for a character not in the table, OSError if the table fails."""
         table = (TABLES if grade == 1 else CONTRACTED)[language]
         for place, each in enumerate(text, 1):
             if not each.isascii():

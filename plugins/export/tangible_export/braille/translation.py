@@ -28,14 +28,10 @@ _GRADE_2 = "-x-grade2"
 _SHORT = 2
 """The characters of a text that is never contracted: the letters of a key stand for themselves."""
 _BREAK = re.compile("[^\\S\u00a0\u202f]+(?!%)")
-"""Spaces at which a line may break: not the non-breaking ones, nor before a per cent sign."""
 
 
 def in_grade(language: str, grade: int) -> str:
-    """Return the tag by which texts in a language are written in grade 1, or contracted in grade 2.
-
-    Raises: BrailleError where there is no contracted braille.
-    """
+    """Return the tag for texts in a grade. Raises: BrailleError where there is no contracted braille."""
     if grade == 1:
         return language
     cure = "or write `braille: {grade: 1}`"
@@ -77,10 +73,7 @@ def translate(text: str, language: str = "en") -> Cells:
 
 
 def written_by(language: str = "en") -> str:
-    """Name the translator: liblouis with its version and table, or our own table, with the reason.
-
-    An exporter that writes braille into a file reports it once, by `note`.
-    """
+    """Name the translator: liblouis with its version and table, or our own table, with the reason."""
     library, code_language = louis(), _base_language(language)
     is_own = language.partition("-")[0].lower() == code_language
     other = "" if is_own else f", for want of one for {quoted(language)}"

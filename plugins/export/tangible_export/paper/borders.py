@@ -11,7 +11,6 @@ from tangible_core.errors import BrokenMethod, GeometryError
 from tangible_core.parts import find_parts
 
 Sides = Int64[np.ndarray, "n"]
-"""A number for each side of a pixel between two parts."""
 DOWN, RIGHT = np.array([0, 1, 0, -1]), np.array([1, 0, -1, 0])
 """Steps from one corner of a pixel to the next, by direction: 0 right, 1 down, 2 left, 3 up."""
 BELOW, BEHIND = np.array([0, 1, 1, 0]), np.array([1, 1, 0, 0])
@@ -57,10 +56,7 @@ def _shapely() -> Any:
 
 
 def _rings(parts: PartMap) -> tuple[Float64[np.ndarray, "k 2"], Int64[np.ndarray, "k"], Int64[np.ndarray, "m"]]:
-    """Return corners (x, y) of closed lines, in pixels from the upper left; the line of each; the part of each line.
-
-    A line has its part on its right. The lines of a part follow each other, the outer one first.
-    """
+    """Return corners (x, y) of closed lines, a part on the right of each; the line of each; the part of each line."""
     whole = np.pad(parts.labels, 1, constant_values=-1)  # so that a corner and its upper left pixel have one index
     corners = parts.labels.shape[1] + 1
     keys, part = _sides(whole, corners)
@@ -95,11 +91,8 @@ def _sides(whole: Int32[np.ndarray, "r c"], corners: int) -> tuple[Int64[np.ndar
 
 
 def _next_direction(whole: Int32[np.ndarray, "r c"], part: Sides, row: Sides, column: Sides, way: Sides) -> Sides:
-    """Return the direction from a corner: left, straight on or right, the first that has the part on its right.
-
-    So where two pixels of a part touch only at a corner, the line passes from one to the other, and no line passes a
-    corner twice.
-    """
+    """Return the direction from a corner: left, straight on or right, the first that has the part on its right."""
+    # Where two pixels of a part touch only at a corner, the line passes to the other: none passes a corner twice.
     behind = (way + 1) % 4
     left = whole[row + BELOW[way], column + BEHIND[way]] == part
     straight = whole[row + BELOW[behind], column + BEHIND[behind]] == part
@@ -107,10 +100,7 @@ def _next_direction(whole: Int32[np.ndarray, "r c"], part: Sides, row: Sides, co
 
 
 def _along(following: Sides) -> tuple[Sides, Sides]:
-    """Return, for sides that follow each other in rings, the least of each side's ring, and the steps to its end.
-
-    Pointer doubling: n rounds look 2^n sides ahead.
-    """
+    """Return the least side of each side's ring, and the steps to its end, by pointer doubling."""
     first, ahead = np.arange(following.size), following
     while not np.array_equal(nearest := np.minimum(first, first[ahead]), first):
         first, ahead = nearest, ahead[ahead]
@@ -122,14 +112,12 @@ def _along(following: Sides) -> tuple[Sides, Sides]:
 
 
 def _meet(whole: Int32[np.ndarray, "r c"], row: Sides, column: Sides) -> Bool[np.ndarray, "n"]:
-    """Return the mask of corners at which more than two sides between parts meet."""
     around = [whole[row + down, column + right] for down, right in zip(BELOW, BEHIND, strict=True)]
     sides = [one != other for one, other in zip(around, around[1:] + around[:1], strict=True)]
     return np.count_nonzero(sides, axis=0) > 2
 
 
 def _gather(shapely: Any, polygons: Any, part: Sides, count: int) -> tuple[Any, ...]:
-    """Collect the pieces of each part in one geometry."""
     if np.array_equal(part, np.arange(count)):
         return tuple(polygons)
     order = np.argsort(part, kind="stable")

@@ -3,13 +3,10 @@
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 
-MAX_STEPS = 1000
-"""Largest number of steps of the search with backtracking; then the first colouring is taken as it is."""
+MAX_STEPS = 1000  # then the first colouring is taken as it is
 
 Neighbours = Sequence[Collection[int]]
-"""The neighbours of each vertex."""
-Allowed = Sequence[Sequence[str]]
-"""The fills allowed for each vertex, the plainest first; at least one."""
+Allowed = Sequence[Sequence[str]]  # the plainest first; at least one
 
 
 def choose_fills(
@@ -72,6 +69,5 @@ def _next(neighbours: Neighbours, allowed: Allowed, sizes: Sequence[float], fill
 
 
 def _free(vertex: int, neighbours: Neighbours, allowed: Allowed, fills: Mapping[int, str]) -> list[str]:
-    """Return the allowed fills that no neighbour has."""
     around = {fills.get(other) for other in neighbours[vertex]}
     return [fill for fill in allowed[vertex] if fill not in around]

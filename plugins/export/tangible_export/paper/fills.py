@@ -1,7 +1,4 @@
-"""Fills by which a finger tells a part from its neighbours: five kinds that differ in elements, pitch and direction.
-
-Every element is whole: none is cut by the outline. All elements keep the clear distance from each other.
-"""
+"""Fills by which a finger tells a part from its neighbours: whole elements of five kinds, clear of each other."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -16,7 +13,6 @@ from .sheet import CLEAR_MM, LINE_MM
 MIN_DOTS, MIN_STROKES_MM = 4, 16.0
 """Smallest number of dots and smallest length of all strokes of a fill. Conventions of ours."""
 DOT_MM, DOTS_APART_MM = 2.4, 6.0
-"""Diameter of the dots of a fill, larger than in braille; and their distance."""
 
 
 @dataclass(frozen=True)
@@ -27,9 +23,7 @@ class Lines:
     pitch_mm: float
     angle_deg: float
     wave_mm: float = 0
-    """Half the height of the waves."""
     length_mm: float = 10
-    """Length of a wave."""
     least_mm: float = 5
     """Shortest piece: a shorter one would be felt as a dot, or as a straight line."""
 
@@ -40,7 +34,6 @@ class Fill:
 
     dots_mm: Float64[np.ndarray, "n 2"] = field(default_factory=lambda: np.zeros((0, 2)))
     strokes: tuple[Any, ...] = ()
-    """Lines of shapely."""
     stroke_mm: float = 0
 
     def __bool__(self) -> bool:
@@ -65,7 +58,6 @@ def _dots(inner: Any) -> Fill:
 
 
 def _amid(start: float, end: float, pitch: float) -> Float64[np.ndarray, " n"]:
-    """Return places at this pitch, as far from the start as from the end."""
     count = int((end - start) / pitch)
     return (start + end - count * pitch) / 2 + pitch * np.arange(count + 1)
 
@@ -128,10 +120,7 @@ BLANK = next(iter(KINDS))
 
 
 def fill_shape(shape: Any, kind: str, free: Any = None, clear_mm: float = CLEAR_MM) -> Fill:
-    """Return a fill of this kind within a shape, clear of its outline; empty where it has no room.
-
-    free: a shape without elements.
-    """
+    """Return a fill within a shape, clear of its outline and outside of `free`; empty where it has no room."""
     inner = shape.buffer(-(LINE_MM / 2 + clear_mm))
     inner = inner if free is None else inner.difference(free)
     return Fill() if inner.is_empty else KINDS[kind](inner)

@@ -11,10 +11,8 @@ from .lettering import MAX_TITLE_LINES, lines_at, title_at, words
 from .marks.svg import Area, Braille, Drawing
 from .sheet import CLEAR_MM, LINE_MM, MARGIN_MM, Page, Sheet, empty_sheet
 
-SAMPLE_MM = (36.0, 22.0)
-"""Width and length of a sample, with room for three elements of each fill across."""
+SAMPLE_MM = (36.0, 22.0)  # width and length, with room for three elements of each fill across
 BESIDE_MM = 6.0
-"""Distance between the letter, the sample and the name."""
 
 
 @dataclass(frozen=True)
@@ -23,9 +21,7 @@ class Entry:
 
     name: str
     letter: str
-    """Letter; empty if there is none on the page."""
     fill: str
-    """Kind of the fill."""
 
 
 def key_pages(entries: list[Entry], title: str, language: str, page: Page, like: Sheet) -> list[Drawing]:
@@ -66,7 +62,6 @@ class _Row:
 
 
 def _add_row(page: Drawing, row: _Row, left: float, top: float) -> Drawing:
-    """Return the page with one more row, with this upper left corner."""
     middle, entry = top + row.height_mm / 2, row.entry
     text_top = middle - 500 * height_m(len(row.lines))
     box = _box(left + row.sample_mm, middle - SAMPLE_MM[1] / 2)

@@ -11,7 +11,6 @@ from .marks.svg import BRAILLE_DOT_MM, Braille
 from .sheet import CLEAR_MM, LINE_MM, MARGIN_MM, Sheet
 
 MAX_TITLE_LINES = 4
-"""Largest number of lines in the title of a key; the rest is left out."""
 FREE_MM = 5.0
 """Distance between a letter and a fill: larger than between other marks, or the dots of a fill are read as part of the
 letter. A convention of ours."""
@@ -21,11 +20,8 @@ class Words(NamedTuple):
     """The words of a page that are not names, in one language."""
 
     key: str
-    """Heading of the list of letters and fills."""
     corner: str
-    """Text alternative of the corner mark."""
     ink: str
-    """Note at the foot of a copy in ink."""
 
 
 WORDS = {
@@ -60,13 +56,10 @@ def lines_at(text: str, lines: list[Cells], left_mm: float, top_mm: float) -> Br
 
 
 def place_letter(cells: Cells, shape: Any, clear_mm: float = CLEAR_MM) -> Float64[np.ndarray, "n 2"] | None:
-    """Return the dots of a letter within a shape, in millimetres on the page; None where there is no room.
-
-    Each dot keeps `clear_mm` from the outline. The places for the first dot are the intersection of the shrunk shape,
-    moved back by the offset of each dot. In the intersection the point farthest from its edge is taken.
-    """
+    """Return the dots of a letter in a shape, in millimetres, each clear of the outline; None without room."""
     clear = shape.buffer(-(LINE_MM / 2 + clear_mm + BRAILLE_DOT_MM / 2))
     offsets = 1000 * dots(cells)
+    # The places for the first dot: the shrunk shape, moved back by the offset of each dot, intersected.
     room = shapely.intersection_all([_move(clear, -each) for each in offsets])
     pieces = [each for each in shapely.get_parts(room) if each.geom_type == "Polygon" and each.area > 0]
     if not pieces:

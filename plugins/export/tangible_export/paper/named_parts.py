@@ -11,7 +11,6 @@ from tangible_core.data import PartMap, Work
 from tangible_legibility.words.languages import part_label
 
 MAX_LISTED = 6
-"""Largest number of labels in a note."""
 LETTERS = ascii_lowercase[1:] + ascii_lowercase[0]
 """Letters in the order of their use. The last, `a`, is a single dot, which a finger takes for a stray one."""
 MAX_NAMES = 100
@@ -37,7 +36,6 @@ class NamedParts:
 
     name: str
     numbers: tuple[int, ...]
-    """Numbers of the parts."""
 
 
 def group_by_name(work: Work, parts: PartMap) -> list[NamedParts]:
@@ -51,10 +49,7 @@ def group_by_name(work: Work, parts: PartMap) -> list[NamedParts]:
 
 
 def key_letters(names: Sequence[str]) -> list[str]:
-    """Return a different letter for each name: its first letter, else another of its letters, else any.
-
-    Pairs of letters if there are more names than letters; there are pairs for MAX_NAMES.
-    """
+    """Return a different letter for each name, its first one if free; pairs if there are more names than letters."""
     if len(names) <= len(LETTERS):
         return _choose([_letters_in(name) for name in names], list(LETTERS))
     pairs = [first + second for first in LETTERS for second in LETTERS]
@@ -73,7 +68,6 @@ def _choose(wishes: list[list[str]], others: list[str]) -> list[str]:
 
 
 def _letters_in(name: str) -> list[str]:
-    """Return the letters of a name without accents, and without the `a`."""
     return [each for each in normalize("NFD", name.lower()) if each in LETTERS[:-1]]
 
 

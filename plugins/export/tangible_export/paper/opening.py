@@ -19,22 +19,17 @@ from .sheet import GAP_MM, LINE_MM
 log: logging.Logger = logging.getLogger(__name__)
 
 PITCH_M = 0.25e-3
-"""Pitch of the grid of parts, about."""
 COARSE = 2
-"""Factor by which the grid of the opening is coarser."""
 GAP_M = (GAP_MM + LINE_MM) / 1000
 """Smallest distance between the middles of two outlines."""
 AMPLE = 1.12
 """Factor on the gap, so that smoothed borders still keep it."""
 ROUNDS = 16
-"""Largest number of rounds of opening."""
 FURTHER = 0.1
 """Margin around a narrow place that is assigned anew, as a share of the gap. From the third round on the margin grows
 by as much a round, as two parts may otherwise take a place from each other in turns."""
 WIDER = 0.25
-"""The same margin, for a place that was too narrow on the drawn page."""
-VOTING = 0.25
-"""Standard deviation of the Gaussian by which the neighbouring cells vote, as a share of the gap."""
+VOTING = 0.25  # the standard deviation of the Gaussian by which neighbouring cells vote, as a share of the gap
 
 
 def open_parts(work: Work, parts: PartMap, width_m: float) -> PartMap:
@@ -58,10 +53,7 @@ def _enlarge(cells: Integer[np.ndarray, "r c"] | Bool[np.ndarray, "r c"], shape:
 
 
 def open_at(parts: PartMap, places: Float64[np.ndarray, "n 2"], width_m: float, further: int) -> PartMap:
-    """Return the parts opened at these places.
-
-    places: as shares of the width, from the upper left corner. further: 1 or more; the margin grows with it.
-    """
+    """Return the parts opened at these shares of the width; the margin grows with `further`, from 1 on."""
     rows, columns = parts.labels.shape
     pitch_m, narrow = width_m / columns, np.zeros((rows, columns), np.bool_)
     at = (places * columns).astype(np.int64)

@@ -31,7 +31,6 @@ from .strokes import strokes_on
 log: logging.Logger = logging.getLogger(__name__)
 
 ROUNDS = 6
-"""Largest number of rounds of measuring and correcting a page."""
 APART_MM = 0.15
 """Margin that is added when a letter is moved away from a mark."""
 
@@ -43,18 +42,12 @@ class Symbols:
     group: NamedParts
     letter: str
     cells: Cells
-    """Braille of the letter."""
     kind: str
-    """Kind of the fill."""
     is_paper: bool = False
-    """True for the paper of a drawing, which stays empty."""
 
 
 def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[Drawing]:
-    """Return the page and the pages of its key.
-
-    Raises: PictureError for a picture of one part, or a page that fingers cannot read; BrailleError for its texts.
-    """
+    """Return the page and its key. Raises: PictureError if fingers cannot read it; BrailleError for its texts."""
     groups = group_by_name(work, parts)
     if sum(len(group.numbers) for group in groups) < 2:
         raise PictureError(
@@ -78,10 +71,7 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[Dr
 
 
 def drawn_lines(work: Work, picture: np.ndarray, sheet: Sheet) -> Drawing:
-    """Return the page of a line drawing: its lines, and nothing where there is paper.
-
-    Raises: PictureError for a drawing without lines; BrailleError for its title.
-    """
+    """Return a drawing's page. Raises: PictureError without lines; BrailleError for its title."""
     blank, _ = _blank_page(work, sheet)
     strokes, texts = strokes_on(picture, blank.sheet)
     if not strokes:
@@ -96,7 +86,6 @@ def _note_texts(texts: int) -> None:
 
 
 def _blank_page(work: Work, sheet: Sheet) -> tuple[Drawing, str]:
-    """Return an empty page with the title in braille, and the title."""
     title = title_in_braille(work.title, work.language)
     lines, whole = title_lines(title, work.language, sheet)
     if not whole:
@@ -152,7 +141,6 @@ def _all_outlines(shapes: Sequence[Any]) -> Any:
 
 
 def _is_paper(group: NamedParts, parts: PartMap) -> bool:
-    """Tell whether these parts have most of the picture's rim."""
     rim = np.concatenate([parts.labels[0], parts.labels[-1], parts.labels[:, 0], parts.labels[:, -1]])
     return 2 * np.isin(rim, group.numbers).sum() > rim.size
 
@@ -216,7 +204,6 @@ def _choose_symbols(
 
 
 def _has_room(symbols: Symbols, shapes: Sequence[Any]) -> bool:
-    """Tell whether the largest part of the group has room for this fill."""
     largest = max(symbols.group.numbers, key=lambda number: shapes[number].area)
     return bool(_area(symbols, shapes[largest]).fill)
 
@@ -258,7 +245,6 @@ def _draw_clear(
 
 
 def _letter_in(near: Near, areas: Sequence[Area]) -> int | None:
-    """Return the index of the area whose letter is one of two marks that are too near."""
     at = shapely.points(np.array([mark.place_mm for mark in near.marks if mark.what == "braille"]).reshape(-1, 2))
     for number, area in enumerate(areas):
         if area.letter is not None and (shapely.distance(shapely.MultiPoint(area.letter.dots_mm), at) < 0.1).any():
@@ -267,13 +253,11 @@ def _letter_in(near: Near, areas: Sequence[Area]) -> int | None:
 
 
 def _check_key(key: Drawing) -> None:
-    """Check a key page. Raises: PictureError if two of its marks are too near."""
     if near := too_near(read(svg(key))):
         raise PictureError(f"in the key, {near[0]}, and {GAP_MM} mm must be between them")
 
 
 def _entries(symbols: Sequence[Symbols], picture: Drawing) -> list[Entry]:
-    """Return the entries of the key, with the letters and fills that are on the page."""
     lettered = {area.label for area in picture.areas if area.letter}
     has_fill = {area.label for area in picture.areas if area.fill}
     return [
@@ -288,7 +272,6 @@ def _entries(symbols: Sequence[Symbols], picture: Drawing) -> list[Entry]:
 
 
 def _note_left_out(symbols: Sequence[Symbols], picture: Drawing) -> None:
-    """Note the parts without a letter or a fill, by their names."""
     note(log, f"braille by {written_by(picture.language)}")
     kinds = {each.group.name: each.kind for each in symbols if not each.is_paper}
     if bare := [area.label for area in picture.areas if area.letter is None and area.label in kinds]:

@@ -9,7 +9,6 @@ from ..braille import height_m
 
 Page = Literal["a4", "letter", "a3"]
 SIZES_MM: dict[Page, tuple[float, float]] = {"a4": (210, 297), "letter": (215.9, 279.4), "a3": (297, 420)}
-"""Width and length, upright."""
 MARGIN_MM = 10.0
 """Margin on all sides, which printers leave white, and where a hand holds the sheet."""
 LINE_MM = 1.0
@@ -37,7 +36,6 @@ class Sheet:
     left_mm: float
     top_mm: float
     picture_mm: tuple[float, float]
-    """Width and length."""
     spare_mm: float = 0
     """Room below the picture, for moving it down under a title of several lines."""
 
@@ -55,10 +53,7 @@ class Sheet:
 
 
 def sheet_for(page: Page, aspect: float, width_m: float | None) -> Sheet:
-    """Return the sheet, upright or on its side, on which the picture is largest; or with a picture of this width.
-
-    aspect: width by length of the picture.
-    """
+    """Return the sheet, upright or on its side, on which the picture is largest; or with a picture of this width."""
     size, wide = _largest(page, aspect)
     wide = wide if width_m is None else 1000 * width_m
     spare_mm = _room(size)[1] - wide / aspect
@@ -102,6 +97,5 @@ def _top_mm() -> float:
 
 
 def _room(size: tuple[float, float]) -> tuple[float, float]:
-    """Return width and length of the largest picture, to the middle of its outline."""
     width, length = size
     return width - 2 * MARGIN_MM - LINE_MM, length - _top_mm() - MARGIN_MM - LINE_MM / 2

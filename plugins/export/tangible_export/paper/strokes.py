@@ -22,10 +22,7 @@ ALONG_MM, LONG_MM = 2.0, 6.0
 
 
 def strokes_on(picture: np.ndarray, sheet: Sheet, outlines: Any = None) -> tuple[tuple[Any, ...], int]:
-    """Return the strokes of a drawing's lines, in millimetres on the page; and the number of texts left out.
-
-    Strokes end at junctions, so that these stay. outlines: lines on the page that are drawn anyway; None for none.
-    """
+    """Return a drawing's strokes, in millimetres and apart from `outlines`; and the number of texts left out."""
     marks = find_marks(picture)
     centre = marks.lines.centre
     rows, columns = centre.shape

@@ -35,4 +35,3 @@ DISPLAYS: dict[str, Display] = {
 """Displays by name. Sources: pages of the makers, APH and HumanWare (Monarch), Orbit Research (Graphiti), Dot Inc. (Dot
 Pad 320)."""
 HEXADECIMAL = ("dotpad",)
-"""Displays that read pins as hexadecimal digits."""

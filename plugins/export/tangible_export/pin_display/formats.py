@@ -17,7 +17,6 @@ from jaxtyping import Bool, Int32, UInt8
 
 Pins = UInt8[np.ndarray, "r c"]
 PIN_PX = 8
-"""Pixels between pins in a picture for eyes."""
 _BRAILLE = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])
 """Bits of Unicode's braille patterns, of a cell of 2 x 4 pins."""
 
@@ -56,12 +55,10 @@ def patterns(pins: Pins) -> str:
 
 
 def hexadecimal(pins: Pins) -> str:
-    """Return digits for Dot Pad: two for each cell of 2 x 4 pins, the right column's before the left one's.
-
-    The bits of a digit are the pins of a column, the lowest bit at the top. Source: touchout-org/dotpad-toolkit.
-    """
+    """Return digits for Dot Pad: two for each cell of 2 x 4 pins, the right column's before the left one's."""
     up = _whole_cells(pins > 0)
     columns = up.reshape(up.shape[0] // 4, 4, up.shape[1] // 2, 2)[..., ::-1].transpose(0, 2, 3, 1)
+    # The lowest bit is at the top. Source: touchout-org/dotpad-toolkit.
     return "".join(f"{digit:X}" for digit in (columns * np.array([1, 2, 4, 8])).sum(axis=3).ravel().tolist())
 
 
@@ -70,10 +67,7 @@ def _whole_cells(up: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "k l"]:
 
 
 def svg(pins: Pins, levels: int, parts: Int32[np.ndarray, "r c"], labels: Mapping[int, str], title: str) -> str:
-    """Return an SVG with a layer for each part: its raised pins, and those of its borders.
-
-    parts: the part of each pin, -1 outside of the picture. labels: labels of parts, in the order of the layers.
-    """
+    """Return an SVG with a layer for each part, in the order of `labels`: its raised pins, and those of its borders."""
     rows, columns = pins.shape
     layers = [
         _layer(f"layer-{number}", label, _shapes(pins, levels, _with_borders(parts, part)))
@@ -111,7 +105,6 @@ def _shapes(pins: Pins, levels: int, mask: Bool[np.ndarray, "r c"]) -> list[str]
 
 
 def _path(mask: Bool[np.ndarray, "r c"]) -> str:
-    """Return a rectangle for each run of pins in a row."""
     path = list[str]()
     for row, pins in enumerate(mask):
         steps = np.diff(np.concatenate([[0], pins.astype(np.int8), [0]]))

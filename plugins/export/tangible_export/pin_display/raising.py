@@ -8,11 +8,9 @@ from tangible_core.data import PartMap, Relief
 
 from .displays import Display
 
-MIN_CELLS = 4
-"""Smallest number of pixels of the map along a pin's side; a smaller map is enlarged."""
+MIN_CELLS = 4  # of the map, along a pin's side; a smaller map is enlarged
 
 Place = tuple[slice, slice]
-"""The rows and columns of the display on which the picture lies, in its middle."""
 
 
 def place_of(display: Display, shape: tuple[int, ...]) -> Place:

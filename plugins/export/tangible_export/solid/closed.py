@@ -1,8 +1,4 @@
-"""Patches of a surface, and a closed solid under them: its walls and its floor.
-
-Patches are points in metres, and triangles that run counter-clockwise as seen from outside. Adjacent ones have the same
-points along their common edge; `close_solid` makes one surface of them.
-"""
+"""Patches of a surface, which have the same points along a common edge, and a closed solid under them."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -12,8 +8,7 @@ from jaxtyping import Float64, Int64
 
 from tangible_core.data import Record
 
-STEPS_PER_MM = 100_000
-"""Steps of coordinates in a millimetre: files of text hold five decimals."""
+STEPS_PER_MM = 100_000  # files of text hold five decimals
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,10 +30,7 @@ def join_patches(patches: Iterable[Patch]) -> Patch:
 
 
 def strip(inner: Float64[np.ndarray, "n 3"], outer: Float64[np.ndarray, "k 3"]) -> Patch:
-    """Return the surface between two chains of points that run the same way, `outer` to the right or below.
-
-    Points of the two chains are paired by the share of the chain's whole length at which they lie.
-    """
+    """Return the surface between two chains that run the same way, paired by length, `outer` to the right or below."""
     along_inner, along_outer = _shares(inner), _shares(outer)
     near_outer = len(inner) + np.searchsorted(along_outer, along_inner, "left")
     near_inner = np.searchsorted(along_inner, along_outer, "right")
@@ -48,7 +40,6 @@ def strip(inner: Float64[np.ndarray, "n 3"], outer: Float64[np.ndarray, "k 3"]) 
 
 
 def _shares(chain: Float64[np.ndarray, "n 3"]) -> Float64[np.ndarray, " m"]:
-    """Return the share of the chain's length at each point but the first; 1 at the last."""
     lengths = np.linalg.norm(np.diff(chain[:, :2], axis=0), axis=1).cumsum()
     return lengths / lengths[-1]
 
@@ -76,20 +67,14 @@ def flat(places_m: Sequence[tuple[float, float]], height_m: float = 0.0) -> Floa
 
 @dataclass(frozen=True, eq=False)
 class Solid(Record):
-    """A closed surface whose lower left front corner is at 0, x to the right, y to the back, z up.
-
-    Each triangle runs counter-clockwise as seen from outside.
-    """
+    """A closed surface from 0 on, x right, y back, z up; triangles run counter-clockwise as seen from outside."""
 
     vertices_mm: Float64[np.ndarray, "n 3"]
     triangles: Int64[np.ndarray, "m 3"]
 
 
 def close_solid(upper: Patch, base_m: float) -> Solid:
-    """Return the solid below a surface whose outline is a rectangle from (0, 0) on; its floor is `base_m` below z = 0.
-
-    Coinciding points of patches become one vertex; triangles with fewer than three different vertices are dropped.
-    """
+    """Return the solid below a rectangular surface from (0, 0) on; its floor is `base_m` below z = 0."""
     raised_m = upper.points_m + np.array([0.0, 0.0, base_m])
     points = np.rint(1000 * STEPS_PER_MM * raised_m).astype(np.int64)
     vertices, triangles = _weld(points, upper.triangles)

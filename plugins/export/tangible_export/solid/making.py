@@ -21,16 +21,12 @@ from .triangles import Triangles, all_triangles, few_triangles, sample_nodes
 log: logging.Logger = logging.getLogger(__name__)
 
 INSTALL = "pip install pydelatin"
-MAX_NODES = 24_000_000
-"""Largest number of nodes: 5333 x 4500 take a gibibyte."""
-MAX_TRIANGLES = 2_000_000
-"""Largest number of triangles, in files of 100 MB, that slicers still read."""
-MAX_IN_GRID = MAX_TRIANGLES // 2
-"""Largest number of nodes without pydelatin: each takes two triangles."""
+MAX_NODES = 24_000_000  # 5333 x 4500 nodes take a gibibyte
+MAX_TRIANGLES = 2_000_000  # files of 100 MB, which slicers still read
+MAX_IN_GRID = MAX_TRIANGLES // 2  # without pydelatin, each node takes two triangles
 MIN_LINE_M = width_m((0,) * 3)
 """Shortest line of braille: a letter, its capital sign, and a hyphen."""
 NARROWEST_M = 1e-4
-"""Narrowest rim; a narrower one is left out."""
 MAX_LINES = 6
 """Largest number of lines of braille: nobody reads a longer text on a plate."""
 
@@ -46,7 +42,6 @@ MIN_AREA_M2, MIN_SHARE = 2.5e-7, 0.001
 STEEPEST_DEG = 45
 """Largest overhang, from the upright, that plastic holds without support."""
 ROWS_AT_ONCE = 256
-"""Rows that are checked at a time, to save memory."""
 
 
 class PlateOptions(NamedTuple):
@@ -61,11 +56,7 @@ class PlateOptions(NamedTuple):
 
 
 def make_solid(options: PlateOptions, work: Work) -> tuple[Solid, Layout]:
-    """Return a closed solid of the relief, and its layout.
-
-    Raises: GeometryError if the relief has no height, BrailleError for a title that cannot be written, OutputError for
-    a title that is too long for the plate.
-    """
+    """Return a closed solid and its layout. Raises: GeometryError, BrailleError, OutputError as `write`."""
     relief = work.relief
     if (highest_m := float(relief.height_m.max())) <= options.error_m:
         raise GeometryError(
@@ -113,7 +104,6 @@ def _layout(options: PlateOptions, work: Work) -> Layout:
 
 
 def _title(options: PlateOptions, work: Work) -> tuple[Cells, ...]:
-    """Return the title in lines of braille."""
     grade = BrailleChoice.in_force(options.braille).grade
     language, room_m = in_grade(options.braille_language or work.language, grade), work.relief.extent_m[0]
     if room_m < MIN_LINE_M:
@@ -134,10 +124,7 @@ def _title(options: PlateOptions, work: Work) -> tuple[Cells, ...]:
 
 
 def note_print_problems(picture: Relief, size_m: tuple[float, float], base_m: float) -> None:
-    """Note shapes that are too thin, too large or too steep to print.
-
-    size_m: width and length of the whole plate.
-    """
+    """Note shapes that are too thin, too large (a plate of `size_m`) or too steep to print."""
     if base_m < THIN_BASE_M:
         fault = f"a base of {1000 * base_m:.2g} mm bends and breaks"
         note(log, f"{fault}; make base_m {1000 * THIN_BASE_M:.1g} mm or more, better 1.5 mm", logging.WARNING)

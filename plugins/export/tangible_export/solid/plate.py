@@ -16,13 +16,11 @@ from .closed import Patch, flat, join_patches, rectangle, strip, wall
 from .triangles import Triangles
 
 MIN_RIM_M = 0.004
-"""Narrowest rim with room for braille and the corner mark."""
 ABOVE_BRAILLE_M = 0.005
 """Distance from the picture to its title: at this distance, raised shapes are felt as two (Round Table, Guidelines for
 producing accessible 3D prints)."""
 LARGEST_MARK_M, MARK_HEIGHT_M = 0.006, 0.001
 FLAT_SHARE = 0.2
-"""Share of the rim's width between the picture and the corner mark."""
 SIDES, RINGS = 12, 3
 """Sides and rings of a dot, which is within 0.03 mm of a spherical cap. The sides are a multiple of four."""
 
@@ -32,10 +30,8 @@ class Layout:
     """The layout of the plate: x from the left, y from the front edge, which is below the picture."""
 
     picture_m: tuple[float, float]
-    """Width and length."""
     rim_m: float
     lines: tuple[Cells, ...] = ()
-    """The title, below the picture, from its left edge on."""
     corner_mark: bool = False
 
     @property
@@ -64,10 +60,7 @@ class Layout:
 
 
 class Block(NamedTuple):
-    """The picture as a block: its upper side, and the points at its edge, counter-clockwise from the lower left.
-
-    corners: indices of the block's four corners in the ring.
-    """
+    """The picture's upper side, the ring of its edge from the lower left on, and the indices of the ring's corners."""
 
     top: Patch
     ring_m: Float64[np.ndarray, "r 3"]
@@ -83,15 +76,12 @@ def plate(relief: Relief, triangles: Triangles, layout: Layout) -> Patch:
 
 
 def block(relief: Relief, triangles: Triangles, at_m: tuple[float, float]) -> Block:
-    """Return the block of a relief, whose lower left corner is to lie at `at_m`.
-
-    The nodes of the triangles are centres of cells. From the outermost nodes, level triangles go on to the edge of the
-    picture, so that neither the heights nor the picture's size are off.
-    """
+    """Return the block of a relief, whose lower left corner is to lie at `at_m`."""
     rows, columns = relief.height_m.shape
     column, row = triangles.column, triangles.row
     across_m, down_m = relief.pitch_m
     inner = np.stack([at_m[0] + (column + 0.5) * across_m, at_m[1] + (row + 0.5) * down_m, triangles.height_m], axis=1)
+    # Nodes are centres of cells: level triangles go on to the edge, so that heights and size are right.
     ring, corners = _ring(column, row, columns, rows)
     edge = inner[ring]
     for axis, (place, last) in enumerate(((column[ring], columns - 1), (row[ring], rows - 1))):
@@ -169,10 +159,7 @@ def _mark_row(width_m: float, length_m: float, side_m: float) -> Iterator[Patch]
 def braille_band(
     size_m: tuple[float, float], centres_m: Float64[np.ndarray, "n 2"]
 ) -> tuple[Patch, Float64[np.ndarray, "k 3"]]:
-    """Return a flat band from the lower left corner on, with a dot at each centre; and the points along its back edge.
-
-    The band is divided midway between dots, along whole rows and columns, so that rectangles meet at their corners.
-    """
+    """Return a flat band with a dot at each centre, divided midway between dots; and the points of its back edge."""
     steps_x, steps_y = (_borders(centres_m[:, axis], size_m[axis]) for axis in (0, 1))
     raised = {
         (int(np.searchsorted(steps_x, x)), int(np.searchsorted(steps_y, y))): (float(x), float(y)) for x, y in centres_m
@@ -186,13 +173,11 @@ def braille_band(
 
 
 def _borders(places_m: Float64[np.ndarray, " n"], end_m: float) -> Float64[np.ndarray, " k"]:
-    """Return 0, the middles between neighbouring places, and the end."""
     each = np.unique(places_m.round(9))
     return np.concatenate([[0.0], (each[1:] + each[:-1]) / 2, [end_m]])
 
 
 def _dot(box: tuple[float, float, float, float], centre_m: tuple[float, float]) -> Patch:
-    """Return a dot and the flat ground around it."""
     left_m, front_m, right_m, back_m = box
     cap = Patch(_cap().points_m + np.array([*centre_m, 0.0]), _cap().triangles)
     foot = np.concatenate([cap.points_m[:SIDES], cap.points_m[:1]])

@@ -12,10 +12,8 @@ from tangible_core.data import Record, Relief, Work
 
 from .closed import Solid
 
-COARSE_M = 2e-4
-"""Largest distance of the pictured solid from the relief: less than a pixel."""
+COARSE_M = 2e-4  # less than a pixel
 MAX_NODES = 300
-"""Largest number of nodes along a side of the pictured relief."""
 WIDTH_PX = 640
 MARGIN_PX = 8
 TILT = np.radians(35)
@@ -24,7 +22,6 @@ LIGHT = np.array([-0.5, 0.35, 0.8]) / np.linalg.norm([-0.5, 0.35, 0.8])
 LOWEST = 0.72
 """Brightness of what lies lowest, as a share of what lies highest: steps between level faces are seen."""
 DARKEST, LIGHTEST = 70, 250
-"""Grey levels of faces that look away from the light, and into it."""
 
 
 def coarse_work(work: Work) -> Work:

@@ -1,7 +1,4 @@
-"""Triangles over a height map: as few as keep the error, or all of its nodes.
-
-A node's place is (column, row) counted from the lower left; triangles run counter-clockwise as seen from above.
-"""
+"""Triangles over a height map, by (column, row) from the lower left, counter-clockwise as seen from above."""
 
 import logging
 from dataclasses import dataclass
@@ -18,7 +15,6 @@ from tangible_core.runtime import plain_opencv
 log: logging.Logger = logging.getLogger(__name__)
 
 MIN_NODES = 2
-"""Nodes along a side at least: one pixel is a surface too."""
 ROUNDING_M = 2.5e-8
 """Rounding error of a coordinate in a file: half a step of `closed`, and half a step of STL's floating point."""
 
@@ -32,14 +28,10 @@ class Triangles(Record):
     height_m: Float64[np.ndarray, " n"]
     corners: Int32[np.ndarray, "m 3"]
     off_m: float = 0.0
-    """Largest distance of the triangles from the height of a node."""
 
 
 def sample_nodes(relief: Relief, most_nodes: int, cure: str) -> Relief:
-    """Return the same surface with at least two nodes a side and at most `most_nodes` in all.
-
-    Heights are averaged where there are more; a note reports that, with the cure.
-    """
+    """Return the same surface with 2 x 2 to `most_nodes` nodes, averaged with a note where there are more."""
     rows, columns = (side if side >= MIN_NODES else 3 for side in relief.height_m.shape)
     if (nodes := rows * columns) > most_nodes:
         scale = sqrt(most_nodes / nodes)

@@ -15,7 +15,6 @@ from .reading import Mark, Marks
 from .rendering import black
 
 PIXELS_PER_MM = 10
-"""Resolution of the measurement: 254 dpi."""
 _INEXACT = 1.04
 """Tolerance of the first search: OpenCV's distances are off by 2 % at most, and each gap is the sum of two."""
 
@@ -40,11 +39,7 @@ class Near:
 
 
 def too_near(page: Marks) -> list[Near]:
-    """Return all pairs of marks that are too near to each other, except dots of one text.
-
-    Outlines that touch each other count as one mark; an outline that touches none, such as that of an enclosed part,
-    is a mark by itself.
-    """
+    """Return all pairs of marks that are too near; outlines that touch count as one, dots of one text do not count."""
     ink = _without_empty_end(black(page, PIXELS_PER_MM))
     measured = cv2.distanceTransformWithLabels(
         (~ink).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_CCOMP
@@ -74,7 +69,6 @@ def _without_empty_end(ink: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "k c"]:
 
 
 def _marks_of_blots(page: Marks, nearest: Int32[np.ndarray, "r c"]) -> dict[int, list[Mark]]:
-    """Return the marks of each connected blot of ink, by its number."""
     blots = defaultdict[int, list[Mark]](list)
     for mark in page.marks:
         x, y = (int(PIXELS_PER_MM * at) for at in mark.place_mm)
@@ -84,7 +78,6 @@ def _marks_of_blots(page: Marks, nearest: Int32[np.ndarray, "r c"]) -> dict[int,
 
 
 def _with_one_outline(marks: list[Mark]) -> list[Mark]:
-    """Return the marks with one outline for all, as outlines may touch each other."""
     return list({("outline" if mark.what == "outline" else id(mark)): mark for mark in marks}.values())
 
 
@@ -182,7 +175,6 @@ def _distance_to_centres(
 
 
 def _sides(places: Int32[np.ndarray, "r c"], rest: Bool[np.ndarray, "r c"], count: int) -> Int64[np.ndarray, " n"]:
-    """Return the number of sides on which each place is connected with the rest."""
     adjacent = np.where(rest, cv2.dilate(places.astype(np.float32), np.ones((3, 3), np.uint8)), 0).astype(np.int32)
     _, sides = cv2.connectedComponents((adjacent > 0).astype(np.uint8), connectivity=8)
     pairs = np.unique(np.stack([sides[adjacent > 0], adjacent[adjacent > 0]]), axis=1)
@@ -190,7 +182,6 @@ def _sides(places: Int32[np.ndarray, "r c"], rest: Bool[np.ndarray, "r c"], coun
 
 
 def _outline_around(page: Marks, place_mm: tuple[float, float]) -> Mark:
-    """Return the smallest outline around a place."""
     outlines = [mark for mark in page.marks if mark.what == "outline"]
     around = [mark for mark in outlines if mark.shape.contains_point(place_mm)] or outlines
     return min(around, key=lambda mark: float(np.prod(np.ptp(mark.shape.vertices, axis=0))))

@@ -18,15 +18,11 @@ from .rendering import POINTS_PER_MM, figure_of, save_pdf
 from .svg import Area, Braille, Drawing, svg
 
 GREY = "#999999"
-LETTERS_MM = 4.0
-"""Size of the letters: as large as print in a book for children."""
+LETTERS_MM = 4.0  # as large as print in a book for children
 ABOVE_MM = 2.4
-"""Distance from the dots of a text in braille to the same text in ink above it."""
 SCALE_MM = MARGIN_MM, MARGIN_MM + 50.0
-"""Left and right end of the scale bar."""
 SCALE = "5 cm"
 WIDE = 0.56
-"""Mean width of a letter, as a share of its size."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +82,6 @@ def _at_part(area: Area, width_mm: float) -> Label:
 
 
 def _foot_mm(drawing: Drawing) -> float:
-    """Return the height of the scale bar, in the middle of the lower margin."""
     return drawing.sheet.length_mm - MARGIN_MM / 2
 
 

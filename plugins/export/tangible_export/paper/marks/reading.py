@@ -21,11 +21,9 @@ class Mark:
     what: str
     """Role: outline, fill, braille or corner."""
     label: str
-    """Label of the part, or text of the braille."""
     group: int
     """Number of the element that has the mark; the dots of one text have one group."""
     shape: Shape
-    """Path in millimetres, y down."""
     stroke_mm: float
     """Width of the line; 0 for a filled shape."""
 

@@ -33,7 +33,6 @@ class Area:
 
     label: str
     outline: Any
-    """A polygon or multi-polygon of shapely."""
     fill: Fill = field(default_factory=Fill)
     letter: Braille | None = None
 
@@ -47,20 +46,15 @@ class Drawing:
     description: str
     language: str
     corner: str
-    """The text alternative of the corner mark."""
     areas: tuple[Area, ...]
     texts: tuple[Braille, ...]
     figure: Any = None
     """The shape of the figure, whose outline is heavier; None without one."""
     strokes: tuple[Any, ...] = ()
-    """Lines of shapely, of a drawing."""
 
 
 def svg(drawing: Drawing, colour: str = BLACK, over: Sequence[str] = ()) -> str:
-    """Return the text of the file. The attribute `data-mark` has a mark's role: outline, fill, braille or corner.
-
-    colour: of the marks. over: elements that lie over them.
-    """
+    """Return the text of the file, whose `data-mark` has a mark's role, with the elements `over` over the marks."""
     sheet = drawing.sheet
     language = quoteattr(drawing.language.partition("-x-")[0])  # without the grade of the braille
     paint = "" if colour == BLACK else f'fill="{colour}" '

@@ -72,7 +72,7 @@ def _write_tiff(path: Path, relief: Relief, description: HeightsMetadata) -> Non
 
     text = json.dumps(description.model_dump(), ensure_ascii=True)  # a tag of plain letters
     heights_mm = (relief.height_m.astype(np.float64) * MM).astype(np.float32)
-    encoded = BytesIO()  # the library would not say why it cannot write a file
-    Image.fromarray(heights_mm).save(encoded, "TIFF", compression="tiff_adobe_deflate", description=text)
+    buffer = BytesIO()  # the library would not say why it cannot write a file
+    Image.fromarray(heights_mm).save(buffer, "TIFF", compression="tiff_adobe_deflate", description=text)
     with atomic_write(path) as file:
-        file.write(encoded.getbuffer())
+        file.write(buffer.getbuffer())

@@ -11,7 +11,7 @@ from tangible_core.data import PartMap, Work
 from tangible_core.errors import PictureError, shown
 from tangible_core.plugins import Exporter, Medium, Previewing, note
 
-from .paper.named_parts import first_labels, label_of
+from .paper.named_parts import find_label, first_labels
 from .pin_display.displays import DISPLAYS, HEXADECIMAL, PITCH_M, Display, Named
 
 if TYPE_CHECKING:
@@ -93,14 +93,14 @@ class Pins(Exporter, Previewing):
         from .pin_display import raising
 
         array, parts = self._array, _parts(work, self._array)
-        place = raising.place_of(array, parts.labels.shape)
-        rows, columns = (each.stop - each.start for each in place)
+        place = raising.place_picture(array, parts.labels.shape)
+        rows, columns = (side.stop - side.start for side in place)
         if min(rows, columns) < MIN_PINS:
             raise PictureError(
                 f"the picture would be {columns} pins wide and {rows} long; take a part of it that is less long "
                 "and narrow"
             )
-        most = raising.most_of(parts, rows, columns)
+        most = raising.largest_shares(parts, rows, columns)
         labels = _visible_labels(work, parts, most)
         area = raising.heights(work.relief, rows, columns, array.levels - 1) if array.levels > 1 else 0
         picture = np.where(raising.borders(most), array.levels, area).astype(np.uint8)
@@ -130,9 +130,9 @@ def _visible_labels(work: Work, parts: PartMap, most: np.ndarray) -> dict[int, s
     """Return the labels of the parts that have a pin; note those that have none."""
     sizes = np.bincount(parts.labels.ravel(), minlength=parts.count)
     pins = np.bincount(most.ravel(), minlength=parts.count)
-    labels = {number: label_of(number, work) for number in np.flatnonzero(sizes).tolist()}
-    if lost := [label for number, label in labels.items() if not pins[number]]:
-        note(log, f"too small for a pin: {first_labels(lost)}")
+    labels = {number: find_label(number, work) for number in np.flatnonzero(sizes).tolist()}
+    if lost_labels := [label for number, label in labels.items() if not pins[number]]:
+        note(log, f"too small for a pin: {first_labels(lost_labels)}")
     return {number: label for number, label in labels.items() if pins[number]}
 
 

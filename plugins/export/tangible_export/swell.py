@@ -70,9 +70,11 @@ class Swell(Exporter, Previewing):
         from .paper.marks.rendering import write_pdf
         from .paper.marks.svg import svg
 
-        texts, note = [svg(each) for each in pages], words(work.language).ink
+        texts, note = [svg(page) for page in pages], words(work.language).ink
         files = {f"{stem.name}-swell{'-key' * (n > 0)}{f'-{n}' * (n > 1)}.svg": text for n, text in enumerate(texts)}
-        pdf, ink, ink_pdf = (stem.with_name(f"{stem.name}-swell{each}") for each in (".pdf", "-ink.svg", "-ink.pdf"))
+        pdf, ink, ink_pdf = (
+            stem.with_name(f"{stem.name}-swell{ending}") for ending in (".pdf", "-ink.svg", "-ink.pdf")
+        )
         paths = [*map(stem.with_name, files), ink]
         for path, text in zip(paths, [*texts, ink_svg(pages[0], note, named=True)], strict=True):
             path.write_text(text, encoding="utf-8", newline="\n")

@@ -101,7 +101,7 @@ def test_pin_heights_are_means_of_their_cells_of_which_the_highest_is_the_top():
 def test_pin_has_the_part_of_most_of_its_cell_or_the_lower_number():
     def most(columns: list[int], pins: int) -> list[int]:
         labels = np.tile(np.int32(columns), (len(columns), 1))
-        return raising.most_of(PartMap(labels, (0, 1)), pins, pins)[0].tolist()
+        return raising.largest_shares(PartMap(labels, (0, 1)), pins, pins)[0].tolist()
 
     assert most([1, 1, 0, 0] * 3, 3) == [0, 0, 0]
     assert most([1, 1, 1, 0, 0, 0, 0, 1, 0, 1, 0, 1], 3) == [1, 0, 0]

@@ -61,7 +61,7 @@ _PASSAGE = re.compile(rf"(?<![^ ])[{_UPPER}]+(?: [{_UPPER}]+){{2,}}(?![^ ])")
 
 
 @cache
-def code_of(language: str) -> Code:
+def read_code(language: str) -> Code:
     """Read the table of a language, one of `LANGUAGES`."""
     text = files("tangible_export.braille").joinpath("codes", f"{language}.toml").read_text(encoding="utf-8")
     return Code(**{name: value if name in _TEXTS else _parse(value) for name, value in tomllib.loads(text).items()})
@@ -75,14 +75,14 @@ def _parse(value: Any) -> Any:
 
 def translate_by_table(text: str, language: str) -> Cells:
     """Translate one line of composed characters. Raises: BrailleError for a character that is not in the table."""
-    code, cells = code_of(language), list[int]()
+    code, cells = read_code(language), list[int]()
     if code.no_space_before:
         text = re.sub(f" +([{code.no_space_before}])", r"\1", text)
     capitals = _capitals(text, code)
-    for place, each in enumerate(text):
+    for place, character in enumerate(text):
         cells += capitals.get(place, ())
         cells += _number_sign(text, place, code)
-        cells += (code.digits[int(each)],) if _is_digit(text, place) else _sign(text, place, code)
+        cells += (code.digits[int(character)],) if _is_digit(text, place) else _sign(text, place, code)
     return (*cells, *capitals.get(len(text), ()))
 
 
@@ -92,10 +92,10 @@ def _is_digit(text: str, place: int) -> bool:
 
 def _number_sign(text: str, place: int, code: Code) -> Cells:
     """Return the sign before a character with which a number begins, or before which a number has ended."""
-    each = text[place]
+    character = text[place]
     if _is_digit(text, place - 1):
-        return code.after_number if (each if code.capital else each.lower()) in code.read_as_digit else ()
-    if each in code.before_number and _is_digit(text, place + 1):
+        return code.after_number if (character if code.capital else character.lower()) in code.read_as_digit else ()
+    if character in code.before_number and _is_digit(text, place + 1):
         return code.number
     if not _is_digit(text, place) or (place and text[place - 1] in code.before_number):
         return ()
@@ -112,19 +112,19 @@ def _thousands(text: str, place: int, code: Code) -> bool:
 
 
 def _sign(text: str, place: int, code: Code) -> Cells:
-    each = text[place]
-    if each in code.quoting:
+    character = text[place]
+    if character in code.quoting:
         closes = place > 0 and (text[place - 1] not in " ([" or text[place + 1 : place + 2] in ("", " "))
         return code.quotes[closes]
-    if each == " ":
+    if character == " ":
         return code.thousands if _thousands(text, place, code) else (0,)
-    if (cells := _letter(each, code)) is None:
-        raise BrailleError(f"{missing_character(each, place + 1, text, code.title)}, or install liblouis")
+    if (cells := _letter(character, code)) is None:
+        raise BrailleError(f"{missing_character(character, place + 1, text, code.title)}, or install liblouis")
     return cells
 
 
-def _letter(each: str, code: Code) -> Cells | None:
-    if (lower := each.lower()) in code.signs:
+def _letter(character: str, code: Code) -> Cells | None:
+    if (lower := character.lower()) in code.signs:
         return code.signs[lower]
     if lower in LETTERS:
         return (LETTERS[lower],)
@@ -138,16 +138,16 @@ def _capitals(text: str, code: Code) -> dict[int, Cells]:
     """Return the signs of capitals: before a capital letter or a run of them, and after the run; by place."""
     if not code.capital:
         return {}
-    placed: dict[int, Cells] = {}
+    signs: dict[int, Cells] = {}
     passages = [match.span() for match in _PASSAGE.finditer(text)] if code.capital_passage else []
     for start, end in passages:
-        placed[start], placed[end] = code.capital_passage, code.capital_end
+        signs[start], signs[end] = code.capital_passage, code.capital_end
     for is_upper, run in groupby(range(len(text)), lambda place: text[place].isupper()):
         places = [*run]
         start, end = places[0], places[-1] + 1
         if not is_upper or any(first <= start < last for first, last in passages):
             continue
-        placed[start] = code.capital_word if end - start > 1 else code.capital
+        signs[start] = code.capital_word if end - start > 1 else code.capital
         if end - start > 1 and end < len(text) and text[end].isalpha():
-            placed[end] = code.capital_end
-    return placed
+            signs[end] = code.capital_end
+    return signs

@@ -35,9 +35,9 @@ class Louis(NamedTuple):
     def translate(self, text: str, language: str, grade: int = 1) -> Cells:
         """Translate text. Raises: BrailleError for a character not in the table, OSError if the table fails."""
         table = (TABLES if grade == 1 else CONTRACTED)[language]
-        for place, each in enumerate(text, 1):
-            if not each.isascii():
-                self._check_known(each, place, text, table)
+        for place, character in enumerate(text, 1):
+            if not character.isascii():
+                self._check_known(character, place, text, table)
         return self._call(text, table, _DOTS | _UNICODE)
 
     def _check_known(self, character: str, place: int, text: str, table: str) -> None:
@@ -49,14 +49,14 @@ class Louis(NamedTuple):
         units = memoryview(text.encode(f"utf-{8 * size}", "surrogatepass")).cast("H" if size == 2 else "I")[1:]
         source = (self.character * (len(units) + 1))(*units)
         target = (self.character * (16 * len(units) + 64))()
-        read, written = ctypes.c_int(len(units)), ctypes.c_int(len(target))
+        read, length = ctypes.c_int(len(units)), ctypes.c_int(len(target))
         with _turn:
-            done = self.library.lou_translateString(
-                table.encode(), source, ctypes.byref(read), target, ctypes.byref(written), None, None, mode
+            success = self.library.lou_translateString(
+                table.encode(), source, ctypes.byref(read), target, ctypes.byref(length), None, None, mode
             )
-        if not done or read.value != len(units):
+        if not success or read.value != len(units):
             raise OSError(f"liblouis {self.version} cannot use its table {table}")
-        return tuple(each & 0x3F for each in target[: written.value])
+        return tuple(cell & 0x3F for cell in target[: length.value])
 
 
 def missing_character(character: str, place: int, text: str, table: str) -> str:

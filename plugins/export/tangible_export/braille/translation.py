@@ -9,7 +9,7 @@ from tangible_core.plugins import note
 
 from .cells import Cells
 from .cells import width_m as width_of_m
-from .latin import LANGUAGES, code_of, translate_by_table
+from .latin import LANGUAGES, read_code, translate_by_table
 from .louis import CONTRACTED, TABLES, louis, missing_character
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -78,7 +78,7 @@ def written_by(language: str = "en") -> str:
     is_own = language.partition("-")[0].lower() == code_language
     other = "" if is_own else f", for want of one for {quoted(language)}"
     if isinstance(library, str):
-        return f"{code_of(code_language).title}{other} ({library})"
+        return f"{read_code(code_language).title}{other} ({library})"
     tables = CONTRACTED if language.endswith(_GRADE_2) else TABLES
     return f"liblouis {library.version}, {tables[code_language]}{other}"
 
@@ -90,8 +90,8 @@ def _base_language(tag: str) -> str:
 
 def _plain(text: str, language: str) -> str:
     """Return composed letters and plain spaces. Raises: BrailleError for control and unassigned characters."""
-    composed = unicodedata.normalize("NFC", text)
-    plain = "".join(" " if each.isspace() else each for each in visible(composed))
+    text_nfc = unicodedata.normalize("NFC", text)
+    plain = "".join(" " if character.isspace() else character for character in visible(text_nfc))
     plain = _APOSTROPHE.sub("'", plain)
     if language == "en":
         plain = _OPENING.sub("\u201c", plain).replace('"', "\u201d")
@@ -99,9 +99,9 @@ def _plain(text: str, language: str) -> str:
         plain = _GERMAN_QUOTES.sub('"', plain)
     elif language == "fr":
         plain = _FRENCH_SPACE.sub(lambda match: match[1] or match[2], plain)
-    for place, each in enumerate(plain, 1):
-        if unicodedata.category(each) in ("Cc", "Cs", "Co", "Cn"):
-            raise BrailleError(missing_character(each, place, plain, "any braille"))
+    for place, character in enumerate(plain, 1):
+        if unicodedata.category(character) in ("Cc", "Cs", "Co", "Cn"):
+            raise BrailleError(missing_character(character, place, plain, "any braille"))
     return plain
 
 

@@ -65,10 +65,10 @@ def _rings(parts: PartMap) -> tuple[Float64[np.ndarray, "k 2"], Int64[np.ndarray
     to_row, to_column = row + DOWN[way], column + RIGHT[way]
     on = _next_direction(whole, part, to_row, to_column, way)
     following = np.searchsorted(keys, (to_row * corners + to_column) * 4 + on)
-    first, left = _along(following)
+    first, steps = _along(following)
     is_corner = _meet(whole, row, column)
     is_corner[following[on != way]] = True
-    order = np.lexsort((-left, first, part))  # a part's first side, at its topmost corner, is of its outer line
+    order = np.lexsort((-steps, first, part))  # a part's first side, at its topmost corner, is of its outer line
     order = order[is_corner[order]]
     begins = np.diff(first[order], prepend=-1) != 0
     at = np.stack([column[order], row[order]], axis=1).astype(np.float64)
@@ -105,10 +105,10 @@ def _along(following: Sides) -> tuple[Sides, Sides]:
     while not np.array_equal(nearest := np.minimum(first, first[ahead]), first):
         first, ahead = nearest, ahead[ahead]
     ahead = np.where(following == first, np.arange(following.size), following)
-    left = (following != first).astype(np.int64)
-    while (more := left[ahead]).any():
-        left, ahead = left + more, ahead[ahead]
-    return first, left
+    steps = (following != first).astype(np.int64)
+    while (more := steps[ahead]).any():
+        steps, ahead = steps + more, ahead[ahead]
+    return first, steps
 
 
 def _meet(whole: Int32[np.ndarray, "r c"], row: Sides, column: Sides) -> Bool[np.ndarray, "n"]:
@@ -122,7 +122,7 @@ def _gather(shapely: Any, polygons: Any, part: Sides, count: int) -> tuple[Any, 
         return tuple(polygons)
     order = np.argsort(part, kind="stable")
     pieces = np.split(polygons[order], np.searchsorted(part[order], np.arange(1, count)))
-    return tuple(_geometry(shapely, each) for each in pieces)
+    return tuple(_geometry(shapely, piece) for piece in pieces)
 
 
 def _geometry(shapely: Any, pieces: Any) -> Any:

@@ -26,7 +26,7 @@ def choose_fills(
     alike = [
         (one, other) for one in sorted(fills) for other in neighbours[one] if one < other and fills[one] == fills[other]
     ]
-    return [fills[each] for each in range(len(neighbours))], alike
+    return [fills[vertex] for vertex in range(len(neighbours))], alike
 
 
 def _colour_greedily(neighbours: Neighbours, allowed: Allowed, sizes: Sequence[float]) -> dict[int, str]:
@@ -55,17 +55,17 @@ def _search(neighbours: Neighbours, allowed: Allowed, sizes: Sequence[float]) ->
                 uses[fills.pop(open_choices[-1][0])] -= 1
         if not open_choices:
             return None
-        vertex, left = open_choices[-1]
-        fills[vertex] = left.pop(0)
+        vertex, free_fills = open_choices[-1]
+        fills[vertex] = free_fills.pop(0)
         uses[fills[vertex]] += 1
     return None
 
 
 def _next(neighbours: Neighbours, allowed: Allowed, sizes: Sequence[float], fills: Mapping[int, str]) -> int:
-    left = [each for each in range(len(neighbours)) if each not in fills]
+    vertices = [vertex for vertex in range(len(neighbours)) if vertex not in fills]
     if not fills:
-        return max(left, key=lambda each: sizes[each])
-    return min(left, key=lambda each: (len(_free(each, neighbours, allowed, fills)), -sizes[each]))
+        return max(vertices, key=lambda vertex: sizes[vertex])
+    return min(vertices, key=lambda vertex: (len(_free(vertex, neighbours, allowed, fills)), -sizes[vertex]))
 
 
 def _free(vertex: int, neighbours: Neighbours, allowed: Allowed, fills: Mapping[int, str]) -> list[str]:

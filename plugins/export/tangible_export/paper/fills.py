@@ -43,7 +43,7 @@ class Fill:
         """Return the fill without the dots and strokes at these places."""
         near = shapely.MultiPoint(places_mm)
         dots = self.dots_mm[shapely.distance(shapely.points(self.dots_mm), near) > 0.1]
-        return Fill(dots, tuple(each for each in self.strokes if each.distance(near) > 0.1), self.stroke_mm)
+        return Fill(dots, tuple(stroke for stroke in self.strokes if stroke.distance(near) > 0.1), self.stroke_mm)
 
 
 def _dots(inner: Any) -> Fill:
@@ -74,7 +74,7 @@ def _lines(inner: Any, kind: Lines) -> Fill:
     if room.is_empty:
         return Fill()
     strokes = _clear_strokes(shapely.get_parts(shapely.intersection(_parallels(room.bounds, kind), room)), kind)
-    if sum(each.length for each in strokes) < MIN_STROKES_MM or len(strokes) < 2:
+    if sum(stroke.length for stroke in strokes) < MIN_STROKES_MM or len(strokes) < 2:
         return Fill()
     return Fill(strokes=tuple(strokes), stroke_mm=kind.width_mm)
 
@@ -85,26 +85,26 @@ def _parallels(bounds: tuple[float, ...], kind: Lines) -> Any:
     reach = np.hypot(right - left, bottom - top) / 2 + kind.wave_mm
     along = np.arange(-reach, reach + 0.5, 0.5) if kind.wave_mm else np.array([-reach, reach])
     wave = kind.wave_mm * np.sin(2 * np.pi * along / kind.length_mm)
-    ruled = [np.stack([along, wave + off], axis=1) for off in _amid(-reach, reach, kind.pitch_mm)]
+    rows = [np.stack([along, wave + off], axis=1) for off in _amid(-reach, reach, kind.pitch_mm)]
     cosine, sine = np.cos(np.radians(kind.angle_deg)), np.sin(np.radians(kind.angle_deg))
-    turned = np.array([[cosine, -sine], [sine, cosine]])
+    rotation = np.array([[cosine, -sine], [sine, cosine]])
     middle = np.array([(left + right) / 2, (top + bottom) / 2])
-    lines: Any = [shapely.linestrings(np.einsum("ij,kj->ki", turned, each) + middle) for each in ruled]
+    lines: Any = [shapely.linestrings(np.einsum("ij,kj->ki", rotation, points) + middle) for points in rows]
     return shapely.multilinestrings(lines)
 
 
 def _clear_strokes(strokes: Any, kind: Lines) -> list[Any]:
     """Return the long strokes, without those too near to a longer one: ends that a corner of the part left over."""
-    long = sorted((each for each in strokes if each.length >= kind.least_mm), key=lambda each: -each.length)
+    long = sorted((stroke for stroke in strokes if stroke.length >= kind.least_mm), key=lambda stroke: -stroke.length)
     tree = shapely.STRtree(long)
     one, other = tree.query(long, predicate="dwithin", distance=CLEAR_MM + kind.width_mm) if long else ([], [])
     neighbours: dict[int, list[int]] = {}
     for this, that in zip(one, other, strict=True):
         neighbours.setdefault(int(this), []).append(int(that))
     clear: dict[int, Any] = {}
-    for number, each in enumerate(long):
+    for number, stroke in enumerate(long):
         if not any(other in clear for other in neighbours.get(number, [])):
-            clear[number] = each
+            clear[number] = stroke
     return list(clear.values())
 
 

@@ -30,15 +30,15 @@ def key_pages(entries: list[Entry], title: str, language: str, page: Page, like:
     sheet = empty_sheet(page, like)
     lines = wrapped(heading, language, sheet.title_width_mm / 1000)[:MAX_TITLE_LINES]
     below = MARGIN_MM + 1000 * height_m(len(lines)) + BESIDE_MM
-    rows = sorted(entries, key=lambda each: (not each.letter, each.letter, each.name))
-    described = "; ".join(f"{each.letter} {each.name}".strip() for each in rows)
-    blank = Drawing(sheet, heading, described, language, words(language).corner, (), (title_at(heading, lines),))
+    rows = sorted(entries, key=lambda entry: (not entry.letter, entry.letter, entry.name))
+    description = "; ".join(f"{entry.letter} {entry.name}".strip() for entry in rows)
+    blank = Drawing(sheet, heading, description, language, words(language).corner, (), (title_at(heading, lines),))
     columns = 2 if sheet.width_mm > sheet.length_mm else 1
     width = (sheet.width_mm - 2 * MARGIN_MM - (columns - 1) * 2 * BESIDE_MM) / columns
-    letters = max(len(translate(each.letter, language)) for each in rows)
+    letters = max(len(translate(entry.letter, language)) for entry in rows)
     pages, column, top = [blank], 0, max(below, sheet.top_mm)
-    for each in rows:
-        row = _Row(each, language, width, letters)
+    for entry in rows:
+        row = _Row(entry, language, width, letters)
         if top + row.height_mm > sheet.length_mm - MARGIN_MM:
             column, top = column + 1, max(below, sheet.top_mm)
         if column == columns:

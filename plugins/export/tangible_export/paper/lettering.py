@@ -60,12 +60,12 @@ def place_letter(cells: Cells, shape: Any, clear_mm: float = CLEAR_MM) -> Float6
     clear = shape.buffer(-(LINE_MM / 2 + clear_mm + BRAILLE_DOT_MM / 2))
     offsets = 1000 * dots(cells)
     # The places for the first dot: the shrunk shape, moved back by the offset of each dot, intersected.
-    room = shapely.intersection_all([_move(clear, -each) for each in offsets])
-    pieces = [each for each in shapely.get_parts(room) if each.geom_type == "Polygon" and each.area > 0]
+    room = shapely.intersection_all([_move(clear, -offset) for offset in offsets])
+    pieces = [piece for piece in shapely.get_parts(room) if piece.geom_type == "Polygon" and piece.area > 0]
     if not pieces:
         return None
-    radii = [shapely.maximum_inscribed_circle(each, tolerance=0.1) for each in pieces]
-    best = max(radii, key=lambda each: each.length)
+    radii = [shapely.maximum_inscribed_circle(piece, tolerance=0.1) for piece in pieces]
+    best = max(radii, key=lambda circle: circle.length)
     return offsets + np.array(best.coords[0])
 
 

@@ -17,17 +17,17 @@ MAX_NAMES = 100
 """Largest number of names on a page: their key has nine pages, and nobody remembers more. A convention of ours."""
 
 
-def label_of(number: int, work: Work) -> str:
+def find_label(number: int, work: Work) -> str:
     """Return the name of a part, or "part" and its number in the work's language."""
-    named = work.names[number].strip() if number < len(work.names) else ""
-    return part_label(named or number, work.language)
+    name = work.names[number].strip() if number < len(work.names) else ""
+    return part_label(name or number, work.language)
 
 
 def first_labels(labels: Iterable[str]) -> str:
     """Return the first labels, each once, and the number of the others."""
-    each = list(dict.fromkeys(labels))
-    more = f" and {len(each) - MAX_LISTED} more" if len(each) > MAX_LISTED else ""
-    return ", ".join(each[:MAX_LISTED]) + more
+    unique = list(dict.fromkeys(labels))
+    more = f" and {len(unique) - MAX_LISTED} more" if len(unique) > MAX_LISTED else ""
+    return ", ".join(unique[:MAX_LISTED]) + more
 
 
 @dataclass(frozen=True)
@@ -43,9 +43,9 @@ def group_by_name(work: Work, parts: PartMap) -> list[NamedParts]:
     sizes = np.bincount(parts.labels.ravel(), minlength=parts.count)
     numbers_of: dict[str, list[int]] = {}
     for number in np.flatnonzero(sizes).tolist():
-        numbers_of.setdefault(label_of(number, work), []).append(number)
+        numbers_of.setdefault(find_label(number, work), []).append(number)
     groups = [NamedParts(name, tuple(numbers)) for name, numbers in numbers_of.items()]
-    return sorted(groups, key=lambda each: -int(sizes[list(each.numbers)].sum()))
+    return sorted(groups, key=lambda group: -int(sizes[list(group.numbers)].sum()))
 
 
 def key_letters(names: Sequence[str]) -> list[str]:
@@ -61,16 +61,16 @@ def _choose(wishes: list[list[str]], others: list[str]) -> list[str]:
     letters = dict[int, str]()
     for most in (1, None):
         for number, own in enumerate(wishes):
-            free = (each for each in (own[:most] if most else [*own, *others]) if each not in letters.values())
+            free = (wish for wish in (own[:most] if most else [*own, *others]) if wish not in letters.values())
             if number not in letters and (letter := next(free, None)):
                 letters[number] = letter
     return [letters[number] for number in range(len(wishes))]
 
 
 def _letters_in(name: str) -> list[str]:
-    return [each for each in normalize("NFD", name.lower()) if each in LETTERS[:-1]]
+    return [letter for letter in normalize("NFD", name.lower()) if letter in LETTERS[:-1]]
 
 
 def _pairs_in(name: str) -> list[str]:
     letters = _letters_in(name)
-    return [letters[0] + each for each in letters[1:]] if letters else []
+    return [letters[0] + letter for letter in letters[1:]] if letters else []

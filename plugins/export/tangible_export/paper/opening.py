@@ -13,7 +13,7 @@ from tangible_core.plugins import note
 from tangible_legibility.cells import vote
 from tangible_legibility.widths import measure
 
-from .named_parts import first_labels, label_of
+from .named_parts import find_label, first_labels
 from .sheet import GAP_MM, LINE_MM
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -40,9 +40,9 @@ def open_parts(work: Work, parts: PartMap, width_m: float) -> PartMap:
     pitch_m = step * width_m / columns
     before = np.ascontiguousarray(fine[::COARSE, ::COARSE])
     after = _open(before, COARSE * pitch_m)
-    changed, coarse = (_enlarge(each, fine.shape) for each in (before != after, after))
+    is_new, coarse = (_enlarge(mask, fine.shape) for mask in (before != after, after))
     # An edge of a part may lie in the coarse cells of its neighbour: it would be left as a thread.
-    near = cv2.dilate(changed.astype(np.uint8), np.ones((2 * COARSE - 1, 2 * COARSE - 1), np.uint8)) > 0
+    near = cv2.dilate(is_new.astype(np.uint8), np.ones((2 * COARSE - 1, 2 * COARSE - 1), np.uint8)) > 0
     labels = _without_crumbs(np.where(near, coarse, fine), pitch_m)
     _note_lost(work, fine, labels, parts.count)
     return PartMap(labels, parts.segments)
@@ -78,11 +78,11 @@ def _reassign(
 ) -> Int32[np.ndarray, "h w"]:
     """Assign all cells within `further` of a narrow place to the part with the largest share of the cells around."""
     away = cv2.distanceTransform((~narrow).astype(np.uint8), cv2.DIST_L2, 5) <= further
-    assigned, reach = labels.copy(), int(4 * sigma) + 2
+    result, reach = labels.copy(), int(4 * sigma) + 2
     for box in find_objects(cv2.connectedComponents(away.astype(np.uint8), connectivity=8)[1]):
-        window = tuple(slice(max(0, each.start - reach), each.stop + reach) for each in box)
-        assigned[window] = vote(labels[window], away[window], ~away[window], sigma)
-    return assigned
+        window = tuple(slice(max(0, side.start - reach), side.stop + reach) for side in box)
+        result[window] = vote(labels[window], away[window], ~away[window], sigma)
+    return result
 
 
 def _without_crumbs(labels: Int32[np.ndarray, "h w"], pitch_m: float) -> Int32[np.ndarray, "h w"]:
@@ -93,8 +93,8 @@ def _without_crumbs(labels: Int32[np.ndarray, "h w"], pitch_m: float) -> Int32[n
 
 
 def _note_lost(work: Work, before: Int32[np.ndarray, "h w"], after: Int32[np.ndarray, "h w"], count: int) -> None:
-    there, left = (np.bincount(each.ravel(), minlength=count) > 0 for each in (before, after))
-    if lost := [label_of(number, work) for number in np.flatnonzero(there & ~left).tolist()]:
+    there, remaining = (np.bincount(labels.ravel(), minlength=count) > 0 for labels in (before, after))
+    if lost := [find_label(number, work) for number in np.flatnonzero(there & ~remaining).tolist()]:
         note(
             log,
             f"no room for {first_labels(lost)}: narrower than {1000 * GAP_M:.1f} mm between the middles of outlines",

@@ -60,9 +60,9 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[Dr
             "fewer, by a texture method with fewer segments or by one name for several in `parts:`"
         )
     blank, title = _blank_page(work, sheet)
-    drawn = work.picture if work.kind == "drawing" else None
+    drawing = work.picture if work.kind == "drawing" else None
     figure: Figure = work.extras.get("figure") or Figure()
-    symbols, picture = _draw_readable(blank, parts, groups, figure.front_parts(parts), drawn)
+    symbols, picture = _draw_readable(blank, parts, groups, figure.front_parts(parts), drawing)
     _note_left_out(symbols, picture)
     keys = key_pages(_entries(symbols, picture), title, work.language, page, blank.sheet)
     for key in keys:
@@ -111,7 +111,7 @@ def _draw_readable(
     flat drawing, whose lines are drawn as well, and whose paper stays empty; None for another.
     Raises: PictureError if that does not help.
     """
-    near, sheet, given = list[Near](), blank.sheet, parts
+    near, sheet, original = list[Near](), blank.sheet, parts
     wide_mm = sheet.picture_mm[0]
     for turn in range(ROUNDS):
         shapes = _on_page(parts, sheet)
@@ -122,17 +122,17 @@ def _draw_readable(
             symbols = _choose_symbols(groups, shapes, _neighbours(parts, groups), blank.language)
             if drawn is not None:
                 symbols = [
-                    replace(each, kind=BLANK, is_paper=True) if _is_paper(each.group, parts) else each
-                    for each in symbols
+                    replace(symbol, kind=BLANK, is_paper=True) if _is_paper(symbol.group, parts) else symbol
+                    for symbol in symbols
                 ]
-            description = "; ".join(f"{each.letter} {each.group.name}" for each in symbols)
+            description = "; ".join(f"{symbol.letter} {symbol.group.name}" for symbol in symbols)
             drawing, near = _draw_clear(replace(blank, description=description), symbols, shapes, strokes)
             if not near:
                 _note_texts(texts)
                 return symbols, replace(drawing, strokes=strokes)
-        parts = open_at(parts, _on_picture([each.place_mm for each in near], sheet), wide_mm / 1000, turn + 1)
+        parts = open_at(parts, _on_picture([gap.place_mm for gap in near], sheet), wide_mm / 1000, turn + 1)
     if front:  # a thinner line may have the room
-        return _draw_readable(replace(blank, figure=None), given, groups, (), drawn)
+        return _draw_readable(replace(blank, figure=None), original, groups, (), drawn)
     raise PictureError(f"{near[0]}, and {GAP_MM} mm must be between them; make the picture larger or simpler")
 
 
@@ -161,7 +161,7 @@ def _on_page(parts: PartMap, sheet: Sheet) -> tuple[Any, ...]:
     def to_page(at: Float64[np.ndarray, "k 2"]) -> Float64[np.ndarray, "k 2"]:
         return at * scale + middle
 
-    return tuple(shapely.transform(each, to_page) for each in smooth_borders(parts, width))
+    return tuple(shapely.transform(shape, to_page) for shape in smooth_borders(parts, width))
 
 
 def _neighbours(parts: PartMap, groups: Sequence[NamedParts]) -> list[set[int]]:
@@ -186,11 +186,11 @@ def _choose_symbols(
         Symbols(group, letter, translate(letter, language), BLANK)
         for group, letter in zip(groups, letters, strict=True)
     ]
-    allowed = [
-        [kind for kind in KINDS if kind == BLANK or _has_room(replace(each, kind=kind), shapes)] for each in plain
+    choices = [
+        [kind for kind in KINDS if kind == BLANK or _has_room(replace(symbol, kind=kind), shapes)] for symbol in plain
     ]
     sizes = [sum(shapes[number].area for number in group.numbers) for group in groups]
-    kinds, alike = choose_fills(neighbours, allowed, sizes)
+    kinds, alike = choose_fills(neighbours, choices, sizes)
     if alike:
         pairs = [f"{groups[one].name} and {groups[other].name}" for one, other in alike]
         note(log, f"neighbours with the same fill, as there are too few: {first_labels(pairs)}", logging.WARNING)
@@ -200,7 +200,7 @@ def _choose_symbols(
             f"{len(groups)} parts have letters, two each: many for one page; fewer are read sooner",
             logging.WARNING,
         )
-    return [replace(each, kind=kind) for each, kind in zip(plain, kinds, strict=True)]
+    return [replace(symbol, kind=kind) for symbol, kind in zip(plain, kinds, strict=True)]
 
 
 def _has_room(symbols: Symbols, shapes: Sequence[Any]) -> bool:
@@ -223,24 +223,24 @@ def _draw_clear(
 
     Returns: the page, and the pairs of marks that are still too near.
     """
-    pieces = [(each, shapes[number]) for each in symbols for number in each.group.numbers]
+    pieces = [(symbol, shapes[number]) for symbol in symbols for number in symbol.group.numbers]
     inked = shapely.union_all(strokes).buffer(LINE_MM / 2) if strokes else None
-    away, clear_mm = NO_DOTS, [np.inf if each.is_paper else CLEAR_MM for each, _ in pieces]
+    away, clear_mm = NO_DOTS, [np.inf if symbol.is_paper else CLEAR_MM for symbol, _ in pieces]
     drawing, near = blank, list[Near]()
     for turn in range(ROUNDS):
-        areas = [_area(each, shape, clear, inked) for (each, shape), clear in zip(pieces, clear_mm, strict=True)]
+        areas = [_area(symbol, shape, clear, inked) for (symbol, shape), clear in zip(pieces, clear_mm, strict=True)]
         areas = [replace(area, fill=area.fill.without(away)) if len(away) else area for area in areas]
         drawing = replace(blank, areas=tuple(areas))
         near = too_near(read(svg(drawing)))
-        if not near or any(each.between_outlines for each in near):
-            return drawing, [each for each in near if each.between_outlines]
-        for each in near:
-            if fills := [mark.place_mm for mark in each.marks if mark.what == "fill"]:
+        if not near or any(gap.between_outlines for gap in near):
+            return drawing, [gap for gap in near if gap.between_outlines]
+        for gap in near:
+            if fills := [mark.place_mm for mark in gap.marks if mark.what == "fill"]:
                 away = np.concatenate([away, fills[-1:]])
-            elif (number := _letter_in(each, areas)) is None:
-                return drawing, [each]
+            elif (number := _letter_in(gap, areas)) is None:
+                return drawing, [gap]
             else:
-                clear_mm[number] = clear_mm[number] + GAP_MM - each.gap_mm + APART_MM if turn < 2 else np.inf
+                clear_mm[number] = clear_mm[number] + GAP_MM - gap.gap_mm + APART_MM if turn < 2 else np.inf
     return drawing, near
 
 
@@ -258,22 +258,22 @@ def _check_key(key: Drawing) -> None:
 
 
 def _entries(symbols: Sequence[Symbols], picture: Drawing) -> list[Entry]:
-    lettered = {area.label for area in picture.areas if area.letter}
+    with_letter = {area.label for area in picture.areas if area.letter}
     has_fill = {area.label for area in picture.areas if area.fill}
     return [
         Entry(
-            each.group.name,
-            each.letter if each.group.name in lettered else "",
-            each.kind if each.group.name in has_fill else BLANK,
+            symbol.group.name,
+            symbol.letter if symbol.group.name in with_letter else "",
+            symbol.kind if symbol.group.name in has_fill else BLANK,
         )
-        for each in symbols
-        if not each.is_paper
+        for symbol in symbols
+        if not symbol.is_paper
     ]
 
 
 def _note_left_out(symbols: Sequence[Symbols], picture: Drawing) -> None:
     note(log, f"braille by {written_by(picture.language)}")
-    kinds = {each.group.name: each.kind for each in symbols if not each.is_paper}
+    kinds = {symbol.group.name: symbol.kind for symbol in symbols if not symbol.is_paper}
     if bare := [area.label for area in picture.areas if area.letter is None and area.label in kinds]:
         note(log, f"no room for a letter in {first_labels(bare)}")
     if bare := [area.label for area in picture.areas if kinds.get(area.label, BLANK) != BLANK and not area.fill]:

@@ -81,7 +81,7 @@ def _largest(page: Page, aspect: float) -> tuple[tuple[float, float], float]:
     upright = SIZES_MM[page]
     level = upright[1], upright[0]
     rooms = {size: min(_room(size)[0], _room(size)[1] * aspect) for size in (upright, level)}
-    size = max(rooms, key=lambda each: rooms[each])
+    size = max(rooms, key=lambda room: rooms[room])
     return size, rooms[size]
 
 

@@ -31,9 +31,9 @@ def smooth_borders(parts: PartMap, width_mm: float) -> tuple[Any, ...]:
     pitch_mm = width_mm / columns
     stairs = shared_borders(parts, width_mm, 0)
     rim = shapely.box(*shapely.total_bounds(stairs)).exterior
-    lines = shapely.get_parts(shapely.line_merge(shapely.union_all([each.boundary for each in stairs])))
+    lines = shapely.get_parts(shapely.line_merge(shapely.union_all([polygon.boundary for polygon in stairs])))
     sigma = max(SMOOTH_MM / pitch_mm, SMOOTH_PX)
-    smooth = [each if rim.covers(each) else _smooth(each, pitch_mm, sigma) for each in lines]
+    smooth = [line if rim.covers(line) else _smooth(line, pitch_mm, sigma) for line in lines]
     return _gather(shapely.get_parts(shapely.polygonize(smooth)), parts, stairs, pitch_mm)
 
 
@@ -44,11 +44,11 @@ def _smooth(line: Any, pitch_mm: float, sigma: float) -> Any:
     at = np.concatenate(
         [_middles(one, other, n) for one, other, n in zip(ends, ends[1:], steps.tolist(), strict=False)]
     )
-    closed = bool(line.is_closed)
-    at = at if closed else np.concatenate([ends[:1], at, ends[-1:]])
-    once = blur(at, sigma, closed)
-    twice = once + blur(at - once, sigma, closed)
-    if closed:
+    is_closed = bool(line.is_closed)
+    at = at if is_closed else np.concatenate([ends[:1], at, ends[-1:]])
+    once = blur(at, sigma, is_closed)
+    twice = once + blur(at - once, sigma, is_closed)
+    if is_closed:
         twice = np.concatenate([twice, twice[:1]])
     else:
         twice[[0, -1]] = ends[[0, -1]]
@@ -79,4 +79,4 @@ def _gather(faces: Any, parts: PartMap, stairs: tuple[Any, ...], pitch_mm: float
     column = np.clip((at[:, 0] / pitch_mm + columns / 2).astype(int), 0, columns - 1)
     row = np.clip((rows / 2 - at[:, 1] / pitch_mm).astype(int), 0, rows - 1)
     number = parts.labels[row, column]
-    return tuple(shapely.union_all(faces[number == each]) for each in range(len(stairs)))
+    return tuple(shapely.union_all(faces[number == part]) for part in range(len(stairs)))

@@ -45,15 +45,15 @@ def strokes_on(picture: np.ndarray, sheet: Sheet, outlines: Any = None) -> tuple
 
 def _links(centre: Bool[np.ndarray, "r c"]) -> Float64[np.ndarray, "n 2 2"]:
     """Return the pairs of neighbouring pixels; diagonal ones where no straight step leads from one to the other."""
-    whole, found = np.pad(centre, 1), list[np.ndarray]()
+    whole, links = np.pad(centre, 1), list[np.ndarray]()
     rows, columns = np.nonzero(centre)
     for down, right in ((0, 1), (1, 0), (1, 1), (1, -1)):
-        linked = whole[rows + 1 + down, columns + 1 + right]
+        mask = whole[rows + 1 + down, columns + 1 + right]
         if down and right:
-            linked &= ~(whole[rows + 2, columns + 1] | whole[rows + 1, columns + 1 + right])
-        one = np.stack([columns[linked], rows[linked]], axis=1)
-        found.append(np.stack([one, one + np.array([right, down])], axis=1))
-    return np.concatenate(found).astype(np.float64)
+            mask &= ~(whole[rows + 2, columns + 1] | whole[rows + 1, columns + 1 + right])
+        one = np.stack([columns[mask], rows[mask]], axis=1)
+        links.append(np.stack([one, one + np.array([right, down])], axis=1))
+    return np.concatenate(links).astype(np.float64)
 
 
 def _smooth(at: Float64[np.ndarray, "n 2"], closed: bool) -> Any:
@@ -65,9 +65,11 @@ def _smooth(at: Float64[np.ndarray, "n 2"], closed: bool) -> Any:
 
 def _apart(strokes: list[Any], outlines: Any) -> list[Any]:
     """Return the strokes without what runs along an outline; what only crosses or meets one stays."""
-    near, kept = outlines.buffer(ALONG_MM), list[Any]()
+    near, remaining = outlines.buffer(ALONG_MM), list[Any]()
     for stroke in strokes:
-        along = [each for each in shapely.get_parts(stroke.intersection(near)) if each.length > LONG_MM]
+        along = [piece for piece in shapely.get_parts(stroke.intersection(near)) if piece.length > LONG_MM]
         rest = shapely.get_parts(stroke.difference(shapely.union_all(along).buffer(LINE_MM / 10)) if along else stroke)
-        kept += [each for each in rest if each.geom_type == "LineString" and (not along or each.length > SPUR_MM)]
-    return kept
+        remaining += [
+            piece for piece in rest if piece.geom_type == "LineString" and (not along or piece.length > SPUR_MM)
+        ]
+    return remaining

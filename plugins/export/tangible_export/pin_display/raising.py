@@ -13,14 +13,14 @@ MIN_CELLS = 4  # of the map, along a pin's side; a smaller map is enlarged
 Place = tuple[slice, slice]
 
 
-def place_of(display: Display, shape: tuple[int, ...]) -> Place:
+def place_picture(display: Display, shape: tuple[int, ...]) -> Place:
     """Return the place of a picture of this shape."""
     columns, rows = display.picture_size(shape[1] / shape[0])
     top, left = (display.rows - rows) // 2, (display.columns - columns) // 2
     return slice(top, top + rows), slice(left, left + columns)
 
 
-def most_of(parts: PartMap, rows: int, columns: int) -> Int32[np.ndarray, "{rows} {columns}"]:
+def largest_shares(parts: PartMap, rows: int, columns: int) -> Int32[np.ndarray, "{rows} {columns}"]:
     """Return the part with the largest share of each pin's cell; of two equal parts, the one with the lower number."""
     labels = _enlarge(parts.labels, rows, columns)
     height, width = labels.shape

@@ -83,7 +83,7 @@ def close_solid(upper: Patch, base_m: float) -> Solid:
     foot = np.zeros(count, np.int64)
     foot[start] = count + np.arange(rim)
     centre = np.full(rim, count + rim)
-    walls = [np.stack(each, axis=1) for each in ((end, start, foot[start]), (end, foot[start], foot[end]))]
+    walls = [np.stack(corners, axis=1) for corners in ((end, start, foot[start]), (end, foot[start], foot[end]))]
     floor = np.stack([foot[end], foot[start], centre], axis=1)
     below = np.concatenate([vertices[start], vertices.max(axis=0, keepdims=True) // 2]) * (1, 1, 0)
     return Solid(np.concatenate([vertices, below]) / STEPS_PER_MM, np.concatenate([triangles, *walls, floor]))
@@ -93,13 +93,13 @@ def _weld(
     points: Int64[np.ndarray, "n 3"], triangles: Int64[np.ndarray, "m 3"]
 ) -> tuple[Int64[np.ndarray, "v 3"], Int64[np.ndarray, "t 3"]]:
     order = np.lexsort(points.T)
-    ordered = points[order]
-    first = np.concatenate([[True], (ordered[1:] != ordered[:-1]).any(axis=1)])
+    sequence = points[order]
+    first = np.concatenate([[True], (sequence[1:] != sequence[:-1]).any(axis=1)])
     vertex = np.empty(len(points), np.int64)
     vertex[order] = first.cumsum() - 1
     corners = vertex[triangles]
     a, b, c = corners.T
-    return ordered[first], corners[(a != b) & (b != c) & (c != a)]
+    return sequence[first], corners[(a != b) & (b != c) & (c != a)]
 
 
 def _outline(

@@ -94,10 +94,10 @@ def _layout(options: PlateOptions, work: Work) -> Layout:
     picture_m = work.relief.extent_m
     rim_m = options.rim_m if options.rim_m >= NARROWEST_M else 0.0
     has_title = options.braille and bool(work.title.strip())
-    wanted = [name for name, on in (("title", has_title), ("corner mark", options.corner_mark)) if on]
+    items = [name for name, on in (("title", has_title), ("corner mark", options.corner_mark)) if on]
     if options.rim_m < MIN_RIM_M:
-        if wanted:
-            fault = f"a rim of {1000 * options.rim_m:.2g} mm has no room for the {' and the '.join(wanted)}"
+        if items:
+            fault = f"a rim of {1000 * options.rim_m:.2g} mm has no room for the {' and the '.join(items)}"
             note(log, f"{fault}; make rim_m {1000 * MIN_RIM_M:.0f} mm or more", logging.WARNING)
         return Layout(picture_m, rim_m)
     return Layout(picture_m, rim_m, _title(options, work) if has_title else (), options.corner_mark)

@@ -173,8 +173,8 @@ def braille_band(
 
 
 def _borders(places_m: Float64[np.ndarray, " n"], end_m: float) -> Float64[np.ndarray, " k"]:
-    each = np.unique(places_m.round(9))
-    return np.concatenate([[0.0], (each[1:] + each[:-1]) / 2, [end_m]])
+    centres = np.unique(places_m.round(9))
+    return np.concatenate([[0.0], (centres[1:] + centres[:-1]) / 2, [end_m]])
 
 
 def _dot(box: tuple[float, float, float, float], centre_m: tuple[float, float]) -> Patch:

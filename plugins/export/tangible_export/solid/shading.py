@@ -38,12 +38,12 @@ def shaded(solid: Solid) -> UInt8[np.ndarray, "h w"]:
     normals = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
     towards = np.array([0.0, -np.sin(TILT), np.cos(TILT)])
-    seen = (_along(normals, towards) > 0) & (lengths > 0)
-    at, normals = at[seen], normals[seen] / lengths[seen, None]
+    visible = (_along(normals, towards) > 0) & (lengths > 0)
+    at, normals = at[visible], normals[visible] / lengths[visible, None]
     places, (rows, columns) = _on_picture(at)
     high = at[..., 2].mean(axis=1)
-    raised = np.clip((high - (low := np.percentile(high, 1))) / (high.max() - low + 1e-9), 0, 1)
-    greys = (DARKEST + (LIGHTEST - DARKEST) * np.clip(_along(normals, LIGHT), 0, 1)) * (LOWEST + (1 - LOWEST) * raised)
+    shares = np.clip((high - (low := np.percentile(high, 1))) / (high.max() - low + 1e-9), 0, 1)
+    greys = (DARKEST + (LIGHTEST - DARKEST) * np.clip(_along(normals, LIGHT), 0, 1)) * (LOWEST + (1 - LOWEST) * shares)
     picture = np.full((rows, columns), 255, np.uint8)
     corners = np.rint(16 * places).astype(np.int32)
     for number in np.argsort(_along(at.mean(axis=1), towards)).tolist():

@@ -49,8 +49,8 @@ def _resize(heights: Float32[np.ndarray, "h w"], shape: tuple[int, int]) -> Floa
         return heights
     smaller = shape[0] <= heights.shape[0] and shape[1] <= heights.shape[1]
     with plain_opencv():
-        sized = cv2.resize(heights, shape[::-1], interpolation=cv2.INTER_AREA if smaller else cv2.INTER_LINEAR)
-    return np.maximum(sized, 0).astype(np.float32)
+        resized = cv2.resize(heights, shape[::-1], interpolation=cv2.INTER_AREA if smaller else cv2.INTER_LINEAR)
+    return np.maximum(resized, 0).astype(np.float32)
 
 
 def few_triangles(

@@ -9,7 +9,7 @@ import pytest
 from tangible_core.errors import BrailleError
 from tangible_core.plugins.notes import collected
 from tangible_export.braille import as_ascii, as_unicode, in_grade, translate, translation, written_by
-from tangible_export.braille.latin import LANGUAGES, LETTERS, code_of, translate_by_table
+from tangible_export.braille.latin import LANGUAGES, LETTERS, read_code, translate_by_table
 from tangible_export.braille.louis import CONTRACTED, TABLES, Louis, louis
 
 ORDINARY = {
@@ -79,8 +79,8 @@ def test_liblouis_and_our_tables_agree_on_every_letter_and_digit(installed: Loui
     """Small and capital, within words; accents of all languages where theirs stand before the letter."""
     letters = [
         *LETTERS,
-        *(sign for sign in code_of(language).signs if sign.isalpha() and sign.upper().lower() == sign),
-        *("éèêñčōŭïåç" if code_of(language).marks else ""),
+        *(sign for sign in read_code(language).signs if sign.isalpha() and sign.upper().lower() == sign),
+        *("éèêñčōŭïåç" if read_code(language).marks else ""),
     ]
     for word in (word for letter in letters for word in (f"a{letter}a", f"{letter.upper()}a", f"m{letter}")):
         if language == "en" and word[0] in "ÆŒ":  # liblouis repeats the sign of capitals within the ligature

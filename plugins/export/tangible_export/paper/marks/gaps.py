@@ -41,10 +41,10 @@ class Near:
 def too_near(page: Marks) -> list[Near]:
     """Return all pairs of marks that are too near; outlines that touch count as one, dots of one text do not count."""
     ink = _without_empty_end(black(page, PIXELS_PER_MM))
-    measured = cv2.distanceTransformWithLabels(
+    distances = cv2.distanceTransformWithLabels(
         (~ink).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_CCOMP
     )
-    far, nearest = np.asarray(measured[0], np.float32), np.asarray(measured[1], np.int32)
+    far, nearest = np.asarray(distances[0], np.float32), np.asarray(distances[1], np.int32)
     blots = _marks_of_blots(page, nearest)
     touching = [
         Near(pair, 0.0, pair[0].place_mm)
@@ -147,13 +147,13 @@ def _narrow(page: Marks, lines: Bool[np.ndarray, "r c"]) -> Iterator[Near]:
     free = (~lines).astype(np.uint8)
     far = pixel_mm * (cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE) - 0.5)
     beyond = pixel_mm * _distance_to_centres(free, far >= GAP_MM / 2 - pixel_mm) - GAP_MM / 2
-    left = (free > 0) & (beyond > pixel_mm)
-    count, places = cv2.connectedComponents(left.astype(np.uint8), connectivity=4)
+    tips = (free > 0) & (beyond > pixel_mm)
+    count, places = cv2.connectedComponents(tips.astype(np.uint8), connectivity=4)
     if count == 1:
         return
     numbers, longest = np.arange(count), np.zeros(count, np.float32)
-    np.maximum.at(longest, np.asarray(places, np.int64)[left], beyond[left])
-    wrong = (longest > GAP_MM) | (_sides(places, (free > 0) & ~left, count) > 1)
+    np.maximum.at(longest, np.asarray(places, np.int64)[tips], beyond[tips])
+    wrong = (longest > GAP_MM) | (_sides(places, (free > 0) & ~tips, count) > 1)
     for number in numbers[1:][wrong[1:]].tolist():
         row, column = (int(at) for at in np.unravel_index(np.where(places == number, far, -1).argmax(), far.shape))
         place = (column * pixel_mm, row * pixel_mm)

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from ...braille import visible
 from ..sheet import MARGIN_MM
 from .reading import read
-from .rendering import POINTS_PER_MM, figure_of, save_pdf
+from .rendering import POINTS_PER_MM, make_figure, save_pdf
 from .svg import Area, Braille, Drawing, svg
 
 GREY = "#999999"
@@ -44,7 +44,7 @@ def ink_svg(drawing: Drawing, note: str, named: bool) -> str:
 
 def write_ink_pdf(path: Path, pages: Sequence[Drawing], note: str) -> None:
     """Write all pages in ink: the first one with the names of its parts, the others, a key, with their own texts."""
-    figures = [_figure(each, note, number == 0) for number, each in enumerate(pages)]
+    figures = [_figure(page, note, number == 0) for number, page in enumerate(pages)]
     with mpl.rc_context({"pdf.fonttype": 42}):  # so that the names can be searched and copied
         save_pdf(path, pages[0].title, figures)
 
@@ -52,10 +52,10 @@ def write_ink_pdf(path: Path, pages: Sequence[Drawing], note: str) -> None:
 def labels(drawing: Drawing, note: str, named: bool) -> list[Label]:
     """Return the texts of a page in ink: those of its braille, the names of its parts, the scale and the note."""
     foot, (_, right) = _foot_mm(drawing) + LETTERS_MM / 3, SCALE_MM
-    found = [_above(each) for each in drawing.texts if len(each.dots_mm)]
-    found += [_at_part(each, drawing.sheet.width_mm) for each in _one_of_each(drawing.areas)] if named else []
-    found = [replace(label, text=visible(label.text)) for label in found]  # a font has nothing for what cannot be seen
-    return [*found, Label(SCALE, right + 2, foot), Label(note, right + 20, foot)]
+    texts = [_above(text) for text in drawing.texts if len(text.dots_mm)]
+    texts += [_at_part(area, drawing.sheet.width_mm) for area in _one_of_each(drawing.areas)] if named else []
+    texts = [replace(label, text=visible(label.text)) for label in texts]  # a font has nothing for what cannot be seen
+    return [*texts, Label(SCALE, right + 2, foot), Label(note, right + 20, foot)]
 
 
 def _above(text: Braille) -> Label:
@@ -65,8 +65,8 @@ def _above(text: Braille) -> Label:
 
 def _one_of_each(areas: Sequence[Area]) -> Iterator[Area]:
     """Yield each area but those that have no letter and share their name with one that has: one word is enough."""
-    lettered = {each.label for each in areas if each.letter is not None}
-    yield from (each for each in areas if each.letter is not None or each.label not in lettered)
+    with_letter = {area.label for area in areas if area.letter is not None}
+    yield from (area for area in areas if area.letter is not None or area.label not in with_letter)
 
 
 def _at_part(area: Area, width_mm: float) -> Label:
@@ -97,17 +97,17 @@ def _text(label: Label) -> str:
 def _figure(drawing: Drawing, note: str, named: bool) -> Figure:
     page = read(svg(drawing))
     width, length = page.size_mm
-    figure = figure_of(page, page.marks, colour=GREY)
+    figure = make_figure(page, page.marks, colour=GREY)
     y = 1 - _foot_mm(drawing) / length
-    ends = [each / width for each in SCALE_MM]
+    ends = [end / width for end in SCALE_MM]
     figure.add_artist(Line2D(ends, [y, y], color="black", linewidth=0.5 * POINTS_PER_MM, transform=figure.transFigure))
-    for each in labels(drawing, note, named):
+    for label in labels(drawing, note, named):
         figure.text(
-            each.x_mm / width,
-            1 - each.y_mm / length,
-            each.text,
+            label.x_mm / width,
+            1 - label.y_mm / length,
+            label.text,
             fontsize=LETTERS_MM * POINTS_PER_MM,
-            ha="center" if each.middle else "left",
+            ha="center" if label.middle else "left",
             parse_math=False,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.3 * POINTS_PER_MM},
         )

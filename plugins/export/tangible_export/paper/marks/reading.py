@@ -55,17 +55,17 @@ def read(text: str) -> Marks:
 
 
 def _marks(element: ElementTree.Element, what: str, label: str, groups: list[int]) -> Iterator[Mark]:
-    for each in element:
-        kind = each.tag.rpartition("}")[2]
-        if "data-mark" in each.attrib:
+    for child in element:
+        kind = child.tag.rpartition("}")[2]
+        if "data-mark" in child.attrib:
             groups[0] += 1
-        inner, named = each.get("data-mark", what), each.get("aria-label", label)
+        inner, name = child.get("data-mark", what), child.get("aria-label", label)
         if kind == "g":
-            yield from _marks(each, inner, named, groups)
+            yield from _marks(child, inner, name, groups)
         elif kind in ("circle", "path"):
-            width = _number(each, "stroke-width") if each.get("stroke") else 0
-            for shape in [_disc(each)] if kind == "circle" else _shapes(each.get("d", "")):
-                yield Mark(inner, named, groups[0], shape, width)
+            width = _number(child, "stroke-width") if child.get("stroke") else 0
+            for shape in [_disc(child)] if kind == "circle" else _shapes(child.get("d", "")):
+                yield Mark(inner, name, groups[0], shape, width)
         elif kind not in ("title", "desc"):
             raise BrokenMethod(f"a page for swell paper has no element {kind}")
 
@@ -80,9 +80,9 @@ def _shapes(text: str) -> Iterator[Shape]:
     for piece in re.findall(r"M[^M]*", text):
         steps = _STEP.findall(piece)
         at = np.array([(float(x), float(y)) for step, x, y in steps if step != "Z"])
-        closed = steps[-1][0] == "Z"
-        at = np.concatenate([at, at[:1]]) if closed else at
-        codes = [Shape.MOVETO] + [Shape.LINETO] * (len(at) - 1 - closed) + [Shape.CLOSEPOLY] * closed
+        is_closed = steps[-1][0] == "Z"
+        at = np.concatenate([at, at[:1]]) if is_closed else at
+        codes = [Shape.MOVETO] + [Shape.LINETO] * (len(at) - 1 - is_closed) + [Shape.CLOSEPOLY] * is_closed
         yield Shape(at, codes)
 
 

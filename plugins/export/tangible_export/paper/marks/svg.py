@@ -91,7 +91,7 @@ def _area(area: Area, colour: str) -> str:
 
 def _outline(shape: Any, colour: str, width_mm: float) -> str:
     rings = shapely.get_rings(shapely.get_parts(shape))
-    line = "".join(f"{_line(shapely.get_coordinates(each)[:-1])}Z" for each in rings)
+    line = "".join(f"{_line(shapely.get_coordinates(ring)[:-1])}Z" for ring in rings)
     return (
         f'<path data-mark="outline" fill="none" stroke="{colour}" stroke-width="{width_mm:g}" stroke-linejoin="round" '
         f'd="{line}"/>'
@@ -99,7 +99,7 @@ def _outline(shape: Any, colour: str, width_mm: float) -> str:
 
 
 def _strokes(strokes: Iterable[Any], colour: str) -> Iterable[str]:
-    if lines := "".join(_line(shapely.get_coordinates(each)) for each in strokes):
+    if lines := "".join(_line(shapely.get_coordinates(stroke)) for stroke in strokes):
         yield (
             f'<path data-mark="line" fill="none" stroke="{colour}" stroke-width="{LINE_MM:g}" stroke-linecap="round" '
             f'stroke-linejoin="round" d="{lines}"/>'
@@ -107,7 +107,7 @@ def _strokes(strokes: Iterable[Any], colour: str) -> Iterable[str]:
 
 
 def _fill(fill: Fill, colour: str) -> str:
-    strokes = "".join(_line(shapely.get_coordinates(each)) for each in fill.strokes)
+    strokes = "".join(_line(shapely.get_coordinates(stroke)) for stroke in fill.strokes)
     if not strokes:
         return f'<g data-mark="fill">{_discs(fill.dots_mm, FILL_DOT_MM)}</g>'
     return (

@@ -12,7 +12,7 @@ from .cells import as_unicode as as_unicode
 from .cells import dots as dots
 from .cells import height_m as height_m
 from .cells import width_m as width_m
-from .choice import BrailleChoice as BrailleChoice
+from .translation import BrailleChoice as BrailleChoice
 from .translation import in_grade as in_grade
 from .translation import title_in_braille as title_in_braille
 from .translation import translate as translate

@@ -3,7 +3,9 @@
 import logging
 import re
 import unicodedata
+from typing import Literal
 
+from tangible_core.data import Quantities
 from tangible_core.errors import BrailleError, check_positive, quoted
 from tangible_core.plugins import note
 
@@ -28,6 +30,19 @@ _GRADE_2 = "-x-grade2"
 _SHORT = 2
 """The characters of a text that is never contracted: the letters of a key stand for themselves."""
 _BREAK = re.compile("[^\\S\u00a0\u202f]+(?!%)")
+
+
+class BrailleChoice(Quantities):
+    """The braille of a file."""
+
+    grade: Literal[1, 2] = 1
+    """1 is uncontracted, a letter a cell; 2 contracted, as books are printed, in English, German and French by
+    liblouis."""
+
+    @staticmethod
+    def in_force(option: "bool | BrailleChoice") -> "BrailleChoice":
+        """Return the choice that an option stands for, which may only say whether there is braille."""
+        return option if isinstance(option, BrailleChoice) else BrailleChoice()
 
 
 def in_grade(language: str, grade: int) -> str:

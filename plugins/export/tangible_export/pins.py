@@ -19,8 +19,7 @@ if TYPE_CHECKING:
 
 log: logging.Logger = logging.getLogger(__name__)
 
-MIN_PINS = 3
-"""Shortest side of a picture in pins; fewer leave nothing between two borders."""
+MIN_PINS = 3  # fewer leave nothing between two borders
 
 
 class Raised(NamedTuple):

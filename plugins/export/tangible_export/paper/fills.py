@@ -10,8 +10,7 @@ from jaxtyping import Float64
 
 from .sheet import CLEAR_MM, LINE_MM
 
-MIN_DOTS, MIN_STROKES_MM = 4, 16.0
-"""Smallest number of dots and smallest length of all strokes of a fill. Conventions of ours."""
+MIN_DOTS, MIN_STROKES_MM = 4, 16.0  # conventions of ours
 DOT_MM, DOTS_APART_MM = 2.4, 6.0
 
 

@@ -20,10 +20,8 @@ log: logging.Logger = logging.getLogger(__name__)
 
 PITCH_M = 0.25e-3
 COARSE = 2
-GAP_M = (GAP_MM + LINE_MM) / 1000
-"""Smallest distance between the middles of two outlines."""
-AMPLE = 1.12
-"""Factor on the gap, so that smoothed borders still keep it."""
+GAP_M = (GAP_MM + LINE_MM) / 1000  # between the middles of two outlines
+AMPLE = 1.12  # so that smoothed borders still keep the gap
 ROUNDS = 16
 FURTHER = 0.1
 """Margin around a narrow place that is assigned anew, as a share of the gap. From the third round on the margin grows

@@ -31,8 +31,7 @@ from .strokes import strokes_on
 log: logging.Logger = logging.getLogger(__name__)
 
 ROUNDS = 6
-APART_MM = 0.15
-"""Margin that is added when a letter is moved away from a mark."""
+APART_MM = 0.15  # added when a letter is moved away from a mark
 
 
 @dataclass(frozen=True)
@@ -165,7 +164,6 @@ def _on_page(parts: PartMap, sheet: Sheet) -> tuple[Any, ...]:
 
 
 def _neighbours(parts: PartMap, groups: Sequence[NamedParts]) -> list[set[int]]:
-    """Return for each group the groups that share a border with it."""
     group_of = np.zeros(parts.count, np.int64)
     for place, group in enumerate(groups):
         group_of[list(group.numbers)] = place
@@ -219,10 +217,7 @@ def _area(symbols: Symbols, shape: Any, clear_mm: float = CLEAR_MM, strokes: Any
 def _draw_clear(
     blank: Drawing, symbols: Sequence[Symbols], shapes: Sequence[Any], strokes: Sequence[Any]
 ) -> tuple[Drawing, list[Near]]:
-    """Draw the page; move or leave out letters, and leave out elements of fills, until no marks are too near.
-
-    Returns: the page, and the pairs of marks that are still too near.
-    """
+    """Move or leave out letters and elements of fills; return the page, and the pairs of marks still too near."""
     pieces = [(symbol, shapes[number]) for symbol in symbols for number in symbol.group.numbers]
     inked = shapely.union_all(strokes).buffer(LINE_MM / 2) if strokes else None
     away, clear_mm = NO_DOTS, [np.inf if symbol.is_paper else CLEAR_MM for symbol, _ in pieces]

@@ -13,14 +13,10 @@ MARGIN_MM = 10.0
 """Margin on all sides, which printers leave white, and where a hand holds the sheet."""
 LINE_MM = 1.0
 """Width of outlines. A convention of ours, within the 0.5 to 1.5 mm that tactile graphics use."""
-HEAVY_MM = 1.5
-"""Width of the outline of the figure: the most that tactile graphics use."""
-GAP_MM = 3.2
-"""Smallest gap between marks that a finger tells apart. Source: tactilegraphics.org."""
-CLEAR_MM = GAP_MM + 0.2
-"""Gap at which marks are drawn: GAP_MM and two pixels of the measurement."""
-CORNER_MM = 8.0
-"""Legs of the triangle that marks the upper right corner."""
+HEAVY_MM = 1.5  # the most that tactile graphics use, for the figure
+GAP_MM = 3.2  # between marks that a finger tells apart. Source: tactilegraphics.org
+CLEAR_MM = GAP_MM + 0.2  # GAP_MM and two pixels of the measurement
+CORNER_MM = 8.0  # legs of the triangle that marks the upper right corner
 LOWERED_MM = 10.0
 """Limit to moving a picture down where there is room: a hand that comes from the title still finds it."""
 MIN_MM = 12.7

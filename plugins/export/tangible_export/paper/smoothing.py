@@ -15,24 +15,18 @@ SMOOTH_MM = 1.0
 """Standard deviation of the Gaussian along an outline: a finger feels corners of this size, and no stairs below it."""
 SMOOTH_PX = 2.0
 """Least standard deviation, in pixels of the map, so that the stairs of a coarse map go as well."""
-NEAR_MM = 0.02
-"""Tolerance for leaving out points of a smooth line: less than a printer draws."""
+NEAR_MM = 0.02  # of points left out: less than a printer draws
 
 
 def smooth_borders(parts: PartMap, width_mm: float) -> tuple[Any, ...]:
-    """Return a polygon for each part, with smooth outlines; two neighbours share the line between them to the bit.
-
-    Lines end where three parts meet, or at the picture's rim: these ends, and the rim, stay where they are. The rest is
-    smoothed by a Gaussian along the line, twice so that a circle keeps its radius.
-    width_mm: of the whole picture. Returns: shapely's polygons in millimetres, x to the right, y up, origin in the
-    middle; an empty one for a part without a pixel.
-    """
+    """Return shapely's polygons for each part, in millimetres, y up, origin in the middle, with smooth shared lines."""
     columns = parts.labels.shape[1]
     pitch_mm = width_mm / columns
     stairs = shared_borders(parts, width_mm, 0)
     rim = shapely.box(*shapely.total_bounds(stairs)).exterior
     lines = shapely.get_parts(shapely.line_merge(shapely.union_all([polygon.boundary for polygon in stairs])))
     sigma = max(SMOOTH_MM / pitch_mm, SMOOTH_PX)
+    # Ends where three parts meet, and the rim, stay where they are.
     smooth = [line if rim.covers(line) else _smooth(line, pitch_mm, sigma) for line in lines]
     return _gather(shapely.get_parts(shapely.polygonize(smooth)), parts, stairs, pitch_mm)
 
@@ -46,6 +40,7 @@ def _smooth(line: Any, pitch_mm: float, sigma: float) -> Any:
     )
     is_closed = bool(line.is_closed)
     at = at if is_closed else np.concatenate([ends[:1], at, ends[-1:]])
+    # Twice, so that a circle keeps its radius.
     once = blur(at, sigma, is_closed)
     twice = once + blur(at - once, sigma, is_closed)
     if is_closed:
@@ -58,7 +53,6 @@ def _smooth(line: Any, pitch_mm: float, sigma: float) -> Any:
 def _middles(
     one: Float64[np.ndarray, " 2"], other: Float64[np.ndarray, " 2"], count: int
 ) -> Float64[np.ndarray, "n 2"]:
-    """Return the middles of the sides of pixels from one corner to the other."""
     return one + ((np.arange(count) + 0.5) / count)[:, None] * (other - one)
 
 

@@ -13,8 +13,7 @@ from tangible_core.drawing import find_marks
 from .sheet import LINE_MM, Sheet
 from .smoothing import NEAR_MM, blur
 
-SPUR_MM = 3.0
-"""Length below which a stroke with a free end is a spur of the thinning. A convention of ours."""
+SPUR_MM = 3.0  # a shorter stroke with a free end is a spur of the thinning. A convention of ours
 SMOOTH_PX = 2.0
 """Standard deviation of the Gaussian along a stroke, which takes the stairs of pixels out."""
 ALONG_MM, LONG_MM = 2.0, 6.0

@@ -1,9 +1,4 @@
-"""Pins as files: a picture, numbers, braille patterns, hexadecimal digits, and an SVG for the IMAGE services.
-
-The Monarch app of McGill University's IMAGE services reads the alpha of the drawing at one pixel a pin, and shows one
-layer at a time, each by its label. So the view box is the array of pins, a pin is a square of it, and the background
-is transparent.
-"""
+"""Pins as files: a picture, numbers, braille patterns, hexadecimal digits, and an SVG for the IMAGE services."""
 
 import base64
 import json
@@ -68,6 +63,7 @@ def _whole_cells(up: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "k l"]:
 
 def svg(pins: Pins, levels: int, parts: Int32[np.ndarray, "r c"], labels: Mapping[int, str], title: str) -> str:
     """Return an SVG with a layer for each part, in the order of `labels`: its raised pins, and those of its borders."""
+    # The Monarch app of IMAGE reads the alpha at one pixel a pin, and shows one layer at a time, each by its label.
     rows, columns = pins.shape
     layers = [
         _layer(f"layer-{number}", label, _shapes(pins, levels, _with_borders(parts, part)))

@@ -24,23 +24,18 @@ INSTALL = "pip install pydelatin"
 MAX_NODES = 24_000_000  # 5333 x 4500 nodes take a gibibyte
 MAX_TRIANGLES = 2_000_000  # files of 100 MB, which slicers still read
 MAX_IN_GRID = MAX_TRIANGLES // 2  # without pydelatin, each node takes two triangles
-MIN_LINE_M = width_m((0,) * 3)
-"""Shortest line of braille: a letter, its capital sign, and a hyphen."""
+MIN_LINE_M = width_m((0,) * 3)  # a letter, its capital sign, and a hyphen
 NARROWEST_M = 1e-4
-MAX_LINES = 6
-"""Largest number of lines of braille: nobody reads a longer text on a plate."""
+MAX_LINES = 6  # nobody reads a longer text on a plate
 
 THIN_BASE_M = 0.0008
 """Thinnest base that neither bends nor breaks; 0.0015 is better (Round Table, Guidelines for producing accessible 3D
 prints)."""
-LARGEST_BED_M = 0.25
-"""Bed of most printers for homes and schools. A convention of ours."""
-NOZZLE_M, LAYER_M = 0.0004, 0.00015
-"""Nozzle and layer of most printers. A convention of ours."""
+LARGEST_BED_M = 0.25  # most printers for homes and schools. A convention of ours
+NOZZLE_M, LAYER_M = 0.0004, 0.00015  # most printers. A convention of ours
 MIN_AREA_M2, MIN_SHARE = 2.5e-7, 0.001
 """Smallest area of thin shapes and smallest share of steep pixels that are reported."""
-STEEPEST_DEG = 45
-"""Largest overhang, from the upright, that plastic holds without support."""
+STEEPEST_DEG = 45  # the largest overhang, from the upright, that plastic holds without support
 ROWS_AT_ONCE = 256
 
 

@@ -21,8 +21,7 @@ ABOVE_BRAILLE_M = 0.005
 producing accessible 3D prints)."""
 LARGEST_MARK_M, MARK_HEIGHT_M = 0.006, 0.001
 FLAT_SHARE = 0.2
-SIDES, RINGS = 12, 3
-"""Sides and rings of a dot, which is within 0.03 mm of a spherical cap. The sides are a multiple of four."""
+SIDES, RINGS = 12, 3  # a dot is within 0.03 mm of a spherical cap. The sides are a multiple of four
 
 
 @dataclass(frozen=True)

@@ -138,11 +138,7 @@ def _gap_mm(
 
 
 def _narrow(page: Marks, lines: Bool[np.ndarray, "r c"]) -> Iterator[Near]:
-    """Yield the places where two lines of one net run too near: the space that no disc GAP_MM wide reaches.
-
-    The tip of a corner is accepted: it is connected with the open space on one side alone, and not longer than GAP_MM.
-    lines: the outlines at half resolution.
-    """
+    """Yield the places where lines of one net, at half resolution, run too near: where no disc GAP_MM wide reaches."""
     pixel_mm = 2 / PIXELS_PER_MM
     free = (~lines).astype(np.uint8)
     far = pixel_mm * (cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE) - 0.5)
@@ -153,6 +149,7 @@ def _narrow(page: Marks, lines: Bool[np.ndarray, "r c"]) -> Iterator[Near]:
         return
     numbers, longest = np.arange(count), np.zeros(count, np.float32)
     np.maximum.at(longest, np.asarray(places, np.int64)[tips], beyond[tips])
+    # The tip of a corner is accepted: it meets the open space on one side alone, and is not longer than GAP_MM.
     wrong = (longest > GAP_MM) | (_sides(places, (free > 0) & ~tips, count) > 1)
     for number in numbers[1:][wrong[1:]].tolist():
         row, column = (int(at) for at in np.unravel_index(np.where(places == number, far, -1).argmax(), far.shape))

@@ -65,7 +65,8 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[Dr
     _note_left_out(symbols, picture)
     keys = key_pages(_entries(symbols, picture), title, work.language, page, blank.sheet)
     for key in keys:
-        _check_key(key)
+        if near := too_near(read(svg(key))):
+            raise PictureError(f"in the key, {near[0]}, and {GAP_MM} mm must be between them")
     return [picture, *keys]
 
 
@@ -117,7 +118,8 @@ def _draw_readable(
         blank = replace(blank, figure=shapely.union_all([shapes[number] for number in front]) if front else None)
         outlines = [Area(group.name, shapes[number]) for group in groups for number in group.numbers]
         if not (near := narrow_places(read(svg(replace(blank, areas=tuple(outlines), texts=()))))):
-            strokes, texts = ((), 0) if drawn is None else strokes_on(drawn, sheet, _all_outlines(shapes))
+            lines = None if drawn is None else shapely.union_all([shape.boundary for shape in shapes])
+            strokes, texts = ((), 0) if drawn is None else strokes_on(drawn, sheet, lines)
             symbols = _choose_symbols(groups, shapes, _neighbours(parts, groups), blank.language)
             if drawn is not None:
                 symbols = [
@@ -133,10 +135,6 @@ def _draw_readable(
     if front:  # a thinner line may have the room
         return _draw_readable(replace(blank, figure=None), original, groups, (), drawn)
     raise PictureError(f"{near[0]}, and {GAP_MM} mm must be between them; make the picture larger or simpler")
-
-
-def _all_outlines(shapes: Sequence[Any]) -> Any:
-    return shapely.union_all([shape.boundary for shape in shapes])
 
 
 def _is_paper(group: NamedParts, parts: PartMap) -> bool:
@@ -245,11 +243,6 @@ def _letter_in(near: Near, areas: Sequence[Area]) -> int | None:
         if area.letter is not None and (shapely.distance(shapely.MultiPoint(area.letter.dots_mm), at) < 0.1).any():
             return number
     return None
-
-
-def _check_key(key: Drawing) -> None:
-    if near := too_near(read(svg(key))):
-        raise PictureError(f"in the key, {near[0]}, and {GAP_MM} mm must be between them")
 
 
 def _entries(symbols: Sequence[Symbols], picture: Drawing) -> list[Entry]:

@@ -40,7 +40,9 @@ class Near:
 
 def too_near(page: Marks) -> list[Near]:
     """Return all pairs of marks that are too near; outlines that touch count as one, dots of one text do not count."""
-    ink = _without_empty_end(black(page, PIXELS_PER_MM))
+    ink = black(page, PIXELS_PER_MM)
+    rows = np.flatnonzero(ink.any(axis=1))
+    ink = ink[: rows[-1] + 1] if rows.size else ink
     distances = cv2.distanceTransformWithLabels(
         (~ink).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_CCOMP
     )
@@ -61,11 +63,6 @@ def too_near(page: Marks) -> list[Near]:
 def narrow_places(page: Marks) -> list[Near]:
     """Return the places where outlines run too near to each other, on a page of outlines alone, at half resolution."""
     return list(_narrow(page, black(page, PIXELS_PER_MM // 2)))
-
-
-def _without_empty_end(ink: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "k c"]:
-    rows = np.flatnonzero(ink.any(axis=1))
-    return ink[: rows[-1] + 1] if rows.size else ink
 
 
 def _marks_of_blots(page: Marks, nearest: Int32[np.ndarray, "r c"]) -> dict[int, list[Mark]]:

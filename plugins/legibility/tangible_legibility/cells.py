@@ -11,10 +11,7 @@ Box = tuple[slice, slice]
 
 
 def nearest(mask: Bool[np.ndarray, "h w"]) -> tuple[Float32[np.ndarray, "h w"], Int64[np.ndarray, "h w"]]:
-    """Return, for each cell, the distance to the nearest cell of a mask, in cells to 2 %, and its flat index.
-
-    The mask must not be empty.
-    """
+    """Return each cell's distance to the nearest cell of a mask, in cells to 2 %, and that cell's flat index."""
     import cv2
 
     with plain_opencv():
@@ -40,20 +37,15 @@ def resampled(values: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
     return values[np.ix_(*index)]
 
 
-FEW = 1e-3
-"""Share of the votes on a cell below which the nearest cell decides."""
-REACH = 4
-"""Radius of the Gaussian of votes, in standard deviations."""
+FEW = 1e-3  # share of the votes on a cell below which the nearest cell decides
+REACH = 4  # radius of the Gaussian of votes, in standard deviations
 
 Labels = Int32[np.ndarray, "h w"]
 Cells = Bool[np.ndarray, "h w"]
 
 
 def vote(labels: Labels, removed: Cells, voters: Cells, sigma: float) -> Labels:
-    """Give removed cells the label that most of the voters around have, or the nearest label if no voter is near.
-
-    Voters are weighted by a Gaussian of standard deviation sigma, in cells.
-    """
+    """Give removed cells the label of most voters around, by a Gaussian of sigma cells, or the nearest label."""
     import cv2
 
     elected, best = fill(labels, removed), np.full(labels.shape, np.float32(FEW))

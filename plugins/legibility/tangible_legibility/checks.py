@@ -14,15 +14,12 @@ from .legibility_input import LegibilityInput, Measurement, deepest_cells
 from .neighbours import PIN_PITCH_M, apart, border_steps, sample_relief, show_on_pins
 from .words.places import millimetres
 
-WIDEST_M = 2.0
-"""Width above which a larger picture is not proposed as a cure."""
-FELT_STEP_M = 0.0005
-"""Step between neighbours from which on their materials need not differ: that of the rule `step`."""
+WIDEST_M = 2.0  # no larger picture is proposed as a cure
+FELT_STEP_M = 0.0005  # that of the rule `step`: neighbours' materials need not differ then
 FEWER_PARTS = "or have fewer and larger parts"
 HEIGHTEN: Cure = "make the relief of parts (`heights: {by: given}`), and give neighbours different heights"
 LEVEL = "more pairs of neighbours are of hardly another height"
 NEARLY_LEVEL = "more pairs of named neighbours are of nearly the same height"
-"""The faults of steps of pairs that are not listed one by one, after their number."""
 
 
 def _widen_or_leave_out(data: LegibilityInput, bound: float, simplified: str = "") -> Callable[[float], Cure]:
@@ -89,7 +86,6 @@ def shape(data: LegibilityInput) -> Iterator[Verdict]:
 
 
 def _measure_pieces(data: LegibilityInput, pieces: np.ndarray, values: np.ndarray) -> list[Measurement]:
-    """Return a measurement for each of these pieces; values: of all pieces."""
     places = deepest_cells(data.widths, pieces)
     return [
         Measurement(
@@ -204,4 +200,3 @@ CHECKS: dict[str, tuple[Check, ...]] = {
     "pins": (parts, pins),
     "force": (parts, gap, part, shape, materials, steps),
 }
-"""The checks of each medium, in order."""

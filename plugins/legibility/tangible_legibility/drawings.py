@@ -13,10 +13,8 @@ from tangible_core.preflight import Verdict, check_bound
 from .rules import GRAPHICS, OURS, Profile
 from .words.places import describe_part, describe_place, join_texts
 
-MAX_LOST = 0.1
-"""The greatest share of the lines' length that may be lost before the picture is."""
-MAX_CLOSE = 0.3
-"""The greatest share of the lines' length that may lie too near to another line for a finger."""
+MAX_LOST = 0.1  # share of the lines' length that may be lost before the picture is
+MAX_CLOSE = 0.3  # share of the lines' length that may lie too near to another line
 NOTICED, IMPORTANT = 0.001, 0.02
 """The least shares of the picture of a part that is named when it is lost, and without which the picture is lost."""
 
@@ -49,7 +47,6 @@ def judge_drawing(
 def _judge_lines(
     drawing: DrawnPicture, lines: Lines, profile: Profile, parts: PartMap | None, width_m: float
 ) -> Iterator[Verdict]:
-    """Yield the verdict on lines that are lost, or that lie too close to each other where they are drawn."""
     gap = profile.rules.get("gap")
     gap_m = 0.0032 if gap is None else gap.bound
     pitch_m = width_m / lines.centre.shape[1]
@@ -83,7 +80,6 @@ def _share_away(lines: Lines, parts: PartMap, reach: float) -> float:
 
 
 def _judge_parts(whole: PartMap, parts: PartMap, names: Sequence[str]) -> Iterator[Verdict]:
-    """Yield the verdict on parts of which nothing is left, by area and by name."""
     before, after = (np.bincount(each.labels.reshape(-1), minlength=whole.count) for each in (whole, parts))
     share = before / before.sum()
     lost = np.flatnonzero((share >= NOTICED) & (after[: whole.count] == 0))

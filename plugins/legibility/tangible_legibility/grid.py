@@ -9,10 +9,8 @@ from tangible_core.data import PartMap
 from tangible_core.errors import GeometryError
 from tangible_core.parts import reduced_parts
 
-FINEST_M, COARSEST_M = 0.0625e-3, 0.25e-3
-"""Smallest and largest side of a cell: a finger does not notice a tenth of a millimetre."""
-MAX_CELLS, MAX_COARSE_CELLS = 2560, 1280
-"""Limit of the number of smallest and of largest cells along a side; a longer side has larger cells."""
+FINEST_M, COARSEST_M = 0.0625e-3, 0.25e-3  # a finger does not notice a tenth of a millimetre
+MAX_CELLS, MAX_COARSE_CELLS = 2560, 1280  # along a side, which has larger cells if it is longer
 
 
 class Grid(NamedTuple):
@@ -23,13 +21,7 @@ class Grid(NamedTuple):
 
 
 def on_grid(parts: PartMap, width_m: float, *, worked: bool = False) -> Grid:
-    """Return the parts on a grid of cells between FINEST_M and COARSEST_M; unchanged if their pixels are.
-
-    Larger pixels are divided by a power of two, so that nothing moves; smaller ones are sampled at every second,
-    fourth, ... pixel. A picture enlarged twofold has the same cells, or twice as many.
-    worked: at least half of the coarsest cells, on which parts are changed in a short time.
-    Raises: GeometryError if width_m is not positive.
-    """
+    """Return the parts on a grid of cells between FINEST_M and COARSEST_M; unchanged if their pixels are."""
     if not 0 < width_m < np.inf:
         raise GeometryError(f"width_m must be a positive length in metres, not {width_m}")
     rows, columns = parts.labels.shape

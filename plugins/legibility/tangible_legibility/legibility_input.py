@@ -16,10 +16,8 @@ from .simplifying.large import count_textures
 from .widths import Widths, measure
 from .words.places import describe_part, describe_place
 
-MAX_EACH = 4
-"""Number of failing verdicts of one check; further ones are gathered into one."""
-MAX_PLACES = 64
-"""Number of places in such a gathered verdict."""
+MAX_EACH = 4  # failing verdicts of one check; further ones are gathered into one
+MAX_PLACES = 64  # places in such a gathered verdict
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,15 +25,13 @@ class LegibilityInput:
     """A map of parts in one medium."""
 
     profile: Profile
-    parts: PartMap
-    """Parts on a grid in metres."""
+    parts: PartMap  # on a grid in metres
     pitch_m: float
     width_m: float
     relief: Relief | None
     material_map: MaterialMap | None
     names: Sequence[str]
-    texture_count: int | None
-    """Number of textures; None for one a segment."""
+    texture_count: int | None  # None for one a segment
 
     @cached_property
     def widths(self) -> Widths:
@@ -120,8 +116,7 @@ class Measurement:
 
     of: str
     value: float
-    at: tuple[float, float] | None = None
-    """Shares of the picture, from the left and from the top; None for all of it."""
+    at: tuple[float, float] | None = None  # shares of the picture, from the left and from the top
 
     @property
     def place(self) -> str:

@@ -52,7 +52,6 @@ def legibility(
 
 
 def _judge_undivided(medium: Medium, relief: Relief | None, width_m: float) -> Iterator[Verdict]:
-    """Yield the verdicts on a scene without parts, whose relief may be legible all the same."""
     rule, cure = PROFILES[medium].rules["parts"], "add `parts: {}` to the file, and a method for `texture:`"
     says = "the picture is not divided into parts"
     worse: Grade = "warn" if medium in ("print", "force") else rule.worse

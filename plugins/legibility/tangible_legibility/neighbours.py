@@ -14,25 +14,15 @@ from tangible_core.runtime import plain_opencv
 
 from .cells import resampled
 
-SKIN_M = 0.0005
-"""The standard deviation of the Gaussian by which a fingertip blurs a relief, m."""
-STEP_M, WITHIN_M = 0.0005, 0.002
-"""The least height of a step that can be felt, and the distance within which it rises, m."""
+SKIN_M = 0.0005  # standard deviation of the Gaussian by which a fingertip blurs a relief
+STEP_M, WITHIN_M = 0.0005, 0.002  # the least step that can be felt, and the distance within which it rises
 
 
 def border_steps(relief: Relief, labels: Integer[np.ndarray, "h w"]) -> dict[str, float]:
-    """Compare the steps of a relief that can be felt with the borders of these parts.
-
-    A step can be felt where heights differ by 0.5 mm within 2 mm, after a Gaussian of 0.5 mm for the skin. It belongs
-    to a border within 2 mm. The measures compare reliefs; they were not validated with readers.
-    Returns: `borders_found`, the share of the borders' length with such a step; `steps_at_borders`, the share of the
-    steps' area that is at a border; `area_stepped`, the share of the whole area that is a step. All in 0..1; NaN for a
-    share of nothing.
-    Raises: PictureError if the labels and the relief differ in size.
-    """
+    """Measure how well steps that can be felt and borders of parts agree: shares 0..1, NaN for a share of nothing."""
     if labels.shape != relief.height_m.shape:
         raise PictureError(f"the labels are {labels.shape} and the heights {relief.height_m.shape}; scale one of them")
-    steps = felt_steps(relief)
+    steps = felt_steps(relief)  # the measures compare reliefs; they were not validated with readers
     across, along = labels[:, 1:] != labels[:, :-1], labels[1:] != labels[:-1]
     pitch_x, pitch_y = relief.pitch_m
     stepped = ((steps[:, 1:] | steps[:, :-1])[across], pitch_y), ((steps[1:] | steps[:-1])[along], pitch_x)
@@ -60,7 +50,6 @@ def felt_steps(relief: Relief) -> Bool[np.ndarray, "h w"]:
 
 
 def _near(labels: Integer[np.ndarray, "h w"], pitch_m: tuple[float, float]) -> Bool[np.ndarray, "h w"]:
-    """Find the cells whose centres are within `WITHIN_M` of the centre of a cell at a border."""
     from scipy.ndimage import distance_transform_edt
 
     at_border = border_pixels(labels)
@@ -73,15 +62,13 @@ def _share(part: float | np.integer[Any], whole: float | np.integer[Any]) -> flo
     return float(part / whole) if whole else nan
 
 
-PIN_PITCH_M = 0.0025
-"""Distance from pin to pin; all braille displays have about this pitch."""
+PIN_PITCH_M = 0.0025  # from pin to pin, of all braille displays
 
 
 class PinDisplay(NamedTuple):
     """Parts as pins show them."""
 
-    parts: tuple[tuple[int, int, tuple[int, int]], ...]
-    """(number, pins, a cell on the grid of the parts) of each part."""
+    parts: tuple[tuple[int, int, tuple[int, int]], ...]  # number, pins, a cell on the grid of the parts
     kept: float
     """Share of the length of all borders that lies within a pin of a border that is shown; 1 without a border."""
 
@@ -128,8 +115,7 @@ def _borders(labels: np.ndarray) -> np.ndarray:
     return borders
 
 
-BESIDE_M = 0.001
-"""Distance from a border, on either side, at which the heights of a step are taken."""
+BESIDE_M = 0.001  # from a border, on either side, to where the heights of a step are taken
 NOTICEABLE = {"stiffness_n_per_m": 0.45, "dynamic_friction": 0.2, "roughness_m": 0.1, "grain_m": 0.1}
 """Relative difference of a property that a hand just notices. Sources: see docs/legibility.md."""
 LEAST = {"stiffness_n_per_m": 50.0, "dynamic_friction": 0.03, "roughness_m": 5e-6, "grain_m": 1e-4}
@@ -140,14 +126,10 @@ class Steps(NamedTuple):
     """Pairs of neighbours, and the step of heights along their border."""
 
     low: Int64[np.ndarray, "m"]
-    high: Int64[np.ndarray, "m"]
-    """Numbers of the parts, of which `low` is the smaller one."""
-    step_m: Float64[np.ndarray, "m"]
-    """Median along the border, without its sign."""
+    high: Int64[np.ndarray, "m"]  # parts' numbers, of which `low` is the smaller one
+    step_m: Float64[np.ndarray, "m"]  # median along the border, without its sign
     length_m: Float64[np.ndarray, "m"]
-    """Length of the border."""
-    at: Int64[np.ndarray, "m 2"]
-    """Row and column of a cell next to the border."""
+    at: Int64[np.ndarray, "m 2"]  # row and column of a cell next to the border
 
 
 def sample_relief(relief: Relief, shape: tuple[int, int]) -> Relief:
@@ -175,7 +157,6 @@ def steps_between(parts: PartMap, pitch_m: float, relief: Relief | None) -> Step
 def _across(
     parts: PartMap, pitch_m: float, relief: Relief | None, axis: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return the pair, the step and the cell of each side of a cell that lies between two parts."""
     labels = parts.labels if axis == 0 else parts.labels.T
     row, column = np.nonzero(labels[1:] != labels[:-1])
     one, other = labels[row, column].astype(np.int64), labels[row + 1, column].astype(np.int64)
@@ -191,11 +172,7 @@ def _across(
 
 
 def apart(one: Material, other: Material) -> float:
-    """Return the just noticeable differences between two materials, in the property that differs most.
-
-    Differences are those of logarithms (Weber's law); two textures differ by at least 1. The grain counts if both
-    materials have one.
-    """
+    """Return the just noticeable differences of two materials in the property that differs most (Weber's law)."""
     smooth = "smooth" in (one.texture, other.texture)
     steps = [0.0 if one.texture == other.texture else 1.0]
     for name, share in NOTICEABLE.items():

@@ -11,16 +11,11 @@ from typing import Literal, NamedTuple
 from tangible_core.plugins import Medium
 from tangible_core.preflight import Grade, Unit
 
-DOT_DIAMETER_M = 0.00144
-"""The diameter of a dot at its base."""
+DOT_DIAMETER_M = 0.00144  # at its base
 DOT_HEIGHT_M = 0.00048
-"""The height of a dot above the ground."""
-DOT_PITCH_M = 0.00234
-"""The distance from the centre of a dot to the next of its cell, down and across."""
-CELL_PITCH_M = 0.0062
-"""The distance from the centre of a dot to the same dot of the next cell."""
-LINE_PITCH_M = 0.010
-"""The distance from the centre of a dot to the same dot of the next line."""
+DOT_PITCH_M = 0.00234  # from dot to dot of a cell, down and across
+CELL_PITCH_M = 0.0062  # from a dot to the same dot of the next cell
+LINE_PITCH_M = 0.010  # from a dot to the same dot of the next line
 
 GRAPHICS = "tactilegraphics.org"
 ROUND_TABLE = "Round Table on Information Access for People with Print Disabilities"
@@ -155,4 +150,3 @@ PROFILES: dict[Medium, Profile] = {
         _UNFELT,
     ),
 }  # fmt: skip
-"""The rules by medium."""

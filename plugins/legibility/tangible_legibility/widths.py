@@ -13,8 +13,7 @@ from tangible_core.runtime import plain_opencv
 
 from .cells import nearest
 
-ROUND_OFF = 1e-6
-"""Relative tolerance of a width."""
+ROUND_OFF = 1e-6  # relative
 SLACK_M = 0.2e-3
 """Distance, and at least a cell, by which discs reach further, so that stairs of pixels do not count as places."""
 
@@ -22,32 +21,22 @@ SLACK_M = 0.2e-3
 class Widths(NamedTuple):
     """The widths of a map of parts."""
 
-    pieces: Int32[np.ndarray, "h w"]
-    """Connected piece of each cell."""
-    part: Int[np.ndarray, "n"]
-    """Part of each piece."""
-    size: Int[np.ndarray, "n"]
-    """Number of cells of each piece."""
-    disc_m: Float64[np.ndarray, "n"]
-    """Diameter of the largest disc within each piece."""
-    narrow: Bool[np.ndarray, "h w"]
-    """Cells of places that are too narrow."""
-    places: "tuple[Place, ...]"
-    """Places that are too narrow."""
-    depth: Float32[np.ndarray, "r c"]
-    """Half cells to the nearest border, on the grid of half cells."""
+    pieces: Int32[np.ndarray, "h w"]  # connected piece of each cell
+    part: Int[np.ndarray, "n"]  # of each piece
+    size: Int[np.ndarray, "n"]  # cells of each piece
+    disc_m: Float64[np.ndarray, "n"]  # diameter of the largest disc within each piece
+    narrow: Bool[np.ndarray, "h w"]  # cells of places that are too narrow
+    places: "tuple[Place, ...]"  # that are too narrow
+    depth: Float32[np.ndarray, "r c"]  # half cells to the nearest border
 
 
 class Place(NamedTuple):
     """A place that is too narrow."""
 
     piece: int
-    width_m: float
-    """Largest width in the place."""
-    size: int
-    """Number of cells."""
-    at: tuple[int, int]
-    """Row and column of a cell where it is widest."""
+    width_m: float  # the largest in the place
+    size: int  # cells
+    at: tuple[int, int]  # row and column of a cell where it is widest
 
 
 class Rims(NamedTuple):
@@ -111,10 +100,8 @@ def surroundings(wide: Widths, pitch_m: float, gap_m: float) -> Bool[np.ndarray,
 class _Sides(NamedTuple):
     """Masks of the sides of cells that are not a border."""
 
-    upright: Bool[np.ndarray, "h w1"]
-    """Sides between a cell and its right neighbour."""
-    level: Bool[np.ndarray, "h1 w"]
-    """Sides between a cell and its lower neighbour."""
+    upright: Bool[np.ndarray, "h w1"]  # between a cell and its right neighbour
+    level: Bool[np.ndarray, "h1 w"]  # between a cell and its lower neighbour
 
     @classmethod
     def of(cls, labels: Int32[np.ndarray, "h w"]) -> "_Sides":
@@ -170,7 +157,6 @@ class _Sides(NamedTuple):
 def _deepest(
     depth: Float32[np.ndarray, "r c"], pieces: Int32[np.ndarray, "h w"], count: int
 ) -> Float32[np.ndarray, "n"]:
-    """Return the greatest depth in each piece, at its cells and between two of them."""
     deepest = depth[1::2, 1::2].copy()
     for down, right in ((1, 2), (2, 1), (2, 2)):
         here = depth[down:-1:2, right:-1:2]
@@ -206,7 +192,6 @@ def _places(
     gap_m: float,
     rims: Rims,
 ) -> tuple[Bool[np.ndarray, "h w"], tuple[Place, ...]]:
-    """Return the cells that are too narrow, of the cells `left` by discs, and the places that they form."""
     if not left.any():
         return left, ()
     labels = sides.components(left)

@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from tangible_core.preflight import Legibility
 
 COLOURS = {"ok": "green", "warn": "yellow", "illegible": "bold red"}
-WIDTHS = 9, 15
-"""The columns of grades and of checks, characters."""
+WIDTHS = 9, 15  # characters: grades, checks
 
 
 def legible(
@@ -69,7 +68,6 @@ class Found(NamedTuple):
     medium: Medium
     width_m: float
     simplified: bool
-    """True if the parts that are drawn there, and judged, are simplified ones."""
     verdicts: Legibility
 
     def as_data(self) -> dict[str, Any]:

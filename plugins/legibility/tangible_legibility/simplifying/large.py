@@ -13,8 +13,7 @@ from tangible_core.parts import find_parts
 from tangible_core.parts.neighbours import neighbours
 from tangible_core.runtime import plain_opencv
 
-LIGHTNESS_IN_BYTES = (100 / 255, 1.0, 1.0)
-"""Factors from OpenCV's CIELAB in bytes to units of CIELAB."""
+LIGHTNESS_IN_BYTES = (100 / 255, 1.0, 1.0)  # OpenCV's CIELAB in bytes -> CIELAB
 Each = Float[np.ndarray, "n"]
 
 
@@ -49,7 +48,6 @@ def disc_widths(parts: PartMap) -> Each:
 
 
 def _colours(picture: np.ndarray) -> UInt8[np.ndarray, "h w 3"]:
-    """Convert to CIELAB in bytes, as OpenCV packs it; finer differences do not matter here."""
     import cv2
 
     with plain_opencv():
@@ -108,15 +106,12 @@ def _join_similar(parts: PartMap, colours: UInt8[np.ndarray, "h w 3"], most: int
 
 
 def _relabel(parts: PartMap, belongs: Int[np.ndarray, "n"]) -> PartMap:
-    """Replace each part by the one that it joins, with numbers in order."""
     names, numbers = np.unique(belongs, return_inverse=True)
     return PartMap(numbers.astype(np.int32)[parts.labels], tuple(range(names.size)))
 
 
-MAX_COMPARED = 256
-"""Textures that are compared pairwise; the smallest of more go to the most similar of these."""
-FAR = 1000.0
-"""Difference in colour that is added between the figure and the ground: more than any two colours have."""
+MAX_COMPARED = 256  # textures that are compared pairwise; smaller ones go to the most similar
+FAR = 1000.0  # between figure and ground: more than any two colours differ
 
 
 def count_textures(parts: PartMap, names: Sequence[str] = ()) -> int:
@@ -156,7 +151,6 @@ def texture_kinds(
 def _mean_colours(
     picture: np.ndarray, kinds: Int32[np.ndarray, "h w"], size: Int64[np.ndarray, "k"]
 ) -> Float64[np.ndarray, "k 3"]:
-    """Return the mean colour of each kind, in CIELAB."""
     import cv2
 
     with plain_opencv():

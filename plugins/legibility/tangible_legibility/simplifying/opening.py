@@ -13,19 +13,13 @@ from ..cells import Box, boxes, fill, vote
 from ..widths import ROUND_OFF, Rims, Widths, connected_pieces, measure, surroundings
 from .large import large_parts
 
-ROUNDS = 24
-"""Number of rounds; parts that fail after these are reported."""
-MERGING_ROUND = 12
-"""First round in which an unnamed part that is too narrow is merged with its neighbour as a whole.
-
-A merger makes nothing else narrower, so that rounds come to an end.
-"""
+ROUNDS = 24  # parts that fail after these are reported
+MERGING_ROUND = 12  # from here whole unnamed parts merge, which narrows nothing: rounds end
 MARGIN = 1.1
 """Width of the surroundings that are removed with a narrow place, in gaps: leaves no crumbs of them."""
 MARGIN_GROWTH = 0.15
 """Growth of that width per round from the third on: ends rounds in which two parts exchange a place in turns."""
-MAX_GROWTH = 6
-"""Rounds after which the width no longer grows."""
+MAX_GROWTH = 6  # rounds after which the width no longer grows
 NOISY = 0.05
 """Share of the surface that is too small or narrow from which on, in the first round, every cell is voted on."""
 VOTING = 3 / 16
@@ -41,19 +35,12 @@ class Opening(NamedTuple):
     """The settings of an opening."""
 
     choice: SimplifyChoice
-    named: Bool[np.ndarray, "k"]
-    """True for kinds that are a part with a name."""
+    named: Bool[np.ndarray, "k"]  # True for kinds that are a part with a name
     pitch_m: float
-    """Side of a cell."""
-    picture: np.ndarray | None
-    """Picture of the parts, for its colours."""
+    picture: np.ndarray | None  # for its colours
 
     def run(self, labels: Int32[np.ndarray, "h w"], *, rough: bool = False) -> tuple[Int32[np.ndarray, "h w"], Widths]:
-        """Open the kinds of cells until nothing is too small or too narrow, or ROUNDS are over; measure their widths.
-
-        After the first round only windows around changes are measured, and at the end the whole once more, exactly.
-        rough: without this last measurement.
-        """
+        """Open the kinds of cells until nothing is too small or too narrow, or ROUNDS are over."""
         labels, whole = labels.copy(), np.s_[0 : labels.shape[0], 0 : labels.shape[1]]
         windows, exact = [whole], False
         wide = measure(labels, self.pitch_m, self.choice.gap_m, quick=True)
@@ -80,11 +67,9 @@ class Opening(NamedTuple):
         return labels, measure(labels, self.pitch_m, self.choice.gap_m)
 
     def _margin(self, number: int) -> float:
-        """Return the width of the surroundings of a narrow place in a round, in gaps."""
         return MARGIN + MARGIN_GROWTH * min(max(0, number - 2), MAX_GROWTH)
 
     def _find_removed(self, wide: Widths, rims: Rims, number: int) -> Bool[np.ndarray, "h w"]:
-        """Find the cells of small pieces and of narrow places with their surroundings."""
         small = too_small(wide, self.choice)
         for side in rims.open_sides():
             small[wide.pieces[side]] = False
@@ -98,7 +83,6 @@ class Opening(NamedTuple):
     def _reassign(
         self, labels: Int32[np.ndarray, "h w"], removed: Bool[np.ndarray, "h w"], number: int
     ) -> Int32[np.ndarray, "h w"]:
-        """Give removed cells to their neighbours, by a vote of the cells around."""
         if removed.all():
             return labels
         sigma = VOTING * self._margin(number) * self.choice.gap_m / self.pitch_m
@@ -118,10 +102,7 @@ class Opening(NamedTuple):
         return labels if large.all() else fill(labels, ~large[pieces])
 
     def _merge_narrow(self, labels: Int32[np.ndarray, "h w"], wide: Widths) -> Bool[np.ndarray, "h w"]:
-        """Merge each unnamed piece with a narrow place, in `labels`, into its neighbour there; return its cells.
-
-        A piece takes part in one merger.
-        """
+        """Merge each unnamed piece with a narrow place into its neighbour there, once; return its cells."""
         import cv2
 
         merged, taken = np.zeros(labels.shape, np.bool_), set[int]()

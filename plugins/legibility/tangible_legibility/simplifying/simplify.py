@@ -19,10 +19,8 @@ from .large import count_textures, texture_kinds
 from .opening import NOISY, Opening, too_small
 
 log: logging.Logger = logging.getLogger(__name__)
-SIZE_STEP = 1.1
-"""Ratio of one size to the next when a size that would pass is searched."""
-MAX_STEPS = 40
-"""Sizes that are tried: up to 41 times the width."""
+SIZE_STEP = 1.1  # ratio of one size to the next in the search for one that passes
+MAX_STEPS = 40  # sizes that are tried: up to 41 times the width
 
 
 class Failures(NamedTuple):
@@ -65,7 +63,6 @@ def note_outcome(
 def _vanished_message(
     gone: Sequence[int], whole: Grid, width_m: float, choice: SimplifyChoice, names: Sequence[str]
 ) -> str:
-    """Return a message on parts that vanished, with the size at which they would stay."""
     wide = measure(whole.parts.labels, whole.pitch_m, choice.gap_m)
     disc_m = np.zeros(whole.parts.count)
     np.maximum.at(disc_m, wide.part, wide.disc_m)
@@ -84,7 +81,6 @@ def _vanished_message(
 
 
 def _failure_message(failures: Failures, grid: Grid, width_m: float, choice: SimplifyChoice) -> str:
-    """Return a message on what still fails, with the size that would pass."""
     kinds = (
         (failures.small, f"{failures.small} too small"),
         (failures.narrow, f"{failures.narrow} places too narrow"),
@@ -105,8 +101,7 @@ def _find_scale(grid: Grid, choice: SimplifyChoice) -> float:
     return 0.0
 
 
-COARSE = 2
-"""Side of a coarse cell, in cells: most of the work is done on coarse cells, in a quarter of the time."""
+COARSE = 2  # side of a coarse cell, in cells: a quarter of the time
 CLEARLY = 0.8
 """Share of a bound below which a width on coarse cells fails for certain, despite their error."""
 
@@ -156,7 +151,6 @@ def _refine(coarse: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
 
 
 def _clearly_fails(parts: PartMap, wide: Widths, pitch_m: float, choice: SimplifyChoice, names: Sequence[str]) -> bool:
-    """Test whether parts fail by so much that their widths on coarse cells show it."""
     small = wide.size[wide.disc_m < CLEARLY * choice.part_m].sum() > NOISY * wide.size.sum()
     large = 2 * (choice.gap_m / pitch_m) ** 2
     narrow = any(place.width_m < CLEARLY * choice.gap_m and place.size > large for place in wide.places)
@@ -164,11 +158,7 @@ def _clearly_fails(parts: PartMap, wide: Widths, pitch_m: float, choice: Simplif
 
 
 def _number_pieces(parts: PartMap, labels: Int32[np.ndarray, "h w"], kinds: Int32[np.ndarray, "n"]) -> PartMap:
-    """Give each connected piece of a kind the number of the part of this kind that covers most of it.
-
-    A piece that no part of its kind covers gets the largest one's number. Segments are those of the largest part of
-    each kind.
-    """
+    """Give each connected piece of a kind the number of the part of this kind that covers most of it."""
     before, count = parts.labels, parts.count
     size = np.bincount(before.reshape(-1), minlength=count)
     largest = np.zeros(int(kinds.max()) + 1, np.int64)

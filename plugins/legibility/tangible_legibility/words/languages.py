@@ -22,7 +22,6 @@ class Table(NamedTuple):
     words: Mapping[str, str]
     """Texts by key, with placeholders; the key of a place is its third from the top and its third from the left."""
     materials: Mapping[str, str]
-    """Names of the library's materials."""
     after_like: Mapping[str, str] = {}
     """Names of the materials in the form that follows `feels like`, where that is another one."""
     no_break_before: str = ""

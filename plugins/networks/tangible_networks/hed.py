@@ -13,8 +13,7 @@ from tangible_core.errors import BrokenMethod, ConfigError
 
 from .onnx_writing import Fields, network, node
 
-BLOCKS = (2, 2, 3, 3, 3)
-"""The convolutions of each block."""
+BLOCKS = (2, 2, 3, 3, 3)  # convolutions of each
 
 
 def hed_to_onnx(weights: Path) -> bytes:
@@ -40,7 +39,6 @@ def hed_to_onnx(weights: Path) -> bytes:
 
 
 def _nodes(file: Any, arrays: dict[str, np.ndarray]) -> list[Fields]:
-    """Return the nodes of the network; their weights are added to `arrays`."""
     nodes: list[Fields] = []
 
     def convolve(place: str, source: str, output: str, **options: Any) -> str:

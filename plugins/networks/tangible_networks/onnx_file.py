@@ -14,15 +14,12 @@ from typing import TypeAlias, TypeVar
 
 from tangible_core.errors import ConfigError, quoted
 
-Shape: TypeAlias = tuple[int | None, ...]
-"""Declared size of an input; None for a dimension of any size."""
+Shape: TypeAlias = tuple[int | None, ...]  # None for a dimension of any size
 Value: TypeAlias = int | memoryview
 Read = TypeVar("Read")
-MAX_NUMBERS = 2**31
-"""Largest number of numbers of one weight: more than the largest file holds."""
+MAX_NUMBERS = 2**31  # of one weight: more than the largest file holds
 
-GRAPH, PAIRS, WEIGHTS, INPUTS = 7, 14, 5, 11
-"""Fields of a model (the first two) and of a graph."""
+GRAPH, PAIRS, WEIGHTS, INPUTS = 7, 14, 5, 11  # fields of a model (the first two) and of a graph
 MESSAGES: Mapping[str, tuple[set[int], Mapping[int, str]]] = {
     "model": ({2, 3, 4, 6}, {7: "graph", 8: "import", 14: "pair", 25: "function"}),
     "import": ({1}, {}),
@@ -47,16 +44,12 @@ MESSAGES: Mapping[str, tuple[set[int], Mapping[int, str]]] = {
     "dimension": ({2, 3}, {}),
 }
 """Fields of each message that are texts, and those that are messages, with their kinds."""
-SIZES, NAME, PLACES = 1, 8, 13
-"""Fields of a tensor: its dimensions, its name, the file with its numbers."""
+SIZES, NAME, PLACES = 1, 8, 13  # fields of a tensor: its dimensions, its name, the file with its numbers
 VARINT, EIGHT_BYTES, BYTES, FOUR_BYTES = 0, 1, 2, 5
 
 
 def read_inputs(model: Path) -> Mapping[str, Shape]:
-    """Check a network's file, and return the inputs that it declares, without the weights, in their order.
-
-    Raises: ConfigError if it is damaged, or names weights that cannot be; OSError.
-    """
+    """Check a network's file; return the inputs that it declares, in order. Raises: ConfigError if damaged; OSError."""
     return _read(model, lambda whole: _inputs(model, whole))
 
 
@@ -71,7 +64,6 @@ def _metadata(whole: memoryview) -> Mapping[str, str]:
 
 
 def _read(model: Path, wanted: Callable[[memoryview], Read]) -> Read:
-    """Return what is wanted of a network's file. Raises: ConfigError if it is damaged; OSError."""
     damaged = ConfigError(f"model: {model} is not an ONNX file, or is damaged; fetch it again")
     if not model.stat().st_size:  # nothing can be mapped
         raise damaged
@@ -94,7 +86,6 @@ def _inputs(model: Path, whole: memoryview) -> Mapping[str, Shape]:
 
 
 def _messages(kind: str, message: memoryview) -> Iterator[tuple[str, memoryview]]:
-    """Yield a message and all messages in it with their kinds. Raises: ValueError for a text that is not UTF-8."""
     yield kind, message
     texts, kinds = MESSAGES[kind]
     for number, value in _fields(message):
@@ -109,7 +100,6 @@ def _name(tensor: memoryview) -> str:
 
 
 def _check_tensor(model: Path, tensor: memoryview) -> None:
-    """Check a weight. Raises: ConfigError for an impossible size, or numbers in a file that is elsewhere."""
     sizes = [size for number, value in _fields(tensor) if number == SIZES for size in _numbers(value)]
     if min(sizes, default=0) < 0 or math.prod(sizes) > MAX_NUMBERS:
         raise ConfigError(f"model: {model}: the weight {quoted(_name(tensor))} has the impossible size {quoted(sizes)}")
@@ -123,7 +113,6 @@ def _check_tensor(model: Path, tensor: memoryview) -> None:
 
 
 def _input(value: memoryview) -> tuple[str, Shape]:
-    """Return the name and the size of an input, from a ValueInfoProto."""
     name = next((_text(each) for each in _parts(value, 1)), "")
     shapes = [shape for kind in _parts(value, 2) for tensor in _parts(kind, 1) for shape in _parts(tensor, 2)]
     return name, tuple(_size(each) for shape in shapes[:1] for each in _parts(shape, 1))
@@ -135,7 +124,6 @@ def _size(dimension: memoryview) -> int | None:
 
 
 def _parts(message: memoryview, number: int) -> Iterator[memoryview]:
-    """Yield the messages and texts in one field."""
     return (value for found, value in _fields(message) if found == number and isinstance(value, memoryview))
 
 
@@ -171,7 +159,6 @@ def _numbers(value: Value) -> Iterator[int]:
 
 
 def _varint(message: memoryview, at: int) -> tuple[int, int]:
-    """Return a signed integer of 64 bits, and the place after it."""
     value, shift = 0, 0
     while True:
         byte = message[at]

@@ -1,19 +1,13 @@
-"""Writing of a network as an ONNX file: the wire format of Protocol Buffers, fields of onnx.proto of ONNX 1.17.
-
-The bytes depend on nothing but the network, so that a card can name their digest.
-"""
+"""Writing of a network as an ONNX file: the wire format of Protocol Buffers, fields of onnx.proto of ONNX 1.17."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
 
-IR_VERSION, OPERATORS = 8, 13
-"""The versions of the format and of the set of operators."""
-FLOAT = 1
-"""The type of numbers: float32."""
-INTEGER, TEXT, INTEGERS = 2, 3, 7
-"""The types of attributes."""
+IR_VERSION, OPERATORS = 8, 13  # of the format and of the set of operators
+FLOAT = 1  # float32
+INTEGER, TEXT, INTEGERS = 2, 3, 7  # the types of attributes
 Fields: TypeAlias = Iterable[tuple[int, Any]]
 """A message: numbers of fields with their values, an int, a text, bytes or a message, in the order of writing."""
 

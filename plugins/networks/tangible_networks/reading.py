@@ -16,16 +16,11 @@ from .onnx_file import read_metadata
 from .runtimes import run
 from .store import networks_here
 
-ROW_PX = 48
-"""The height of the rows that the network was trained with, px."""
-MARGIN = 0.3
-"""The space around a text, as a share of its height."""
-LEAST = 0.3
-"""The least height of a row in a tilted box, as a share of the box's height."""
-SURE = 0.5
-"""The least mean sureness of the letters of a text that counts as read."""
-MAX_WIDE = 40
-"""The greatest width of a row by its height; a longer one is seen narrower."""
+ROW_PX = 48  # the height of rows that the network was trained with
+MARGIN = 0.3  # around a text, as a share of its height
+LEAST = 0.3  # height of a row in a tilted box, as a share of the box's
+SURE = 0.5  # mean sureness of the letters of a text that counts as read
+MAX_WIDE = 40  # width of a row by its height; a longer one is seen narrower
 
 
 def read_texts(picture: np.ndarray, texts: Sequence[PictureText]) -> tuple[PictureText, ...]:

@@ -42,11 +42,9 @@ which kornia builds the network for."""
 LIBRARIES: Mapping[Runtime, tuple[str, ...]] = {
     "opencv": ("cv2",), "onnxruntime": ("onnxruntime",), "kornia": ("kornia", "torch", "onnxruntime"),
 }  # fmt: skip
-"""The libraries whose versions a runtime depends on."""
 OLDEST_OPENCV = 5
 """Oldest version of OpenCV that runs transformers, and pictures of another size than the network's own."""
-RAN = Calibration(1.0, 1.0)
-"""Entry of the cache that marks a file as run: its key says all, and this is the smallest record."""
+RAN = Calibration(1.0, 1.0)  # entry of the cache that marks a file as run: its key says all
 _lock = Lock()
 """Lock for one network at a time: none is thread-safe, and each uses all threads itself."""
 
@@ -87,7 +85,6 @@ def run(model: Path, runtime: Runtime, inputs: Mapping[str, np.ndarray], outputs
 
 
 def _key(model: Path, runtime: Runtime) -> str:
-    """Return the key under which the cache remembers that this content ran with this version of the runtime."""
     versions = of_imported(LIBRARIES[runtime])
     return hashlib.sha256(repr((__name__, content_digest(model), runtime, versions)).encode()).hexdigest()
 

@@ -21,8 +21,7 @@ log: logging.Logger = logging.getLogger(__name__)
 MAX_PX = {"figure": 102_400, "borders": 154_401, "faces": 4_000_000}
 """Largest number of pixels that a network sees: those of the pictures that it was trained with; more shows no more of
 a figure, and borders of textures."""
-SURE = 0.5
-"""Least value of a figure's surest pixel: in a picture without a figure, no pixel is one."""
+SURE = 0.5  # least value of a figure's surest pixel
 
 
 def look(picture: np.ndarray, tasks: Collection[Task] = ("figure", "borders", "faces")) -> Figure:
@@ -57,7 +56,6 @@ def restore_map(values: Float32[np.ndarray, "r c"], shape: tuple[int, int]) -> F
 
 
 def _map(colours: Colours, task: Task) -> Float32[np.ndarray, "r c"] | None:
-    """Return the map of the first network of a task, in the size in which it sees the picture; None without one."""
     networks = networks_here(task)
     if not networks:
         return None
@@ -85,7 +83,6 @@ def _run_once(
 
 
 def _faces(colours: Colours) -> Float32[np.ndarray, "n 468 3"] | None:
-    """Return the points of all faces; None without the networks."""
     here = {network.name: network for network in networks_here("faces")}
     if not {"face-finder", "face-points"} <= here.keys():
         return None

@@ -12,11 +12,9 @@ from tangible_core.files import as_path
 from .card import Card, Package, Task, check_file, read_card, shipped_cards
 
 log: logging.Logger = logging.getLogger(__name__)
-VARIABLE = "TANGIBLE_MODELS_DIR"
-"""The environment variable of the folder of networks."""
+VARIABLE = "TANGIBLE_MODELS_DIR"  # the folder of networks
 TASKS: tuple[Task, ...] = get_args(Task)
-PHOTOGRAPH: tuple[Task, ...] = ("figure", "borders", "faces")
-"""The tasks of networks that look at a photograph."""
+PHOTOGRAPH: tuple[Task, ...] = ("figure", "borders", "faces")  # what looks at a photograph
 State = Literal["here", "absent", "damaged"]
 
 
@@ -24,12 +22,9 @@ class KnownNetwork(NamedTuple):
     """A network that has a card, whether its file is here or not."""
 
     name: str
-    """The name of the card."""
     card: Card
-    path: Path
-    """Where its file is, or would be."""
-    card_file: Path | None = None
-    """The file of a card of the user's own; None for one that is shipped."""
+    path: Path  # where its file is, or would be
+    card_file: Path | None = None  # None for a card that is shipped
 
     @property
     def is_here(self) -> bool:
@@ -75,10 +70,7 @@ def models_folder() -> Path:
 
 
 def known_networks() -> Mapping[str, KnownNetwork]:
-    """Return all networks with a card, by name: those whose cards are shipped, and those of the user's own folder.
-
-    A card in the folder that cannot be read is left out, with a warning.
-    """
+    """Return all networks with a card, shipped or of the user's folder, by name; warn of a card that cannot be read."""
     folder = models_folder()
     networks = {name: KnownNetwork(name, card, folder / card.file) for name, card in shipped_cards().items()}
     for path in sorted(folder.glob("*.yaml")) if folder.is_dir() else ():
@@ -92,10 +84,7 @@ def known_networks() -> Mapping[str, KnownNetwork]:
 
 
 def chosen_networks(names: list[str]) -> list[KnownNetwork]:
-    """Return networks by their names or tasks; a task stands for its recommended networks.
-
-    Raises: ConfigError for a name that is neither.
-    """
+    """Return networks by names or tasks, which stand for recommended ones. Raises: ConfigError for another word."""
     known = known_networks()
     chosen: dict[str, KnownNetwork] = {}
     for name in names:

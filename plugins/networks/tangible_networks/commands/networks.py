@@ -144,7 +144,6 @@ def check(as_json: Json = False) -> None:
 
 
 def _announcement(network: KnownNetwork, is_here: bool) -> str:
-    """Return what a network is and costs, in one sentence."""
     card = network.card
     if is_here:
         return f"{network.name} is here already"
@@ -154,7 +153,6 @@ def _announcement(network: KnownNetwork, is_here: bool) -> str:
 
 @contextmanager
 def _progress(name: str, hidden: bool) -> Generator[Progress]:
-    """Show how much of a network is here, on a terminal."""
     from rich.console import Console
     from rich.progress import BarColumn, DownloadColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar

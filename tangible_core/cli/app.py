@@ -23,8 +23,7 @@ from .options import DONE, FAILED, INTERRUPTED, MISTAKE, parse_verbosity
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-ENDED_BY = 128
-"""The exit code of a program that a signal has ended, less the signal's number, as in shells."""
+ENDED_BY = 128  # the exit code of a program that a signal has ended, less the signal's number
 
 app: typer.Typer = typer.Typer(
     name="tangible",
@@ -118,13 +117,11 @@ def _run_app() -> int:
 
 
 def _in_typer(error: BaseException) -> bool:
-    """Return True if typer raised the error, such as where it prints `--help`."""
     *_, (frame, _) = walk_tb(error.__traceback__)
     return str(frame.f_globals.get("__name__")).partition(".")[0] == "typer"
 
 
 def _exit_code(work: Callable[[], int]) -> int:
-    """Do the work, report its errors, and return the exit code."""
     try:
         return work()
     except TangibleError as error:
@@ -174,7 +171,6 @@ def _about_option(error: BaseException) -> str:
 
 
 def _report(message: str, code: int) -> int:
-    """Print a message on standard error, which may be full or closed, and return the exit code."""
     try:
         typer.echo(localise(message), err=True)
     except OSError:

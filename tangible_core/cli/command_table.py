@@ -23,18 +23,13 @@ if TYPE_CHECKING:
 class Command(NamedTuple):
     """A command that is not imported yet."""
 
-    place: str
-    """`package.module:name` of its function, or of its group of commands."""
-    summary: str
-    """The first line of its help."""
-    group: str = "More"
-    """The heading below which it is listed."""
-    example: str = ""
-    """A call as a person would type it."""
+    place: str  # `package.module:name` of its function, or of its group of commands
+    summary: str  # the first line of its help
+    group: str = "More"  # the heading below which it is listed
+    example: str = ""  # a call as a person would type it
 
 
 GROUPS = ("Begin", "Make", "Feel", "Compare", "The program", "More")
-"""The headings of the list of commands, in their order."""
 ROOM = f"{__package__}.commands"
 COMMANDS = {
     "demo": Command(
@@ -85,8 +80,7 @@ def add(name: str, place: str, summary: str, group: str = GROUPS[-1], example: s
     COMMANDS.setdefault(name, Command(place, summary, group, example))
 
 
-_checked: WeakSet[Callable[..., Any]] = WeakSet()
-"""The functions of commands that `check_paths` has wrapped."""
+_checked: WeakSet[Callable[..., Any]] = WeakSet()  # what `check_paths` has wrapped
 
 
 class LazyGroup(TyperGroup):
@@ -113,8 +107,7 @@ class _Commands(MutableMapping[str, Any]):
     """Commands by name; those of COMMANDS are imported on access."""
 
     def __init__(self, others: dict[str, Any]) -> None:
-        self.others = others
-        """The commands that plugins registered themselves; none replaces a command of COMMANDS."""
+        self.others = others  # of plugins; none replaces a command of COMMANDS
 
     def __getitem__(self, name: str) -> Any:
         return load(name) if name in COMMANDS else self.others[name]
@@ -157,10 +150,7 @@ def check_paths(app: typer.Typer) -> None:
 
 
 def _check_paths(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Wrap a command so that `~` is a home folder also where a shell leaves it, as in --out=~/maps.
-
-    A name that no file can have is refused. Raises: as `as_path`.
-    """
+    """Wrap a command so that `~` is a home folder also where a shell leaves it, as in --out=~/maps."""
 
     @wraps(command)
     def run(**options: Any) -> Any:
@@ -176,7 +166,6 @@ def _as_paths(value: Any) -> Any:
 
 
 def _all_commands(group: typer.Typer) -> Iterator[CommandInfo | TyperInfo]:
-    """Yield every command of a group, and the callback that runs before each."""
     yield from group.registered_commands
     yield from filter(None, [group.registered_callback])
     for each in group.registered_groups:

@@ -18,8 +18,6 @@ def localise_help() -> None:
 
 
 def _localise(base: Any) -> type:
-    """Return a formatter of help that puts texts into the language before they are folded."""
-
     class Formatter(base):
         localised = True
 

@@ -66,20 +66,16 @@ def is_listing(group: str, subcommand: str | None, as_json: bool) -> bool:
     return not subcommand
 
 
-NOTICES = "tangible_core.compiled.compiling"
-"""The logger whose information is shown to everybody: the reason why a first run takes longer."""
+NOTICES = "tangible_core.compiled.compiling"  # shown to everybody: the reason why a first run takes longer
 
 _quiet = [False]
 _named_language = [""]
 
 
 def parse_verbosity(words: list[str]) -> list[str]:
-    """Apply --lang, --log-level, --plain and --quiet wherever they stand among the words; return the other words.
-
-    As an option of typer, --log-level would cost every command the import of pydantic. Without --lang, the language is
-    that of the environment. Raises: ConfigError for an unknown level or language.
-    """
+    """Apply --lang, --log-level, --plain and --quiet; return the other words. Raises: ConfigError."""
     set_language(language_of_environment(os.environ))
+    # As an option of typer, --log-level would cost every command the import of pydantic.
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--log-level", action="append", default=[])
     parser.add_argument("--lang")
@@ -128,8 +124,6 @@ def _set_logging(levels: list[str], quiet: bool) -> None:
 
 
 class _ToStandardError(logging.Handler):
-    """Writes to the standard error of the moment: above the progress line while one is shown."""
-
     def emit(self, record: logging.LogRecord) -> None:
         try:
             sys.stderr.write(f"{self.format(record)}\n")
@@ -139,8 +133,6 @@ class _ToStandardError(logging.Handler):
 
 
 class _Plain(logging.Formatter):
-    """The format without --log-level: the message, after its level if it is a warning or an error."""
-
     def format(self, record: logging.LogRecord) -> str:
         text = localise(super().format(record))
         return text if record.levelno <= logging.INFO else f"{localise(record.levelname.lower())}: {text}"

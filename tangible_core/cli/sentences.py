@@ -41,7 +41,6 @@ def run_summary(run: Run) -> str:
 
 
 def _flat(surface: HapticSurface) -> str:
-    """Return what there is to feel on a flat surface; empty for another one."""
     if not surface.relief.is_flat:
         return ""
     return "only its materials can be felt" if len(surface.materials or ()) > 1 else "there is nothing to feel"

@@ -48,11 +48,7 @@ def flush() -> None:
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | None = None, named: int = 0) -> None:
-    """Print a table without frames, or one entry a row if the terminal is too narrow.
-
-    Cells are text with rich's marks. No text is lost: a word that is too long continues in the next line.
-    named: how many columns, from the left, have names to type, which stay as they are in every language.
-    """
+    """Print a table without frames, or an entry a row on a narrow terminal. named: columns of names to type."""
     headings, title = [localise(each) for each in headings], title and localise_marked(title)
     grid = Table(title=title, title_justify="left", box=None, pad_edge=False, header_style="bold")
     for heading in headings:
@@ -76,8 +72,7 @@ def is_narrow(terminal: Console, grid: Table) -> bool:
 
 
 WIDEST = 1000
-MAX_FOLDS = 3
-"""The largest ratio of a table's unfolded width to that of the terminal."""
+MAX_FOLDS = 3  # of a table's unfolded width to that of the terminal
 
 
 def entries(terminal: Console, headings: Sequence[str], rows: Iterable[Sequence[str | Text]]) -> None:
@@ -98,10 +93,7 @@ def entry(head: str, text: str) -> None:
 
 
 def outcomes(rows: Iterable[Outcome], title: str | None = None, ran: str = "ran") -> None:
-    """Print the outcome of each product, and the reason.
-
-    ran: the word for products that ran, or will run. The warnings of a run are logged already.
-    """
+    """Print the outcome of each product, and the reason. ran: the word for products that ran, or will run."""
     from ..data.outcome import HEADINGS
 
     cells = [
@@ -138,10 +130,7 @@ def parts_felt(parts: Sequence[PartFelt]) -> None:
 def verdicts(
     heading: str, rows: Sequence[Verdict], colours: Mapping[str, str], widths: tuple[int, int], verbose: bool = False
 ) -> None:
-    """Print verdicts with their cures below a heading, and the number of verdicts of each grade.
-
-    colours: grade -> rich's style. widths: of the columns of grades and of checks. verbose: print what is ok, too.
-    """
+    """Print verdicts with their cures below a heading, and how many there are of each grade."""
     say(f"{heading}\n")
     widths = (
         max(widths[0], *(len(localise(grade)) for grade in colours)),

@@ -34,7 +34,6 @@ def _rewrite(node: Any, defs: Mapping[str, Schema]) -> Any:
 
 
 def _facts(option: Schema) -> str:
-    """Return the unit, the bounds and the default of an option in a sentence; empty if it has none."""
     number = next((each for each in (option, *option.get("anyOf", ())) if BOUNDS.keys() & each.keys()), option)
     facts = [f"in {option['unit']}"] if "unit" in option else []
     facts += [f"{word} {number[key]:g}" for key, word in BOUNDS.items() if key in number]
@@ -46,7 +45,6 @@ def _facts(option: Schema) -> str:
 
 
 def _types(node: Schema, defs: Mapping[str, Schema]) -> tuple[str, ...]:
-    """Return the types of the values that a schema accepts."""
     if "$ref" in node:
         return _types(defs[node["$ref"].rpartition("/")[2]], defs)
     if "anyOf" in node:
@@ -56,7 +54,6 @@ def _types(node: Schema, defs: Mapping[str, Schema]) -> tuple[str, ...]:
 
 
 def _by_type(alternatives: Sequence[Schema], types: Sequence[tuple[str, ...]]) -> Schema:
-    """Return alternatives of which the type of a value chooses one."""
     groups: dict[str, list[Schema]] = {}
     for alternative, kinds in zip(alternatives, types, strict=True):
         for kind in kinds:

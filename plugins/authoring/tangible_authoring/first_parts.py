@@ -30,18 +30,13 @@ from tangible_report.numbered_parts import numbered_parts
 from .listed_parts import RELIEF_MM, ListedPart, list_rows, make_title, parts_starter
 
 LABELS, NUMBERED = "parts.png", "parts-numbered.png"
-MAX_PARTS = 12
-"""The most parts by default: a person names these in a few minutes, and fingers can tell them apart."""
-SMALLEST_MM = 5.0
-"""The diameter of a disc, mm, that each part must hold: a narrower part is felt as an edge rather than as a thing."""
-SEGMENTS_PER_PART = 4 / 3
-"""Segments that are requested of a method for each part: segments that are too small go to their neighbours."""
-THE_FIGURE = "the figure"
-"""The name of what a network sees stand out from its ground."""
+MAX_PARTS = 12  # a person names these in a few minutes, and fingers tell them apart
+SMALLEST_MM = 5.0  # disc that each part must hold: narrower ones are felt as edges
+SEGMENTS_PER_PART = 4 / 3  # requested: segments that are too small go to their neighbours
+THE_FIGURE = "the figure"  # what a network sees stand out from its ground
 GROUND = 0.5
 """Share of the height for the parts of the ground where a network sees a figure; those of the figure have the rest."""
-STEPS_PER_M = 10_000
-"""Steps of a height in a metre: a tenth of a millimetre is easy to read, and nobody feels less."""
+STEPS_PER_M = 10_000  # a tenth of a millimetre is easy to read, and nobody feels less
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +127,6 @@ def proposed_parts(pipeline: Pipeline, most: int = MAX_PARTS, smallest_mm: float
 
 
 def _figure(pipeline: Pipeline) -> Figure:
-    """Return what networks see in one picture; nothing where no network for figures is here."""
     views = pipeline.scene.views
     one_picture = views is not None and views.right is None
     return pipeline.make("figure") if one_picture and networks_here("figure") else Figure()
@@ -152,7 +146,6 @@ def _pipeline(
     registry: Registry,
     cache: Cache | None,
 ) -> Pipeline:
-    """Make the pipeline of the starter file, with another texture method, or with more segments."""
     if method:
         registry.find("texture", method)
     if other := next((override for override in overrides if not override.lstrip().startswith("texture.")), None):

@@ -11,24 +11,19 @@ from tangible_core.pipeline import Feeling, Pipeline
 from tangible_core.pipeline.config import PipelineConfig, edit_text, parse_config, relocate_text, with_overrides
 from tangible_core.preflight import Change, Flight, Hand, Lateness, Loop, Preflight, judge, quantity
 
-ROUNDS = 24
-"""The most changes: most files need one to three, and each is tried on the surface that it makes."""
-AT_ONCE = 0.001
-"""The time for measuring the machine again, s: only the lateness of the first flight counts."""
+ROUNDS = 24  # most files need one to three, each tried on the surface that it makes
+AT_ONCE = 0.001  # to measure the machine again: only the lateness of the first flight counts
 
 
 @dataclass(frozen=True)
 class Fixed:
     """The changes of a file, and the verdicts of preflight after them."""
 
-    changes: Mapping[str, str]
-    """New values by key, in the order of the changes."""
-    losses: Sequence[str]
-    """What each change takes away, as the end of a sentence about the surface."""
+    changes: Mapping[str, str]  # new values by key, in the order of the changes
+    losses: Sequence[str]  # what each takes away, as the end of a sentence about the surface
     flight: Flight
     verdicts: Preflight
-    text: str
-    """The file with these changes and its comments, with paths relative to its new place."""
+    text: str  # the file with these changes, with paths relative to its new place
 
 
 class Cured(NamedTuple):
@@ -77,7 +72,6 @@ def cure(
 
 
 def _next(verdicts: Preflight, changes: Mapping[str, Change]) -> Change | None:
-    """Return the first change of the worst verdict that was not made yet."""
     worst_first = sorted(verdicts, key=lambda verdict: verdict.verdict != "unsafe")
     return next((change for verdict in worst_first for change in verdict.changes[:1] if _is_new(change, changes)), None)
 
@@ -124,7 +118,6 @@ def _loss(config: PipelineConfig, key: str, new: Any) -> str:
 
 
 def _value(config: PipelineConfig, key: str) -> float | None:
-    """Return the number of a key before, defaults included; None where it has none."""
     block, _, name = key.partition(".")
     owner: Any = config.size if block == "workspace" else getattr(config, block)
     owner = owner.method if block == "render" else owner

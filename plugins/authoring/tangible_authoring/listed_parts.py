@@ -20,26 +20,19 @@ from tangible_core.scene import Scene, SceneFiles, builtin_files
 from tangible_legibility.words.places import place_in_words
 from tangible_report.numbered_parts import numbered_parts
 
-MAX_CELLS = 512
-"""The most cells of a map's side that the place of a part is found on: more show no other place."""
+MAX_CELLS = 512  # of a side on which a part's place is found: more show no other place
 
 
 class ListedPart(NamedTuple):
     """A row of the list: one part."""
 
     number: int
-    name: str
-    """The name; empty for a part without one."""
-    place: str
-    """The place in the picture, in words; empty for a part that lies on no side."""
-    share: float
-    """The share of the picture's pixels, 0 to 1."""
-    height_m: float | None
-    """The height, metres; None where the relief is not made of parts."""
-    why: str
-    """The source of the height."""
-    material: str
-    """The material of the file; empty where a rule decides."""
+    name: str  # empty for a part without one
+    place: str  # in words; empty for a part that lies on no side
+    share: float  # of the picture's pixels, 0 to 1
+    height_m: float | None  # None where the relief is not made of parts
+    why: str  # the source of the height
+    material: str  # empty where a rule decides
 
     @property
     def where(self) -> str:
@@ -53,11 +46,9 @@ class ListedParts(NamedTuple):
 
     part_map: PartMap
     parts: tuple[ListedPart, ...]
-    numbers_png: bytes
-    """The picture with their borders, numbers and names, as PNG."""
+    numbers_png: bytes  # the picture with borders, numbers and names
     scene_name: str
-    wrong: ConfigError | None
-    """Complaints about parts that do not exist, or that cannot be so high."""
+    wrong: ConfigError | None  # parts that do not exist, or cannot be so high
 
 
 def list_rows(parts: PartMap, heights: PartHeights | None, choices: Mapping[int, PartChoice]) -> tuple[ListedPart, ...]:
@@ -113,8 +104,7 @@ def _wrong(config: PipelineConfig, parts: PartMap) -> ConfigError | None:
     return None
 
 
-RELIEF_MM = 6.0
-"""The height of the whole relief, mm: as `workspace` has it for parts."""
+RELIEF_MM = 6.0  # as `workspace` has it for parts
 GUESSED = "`tangible parts` wrote a guess, as a picture does not show which parts are in front."
 MEASURED = "`tangible parts` wrote the median of the depth over the part."
 
@@ -154,7 +144,6 @@ def make_title(picture: Path) -> str:
 
 
 def _lines(rows_of_parts: Sequence[ListedPart]) -> str:
-    """Write a line for each part, with its number and place, which stay true when the height changes."""
     parts = {
         shown_number(part.number): {"name": part.name, "height_m": f"{1000 * (part.height_m or 0):.1f} mm"}
         for part in rows_of_parts
@@ -164,7 +153,6 @@ def _lines(rows_of_parts: Sequence[ListedPart]) -> str:
 
 
 def _scene_in_yaml(scene: Scene, folder: Path, labels: str) -> str:
-    """Write the scene's files, with the label picture, relative to this folder."""
     is_builtin = isinstance(scene.files, str)  # a builtin scene's files never move with the pipeline file
     paths = builtin_files(scene.files) if isinstance(scene.files, str) else scene.files
     assert paths is not None
@@ -178,7 +166,6 @@ def _scene_in_yaml(scene: Scene, folder: Path, labels: str) -> str:
 
 
 def _relative(path: Path, folder: Path) -> str:
-    """Return a path relative to this folder, so that both can be moved together."""
     here, there = path.absolute(), folder.absolute()
     if here.is_relative_to(there):
         return here.relative_to(there).as_posix()

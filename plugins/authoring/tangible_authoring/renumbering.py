@@ -18,8 +18,7 @@ from tangible_report.numbered_parts import Before, as_drawn
 from .first_parts import check_free
 from .listed_parts import ListedPart, ListedParts, list_parts
 
-MAX_NAMED = 6
-"""The most parts that a message names: more do not fit its line."""
+MAX_NAMED = 6  # parts in a message: more do not fit its line
 
 
 class Moved(NamedTuple):
@@ -34,13 +33,11 @@ class Numbers(NamedTuple):
     """The parts of a pipeline file, their numbers when they were last drawn, and the files written since."""
 
     parts: ListedParts
-    before: tuple[Before, ...] | None
-    """The earlier number of each part; None where the earlier numbers are unknown."""
+    before: tuple[Before, ...] | None  # the earlier number of each part; None where these are unknown
     moves: list[Moved]
     title: str
     files: tuple[Path, ...]
-    wrong: ConfigError | None
-    """The mistakes that are left, with the cure."""
+    wrong: ConfigError | None  # the mistakes that are left, with the cure
 
 
 def draw_numbers(
@@ -81,7 +78,6 @@ def draw_numbers(
 
 
 def _check_rules(file: Path, by_rules: Collection[int], all_moves: Iterable[Moved]) -> None:
-    """Refuse rules for parts by numbers that have changed. Raises: ConfigError."""
     if move := next((move for move in all_moves if move.before in by_rules), None):
         raise ConfigError(
             f"{file}: a rule of materials.rules is for {name_part(move.before)} by its number, which has "
@@ -153,5 +149,4 @@ def _comment(before: Before, part: ListedPart) -> str:
 
 
 def _block(choice: Any) -> dict[str, Any]:
-    """Return the block of a part, of which a word alone is the name."""
     return cast("dict[str, Any]", choice) if isinstance(choice, dict) else {"name": choice}

@@ -41,7 +41,6 @@ def _forms(node: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def _tables(forms: Iterable[dict[str, Any]], blocks: Mapping[str, Any]) -> Iterator[str]:
-    """Yield a heading and a table for each method, and a table for each other block, from the second on introduced."""
     for index, form in enumerate(forms):
         if use := form.get("properties", {}).get("use", {}).get("const"):
             yield from (f"### {use}", "", form.get("description", "").split("\n")[0], "")
@@ -51,7 +50,6 @@ def _tables(forms: Iterable[dict[str, Any]], blocks: Mapping[str, Any]) -> Itera
 
 
 def _first_line(form: Mapping[str, Any], blocks: Mapping[str, Any]) -> str:
-    """Return the first line of a block's description, to go on after a word."""
     about = blocks[name_of_block(form)]["description"] if "$ref" in form else form["description"]
     return f"{about[0].lower()}{about[1:].partition(chr(10))[0]}"
 

@@ -17,10 +17,8 @@ if TYPE_CHECKING:
     from ...pipeline.output.export_result import Export, Exported
 
 
-TEXT = "text"
-"""The exporter of descriptions."""
-CSV = "csv"
-"""The format in which a recording is written; not the name of an exporter."""
+TEXT = "text"  # the exporter of descriptions
+CSV = "csv"  # for recordings; not the name of an exporter
 
 
 def export(
@@ -74,7 +72,6 @@ def export(
 
 
 def _as_csv(files: Sequence[Path], folder: Path, force: bool) -> Path:
-    """Write a recording as text, one tick a line. Raises: ConfigError for several; OutputError if it is not one."""
     from ...errors import ConfigError, OutputError
     from ...session import Recording
 
@@ -97,7 +94,6 @@ def _print_recording(place: Path, as_json: bool) -> None:
 
 
 def _code(exports: Sequence[Exported]) -> int:
-    """Return the exit code: 1 if an exporter failed, 2 if one refused."""
     outcomes = {each.outcome.outcome for each in exports}
     return FAILED if "failed" in outcomes else MISTAKE if "refused" in outcomes else 0
 

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from ...servo import Servo
 
 SECONDS = 8.0
-ALONE_S = 1.5
-"""The time to wait for a hand, s, before a warning."""
+ALONE_S = 1.5  # without a hand before a warning
 
 
 def feel(
@@ -138,10 +137,7 @@ def _text(value: Any) -> str:
 
 
 def confirm_doubts(pipeline: Pipeline, yes: bool) -> None:
-    """Make the touch; if its notes doubt that it is worth feeling, ask at the terminal, unless `--yes` was given.
-
-    Raises: Exit with 1 if the user declines; PictureError without a terminal; TangibleError as `Pipeline.make`.
-    """
+    """Make the touch; if its notes doubt that it is worth feeling, ask, unless `--yes` was given. Raises: Exit."""
     from ...errors import PictureError
 
     pipeline.make("touch")

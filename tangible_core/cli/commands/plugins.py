@@ -41,7 +41,6 @@ Name = Annotated[
 
 
 def _kind_and_name(kind: str, name: str | None) -> tuple[str, str]:
-    """Return the kind and the name of a method that is named with or without its kind. Raises: ConfigError."""
     from ...errors import ConfigError, UnknownName
     from ...plugins.registry import default_registry
 
@@ -140,7 +139,6 @@ def _figures(measured: Measured, name: str) -> dict[str, Any]:
 
 
 def _speed_and_accuracy(listing: Listing, measured: Measured | None) -> str:
-    """Return how fast and how exact a method was, on which scene and machine."""
     if listing.kind == "device":
         return f"`tangible devices stress {listing.name}` measures how fast it can be read and written."
     if listing.kind == "export":
@@ -189,8 +187,7 @@ GRADES = {
     (False, False): "[red]FAILED[/]",
     (False, True): "[yellow]fails as declared[/]",
     (True, True): "[red]PASSED, declared to fail[/]",
-}
-"""(passed, declared to fail) -> the word for the result."""
+}  # by: passed, declared to fail
 
 
 def _message(result: CheckResult) -> str:

@@ -51,8 +51,7 @@ def demo(
         show.plain(NEXT.format(config=out / "config.yaml"))
 
 
-DEMO = Path("tangible demo/demo.yaml")
-"""The name of the built-in example, as a file that cannot be mistaken for a user's own demo.yaml."""
+DEMO = Path("tangible demo/demo.yaml")  # no name that a user's own demo.yaml has
 
 NEXT = """
 Next:
@@ -89,7 +88,6 @@ def run(
 
 
 SEE = "see it, hear it and feel it with the mouse, on a page in the browser"
-"""What the page is for, as the next step of a command."""
 
 
 def plan(config: ConfigOrPictures, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:
@@ -143,10 +141,8 @@ def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bo
     return pipeline
 
 
-MAX_HAND_M = 1.0
-"""The width of a surface from which on a unit was more likely forgotten than meant, m."""
-TABLES = (".csv", ".parquet")
-"""Suffixes of tables of settings."""
+MAX_HAND_M = 1.0  # from which width on a unit was more likely forgotten than meant
+TABLES = (".csv", ".parquet")  # of settings
 
 
 OTHER_FILES = frozenset(
@@ -243,7 +239,6 @@ def _material_lines(figures: Mapping[Any, Any]) -> list[str]:
 
 
 def _part_lines(figures: Mapping[Any, Any]) -> list[str]:
-    """Return a line for each part: its number, name, height and material, and the reason."""
     from ...data.part_words import shown_number
 
     return [

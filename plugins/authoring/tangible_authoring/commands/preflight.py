@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from ..fixing import Fixed
 
 COLOURS = {"ok": "green", "warn": "yellow", "unsafe": "bold red"}
-WIDTHS = 6, 12
-"""The columns of grades and of checks, characters."""
+WIDTHS = 6, 12  # characters: grades, checks
 
 
 def preflight(
@@ -90,7 +89,6 @@ def _fix(
 
 
 def _heading_of_fix(out: Path, result: Fixed) -> str:
-    """Return whether a file was written, and what leads to the list of what it changes."""
     if result.verdicts.safe:
         return f"Written: {out}, in which the surface" if result.losses else f"Written: {out}; nothing had to change"
     return "Nothing was written: no cure is enough" + (", not even a surface that" if result.losses else "")

@@ -5,8 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-LINE = "# yaml-language-server: $schema="
-"""The comment by which an editor finds the schema of a YAML file."""
+LINE = "# yaml-language-server: $schema="  # by which an editor finds the schema
 
 
 def schema(

@@ -1,9 +1,4 @@
-"""The schema of a file in the form that editors serve best; it accepts what the schema of the program accepts.
-
-Of alternatives, editors explain the first that fits as badly as the others: a wrong key of `scene:` read "one of
-builtin/brick, ...". Here the type of a value, and the name after `use:`, decide which alternative counts. Editors show
-the description alone, so bounds, unit and default are in it.
-"""
+"""The schema of a file in the form that editors serve best; it accepts what the schema of the program accepts."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, cast
@@ -12,6 +7,7 @@ Schema = dict[str, Any]
 BOUNDS = {"minimum": "at least", "exclusiveMinimum": "above", "maximum": "at most", "exclusiveMaximum": "below"}
 
 
+# Of alternatives, editors explain the first that fits as badly as the others, and they show the description alone.
 def for_editors(schema: Schema) -> Schema:
     """Return the schema with its alternatives told apart, and with all facts of an option in its description."""
     return _rewrite(schema, schema.get("$defs", {}))

@@ -79,11 +79,7 @@ class LegibilityInput:
         others: str = "",
         of: str,
     ) -> list[Verdict]:
-        """Return one verdict if all meet the rule; else one for each of the worst that fail, and one for all others.
-
-        none: the value without a measurement. of: noun for all of them. cure: value -> cure. worse: the fault, after
-        the name of a part. others: the same of several more, after their number.
-        """
+        """Return one verdict if all meet the rule; else one for each of the worst, and one for all others."""
         rule = self.profile.rules[check]
         wrong = [each for each in measurements if not _meets(each.value, rule.relation, rule.bound)]
         wrong.sort(key=lambda each: each.value, reverse=rule.relation == "<=")

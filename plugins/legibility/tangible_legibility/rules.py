@@ -1,8 +1,4 @@
-"""The rules of tactile graphics in one table, with value, unit and source, and the sizes of a braille cell.
-
-Source of the braille sizes: Specification 800, "Braille Books and Pamphlets", section 3.2, National Library Service for
-the Blind and Print Disabled, Library of Congress.
-"""
+"""The rules of tactile graphics in one table, with value, unit and source, and the sizes of a braille cell."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,6 +7,7 @@ from typing import Literal, NamedTuple
 from tangible_core.plugins import Medium
 from tangible_core.preflight import Grade, Unit
 
+# NLS Specification 800, "Braille Books and Pamphlets", section 3.2, Library of Congress.
 DOT_DIAMETER_M = 0.00144  # at its base
 DOT_HEIGHT_M = 0.00048
 DOT_PITCH_M = 0.00234  # from dot to dot of a cell, down and across

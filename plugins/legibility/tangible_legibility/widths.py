@@ -1,8 +1,4 @@
-"""Widths of parts in metres: the largest disc in each piece, and the places that are too narrow for a finger.
-
-Borders are the middles of the pixel sides between two parts, on a grid of half pixels, so that a strip of n pixels is
-n pixels wide, for even and odd n. The rim of the picture is a border too.
-"""
+"""Widths of parts in metres: the largest disc in each piece, and the places that are too narrow for a finger."""
 
 from typing import Any, NamedTuple
 
@@ -59,13 +55,7 @@ WHOLE = Rims()
 def measure(
     labels: Int32[np.ndarray, "h w"], pitch_m: float, gap_m: float, rims: Rims = WHOLE, *, quick: bool = False
 ) -> Widths:
-    """Measure the widths of the parts, and find the places that are narrower than gap_m.
-
-    A place is a connected set of cells that no disc of diameter gap_m reaches within its piece. Two kinds do not count:
-    places within an eighth of gap_m of such a disc, and tips of corners, which are connected to the rest of the piece
-    on one side only and are at most gap_m long, as those of corners down to 39 degrees are.
-    quick: to 2 %.
-    """
+    """Measure the widths of the parts, and find the places that are narrower than gap_m. quick: to 2 %."""
     import cv2
 
     sides = _Sides.of(labels)
@@ -75,6 +65,7 @@ def measure(
     part[pieces.reshape(-1)] = labels.reshape(-1)
     depth = sides.depth(rims, cv2.DIST_MASK_5 if quick else cv2.DIST_MASK_PRECISE)
     disc_m = pitch_m * _deepest(depth, pieces, count).astype(np.float64)
+    # Places within an eighth of gap_m of a disc, and tips of corners, which are short, do not count.
     left = ~_covered_by_discs(sides, pieces, depth, gap_m / 2 / pitch_m, pitch_m)
     narrow, places = _places(sides, pieces, left, depth, disc_m, pitch_m, gap_m, rims)
     size = np.bincount(pieces.reshape(-1), minlength=count)
@@ -99,6 +90,8 @@ def surroundings(wide: Widths, pitch_m: float, gap_m: float) -> Bool[np.ndarray,
 
 class _Sides(NamedTuple):
     """Masks of the sides of cells that are not a border."""
+
+    # On half pixels, so that a strip of n pixels is n pixels wide, for even and odd n; the rim is a border too.
 
     upright: Bool[np.ndarray, "h w1"]  # between a cell and its right neighbour
     level: Bool[np.ndarray, "h1 w"]  # between a cell and its lower neighbour

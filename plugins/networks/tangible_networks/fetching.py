@@ -1,8 +1,4 @@
-"""Fetching of networks: the only place of the program that downloads anything, and only when it is asked to.
-
-Packages come by the clients of their registries, pip and npm, without what they depend on; other files by HTTP, which
-goes on where it stopped. A file takes its name only once its digest is right.
-"""
+"""Fetching of networks: the only place of the program that downloads anything, and only when it is asked to."""
 
 import json
 import os
@@ -67,13 +63,9 @@ def add_network(
 
 
 def main() -> None:
-    """Fetch networks for the program that started this process, and report on standard output, in a line of JSON each.
-
-    Standard input begins with a line: the names, and the path of a file that was brought by hand, or null. Its end is
-    a stop. A report has the name, bytes that are here and bytes of the whole; the last one has `why` if it failed.
-    """
+    """Fetch networks for the program that started this process, and report in lines of JSON."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the other program, which ends this
-    names, source = json.loads(sys.stdin.buffer.readline())
+    names, source = json.loads(sys.stdin.buffer.readline())  # the end of the input is a stop
     stop, last_s = Event(), 0.0
 
     def wait_for_stop() -> None:

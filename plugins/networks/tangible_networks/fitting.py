@@ -15,11 +15,7 @@ Map = Float32[np.ndarray, "h w"]
 
 
 def to_disparity(values: Map, sure: Map | None, means: Means, views: Views) -> DisparityMap:
-    """Convert a network's numbers to a disparity map; unknown where a number is not finite or not a distance.
-
-    With known cameras metres become pixels, Z = f b / (d + offset) solved for d; all other maps of one picture are
-    stretched to 0 (far) .. 1 (near). sure: confidence 0..1, or None for 1 everywhere.
-    """
+    """Convert a network's numbers to a disparity map; unknown where a number is not finite or not a distance."""
     known = np.isfinite(values)
     if means != "disparity-px":
         known &= values > 0 if means in ("depth", "depth-m") else known

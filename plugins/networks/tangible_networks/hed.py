@@ -17,11 +17,7 @@ BLOCKS = (2, 2, 3, 3, 3)  # convolutions of each
 
 
 def hed_to_onnx(weights: Path) -> bytes:
-    """Return the ONNX file of the network with these weights of Keras (HDF5).
-
-    Its input `picture` is (1, 3, h, w), its output `borders` (1, 1, h, w), 0..1.
-    Raises: BrokenMethod without h5py, ConfigError for a file without these weights.
-    """
+    """Return the ONNX file for these weights of Keras (HDF5). Raises: BrokenMethod without h5py, ConfigError."""
     try:
         import h5py  # pyright: ignore[reportMissingTypeStubs]
     except ImportError as error:

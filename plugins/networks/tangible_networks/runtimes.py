@@ -58,11 +58,7 @@ class Network(Protocol):
 
 
 def run(model: Path, runtime: Runtime, inputs: Mapping[str, np.ndarray], outputs: Sequence[str]) -> list[np.ndarray]:
-    """Run the network in this file and return its outputs.
-
-    inputs: float32 (1, 3, h, w) or a whole number each, by name.
-    Raises: ConfigError if it cannot be loaded or rejects these inputs; BrokenMethod without the runtime.
-    """
+    """Run the network in this file. Raises: ConfigError for a network or inputs that cannot be; BrokenMethod."""
     status = model.stat()
     with _lock:
         try:

@@ -108,9 +108,6 @@ def networks_here(task: Task) -> list[KnownNetwork]:
 
 
 def identity_here(*tasks: Task) -> str:
-    """Return a text that differs for other networks for these tasks, or for figures, borders or faces; "" without one.
-
-    Their files are not read: a file that was changed by hand has another time.
-    """
+    """Return a text that differs for other networks for these tasks, without reading their files; "" without one."""
     present = (network for task in tasks or PHOTOGRAPH for network in networks_here(task))
     return " ".join(f"{network.name}:{network.card.sha256}:{network.path.stat().st_mtime_ns}" for network in present)

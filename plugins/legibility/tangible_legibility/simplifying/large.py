@@ -18,15 +18,9 @@ Each = Float[np.ndarray, "n"]
 
 
 def large_parts(segments: SegmentMap, picture: np.ndarray, least_px: float, most: int) -> PartMap:
-    """Merge the parts of the segments until none is a speck, and at most `most` are left.
-
-    A speck, a part that holds no disc least_px wide, joins the neighbour with the longest common border and the most
-    similar colour (CIELAB). Then, while there are more than `most`, those two neighbours join that increase the spread
-    of the colours within parts least (Ward, Hierarchical grouping to optimize an objective function, 1963). One part is
-    left if the whole picture is narrower than least_px.
-    Raises: PictureError for an array that is not a picture, or of another size.
-    """
+    """Merge the parts of the segments until none is a speck, narrower than least_px, and at most `most` are left."""
     check_same_shape("the picture", picture[..., 0] if picture.ndim == 3 else picture, "its segments", segments.labels)
+    # Specks join the most similar neighbour with the longest border; then Ward, Hierarchical grouping, JASA 1963.
     parts, colours = find_parts(segments), _colours(picture)
     while parts.count > 1 and (specks := disc_widths(parts) < least_px).any():
         parts = _relabel(parts, _join_specks(parts, colours, specks))
@@ -123,12 +117,7 @@ def count_textures(parts: PartMap, names: Sequence[str] = ()) -> int:
 def texture_kinds(
     parts: PartMap, names: Sequence[str], textures: int, picture: np.ndarray | None, front: Sequence[int] = ()
 ) -> Int32[np.ndarray, "n"]:
-    """Return the kind of each part, from 0 on: a separate one for each named part, at most `textures` for the others.
-
-    Kinds of unnamed parts are their segments. While there are too many, the two kinds are merged that add least to the
-    spread of colours within textures (Ward 1963), in CIELAB; without a picture, the smallest kinds.
-    front: numbers of the parts of the figure, which merge with each other rather than with the ground.
-    """
+    """Return the kind of each part, from 0 on: one for each named part, at most `textures` for the others."""
     most, figure = max(parts.segments, default=0) + 1, set(front)
     keys = [
         -1 - n if n < len(names) and names[n] else segment + most * (n in figure)

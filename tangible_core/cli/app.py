@@ -157,11 +157,13 @@ def _about_option(error: BaseException) -> str:
     """Return a sentence about an option without its value, or a key of the file as an option; "" for another error."""
     option, message = (str(getattr(error, name, "")) for name in ("option_name", "message"))
     command = next((word for word in sys.argv[1:] if word in COMMANDS), "")
-    known: list[Any] = load(command).params if option and command else []  # its import may be what failed
+    parameters: list[Any] = load(command).params if option and command else []  # its import may be what failed
     if "requires an argument" in message:
-        takes = next((f" {each.metavar or 'VALUE'}" for each in known if option in each.opts), " VALUE")
+        takes = next(
+            (f" {parameter.metavar or 'VALUE'}" for parameter in parameters if option in parameter.opts), " VALUE"
+        )
         return f"{option}: has nothing after it; write what it takes, as `tangible {command} {option}{takes}`"
-    if not message.startswith("No such option") or not any("--set" in each.opts for each in known):
+    if not message.startswith("No such option") or not any("--set" in parameter.opts for parameter in parameters):
         return ""
     from ..pipeline.config.model import PipelineConfig
 

@@ -134,11 +134,11 @@ def load(name: str) -> Any:
     if app is not command:
         app.command(name)(command)
     check_paths(app)
-    for each in _all_commands(app):
-        each.callback = each.callback and standard_output.protect()(each.callback)
-    made = typer.main.get_command(app)
-    made.epilog = COMMANDS[name].example and f"{localise('Example:')} {COMMANDS[name].example}"
-    return made
+    for entry in _all_commands(app):
+        entry.callback = entry.callback and standard_output.protect()(entry.callback)
+    result = typer.main.get_command(app)
+    result.epilog = COMMANDS[name].example and f"{localise('Example:')} {COMMANDS[name].example}"
+    return result
 
 
 def check_paths(app: typer.Typer) -> None:
@@ -161,16 +161,16 @@ def _check_paths(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def _as_paths(value: Any) -> Any:
     if isinstance(value, list):
-        return [_as_paths(each) for each in cast("list[Any]", value)]
+        return [_as_paths(item) for item in cast("list[Any]", value)]
     return as_path(value) if isinstance(value, Path) else value
 
 
 def _all_commands(group: typer.Typer) -> Iterator[CommandInfo | TyperInfo]:
     yield from group.registered_commands
     yield from filter(None, [group.registered_callback])
-    for each in group.registered_groups:
-        if each.typer_instance:
-            yield from _all_commands(each.typer_instance)
+    for group_info in group.registered_groups:
+        if group_info.typer_instance:
+            yield from _all_commands(group_info.typer_instance)
 
 
 def _summary(name: str, commands: MutableMapping[str, Any]) -> str:

@@ -88,7 +88,7 @@ def _exporter_keys(incomplete: str) -> list[str]:
     names = default_registry().names("export")
     name, dot, _ = incomplete.removeprefix("export.").partition(".")
     if not dot or name not in names:
-        return _matching((f"export.{each}." for each in names), incomplete)
+        return _matching((f"export.{item}." for item in names), incomplete)
     try:
         options = default_registry().load("export", name).model_fields
     except TangibleError:

@@ -12,7 +12,7 @@ from ..translation import localise
 
 def localise_help() -> None:
     """Have typer format help in the language of the terminal."""
-    owner: Any = next(each for each in typer.Context.__mro__ if "formatter_class" in vars(each))
+    owner: Any = next(kind for kind in typer.Context.__mro__ if "formatter_class" in vars(kind))
     if not getattr(owner.formatter_class, "localised", False):
         owner.formatter_class = _localise(owner.formatter_class)
 

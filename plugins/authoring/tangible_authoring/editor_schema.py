@@ -25,12 +25,12 @@ def _rewrite(node: Any, defs: Mapping[str, Schema]) -> Any:
     if isinstance(own.get("pattern"), str) and "examples" in own:
         own["patternErrorMessage"] = f"Write a number with a unit, such as {own['examples'][0]}."
     if isinstance(own.get("anyOf"), list):
-        own |= _by_type(own.pop("anyOf"), [_types(each, defs) for each in node["anyOf"]])
+        own |= _by_type(own.pop("anyOf"), [_types(schema, defs) for schema in node["anyOf"]])
     return own
 
 
 def _facts(option: Schema) -> str:
-    number = next((each for each in (option, *option.get("anyOf", ())) if BOUNDS.keys() & each.keys()), option)
+    number = next((schema for schema in (option, *option.get("anyOf", ())) if BOUNDS.keys() & schema.keys()), option)
     facts = [f"in {option['unit']}"] if "unit" in option else []
     facts += [f"{word} {number[key]:g}" for key, word in BOUNDS.items() if key in number]
     default = option.get("default")
@@ -44,7 +44,7 @@ def _types(node: Schema, defs: Mapping[str, Schema]) -> tuple[str, ...]:
     if "$ref" in node:
         return _types(defs[node["$ref"].rpartition("/")[2]], defs)
     if "anyOf" in node:
-        return tuple(dict.fromkeys(kind for each in node["anyOf"] for kind in _types(each, defs)))
+        return tuple(dict.fromkeys(kind for schema in node["anyOf"] for kind in _types(schema, defs)))
     kind = node.get("type", "string")  # names alone are an enumeration without a type
     return ("number" if kind == "integer" else kind,)
 
@@ -60,18 +60,18 @@ def _by_type(alternatives: Sequence[Schema], types: Sequence[tuple[str, ...]]) -
 
 def _one(group: list[Schema]) -> Schema:
     """Return one schema for alternatives of one type: the method that `use:` names, the block that a key marks."""
-    names = [each.get("properties", {}).get("use", {}).get("const") for each in group]
+    names = [schema.get("properties", {}).get("use", {}).get("const") for schema in group]
     if not all(names):
         one, *marked = group
-        if not all(each.get("required") for each in marked):
+        if not all(schema.get("required") for schema in marked):
             return {"anyOf": group}
-        for each in marked:
-            one = {"if": {"required": each["required"][:1]}, "then": each, "else": one}
+        for schema in marked:
+            one = {"if": {"required": schema["required"][:1]}, "then": schema, "else": one}
         return one
-    about = [str(each.get("description", "")).partition("\n")[0] for each in group]
+    about = [str(schema.get("description", "")).partition("\n")[0] for schema in group]
     use = {"enum": names, "enumDescriptions": about, "markdownEnumDescriptions": about}
     chosen = [
-        {"if": {"properties": {"use": {"const": name}}, "required": ["use"]}, "then": each}
-        for name, each in zip(names, group, strict=True)
+        {"if": {"properties": {"use": {"const": name}}, "required": ["use"]}, "then": schema}
+        for name, schema in zip(names, group, strict=True)
     ]
     return {"type": "object", "required": ["use"], "properties": {"use": use}, "allOf": chosen}

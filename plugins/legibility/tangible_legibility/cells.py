@@ -48,7 +48,7 @@ def vote(labels: Labels, removed: Cells, voters: Cells, sigma: float) -> Labels:
     """Give removed cells the label of most voters around, by a Gaussian of sigma cells, or the nearest label."""
     import cv2
 
-    elected, best = fill(labels, removed), np.full(labels.shape, np.float32(FEW))
+    winners, best = fill(labels, removed), np.full(labels.shape, np.float32(FEW))
     margin = int(np.ceil(REACH * sigma))
     rows, columns = labels.shape
     with plain_opencv():
@@ -66,8 +66,8 @@ def vote(labels: Labels, removed: Cells, voters: Cells, sigma: float) -> Labels:
             votes = np.asarray(cv2.GaussianBlur(own, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE), np.float32)
             more = removed[there] & (votes > best[there])
             best[there][more] = votes[more]
-            elected[there][more] = label
-    return elected
+            winners[there][more] = label
+    return winners
 
 
 def fill(labels: Labels, removed: Cells) -> Labels:

@@ -38,15 +38,15 @@ def _widen_or_leave_out(data: LegibilityInput, bound: float, simplified: str = "
 def parts(data: LegibilityInput) -> Iterator[Verdict]:
     """Check that there is more than one part."""
     count = int(np.count_nonzero(np.bincount(data.parts.labels.reshape(-1))))
-    measured = [Measurement("the picture", float(count))]
+    measurements = [Measurement("the picture", float(count))]
     cure = "divide the picture: paint its parts (`tangible parts`), or choose another method for `texture:`"
-    yield from data.judge("parts", measured, lambda _: cure, none=0, of="the picture", worse="is one part")
+    yield from data.judge("parts", measurements, lambda _: cure, none=0, of="the picture", worse="is one part")
 
 
 def gap(data: LegibilityInput) -> Iterator[Verdict]:
     """Check that no part is too narrow anywhere."""
     rule = data.profile.rules["gap"]
-    measured = [
+    measurements = [
         Measurement(
             data.describe_part(int(data.widths.part[place.piece])), place.width_m, data.share_of_picture(*place.at)
         )
@@ -54,7 +54,7 @@ def gap(data: LegibilityInput) -> Iterator[Verdict]:
     ]
     cure = _widen_or_leave_out(data, rule.bound, "simplify.gap_m")
     worse, others = "is too narrow for a finger", "more places are too narrow for a finger"
-    yield from data.judge("gap", measured, cure, none=rule.bound, of="places", worse=worse, others=others)
+    yield from data.judge("gap", measurements, cure, none=rule.bound, of="places", worse=worse, others=others)
 
 
 def part(data: LegibilityInput) -> Iterator[Verdict]:
@@ -62,48 +62,48 @@ def part(data: LegibilityInput) -> Iterator[Verdict]:
     wide, rule = data.widths, data.profile.rules["part"]
     small = np.flatnonzero(wide.disc_m < rule.bound)
     smallest = int(wide.disc_m.argmin())
-    measured = _measure_pieces(data, small, wide.disc_m) or [
+    measurements = _measure_pieces(data, small, wide.disc_m) or [
         Measurement(data.describe_part(int(wide.part[smallest])), float(wide.disc_m[smallest]))
     ]
     cure = _widen_or_leave_out(data, rule.bound, "simplify.part_m")
     worse, others = "is smaller than a fingertip", "more parts are smaller than a fingertip"
-    yield from data.judge("part", measured, cure, none=rule.bound, of="parts", worse=worse, others=others)
+    yield from data.judge("part", measurements, cure, none=rule.bound, of="parts", worse=worse, others=others)
 
 
 def shape(data: LegibilityInput) -> Iterator[Verdict]:
     """Check that pieces large enough to be felt are long enough for their shape to be recognised."""
     wide, rule = data.widths, data.profile.rules["shape"]
     large = np.flatnonzero(wide.disc_m >= data.profile.rules["part"].bound * (1 - 1e-6))
-    longer = [max(each.stop - each.start for each in box) if box else 0 for box in boxes(wide.pieces + 1)]
+    longer = [max(side.stop - side.start for side in box) if box else 0 for box in boxes(wide.pieces + 1)]
     sides_m = data.pitch_m * np.array(longer, np.float64)
-    measured = _measure_pieces(data, large[sides_m[large] < rule.bound], sides_m)
+    measurements = _measure_pieces(data, large[sides_m[large] < rule.bound], sides_m)
     least = float(sides_m[large].min(initial=np.inf))
     cure = _widen_or_leave_out(data, rule.bound)
     none = least if np.isfinite(least) else rule.bound
     worse = "is so small that its shape is hard to recognise"
     others = "more parts are so small that their shape is hard to recognise"
-    yield from data.judge("shape", measured, cure, none=none, of="parts", worse=worse, others=others)
+    yield from data.judge("shape", measurements, cure, none=none, of="parts", worse=worse, others=others)
 
 
 def _measure_pieces(data: LegibilityInput, pieces: np.ndarray, values: np.ndarray) -> list[Measurement]:
     places = deepest_cells(data.widths, pieces)
     return [
         Measurement(
-            data.describe_part(int(data.widths.part[each])),
-            float(values[each]),
-            data.share_of_picture(*places[each]),
+            data.describe_part(int(data.widths.part[piece])),
+            float(values[piece]),
+            data.share_of_picture(*places[piece]),
         )
-        for each in pieces.tolist()
+        for piece in pieces.tolist()
     ]
 
 
 def textures(data: LegibilityInput) -> Iterator[Verdict]:
     """Check that there are no more textures than fingers tell apart."""
     rule = data.profile.rules["textures"]
-    measured = [Measurement("the picture", float(data.textures))]
+    measurements = [Measurement("the picture", float(data.textures))]
     cure = [Change("simplify.textures", f"{rule.bound:g}", "at most"), ", or name the parts that are to stay apart"]
     worse = "has more textures than fingers tell apart"
-    yield from data.judge("textures", measured, lambda _: cure, none=0, of="the picture", worse=worse)
+    yield from data.judge("textures", measurements, lambda _: cure, none=0, of="the picture", worse=worse)
 
 
 def steps(data: LegibilityInput) -> Iterator[Verdict]:
@@ -114,36 +114,38 @@ def steps(data: LegibilityInput) -> Iterator[Verdict]:
     long = np.flatnonzero((steps.length_m > rules["gap"].bound) & np.isfinite(steps.step_m))
     if "step" in rules:
         yield from _judge_steps(data, "step", long, "is hardly higher or lower than it", LEVEL)
-        named = [each for each in long.tolist() if data.has_name(steps.low[each]) and data.has_name(steps.high[each])]
-        passed = [each for each in named if steps.step_m[each] >= rules["step"].bound]
-        if named:
-            pairs = np.array(passed, np.int64)
+        named_pairs = [
+            pair for pair in long.tolist() if data.has_name(steps.low[pair]) and data.has_name(steps.high[pair])
+        ]
+        high_pairs = [pair for pair in named_pairs if steps.step_m[pair] >= rules["step"].bound]
+        if named_pairs:
+            pairs = np.array(high_pairs, np.int64)
             worse = "is not much higher or lower than it"
             yield from _judge_steps(data, "named step", pairs, worse, NEARLY_LEVEL)
-    felt = border_steps(sample_relief(data.relief, data.parts.labels.shape), data.parts.labels)["borders_found"]
-    if np.isfinite(felt):
-        measured = [Measurement("the borders of parts", 1 - felt)]
-        worse = "are for the most part not felt as steps" if felt < 1 / 2 else "are partly not felt as steps"
+    felt_share = border_steps(sample_relief(data.relief, data.parts.labels.shape), data.parts.labels)["borders_found"]
+    if np.isfinite(felt_share):
+        measurements = [Measurement("the borders of parts", 1 - felt_share)]
+        worse = "are for the most part not felt as steps" if felt_share < 1 / 2 else "are partly not felt as steps"
         yield from data.judge(
-            "unfelt borders", measured, lambda _: HEIGHTEN, none=0, of="the borders of parts", worse=worse
+            "unfelt borders", measurements, lambda _: HEIGHTEN, none=0, of="the borders of parts", worse=worse
         )
 
 
 def _judge_steps(data: LegibilityInput, check: str, pairs: np.ndarray, worse: str, others: str) -> Iterator[Verdict]:
     steps, rule = data.steps, data.profile.rules[check]
-    measured = [_measure_pair(data, each, float(steps.step_m[each])) for each in pairs.tolist()]
+    measurements = [_measure_pair(data, pair, float(steps.step_m[pair])) for pair in pairs.tolist()]
 
     def cure(step_m: float) -> Cure:
         more_m = 1e-4 * max(1, ceil(1e4 * (rule.bound - step_m)))
         return f"make one of them {millimetres(more_m)} higher (`height_m` under `parts:`, with `heights:`)"
 
     of = "pairs of neighbours"
-    yield from data.judge(check, measured, cure, none=rule.bound, of=of, worse=worse, others=others)
+    yield from data.judge(check, measurements, cure, none=rule.bound, of=of, worse=worse, others=others)
 
 
 def _measure_pair(data: LegibilityInput, pair: int, value: float) -> Measurement:
     steps = data.steps
-    high, low = (data.describe_part(int(each[pair])) for each in (steps.high, steps.low))
+    high, low = (data.describe_part(int(numbers[pair])) for numbers in (steps.high, steps.low))
     return Measurement(f"{high} next to {low}", value, data.share_of_picture(*map(int, steps.at[pair])))
 
 
@@ -151,9 +153,11 @@ def height(data: LegibilityInput) -> Iterator[Verdict]:
     """Check that the relief is high enough to be felt."""
     if data.relief is None:
         return
-    measured = [Measurement("the relief", float(np.ptp(data.relief.height_m)))]
+    measurements = [Measurement("the relief", float(np.ptp(data.relief.height_m)))]
     cure = [Change("workspace.relief_m", over(0.004), "at least"), ", if it comes from a picture; else higher parts"]
-    yield from data.judge("height", measured, lambda _: cure, none=0, of="the relief", worse="is too low to be felt")
+    yield from data.judge(
+        "height", measurements, lambda _: cure, none=0, of="the relief", worse="is too low to be felt"
+    )
 
 
 def materials(data: LegibilityInput) -> Iterator[Verdict]:
@@ -162,31 +166,31 @@ def materials(data: LegibilityInput) -> Iterator[Verdict]:
         return
     steps, rule = data.steps, data.profile.rules["materials"]
     distance: dict[tuple[Material, Material], float] = {}
-    measured: list[Measurement] = []
-    for each in np.flatnonzero(steps.length_m > data.profile.rules["gap"].bound).tolist():
-        one, other = data.material(int(steps.low[each])), data.material(int(steps.high[each]))
-        if one is None or other is None or steps.step_m[each] >= FELT_STEP_M:
+    measurements: list[Measurement] = []
+    for pair in np.flatnonzero(steps.length_m > data.profile.rules["gap"].bound).tolist():
+        one, other = data.material(int(steps.low[pair])), data.material(int(steps.high[pair]))
+        if one is None or other is None or steps.step_m[pair] >= FELT_STEP_M:
             continue
         if (one, other) not in distance:
             distance[one, other] = apart(one, other)
-        measured.append(_measure_pair(data, each, distance[one, other]))
+        measurements.append(_measure_pair(data, pair, distance[one, other]))
     cure = "give one of them another material (`material` under `parts:`), or another height"
     worse, none = "is of nearly the same material and height", max(rule.bound, 1.0)
     of, others = "pairs of neighbours", "more pairs of neighbours are of nearly the same material and height"
-    yield from data.judge("materials", measured, lambda _: cure, none=none, of=of, worse=worse, others=others)
+    yield from data.judge("materials", measurements, lambda _: cure, none=none, of=of, worse=worse, others=others)
 
 
 def pins(data: LegibilityInput) -> Iterator[Verdict]:
     """Check that each part has enough pins, and that pins show its borders."""
     display = show_on_pins(data.parts, data.pitch_m)
-    measured = [
+    measurements = [
         Measurement(data.describe_part(number), float(count), data.share_of_picture(row, column))
         for number, count, (row, column) in display.parts
     ]
 
     cure: Cure = [Change("simplify.part_m", over(2 * PIN_PITCH_M * 1.5), "at least"), ", ", FEWER_PARTS]
     worse, others = "has hardly a pin or two", "more parts have hardly a pin or two"
-    yield from data.judge("pins", measured, lambda _: cure, none=0, of="parts", worse=worse, others=others)
+    yield from data.judge("pins", measurements, lambda _: cure, none=0, of="parts", worse=worse, others=others)
     borders = [Measurement("the borders of parts", display.kept)]
     finer: Cure = [Change("simplify.gap_m", over(2 * PIN_PITCH_M), "at least"), ", a larger display, " + FEWER_PARTS]
     worse = "are partly not shown by any pin"

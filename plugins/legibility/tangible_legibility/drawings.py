@@ -58,10 +58,10 @@ def _judge_lines(
             cure="make the picture larger, or have fewer lines",
         )  # fmt: skip
     elif lines.centre.any():
-        lost = 1.0 if parts is None else _share_away(lines, parts, gap_m / pitch_m)
+        share = 1.0 if parts is None else _share_away(lines, parts, gap_m / pitch_m)
         yield check_bound(
-            *("kept lines", "the lines", lost, "<=", MAX_LOST, "share", OURS),
-            says=f"{100 * lost:.0f} % of the length of the drawing's lines is left out", worse="illegible",
+            *("kept lines", "the lines", share, "<=", MAX_LOST, "share", OURS),
+            says=f"{100 * share:.0f} % of the length of the drawing's lines is left out", worse="illegible",
             cure="`relief: lines` raises them, and a page for swell paper has them",
         )  # fmt: skip
 
@@ -80,14 +80,14 @@ def _share_away(lines: Lines, parts: PartMap, reach: float) -> float:
 
 
 def _judge_parts(whole: PartMap, parts: PartMap, names: Sequence[str]) -> Iterator[Verdict]:
-    before, after = (np.bincount(each.labels.reshape(-1), minlength=whole.count) for each in (whole, parts))
+    before, after = (np.bincount(part_map.labels.reshape(-1), minlength=whole.count) for part_map in (whole, parts))
     share = before / before.sum()
-    lost = np.flatnonzero((share >= NOTICED) & (after[: whole.count] == 0))
-    lost = lost[np.argsort(-share[lost])]
-    gone = float(share[lost].sum())
-    named = [describe_part(number, names) for number in lost.tolist()]
+    absent = np.flatnonzero((share >= NOTICED) & (after[: whole.count] == 0))
+    absent = absent[np.argsort(-share[absent])]
+    area = float(share[absent].sum())
+    texts = [describe_part(number, names) for number in absent.tolist()]
     yield check_bound(
-        *("kept parts", "the parts", float(lost.size), "<=", 0.0, "parts", OURS),
-        says=f"parts are left out ({join_texts(named)}; {100 * gone:.1f} % of the picture)" if named else "",
-        cure="make the picture larger, or have fewer parts", worse="illegible" if gone >= IMPORTANT else "warn",
+        *("kept parts", "the parts", float(absent.size), "<=", 0.0, "parts", OURS),
+        says=f"parts are left out ({join_texts(texts)}; {100 * area:.1f} % of the picture)" if texts else "",
+        cure="make the picture larger, or have fewer parts", worse="illegible" if area >= IMPORTANT else "warn",
     )  # fmt: skip

@@ -85,7 +85,7 @@ class LegibilityInput:
         wrong.sort(key=lambda each: each.value, reverse=rule.relation == "<=")
         worst = max if rule.relation == "<=" else min
         single = wrong if len(wrong) <= MAX_EACH + 1 else wrong[:MAX_EACH]
-        found: list[tuple[str, float, str, tuple[tuple[float, float], ...]]] = [
+        findings: list[tuple[str, float, str, tuple[tuple[float, float], ...]]] = [
             (
                 ", ".join(filter(None, [each.of, each.place])),
                 each.value,
@@ -96,13 +96,13 @@ class LegibilityInput:
         ]
         if rest := wrong[len(single) :]:
             places = tuple(dict.fromkeys(each.at for each in rest if each.at))[:MAX_PLACES]
-            found.append((f"{len(rest)} more {of}", rest[0].value, f"{len(rest)} {others}", places))
-        if not found:
-            found = [(of, float(worst((each.value for each in measurements), default=none)), "", ())]
+            findings.append((f"{len(rest)} more {of}", rest[0].value, f"{len(rest)} {others}", places))
+        if not findings:
+            findings = [(of, float(worst((each.value for each in measurements), default=none)), "", ())]
         bound = rule.relation, rule.bound, rule.unit, rule.citation
         return [
             replace(check_bound(check, name, value, *bound, cure=cure(value), says=says, worse=rule.worse), at=at)
-            for name, value, says, at in found
+            for name, value, says, at in findings
         ]
 
 
@@ -127,11 +127,11 @@ def _meets(value: float, relation: str, bound: float) -> bool:
 
 def deepest_cells(wide: Widths, pieces: Int64[np.ndarray, "k"]) -> dict[int, tuple[int, int]]:
     """Return row and column of the cell that is farthest from the border, of each of these pieces."""
-    chosen = np.zeros(wide.part.size, np.bool_)
-    chosen[pieces] = True
-    on = np.flatnonzero(chosen[wide.pieces.reshape(-1)])
+    selection = np.zeros(wide.part.size, np.bool_)
+    selection[pieces] = True
+    on = np.flatnonzero(selection[wide.pieces.reshape(-1)])
     order = np.argsort(wide.depth[1::2, 1::2].reshape(-1)[on], kind="stable")
     cell = np.zeros(wide.part.size, np.int64)
     cell[wide.pieces.reshape(-1)[on[order]]] = on[order]
     columns = wide.pieces.shape[1]
-    return {each: divmod(int(cell[each]), columns) for each in pieces.tolist()}
+    return {piece: divmod(int(cell[piece]), columns) for piece in pieces.tolist()}

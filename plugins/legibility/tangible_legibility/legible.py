@@ -37,18 +37,18 @@ def legibility(
     Raises: GeometryError if width_m is not positive.
     """
     profile = PROFILES[medium]
-    left = list[Verdict]()
+    verdicts = list[Verdict]()
     if drawing is not None:
         if drawing.kind == PictureKind.text or (drawing.kind == PictureKind.lines and drawing.lines):
             return Legibility.of(judge_drawing(drawing, profile, None, width_m, names))
-        left += judge_drawing(drawing, profile, parts, width_m, names)
+        verdicts += judge_drawing(drawing, profile, parts, width_m, names)
     if parts is None:
         if not width_m > 0:
             raise GeometryError(f"width_m must be a positive length in metres, not {width_m}")
-        return Legibility.of([*left, *_judge_undivided(medium, relief, width_m)])
+        return Legibility.of([*verdicts, *_judge_undivided(medium, relief, width_m)])
     grid = on_grid(parts, width_m)
     data = LegibilityInput(profile, grid.parts, grid.pitch_m, width_m, relief, materials, names, textures)
-    return Legibility.of([*left, *(verdict for check in CHECKS[medium] for verdict in check(data))])
+    return Legibility.of([*verdicts, *(verdict for check in CHECKS[medium] for verdict in check(data))])
 
 
 def _judge_undivided(medium: Medium, relief: Relief | None, width_m: float) -> Iterator[Verdict]:
@@ -79,10 +79,10 @@ def sizes(medium: Medium, **sizes_m: float) -> Legibility:
 
 def _size(rule: Rule, size_m: float) -> Verdict:
     bound = millimetres(rule.bound)
-    wanted = f"at most {bound}" if rule.relation == "<=" else f"at least {bound}"
+    limit = f"at most {bound}" if rule.relation == "<=" else f"at least {bound}"
     return check_bound(
         *(rule.check, rule.says, size_m, rule.relation, rule.bound, rule.unit, rule.citation),
-        says=f"the {rule.check} is {millimetres(size_m)}, and {wanted} are needed",
-        cure=wanted,
+        says=f"the {rule.check} is {millimetres(size_m)}, and {limit} are needed",
+        cure=limit,
         worse=rule.worse,
     )

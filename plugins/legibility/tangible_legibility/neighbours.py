@@ -25,8 +25,8 @@ def border_steps(relief: Relief, labels: Integer[np.ndarray, "h w"]) -> dict[str
     steps = felt_steps(relief)  # the measures compare reliefs; they were not validated with readers
     across, along = labels[:, 1:] != labels[:, :-1], labels[1:] != labels[:-1]
     pitch_x, pitch_y = relief.pitch_m
-    stepped = ((steps[:, 1:] | steps[:, :-1])[across], pitch_y), ((steps[1:] | steps[:-1])[along], pitch_x)
-    length, felt_length = (sum(count(each) * side for each, side in stepped) for count in (np.size, np.count_nonzero))
+    sides = ((steps[:, 1:] | steps[:, :-1])[across], pitch_y), ((steps[1:] | steps[:-1])[along], pitch_x)
+    length, felt_length = (sum(count(cells) * side for cells, side in sides) for count in (np.size, np.count_nonzero))
     at_borders = steps & _near(labels, relief.pitch_m)
     return {
         "borders_found": _share(felt_length, length),
@@ -84,27 +84,27 @@ def show_on_pins(parts: PartMap, pitch_m: float) -> PinDisplay:
     pairs, votes = np.unique(pin * parts.count + labels, return_counts=True)
     order = np.argsort(votes, kind="stable")
     at, part = np.divmod(pairs[order], parts.count)
-    shown = np.zeros(rows * columns, np.int32)
-    shown[at] = part
-    count = np.bincount(shown, minlength=parts.count)
+    pin_parts = np.zeros(rows * columns, np.int32)
+    pin_parts[at] = part
+    count = np.bincount(pin_parts, minlength=parts.count)
     first = np.unique(labels.reshape(-1), return_index=True)
     places = tuple(
         (int(number), int(count[number]), divmod(int(index), labels.shape[1]))
         for number, index in zip(*first, strict=True)
     )
-    return PinDisplay(places, _share_of_borders(labels, shown.reshape(rows, columns)[np.ix_(down, right)], cell))
+    return PinDisplay(places, _share_of_borders(labels, pin_parts.reshape(rows, columns)[np.ix_(down, right)], cell))
 
 
 def _share_of_borders(labels: np.ndarray, shown: np.ndarray, cell: float) -> float:
     import cv2
 
-    borders, drawn = _borders(labels), _borders(shown)
+    borders, pin_borders = _borders(labels), _borders(shown)
     if not borders.any():
         return 1.0
-    if not drawn.any():
+    if not pin_borders.any():
         return 0.0
     with plain_opencv():
-        far = np.asarray(cv2.distanceTransform((~drawn).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5))
+        far = np.asarray(cv2.distanceTransform((~pin_borders).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5))
     return float((far[borders] <= cell + 1).mean())
 
 
@@ -142,14 +142,14 @@ def sample_relief(relief: Relief, shape: tuple[int, int]) -> Relief:
 def steps_between(parts: PartMap, pitch_m: float, relief: Relief | None) -> Steps:
     """Return the steps between all neighbours; NaN without a relief. relief: on the grid of the parts."""
     both = [_across(parts, pitch_m, relief, axis) for axis in (0, 1)]
-    pair, step, row, column = (np.concatenate(each) for each in zip(*both, strict=True))
+    pair, step, row, column = (np.concatenate(columns) for columns in zip(*both, strict=True))
     order = np.lexsort((step, pair))
     pair, step, row, column = pair[order], step[order], row[order], column[order]
     starts = np.flatnonzero(np.diff(pair, prepend=-1))
     counts = np.diff(np.append(starts, pair.size))
     low, high = np.divmod(pair[starts], parts.count)
-    known = np.add.reduceat(np.isfinite(step), starts) if starts.size else np.zeros(0, np.int64)
-    middle = starts + np.maximum(known - 1, 0) // 2  # NaN is sorted last
+    counts_known = np.add.reduceat(np.isfinite(step), starts) if starts.size else np.zeros(0, np.int64)
+    middle = starts + np.maximum(counts_known - 1, 0) // 2  # NaN is sorted last
     at = np.stack([row[starts + counts // 2], column[starts + counts // 2]], axis=1).astype(np.int64)
     return Steps(low, high, np.abs(step[middle]), counts * pitch_m, at)
 
@@ -177,6 +177,6 @@ def apart(one: Material, other: Material) -> float:
     steps = [0.0 if one.texture == other.texture else 1.0]
     for name, share in NOTICEABLE.items():
         if name != "grain_m" or not smooth:
-            values = (max(LEAST[name], float(getattr(each, name))) for each in (one, other))
+            values = (max(LEAST[name], float(getattr(material, name))) for material in (one, other))
             steps.append(abs(log(next(values) / next(values))) / log(1 + share))
     return max(steps)

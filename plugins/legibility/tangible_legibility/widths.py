@@ -131,12 +131,12 @@ class _Sides(NamedTuple):
 
     def dilate(self, cells: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
         """Add the neighbours of cells, but none across a border."""
-        dilated = cells.copy()
-        dilated[:, 1:] |= cells[:, :-1] & self.upright
-        dilated[:, :-1] |= cells[:, 1:] & self.upright
-        dilated[1:] |= cells[:-1] & self.level
-        dilated[:-1] |= cells[1:] & self.level
-        return dilated
+        grown = cells.copy()
+        grown[:, 1:] |= cells[:, :-1] & self.upright
+        grown[:, :-1] |= cells[:, 1:] & self.upright
+        grown[1:] |= cells[:-1] & self.level
+        grown[:-1] |= cells[1:] & self.level
+        return grown
 
     def components(self, cells: Bool[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
         """Return the connected pieces of these cells, from 1 on; 0 elsewhere. No piece crosses a border."""
@@ -169,10 +169,10 @@ def _covered_by_discs(
     if not middles.any():
         return middles
     far, at = nearest(middles)
-    covered = (far <= radius + 1) & (pieces.reshape(-1)[at] == pieces)
+    cover = (far <= radius + 1) & (pieces.reshape(-1)[at] == pieces)
     for _ in range(max(0, round(SLACK_M / pitch_m - 1))):
-        covered = sides.dilate(covered)
-    return covered
+        cover = sides.dilate(cover)
+    return cover
 
 
 def _places(
@@ -225,13 +225,13 @@ def _ends(
     right, left, below, above = np.s_[:, 1:], np.s_[:, :-1], np.s_[1:], np.s_[:-1]
     for one, other, same in ((right, left, sides.upright), (below, above, sides.level)):
         for here, there in ((one, other), (other, one)):
-            met = same & (labels[here] == 0) & (labels[there] > 0)
-            adjacent[here][met] = labels[there][met]
+            contacts = same & (labels[here] == 0) & (labels[there] > 0)
+            adjacent[here][contacts] = labels[there][contacts]
     on = np.flatnonzero(adjacent)
     place = adjacent.reshape(-1)[on]
     _, groups = cv2.connectedComponents((adjacent > 0).view(np.uint8), connectivity=8)
-    met = np.unique(groups.reshape(-1)[on].astype(np.int64) * count + place) % count
+    contacts = np.unique(groups.reshape(-1)[on].astype(np.int64) * count + place) % count
     cells = np.maximum(np.bincount(place, minlength=count), 1)
     rows, columns = np.divmod(on, labels.shape[1])
-    middle = np.stack([np.bincount(place, each, count) / cells for each in (rows, columns)], axis=1)
-    return np.bincount(met, minlength=count), middle
+    middle = np.stack([np.bincount(place, side, count) / cells for side in (rows, columns)], axis=1)
+    return np.bincount(contacts, minlength=count), middle

@@ -165,13 +165,13 @@ def read_card(card: str | Path) -> Card:
 
     Raises: ConfigError with every error in the file, or for an unknown name.
     """
-    shipped = shipped_cards()
-    if str(card) in shipped:
-        return shipped[str(card)]
+    cards = shipped_cards()
+    if str(card) in cards:
+        return cards[str(card)]
     path = Path(card)
     if not path.is_file():
         raise ConfigError(
-            f"card: {card} is neither a file nor one of {', '.join(shipped)}{did_you_mean(str(card), shipped)}; name "
+            f"card: {card} is neither a file nor one of {', '.join(cards)}{did_you_mean(str(card), cards)}; name "
             "one of these, or a YAML file that describes the network (docs/learned-depth.md)"
         )
     status = path.stat()

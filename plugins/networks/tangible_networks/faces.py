@@ -45,14 +45,14 @@ def find_faces(
     every = (face for origin, side in _squares(picture.shape[:2]) for face in _look(picture, origin, side, finder))
     boxes = [face for face in every if face.score > min_score]
     meshes: list[Float32[np.ndarray, "468 3"]] = []
-    taken: list[Float64[np.ndarray, 4]] = []
+    claims: list[Float64[np.ndarray, 4]] = []
     for face in sorted(boxes, key=lambda each: -each.score):
-        if any(_overlap(face.box, other) > SAME for other in taken):
+        if any(_overlap(face.box, other) > SAME for other in claims):
             continue
         mesh = _mesh(picture, face, points)
         if mesh is None:
             continue
-        taken.append(face.box)
+        claims.append(face.box)
         meshes.append(mesh)
     return np.stack(meshes) if meshes else np.zeros((0, 468, 3), np.float32)
 
@@ -74,17 +74,17 @@ def _squares(shape: tuple[int, ...]) -> Iterator[tuple[tuple[float, float], floa
 
 def _look(picture: Colours, origin: tuple[float, float], side: float, finder: KnownNetwork) -> list[Found]:
     scale = side / FINDER_PX
-    seen = _crop(picture, np.array([[scale, 0, origin[0]], [0, scale, origin[1]]]), FINDER_PX, scale)
-    regressors, scores = run(finder.path, "opencv", {"": _tensor(2 * seen - 1)}, ["regressors", "classificators"])
+    view = _crop(picture, np.array([[scale, 0, origin[0]], [0, scale, origin[1]]]), FINDER_PX, scale)
+    regressors, scores = run(finder.path, "opencv", {"": _tensor(2 * view - 1)}, ["regressors", "classificators"])
     sure = 1 / (1 + np.exp(-np.clip(scores.reshape(-1), -50, 50).astype(np.float64)))
-    found: list[Found] = []
+    faces: list[Found] = []
     for index in np.flatnonzero(sure > LOWEST_SCORE):
         values = regressors.reshape(-1, 16)[index].astype(np.float64) / FINDER_PX
         centre, size = values[:2] + ANCHORS[index], values[2:4]
         eyes = values[4:8].reshape(2, 2) + ANCHORS[index]
         box = np.concatenate([centre - size / 2, centre + size / 2]) * side + [*origin, *origin]
-        found.append(Found(float(sure[index]), box, eyes * side + origin))
-    return found
+        faces.append(Found(float(sure[index]), box, eyes * side + origin))
+    return faces
 
 
 def _mesh(picture: Colours, face: Found, points: KnownNetwork) -> Float32[np.ndarray, "468 3"] | None:
@@ -93,8 +93,8 @@ def _mesh(picture: Colours, face: Found, points: KnownNetwork) -> Float32[np.nda
     scale = MARGIN * float((face.box[2:] - face.box[:2]).max()) / POINTS_PX
     turning = scale * np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     shift = (face.box[:2] + face.box[2:]) / 2 - turning @ [POINTS_PX / 2, POINTS_PX / 2]
-    seen = _crop(picture, np.column_stack([turning, shift]), POINTS_PX, scale)
-    places, presence = run(points.path, "opencv", {"": _tensor(seen)}, ["conv2d_20", "conv2d_30"])
+    view = _crop(picture, np.column_stack([turning, shift]), POINTS_PX, scale)
+    places, presence = run(points.path, "opencv", {"": _tensor(view)}, ["conv2d_20", "conv2d_30"])
     if 1 / (1 + np.exp(-float(presence.reshape(-1)[0]))) <= PRESENCE:
         return None
     own = places.reshape(468, 3).astype(np.float64)
@@ -130,17 +130,17 @@ def _overlap(one: Float64[np.ndarray, "4"], other: Float64[np.ndarray, "4"]) -> 
     """Return the area that two boxes share, over the area that they cover."""
     sides = np.clip(np.minimum(one[2:], other[2:]) - np.maximum(one[:2], other[:2]), 0, None)
     areas = [float(np.prod(box[2:] - box[:2])) for box in (one, other)]
-    shared = float(np.prod(sides))
-    return shared / max(sum(areas) - shared, 1e-9)
+    intersection = float(np.prod(sides))
+    return intersection / max(sum(areas) - intersection, 1e-9)
 
 
 def _anchors() -> Float64[np.ndarray, "896 2"]:
     """Return the anchors' centres, column and row, in shares of the square."""
     places: list[np.ndarray] = []
-    for count, each in GRIDS:
+    for count, per_place in GRIDS:
         row, column = np.mgrid[:count, :count]
         centres = np.stack([column + 0.5, row + 0.5], -1).reshape(-1, 2) / count
-        places.append(np.repeat(centres, each, axis=0))
+        places.append(np.repeat(centres, per_place, axis=0))
     return np.concatenate(places)
 
 

@@ -47,9 +47,9 @@ def _nodes(file: Any, arrays: dict[str, np.ndarray]) -> list[Fields]:
     current, sides = "picture", list[str]()
     for block, count in enumerate(BLOCKS, 1):
         if block > 1:
-            pooled = f"pool{block}"
-            nodes.append(node("MaxPool", [current], pooled, kernel_shape=[2, 2], strides=[2, 2], auto_pad="SAME_UPPER"))
-            current = pooled
+            pool = f"pool{block}"
+            nodes.append(node("MaxPool", [current], pool, kernel_shape=[2, 2], strides=[2, 2], auto_pad="SAME_UPPER"))
+            current = pool
         for layer in range(count):
             place = f"block{block}/layers/conv2d" + (f"_{layer}" if layer else "")
             output = convolve(place, current, f"conv{block}_{layer}", pads=[1, 1, 1, 1])

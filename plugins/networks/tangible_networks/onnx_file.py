@@ -113,9 +113,9 @@ def _check_tensor(model: Path, tensor: memoryview) -> None:
 
 
 def _input(value: memoryview) -> tuple[str, Shape]:
-    name = next((_text(each) for each in _parts(value, 1)), "")
+    name = next((_text(item) for item in _parts(value, 1)), "")
     shapes = [shape for kind in _parts(value, 2) for tensor in _parts(kind, 1) for shape in _parts(tensor, 2)]
-    return name, tuple(_size(each) for shape in shapes[:1] for each in _parts(shape, 1))
+    return name, tuple(_size(item) for shape in shapes[:1] for item in _parts(shape, 1))
 
 
 def _size(dimension: memoryview) -> int | None:
@@ -124,7 +124,7 @@ def _size(dimension: memoryview) -> int | None:
 
 
 def _parts(message: memoryview, number: int) -> Iterator[memoryview]:
-    return (value for found, value in _fields(message) if found == number and isinstance(value, memoryview))
+    return (value for field, value in _fields(message) if field == number and isinstance(value, memoryview))
 
 
 def _fields(message: memoryview) -> Iterator[tuple[int, Value]]:

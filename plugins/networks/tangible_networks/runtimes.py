@@ -73,7 +73,7 @@ def run(model: Path, runtime: Runtime, inputs: Mapping[str, np.ndarray], outputs
         except (BrokenMethod, ConfigError, MemoryError):
             raise
         except Exception as error:  # runtimes raise errors of any type, with a useful message
-            sizes = ", ".join(f"{name or 'input'} {each.shape}" for name, each in inputs.items())
+            sizes = ", ".join(f"{name or 'input'} {item.shape}" for name, item in inputs.items())
             raise ConfigError(
                 f"model: {model} cannot be run by {runtime} on {sizes}: {shown(' '.join(str(error).split()), 300)}; "
                 f"check the card's inputs and outputs, or try `runtime: {_other_runtime(runtime)}`"
@@ -199,14 +199,14 @@ class _OnnxRuntime:
         self._options: type[Any] = library.RunOptions
 
     def run(self, inputs: Mapping[str, np.ndarray], outputs: Sequence[str]) -> list[np.ndarray]:
-        own = [each.name for each in self._session.get_inputs()]
-        names = [each.name for each in self._session.get_outputs()]
+        own = [item.name for item in self._session.get_inputs()]
+        names = [item.name for item in self._session.get_outputs()]
         feed = {name or own[0]: values for name, values in inputs.items()}
         wanted, options = [name or names[0] for name in outputs], self._options()
         with ThreadPoolExecutor(1) as beside:  # this thread hears Ctrl-C meanwhile, also of a network without end
             found = beside.submit(self._session.run, wanted, feed, options)
             try:
-                return [np.array(each) for each in found.result()]
+                return [np.array(item) for item in found.result()]
             except BaseException:
                 options.terminate = True
                 raise

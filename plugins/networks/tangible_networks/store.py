@@ -91,9 +91,7 @@ def chosen_networks(names: list[str]) -> list[KnownNetwork]:
         if name in known:
             chosen[name] = known[name]
         elif name in TASKS:
-            chosen |= {
-                each: known[each] for each in known if known[each].card.task == name and known[each].card.recommended
-            }
+            chosen |= {key: known[key] for key in known if known[key].card.task == name and known[key].card.recommended}
         else:
             near = did_you_mean(name, [*TASKS, *known])
             raise ConfigError(f"{name}: no such network or task{near}; `tangible networks` lists them")

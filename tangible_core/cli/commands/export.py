@@ -51,7 +51,7 @@ def export(
     """
     from .. import show
 
-    names = [name.strip() for each in to or [] for name in each.split(",") if name.strip()]
+    names = [name.strip() for text in to or [] for name in text.split(",") if name.strip()]
     if names == [CSV]:
         _print_recording(_as_csv(config, out or Path("out") / config[0].stem, force), as_json)
         return
@@ -64,9 +64,9 @@ def export(
     elif not is_quiet():
         _print(pipeline.scene.name, done, verbose)
     show.flush()
-    for each in done.exports:
-        if each.outcome.outcome != "ran":
-            show.note(f"{each.name}: {each.outcome.why}")
+    for result in done.exports:
+        if result.outcome.outcome != "ran":
+            show.note(f"{result.name}: {result.outcome.why}")
     if code := _code(done.exports):
         raise typer.Exit(code)
 
@@ -94,7 +94,7 @@ def _print_recording(place: Path, as_json: bool) -> None:
 
 
 def _code(exports: Sequence[Exported]) -> int:
-    outcomes = {each.outcome.outcome for each in exports}
+    outcomes = {export.outcome.outcome for export in exports}
     return FAILED if "failed" in outcomes else MISTAKE if "refused" in outcomes else 0
 
 

@@ -88,7 +88,7 @@ def _print(
         recorded: dict[str, Any] = {"device": before.about.device, "renderer": before.about.renderer}
         recorded |= {"started": before.about.started, "stopped": before.stopped}
         recorded["parts"] = session.read_names(before.about.parts)
-        recorded["beacons"] = [each._asdict() for each in pulled]
+        recorded["beacons"] = [item._asdict() for item in pulled]
         recorded["materials"] = session.read_names(before.about.materials)
         touched = [part._asdict() for part in parts]
         show.print_json({"recorded": recorded, "figures": figures, "parts": touched, "file": record and str(record)})
@@ -98,5 +98,5 @@ def _print(
     show.sentence(sentences.replay_summary(law, figures))
     show.table(("figure", "value", ""), [(name, f"{value:.6g}", MEANINGS[name]) for name, value in figures.items()])
     show.parts_felt(parts)
-    for each in pulled:
-        show.plain(f"\n{each}. Its ticks are not compared: only the force law is replayed.")
+    for item in pulled:
+        show.plain(f"\n{item}. Its ticks are not compared: only the force law is replayed.")

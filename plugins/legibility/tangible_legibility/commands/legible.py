@@ -43,22 +43,22 @@ def legible(
 
     pipeline = open_pipeline(config, sets or [], not no_cache)
     feeling, scene = Feeling(pipeline), pipeline.scene.name
-    found = list[Found]()
+    results = list[Found]()
     media: tuple[Medium, ...] = (medium,) if medium else get_args(Medium)
     for name in media:
         wide_m = feeling.width_on(name) if width_m is None else width_m
-        found.append(Found(name, wide_m, feeling.is_simplified_on(name), feeling.legible(name, wide_m)))
+        results.append(Found(name, wide_m, feeling.is_simplified_on(name), feeling.legible(name, wide_m)))
     if as_json:
-        documents = [each.as_data() for each in found]
+        documents = [result.as_data() for result in results]
         show.print_json({"scene": scene, **(documents[0] if medium else {"media": documents})})
     elif medium or verbose:
-        for each in found:
-            show.verdicts(_heading(without_folders(scene), each), each.verdicts, COLOURS, WIDTHS, verbose)
+        for result in results:
+            show.verdicts(_heading(without_folders(scene), result), result.verdicts, COLOURS, WIDTHS, verbose)
     else:
-        for each in found:
-            show.say(_heading(without_folders(scene), each))
+        for result in results:
+            show.say(_heading(without_folders(scene), result))
         show.plain(f"\n`tangible legible {config} --for swell` (or print, pins, force) says where, and the cures")
-    if not all(each.verdicts.readable for each in found):
+    if not all(result.verdicts.readable for result in results):
         raise typer.Exit(FAILED)
 
 

@@ -72,9 +72,9 @@ def _join_specks(
     unlike = 1 + np.linalg.norm(colour[first] - colour[second], axis=1)
     cost = np.where(specks[first], unlike * rim[first] / sides, np.inf)
     order = np.lexsort((cost, first))
-    chosen = order[np.searchsorted(first[order], np.flatnonzero(specks))]
-    joined = coo_array((np.ones(chosen.size), (first[chosen], second[chosen])), (parts.count, parts.count))
-    return connected_components(joined, directed=False)[1]
+    choices = order[np.searchsorted(first[order], np.flatnonzero(specks))]
+    targets = coo_array((np.ones(choices.size), (first[choices], second[choices])), (parts.count, parts.count))
+    return connected_components(targets, directed=False)[1]
 
 
 def _join_similar(parts: PartMap, colours: UInt8[np.ndarray, "h w 3"], most: int) -> Int[np.ndarray, "n"]:
@@ -87,15 +87,15 @@ def _join_similar(parts: PartMap, colours: UInt8[np.ndarray, "h w 3"], most: int
     for _ in range(parts.count - max(1, most)):
         spread = np.square(colour[:, None] - colour).sum(axis=2)
         cost = np.where(near, spread * size_px[:, None] * size_px / (size_px[:, None] + size_px), np.inf)
-        kept, gone = divmod(int(cost.argmin()), parts.count)
-        both = size_px[kept] + size_px[gone]
-        colour[kept] = (size_px[kept] * colour[kept] + size_px[gone] * colour[gone]) / both
-        size_px[kept] = both
-        near[kept] |= near[gone]
-        near[:, kept] = near[kept]
-        near[kept, kept] = False
+        survivor, gone = divmod(int(cost.argmin()), parts.count)
+        both = size_px[survivor] + size_px[gone]
+        colour[survivor] = (size_px[survivor] * colour[survivor] + size_px[gone] * colour[gone]) / both
+        size_px[survivor] = both
+        near[survivor] |= near[gone]
+        near[:, survivor] = near[survivor]
+        near[survivor, survivor] = False
         near[gone] = near[:, gone] = False
-        belongs[belongs == gone] = kept
+        belongs[belongs == gone] = survivor
     return belongs
 
 
@@ -123,13 +123,13 @@ def texture_kinds(
         -1 - n if n < len(names) and names[n] else segment + most * (n in figure)
         for n, segment in enumerate(parts.segments)
     ]
-    order = {each: at for at, each in enumerate(dict.fromkeys(keys))}
-    kinds = np.array([order[each] for each in keys], np.int32)
+    order = {key: at for at, key in enumerate(dict.fromkeys(keys))}
+    kinds = np.array([order[key] for key in keys], np.int32)
     size = np.bincount(kinds[parts.labels].reshape(-1), minlength=len(order))
-    free = np.array([at for each, at in order.items() if each >= 0 and size[at]], np.int64)
+    free = np.array([at for key, at in order.items() if key >= 0 and size[at]], np.int64)
     if free.size > textures:
         colour = np.zeros((len(order), 3)) if picture is None else _mean_colours(picture, kinds[parts.labels], size)
-        colour[:, 0] += FAR * np.array([each >= most for each in order])
+        colour[:, 0] += FAR * np.array([key >= most for key in order])
         into = np.arange(len(order), dtype=np.int32)
         into[free] = free[_merge(size[free].astype(np.float64), colour[free], textures, picture is not None)]
         kinds = into[kinds]
@@ -156,15 +156,15 @@ def _merge(
     """Merge kinds until at most `most` are left; return the kind that each goes into."""
     into = np.arange(size.size)
     alive = np.sort(np.argsort(-size, kind="stable")[:MAX_COMPARED])
-    for each in np.setdiff1d(into, alive).tolist():
-        into[each] = alive[np.square(colour[alive] - colour[each]).sum(axis=1).argmin()]
+    for kind in np.setdiff1d(into, alive).tolist():
+        into[kind] = alive[np.square(colour[alive] - colour[kind]).sum(axis=1).argmin()]
     size = np.bincount(into, size, into.size)
     colour = colour.copy()
     while alive.size > most:
         apart = np.square(colour[alive][:, None] - colour[alive]).sum(axis=2) if coloured else 1.0
         cost = apart * np.outer(size[alive], size[alive]) / np.add.outer(size[alive], size[alive])
         np.fill_diagonal(cost, np.inf)
-        one, other = (int(alive[each]) for each in divmod(int(cost.argmin()), alive.size))
+        one, other = (int(alive[kind]) for kind in divmod(int(cost.argmin()), alive.size))
         stays, goes = (one, other) if size[one] >= size[other] else (other, one)
         both = size[stays] + size[goes]
         colour[stays] = (size[stays] * colour[stays] + size[goes] * colour[goes]) / both

@@ -105,20 +105,20 @@ class Opening(NamedTuple):
         """Merge each unnamed piece with a narrow place into its neighbour there, once; return its cells."""
         import cv2
 
-        merged, taken = np.zeros(labels.shape, np.bool_), set[int]()
+        merger_cells, partners = np.zeros(labels.shape, np.bool_), set[int]()
         places = connected_pieces(np.where(wide.narrow, wide.pieces + 1, 0).astype(np.int32))
         for place in wide.places:
             own = place.piece
             ring = cv2.dilate((places == places[place.at]).view(np.uint8), np.ones((3, 3), np.uint8)).view(np.bool_)
             neighbours = wide.pieces[ring & (wide.pieces != own)]
-            if self.named[wide.part[own]] or not neighbours.size or own in taken:
+            if self.named[wide.part[own]] or not neighbours.size or own in partners:
                 continue
             other = int(np.bincount(neighbours).argmax())
-            if other not in taken:
-                taken |= {own, other}
+            if other not in partners:
+                partners |= {own, other}
                 labels[wide.pieces == own] = wide.part[other]
-                merged |= wide.pieces == own
-        return merged
+                merger_cells |= wide.pieces == own
+        return merger_cells
 
     def _merge_alike(self, labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
         """Merge neighbours most alike in colour until each piece is large enough; for parts all of which are small."""

@@ -48,7 +48,9 @@ def note_outcome(
 ) -> None:
     """Note which named parts vanished, which parts are in several pieces, and whether the simplified parts pass."""
     count = whole.count
-    before, after = (np.bincount(each.labels.reshape(-1), minlength=count) for each in (whole, simplified.parts))
+    before, after = (
+        np.bincount(part_map.labels.reshape(-1), minlength=count) for part_map in (whole, simplified.parts)
+    )
     gone = [n for n in np.flatnonzero((before > 0) & (after == 0)).tolist() if n < len(names) and names[n]]
     if gone:
         note(log, _vanished_message(gone, Grid(whole, simplified.pitch_m), width_m, choice, names), logging.WARNING)
@@ -135,12 +137,12 @@ def simplify(
         if not find_failures(whole.parts, widths, choice, names):
             return whole.parts
     kinds = texture_kinds(grid.parts, names, choice.textures, picture, front)
-    named = np.zeros(int(kinds.max()) + 1, np.bool_)
-    named[[kind for kind, name in zip(kinds.tolist(), names, strict=False) if name]] = True
+    is_named = np.zeros(int(kinds.max()) + 1, np.bool_)
+    is_named[[kind for kind, name in zip(kinds.tolist(), names, strict=False) if name]] = True
     labels, shape = kinds[grid.parts.labels], grid.parts.labels.shape
-    rough, _ = Opening(choice, named, coarse_m, picture).run(kinds[coarse], rough=True)
+    rough, _ = Opening(choice, is_named, coarse_m, picture).run(kinds[coarse], rough=True)
     labels = np.where(_refine(rough != kinds[coarse], shape), _refine(rough, shape), labels)
-    labels, widths = Opening(choice, named, grid.pitch_m, picture).run(labels)
+    labels, widths = Opening(choice, is_named, grid.pitch_m, picture).run(labels)
     simplified = _number_pieces(grid.parts, labels, kinds)
     note_outcome(grid.parts, Grid(simplified, grid.pitch_m), widths, width_m, choice, names)
     return simplified
@@ -166,9 +168,9 @@ def _number_pieces(parts: PartMap, labels: Int32[np.ndarray, "h w"], kinds: Int3
     largest[kinds[by_size]] = by_size
     pieces = find_parts(SegmentMap(labels))
     same = kinds[before] == labels
-    pairs, shared = np.unique(pieces.labels[same].astype(np.int64) * count + before[same], return_counts=True)
+    pairs, overlap = np.unique(pieces.labels[same].astype(np.int64) * count + before[same], return_counts=True)
     piece, part = np.divmod(pairs, count)
-    order = np.lexsort((-part, shared))
+    order = np.lexsort((-part, overlap))
     number = largest[np.array(pieces.segments)]
     number[piece[order]] = part[order]
     of_part: list[int] = largest[kinds].tolist()

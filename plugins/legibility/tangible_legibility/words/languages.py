@@ -40,9 +40,9 @@ def language_of(tag: str) -> Language:
     >>> language_of("de-AT"), language_of("pt")
     ('de', 'en')
     """
-    spoken = tag.partition("-")[0].lower()
+    code = tag.partition("-")[0].lower()
     for each in LANGUAGES:
-        if each == spoken:
+        if each == code:
             return each
     return "en"
 

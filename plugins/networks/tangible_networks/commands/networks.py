@@ -39,9 +39,9 @@ def networks(context: typer.Context, as_json: Json = False) -> None:
 
     from ..store import known_networks, models_folder
 
-    known = known_networks()
+    by_name = known_networks()
     if as_json:
-        show.print_json([network.as_data() for network in known.values()])
+        show.print_json([network.as_data() for network in by_name.values()])
         return
     rows = [
         (
@@ -53,7 +53,7 @@ def networks(context: typer.Context, as_json: Json = False) -> None:
             network.card.licence,
             network.card.trained_on,
         )
-        for name, network in known.items()
+        for name, network in by_name.items()
     ]
     show.table(["network", "task", "is", "size", "what it does", "licence", "trained on"], rows, named=2)
     show.say("They are kept in:")
@@ -84,28 +84,28 @@ def add(
     from ..fetching import add_network
     from ..store import chosen_networks
 
-    chosen = chosen_networks(names)
+    selection = chosen_networks(names)
     if source is not None and not source.is_file():
         raise ConfigError(f"--from: {source}: there is no such file")
-    if source is not None and len(chosen) > 1 and source.suffix not in (".whl", ".tgz", ".zip"):
+    if source is not None and len(selection) > 1 and source.suffix not in (".whl", ".tgz", ".zip"):
         raise ConfigError("--from: one file is one network; name one network")
-    wanted = [network for network in chosen if network.state != "here"]
+    requests = [network for network in selection if network.state != "here"]
     if not as_json:
-        for network in chosen:
-            show.say(_announcement(network, network not in wanted))
-    if wanted and not yes and source is None:
+        for network in selection:
+            show.say(_announcement(network, network not in requests))
+    if requests and not yes and source is None:
         ask(
-            "Fetch?" if len(wanted) == 1 else f"Fetch these {len(wanted)}?",
+            "Fetch?" if len(requests) == 1 else f"Fetch these {len(requests)}?",
             "networks add: there is no terminal to ask on; --yes fetches without asking",
             default=True,
         )
-    for network in wanted:
+    for network in requests:
         with _progress(network.name, hidden=as_json) as progress:
             add_network(network, source, progress)
         if not as_json:
             show.say(f"{network.name} is here and right")
     if as_json:
-        show.print_json([network.as_data() for network in chosen])
+        show.print_json([network.as_data() for network in selection])
 
 
 @app.command()
@@ -116,11 +116,13 @@ def remove(names: Names, as_json: Json = False) -> None:
     from ..fetching import remove_network
     from ..store import chosen_networks
 
-    gone = [network.name for network in chosen_networks(names) if remove_network(network)]
+    removed_names = [network.name for network in chosen_networks(names) if remove_network(network)]
     if as_json:
-        show.print_json(gone)
+        show.print_json(removed_names)
     else:
-        show.say(f"deleted: {', '.join(gone)}" if gone else "nothing to delete: none of these is here")
+        show.say(
+            f"deleted: {', '.join(removed_names)}" if removed_names else "nothing to delete: none of these is here"
+        )
 
 
 @app.command()

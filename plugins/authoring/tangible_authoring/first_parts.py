@@ -89,12 +89,7 @@ def first_parts(
     registry: Registry | None = None,
     cache: Cache | None = None,
 ) -> FirstParts:
-    """Find the parts of a photo, or of a pair, whose heights are then by depth; `FirstParts.write` writes the files.
-
-    file: the pipeline file to write. method: for the segments; by default that of `starter`, with options `overrides`.
-    most: the most parts. smallest_mm: diameter of the smallest, on a surface whose longer side is 80 mm.
-    Raises: ConfigError for files that are not pictures, and for options; PictureError for an unreadable picture.
-    """
+    """Find the parts of a photo, or of a pair, whose heights are then by depth; `FirstParts.write` writes the files."""
     if most < 1:
         raise ConfigError(f"count: must be at least 1, not {most}")
     check_positive("smallest", smallest_mm)

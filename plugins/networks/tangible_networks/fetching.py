@@ -42,12 +42,7 @@ class FetchError(TangibleError):
 def add_network(
     network: KnownNetwork, source: Path | None = None, progress: Progress = lambda done, whole: None
 ) -> None:
-    """Fetch a network's file, check its digest, and put it into the folder of networks.
-
-    source: a file that was brought by hand, from which it is made; nothing is downloaded then. It is the network, the
-    package that the network is part of, or the file that is converted to the network.
-    Raises: FetchError; ConfigError if the file is not the one of the card; OutputError, Stopped.
-    """
+    """Fetch a network's file, or take `source`, brought by hand; check its digest, and put it into the folder."""
     card, target = network.card, network.path
     try:
         target.parent.mkdir(parents=True, exist_ok=True)

@@ -1,10 +1,6 @@
-"""What an ONNX file declares, read before a runtime reads it, as runtimes trust the file.
-
-OpenCV 5 ends the program at a negative size, and at an error that quotes a text which is not UTF-8; it reads weights
-from any file of the machine that the network names.
-Only the wire format of Protocol Buffers is read: https://protobuf.dev/programming-guides/encoding/; the numbers of the
-fields are those of onnx.proto of ONNX 1.17.
-"""
+"""What an ONNX file declares, read before a runtime reads it, as runtimes trust the file."""
+# OpenCV 5 ends the program at a negative size and at a text that is not UTF-8, and reads weights from any file named.
+# The wire format is that of Protocol Buffers, https://protobuf.dev/programming-guides/encoding/; fields: ONNX 1.17.
 
 import math
 import mmap

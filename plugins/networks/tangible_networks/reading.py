@@ -24,14 +24,8 @@ MAX_WIDE = 40  # width of a row by its height; a longer one is seen narrower
 
 
 def read_texts(picture: np.ndarray, texts: Sequence[PictureText]) -> tuple[PictureText, ...]:
-    """Return the texts of a picture with what they say; "" where that is not sure, or without a network.
-
-    picture: uint8, uint16 or float (h, w), (h, w, 3) or (h, w, 4).
-    Raises: ConfigError for a network that cannot run.
-
-    Source: Li et al., PP-OCRv3: more attempts for the improvement of ultra lightweight OCR system, 2022; letters by the
-    best class of each step, Graves et al., Connectionist temporal classification, ICML 2006.
-    """
+    """Return the texts of a picture with what they say; "" where that is not sure, or without a network."""
+    # Li et al., PP-OCRv3, 2022; letters by the best class of each step, Graves et al., CTC, 2006.
     networks = networks_here("text")
     if not texts or not networks:
         return tuple(texts)

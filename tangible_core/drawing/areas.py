@@ -40,12 +40,9 @@ class Areas(NamedTuple):
 
 
 def find_areas(picture: np.ndarray) -> Areas:
-    """Find the areas of one colour, the largest first in the palette.
-
-    The insides of areas are connected pixels that differ little from their neighbours. A pixel on an edge is of the
-    area nearby whose colour is nearest to its own, so that an edge lies where half of the change is done; a stroke is
-    of the area that is nearest. Light may change slowly over the picture.
-    """
+    """Find the areas of one colour, the largest first in the palette."""
+    # An edge lies where half of the change is done: each of its pixels is of the area nearby with the colour nearest to
+    # its own, and a stroke of the nearest area. Light may change slowly over the picture.
     import cv2
 
     colours = eight_bits(picture)
@@ -100,11 +97,8 @@ def _palette(
 def _divide_edges(
     inside: Int32[np.ndarray, "h w"], calm: np.ndarray, colours: np.ndarray, stroke: Bool[np.ndarray, "h w"]
 ) -> Int32[np.ndarray, "h w"]:
-    """Give each pixel of an edge the area nearby that is nearest in colour, and of a stroke the nearest one.
-
-    What counts as a stroke for being thin, such as a corner, but has the colour of an area nearby, is of this area.
-    inside: the area of each pixel inside of one, -1 elsewhere.
-    """
+    """Give each pixel of an edge the area nearby that is nearest in colour, and of a stroke the nearest one."""
+    # A thin piece in the colour of an area nearby, such as a corner, is no stroke. `inside` is -1 outside of areas.
     import cv2
 
     with plain_opencv():

@@ -57,11 +57,8 @@ def reduce_to_side(colours: UInt8[np.ndarray, "h w 3"], side: int) -> UInt8[np.n
 
 
 def find_ink(picture: np.ndarray) -> Ink:
-    """Find strokes: what a closing by a disc of the greatest width fills, by more than noise.
-
-    A closing takes the ground from its lightest neighbours in each channel, so shadows and coloured areas are grounds
-    as well as paper. The edge of a stroke is where half of its darkness is reached, whatever its blur.
-    """
+    """Find strokes: what a closing by a disc of the greatest width fills, by more than noise."""
+    # A closing takes the ground from its lightest neighbours in each channel: shadows and coloured areas are grounds.
     import cv2
 
     colours = reduce_to_side(eight_bits(picture), MAX_SIDE)
@@ -93,10 +90,8 @@ def _brightness(colours: UInt8[np.ndarray, "r c 3"]) -> UInt8[np.ndarray, "r c"]
 
 
 def noise_level(colours: UInt8[np.ndarray, "h w 3"]) -> float:
-    """Return the standard deviation of the noise in flat areas, of 255: the median of small differences.
-
-    Source: Immerkaer, Fast noise variance estimation, CVIU 64, 1996, by its mask, with a median in place of the mean.
-    """
+    """Return the standard deviation of the noise in flat areas, of 255: the median of small differences."""
+    # Immerkaer, Fast noise variance estimation, CVIU 64, 1996: its mask, with a median in place of the mean.
     import cv2
 
     mask = np.array([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], np.float32)

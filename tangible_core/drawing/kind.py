@@ -125,11 +125,8 @@ def measure_kind(picture: np.ndarray) -> Float64[np.ndarray, "n"]:
 
 
 def picture_kind(picture: np.ndarray) -> KindFound:
-    """Return the likeliest kind of a picture, and its probability, by a logistic regression on `measure_kind`.
-
-    The weights are fitted to drawings made by code and to photographs. Where nothing is drawn, or noise would hide it,
-    the picture counts as a photograph.
-    """
+    """Return the likeliest kind of a picture, and its probability, by a logistic regression on `measure_kind`."""
+    # Where nothing is drawn, or noise would hide it, the picture counts as a photograph.
     measures = measure_kind(picture)
     if measures[NOISE] > np.log10(MAX_NOISE) or max(measures[STEPS], measures[INK]) < -2.99:
         return KindFound(PictureKind.photograph, 0.5)

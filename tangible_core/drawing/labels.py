@@ -31,11 +31,8 @@ def texts_in(ink: Ink) -> tuple[PictureText, ...]:
 
 
 def tie_texts(ink: Ink, texts: Sequence[PictureText], parts: Int32[np.ndarray, "h w"]) -> tuple[int | None, ...]:
-    """Return for each text the number of the part that it names; None for a text on the paper without a leader line.
-
-    A leader line has its end near the text, points at it, and runs on without a sharp turn to the part that it names,
-    across whatever lies between. parts: a number for each pixel of the same picture, in any size.
-    """
+    """Return for each text the number of the part that it names; None for a text on the paper without a leader line."""
+    # A leader line ends near the text, points at it, and runs on without a sharp turn across whatever lies between.
     rows, columns = parts.shape
     paper = _paper(parts)
     boxes = np.array([text.box for text in texts], np.float64).reshape(-1, 4)

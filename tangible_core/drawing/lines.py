@@ -39,10 +39,8 @@ class Lines(NamedTuple):
 
 
 def find_lines(ink: Ink, letters: Bool[np.ndarray, "r c"]) -> Lines:
-    """Return the lines of ink without these letters and without specks.
-
-    Source: Zhang & Suen, A fast parallel algorithm for thinning digital patterns, CACM 27, 1984.
-    """
+    """Return the lines of ink without these letters and without specks."""
+    # Zhang & Suen, A fast parallel algorithm for thinning digital patterns, CACM 27, 1984.
     import cv2
     from skimage.morphology import skeletonize
 

@@ -65,10 +65,8 @@ class Texts(NamedTuple):
 
 
 def find_texts(ink: Ink) -> Texts:
-    """Find rows of letters in ink: pieces of like height next to each other that are shaped and inked like letters.
-
-    Rows may be tilted by some degrees, letters of a word may touch, and a letter may stand alone.
-    """
+    """Find rows of letters in ink: pieces of like height next to each other, shaped and inked like letters."""
+    # Rows may be tilted by some degrees, letters of a word may touch, and a letter may stand alone.
     import cv2
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -185,10 +183,7 @@ def _measure_rows(
 
 
 def _holes(pieces: Int32[np.ndarray, "r c"], count: int) -> Float64[np.ndarray, "n"]:
-    """Return the number of holes in each piece, by its squares of four pixels.
-
-    Source: Gray, Local properties of binary images in two dimensions, IEEE Trans. Computers 20, 1971.
-    """
+    """Return the number of holes in each piece, by squares of four pixels (Gray, IEEE Trans. Computers 20, 1971)."""
     padded = np.pad(pieces, 1)
     corners = np.stack([padded[:-1, :-1], padded[:-1, 1:], padded[1:, :-1], padded[1:, 1:]])
     inked, of = corners > 0, corners.max(axis=0).reshape(-1)

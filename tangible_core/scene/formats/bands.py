@@ -34,10 +34,7 @@ class WholePieceError(ValueError):
 
 
 def reduced(bands: Iterable[np.ndarray], rows: int, columns: int, times: int) -> np.ndarray:
-    """Return the mean of each square of `times` x `times` pixels, the squares at the right and lower rim cut short.
-
-    bands: (any, columns[, channels]) of one dtype, `rows` rows together. Raises: ValueError if there are fewer.
-    """
+    """Return the mean of each square of `times` x `times` pixels; raise ValueError for fewer than `rows` rows."""
     small, rest, filled = np.empty(0), np.empty(0), 0
     for band in bands:
         together = np.concatenate([rest, band]) if rest.size else band
@@ -77,10 +74,7 @@ class _Header(NamedTuple):
 
 
 def png_bands(data: bytes) -> tuple[int, Iterator[bytes]]:
-    """Return the orientation of a PNG by EXIF, 1 to 8, and its bands from top to bottom, each the bytes of a PNG.
-
-    Raises: WholePieceError if it is interlaced; ValueError or struct.error if damaged.
-    """
+    """Return the EXIF orientation of a PNG, and its bands, each the bytes of a PNG. Raises: WholePieceError."""
     from PIL.Image import Exif
 
     chunks = _chunks(data)
@@ -127,11 +121,9 @@ def _bands(header: _Header, colours: list[Chunk], packed: list[memoryview]) -> I
 
 
 def _without_filters(lines: np.ndarray, step: int) -> np.ndarray:
-    """Return rows of bytes as they are without the filter that their first column names; it is 0 in the result.
-
-    A filter adds bytes that are above, or `step` to the left, whatever they mean: so OpenCV decodes them as the pixels
-    of a picture without a palette. The first row has no filter. Raises: ValueError if a filter is unknown.
-    """
+    """Return rows of bytes without the filter that their first column names, 0 in the result. Raises: ValueError."""
+    # A filter adds bytes that are above, or `step` to the left, whatever they mean: so OpenCV decodes them as
+    # pixels of a picture without a palette. The first row has no filter.
     if lines[:, 0].max() > 4:
         raise ValueError("a row has an unknown filter")
     rows, line = lines.shape

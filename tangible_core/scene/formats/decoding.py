@@ -45,10 +45,7 @@ ORIENTATION = 0x0112  # tag of EXIF
 
 
 def values_of(path: Path, data: bytes, notify: Notify, purpose: Purpose = "picture") -> np.ndarray:
-    """Return the array that a file of these bytes holds, for labels the indices of a palette.
-
-    A map is masked where it has no data. Raises: PictureError.
-    """
+    """Return the array of a file, masked where a map has no data, for labels the indices. Raises: PictureError."""
     if data[:6] == NPY or data[:4] == ZIP:
         return _array(path, data)
     if path.suffix.lower() in GRIDS or ASC.match(data):

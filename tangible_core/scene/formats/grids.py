@@ -22,10 +22,7 @@ _PIXELS: Mapping[str, str] = {"SIGNEDINT": "i", "UNSIGNEDINT": "u", "FLOAT": "f"
 
 
 def read_grid(path: Path, data: bytes) -> np.ndarray:
-    """Read a grid, masked where it has no data.
-
-    Raises: UnreadableError, ValueError or OSError if it is damaged or its header is missing; TooLargeError.
-    """
+    """Read a grid, masked where it has no data. Raises: UnreadableError without its header; others if damaged."""
     suffix = path.suffix.lower()
     header = grid_header(path, data)
     if suffix == ".hgt":
@@ -45,10 +42,7 @@ def read_grid(path: Path, data: bytes) -> np.ndarray:
 
 
 def grid_header(path: Path, data: bytes) -> Mapping[str, str]:
-    """Return the words of a grid's header by their names in lower case: of the file itself, or of the .hdr beside it.
-
-    Raises: UnreadableError without the file beside it.
-    """
+    """Return a grid's header by names in lower case, or that of the .hdr beside it. Raises: UnreadableError."""
     suffix = path.suffix.lower()
     if suffix == ".hgt":
         return {}

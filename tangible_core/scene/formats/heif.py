@@ -27,10 +27,7 @@ def read_heif(data: bytes) -> np.ndarray:
 
 
 def heif_depth(data: bytes) -> tuple[np.ndarray, bool] | None:
-    """Read the first depth map, grey and as upright as the picture, and True if near is light; None if there is none.
-
-    Raises: as `read_heif`.
-    """
+    """Read the first upright depth map, and whether near is light; None without one. Raises: as `read_heif`."""
     for depth in _open(data).info.get("depth_images") or ():
         check_size((depth.size[1], depth.size[0]), 2)
         kind = (depth.info.get("metadata") or {}).get("representation_type", 1)

@@ -114,10 +114,7 @@ def metadata_beside(path: Path) -> HeightsMetadata | None:
 
 
 def find_picture(path: Path, metadata: HeightsMetadata) -> tuple[Path, HeightsMetadata]:
-    """Return the picture of a JSON text, the exact one if it is there, with its metadata.
-
-    Raises: PictureError for a picture in another folder.
-    """
+    """Return the picture of a JSON text, the exact one if it is there, with its metadata. Raises: PictureError."""
     if path.suffix.lower() != ".json":
         return path, metadata
     for name in filter(None, (metadata.exact, metadata.file)):
@@ -132,10 +129,7 @@ def find_picture(path: Path, metadata: HeightsMetadata) -> tuple[Path, HeightsMe
 def in_metres(
     numbers: np.ndarray, metadata: HeightsMetadata, path: Path, notify: Notify = ignore
 ) -> Float32[np.ndarray, "h w"]:
-    """Convert a picture's numbers to heights; notify: receives a remark if another program has changed them.
-
-    Raises: PictureError if its size or its heights cannot be those of the metadata.
-    """
+    """Convert a picture's numbers to heights. Raises: PictureError if they cannot be those of the metadata."""
     if numbers.shape != (metadata.rows, metadata.columns):
         raise PictureError(
             f"{path}: is {size_in_words(numbers)}, but its metadata state {metadata.columns} x {metadata.rows}; "

@@ -71,10 +71,8 @@ def number_text(number: np.floating) -> str:
 
 
 def in_32_bits(heights: Float[np.ndarray, "h w"]) -> tuple[Float32[np.ndarray, "h w"], float]:
-    """Return heights as numbers of 32 bits, NaN where these end, and the offset that was taken off before.
-
-    The offset is 0 unless it would drown the differences: heights of planets are small beside their radius.
-    """
+    """Return heights in 32 bits, NaN where these end, and the offset that was taken off before."""
+    # The offset is 0 unless it would drown the differences: heights of planets are small beside their radius.
     if heights.dtype == np.float32:
         return heights, 0.0
     known = heights[np.abs(heights) <= np.finfo(np.float32).max]

@@ -47,10 +47,8 @@ def multi_pictures(image: "Image", data: bytes) -> list[bytes]:
 
 
 def view_numbers(image: "Image") -> list[int]:
-    """Return the numbers of those pictures of a Multi-Picture file that show the scene from different places.
-
-    Where the file does not type two of them so, they are the pictures of the first one's size: editors write any type.
-    """
+    """Return the numbers of a Multi-Picture file's pictures that show the scene from different places."""
+    # Where it does not type two of them so, they are the pictures of the first one's size: editors write any type.
     entries = cast(Any, image).mpinfo[_MP_ENTRIES]
     kinds = [str(entry["Attribute"]["MPType"]) for entry in entries]
     views = [number for number, kind in enumerate(kinds) if "Disparity" in kind or "Multi-Angle" in kind]

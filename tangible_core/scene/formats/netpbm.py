@@ -17,10 +17,7 @@ _HEAD = re.compile(rb"P([2356Ff])" + _GAP + _GAP.join([rb"(\d{1,9})"] * 2) + _GA
 
 
 def read_netpbm(data: bytes) -> tuple[np.ndarray, int | None]:
-    """Read the numbers as they are stored, (h, w) or (h, w, 3), and that of white; None for floating point.
-
-    Raises: ValueError if damaged; TooLargeError.
-    """
+    """Read numbers as stored, (h, w[, 3]), and that of white, None for floats. Raises: ValueError, TooLargeError."""
     head = _HEAD.match(data)
     if head is None:
         raise ValueError("its header is damaged")

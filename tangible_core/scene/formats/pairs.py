@@ -42,10 +42,7 @@ def read_stored(path: Path, notify: Notify = ignore) -> Stored:
 
 
 def views_of(left: Stored, right: Stored, non_finite: NonFinite = "error", notify: Notify = ignore) -> Pair:
-    """Return two stored pictures as the views of a pair, of one orientation, and of one white in one type of numbers.
-
-    Raises: PictureError for a picture that `read_picture` refuses.
-    """
+    """Return stored pictures as a pair of one orientation, white and type of numbers. Raises: PictureError."""
     left, right = turn_alike(left, right, notify), turn_alike(right, left, notify)
     values = zip(same_type(left, right), (left.name, right.name), strict=True)
     return Pair(*same_white(*(picture_of(picture, name, non_finite) for picture, name in values)))
@@ -115,10 +112,7 @@ def _view_numbers(path: Path, data: bytes) -> list[int]:
 
 
 def halves(picture: np.ndarray, layout: Layout | None, name: str) -> Pair:
-    """Divide a picture into its two views; a middle row or column is dropped if their number is odd.
-
-    Raises: PictureError if there are no halves.
-    """
+    """Divide a picture into two views, without an odd middle row or column. Raises: PictureError without halves."""
     axis = 0 if layout in ("top-bottom", "bottom-top") else 1
     half = picture.shape[axis] // 2
     if half == 0:
@@ -129,11 +123,8 @@ def halves(picture: np.ndarray, layout: Layout | None, name: str) -> Pair:
 
 
 def _stated_layout(path: Path, data: bytes, notify: Notify) -> Layout:
-    """Return the layout that a .jps file states; by default cross-eyed for .jps, side by side otherwise.
-
-    Raises: PictureError if the file has no two views, or they are not its halves.
-    Source: the descriptor in its APP3 segment, as ExifTool has it: flags, layout and type, a byte each.
-    """
+    """Return the layout that a .jps file states, cross-eyed by default. Raises: PictureError without two views."""
+    # The descriptor in its APP3 segment, as ExifTool has it: flags, layout and type, a byte each.
     at = data.find(b"_JPSJPS_", 0, 1 << 17)
     flags, layout, kind = data[at + 11 : at + 14] if 0 < at < len(data) - 13 else (0, 0, None)
     suffix = path.suffix.lower()

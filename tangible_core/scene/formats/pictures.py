@@ -65,10 +65,7 @@ def read_map(path: Path, notify: Notify = ignore, exact: bool = False) -> Float[
 
 
 def map_of(values: np.ndarray, name: str, exact: bool = False) -> Float[np.ndarray, "h w"]:
-    """Return an array as `read_map` does, NaN where it is masked.
-
-    Raises: PictureError if there is more than one number a pixel.
-    """
+    """Return an array as `read_map` does, NaN where it is masked. Raises: PictureError for several numbers a pixel."""
     masked: Any = values if np.ma.isMaskedArray(values) and values.dtype.kind in "buif" else None
     if masked is not None:
         values = cast(np.ndarray, masked.astype(np.result_type(masked.dtype, np.float32)).filled(np.nan))
@@ -206,10 +203,7 @@ def distinct_colours(count: int) -> UInt8[np.ndarray, "n 3"]:
 
 
 def labels_by_colour(picture: UInt8[np.ndarray, "h w c"], name: str) -> Int32[np.ndarray, "h w"] | None:
-    """Return the labels of a picture in the colours of a palette of ours, in its order; None for any other picture.
-
-    Raises: PictureError for one whose colours were mixed.
-    """
+    """Return labels in a palette of ours; None for any other picture. Raises: PictureError for mixed colours."""
     codes, places = np.unique(_codes(picture), return_inverse=True)
     ours = {int(code): number for number, code in enumerate(_codes(distinct_colours(MAX_IN_PALETTE)))}
     numbers = np.array([ours.get(int(code), -1) for code in codes[: 2 * MAX_IN_PALETTE]])

@@ -17,12 +17,9 @@ MAX_REDUCED = 10 * MAX_PIXELS
 
 
 def decode_reduced(path: Path, data: bytes, notify: Notify = ignore) -> np.ndarray | None:
-    """Decode a JPEG, PNG or TIFF of more than MAX_PIXELS at a half, a quarter or an eighth of its sides.
-
-    The whole picture is never in memory: the decoder of JPEG leaves out the finer waves of each block, and a PNG or
-    TIFF is decoded in bands of rows.
-    Returns: None for a picture that is not too large, larger than MAX_REDUCED, or of another format.
-    """
+    """Decode a too large JPEG, PNG or TIFF at a half, a quarter or an eighth of its sides; None for another file."""
+    # The whole picture is never in memory: the decoder of JPEG leaves out the finer waves of each block, and a PNG or
+    # TIFF is decoded in bands of rows.
     with picture_errors(path):
         if data[:3] == JPEG:
             return _reduced_jpeg(path, data, notify)

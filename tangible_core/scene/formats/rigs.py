@@ -46,10 +46,7 @@ class RigFile(NamedTuple):
 
 
 def find_rig(left: Path, right: Path, shape: tuple[int, int]) -> Path | None:
-    """Find a calibration of two cameras next to their pictures, or above the two folders of these.
-
-    shape: (h, w) of the pictures, which the calibration must be for if it states a size.
-    """
+    """Find a calibration for pictures of (h, w) next to them, or above the two folders of these."""
     folders = dict.fromkeys((left.parent, *((left.parent.parent,) if left.parent != right.parent else ())))
     for path in (folder / name for folder in folders for name in NAMES):
         with suppress(ConfigError, GeometryError):

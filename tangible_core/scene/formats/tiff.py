@@ -94,12 +94,9 @@ def holds_heights(path: Path) -> bool:
 
 @contextmanager
 def tiff_picture(data: bytes, whole: bool = True) -> "Generator[TiffPicture | None]":
-    """Open the first page that is neither a smaller copy nor a mask. whole: as one band, which has its mask.
-
-    Yields: None for eight bits of other colours (CMYK, L*a*b*), which another reader knows.
-    Raises: UnreadableError for numbers that this program does not read; TooLargeError;
-    WholePieceError for a piece that is too large to be read in bands; any exception for a damaged file.
-    """
+    """Open the first page that is neither a smaller copy nor a mask, whole with its mask, or in bands."""
+    # None for eight bits of other colours (CMYK, L*a*b*), which another reader knows. UnreadableError, TooLargeError
+    # and WholePieceError name what this program does not read; a damaged file may raise anything.
     with open_tiff(BytesIO(data)) as file:
         pages = [page.aspage() for page in islice(file.pages, MAX_PAGES)]
         page = next((page for page in pages if not page.subfiletype & (_REDUCED | _MASK)), pages[0])

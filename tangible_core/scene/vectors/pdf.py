@@ -20,10 +20,7 @@ _turn = Lock()
 
 
 def read_pdf(path: Path, data: bytes, page: int | None = None, notify: Notify = ignore) -> VectorPage:
-    """Read a page of a PDF, by default the first. Nothing outside of the file is read, and no script is run.
-
-    Raises: PictureError for one that is damaged, locked or empty, or lacks the page.
-    """
+    """Read a page of a PDF, by default the first; no script is run. Raises: PictureError."""
     import pypdfium2
 
     with _turn:

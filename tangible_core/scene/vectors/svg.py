@@ -53,10 +53,7 @@ PLAIN = "*{opacity:1!important;fill-opacity:1!important;stroke-opacity:1!importa
 
 
 def read_svg(path: Path, data: bytes, notify: Notify = ignore) -> VectorPage:
-    """Read an SVG. Its texts name the shapes in which they lie, and are left out of the picture.
-
-    Raises: PictureError for one that cannot be read, is too large, declares entities, or shows nothing.
-    """
+    """Read an SVG; its texts name the shapes in which they lie, and are left out. Raises: PictureError."""
     root = _parse(path, data)
     outside, runs = cut_off(root)
     if outside:
@@ -133,11 +130,8 @@ def _styled(root: Element, styles: Mapping[Element, str]) -> str:
 
 
 def _render(texts: Sequence[str]) -> list[UInt8[np.ndarray, "h w 4"]]:
-    """Render documents, SIDE_PX long: the first as it is, the others in flat colours.
-
-    A process of its own does it, since the library ends it where memory is lacking, and a drawing may take hours.
-    Raises: ValueError.
-    """
+    """Render documents, SIDE_PX long: the first as it is, the others in flat colours. Raises: ValueError."""
+    # A process of its own does it, since the library ends it where memory is lacking, and a drawing may take hours.
     import cv2
     import resvg_py
 
@@ -190,10 +184,8 @@ def _flat_styles(root: Element, shapes: list[Item], texts: list[Item]) -> list[d
 def _labels(
     fills: UInt8[np.ndarray, "h w 4"], drawn: UInt8[np.ndarray, "h w 4"], shapes: list[Item], picture: np.ndarray
 ) -> Int32[np.ndarray, "h w"]:
-    """Return the number of the shape, from 1, that covers each pixel; 0 for the ground.
-
-    A stroke is an area only where it is wide. Letters that are drawn as shapes go to what is around them.
-    """
+    """Return the number of the shape, from 1, that covers each pixel; 0 for the ground."""
+    # A stroke is an area only where it is wide. Letters that are drawn as shapes go to what is around them.
     import cv2
     from skimage.measure import label  # pyright: ignore[reportMissingTypeStubs, reportUnknownVariableType]
 

@@ -80,12 +80,12 @@ def _palette(
     size = np.bincount(flat, minlength=count)
     size[0] = 0
     means = (
-        np.stack([np.bincount(flat, each, count) for each in calm.reshape(-1, 3).T], axis=1)
+        np.stack([np.bincount(flat, channel, count) for channel in calm.reshape(-1, 3).T], axis=1)
         / np.maximum(size, 1)[:, None]
     )
     numbers, palette = np.full(count, -1, np.int32), list[np.ndarray]()
     for piece in np.argsort(-size, kind="stable")[: np.count_nonzero(size)].tolist():
-        away = [float(np.abs(means[piece] - each).max()) for each in palette]
+        away = [float(np.abs(means[piece] - colour).max()) for colour in palette]
         if not away or min(away) > same:
             numbers[piece] = len(palette)
             palette.append(means[piece])
@@ -105,12 +105,12 @@ def _divide_edges(
         _, nearest = cv2.distanceTransformWithLabels(
             (inside < 0).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
         )
-    nearest, known = np.asarray(nearest, np.int32), inside >= 0
+    nearest, inside_mask = np.asarray(nearest, np.int32), inside >= 0
     at = np.zeros(int(nearest.max()) + 1, np.int64)
-    at[nearest[known]] = np.flatnonzero(known)
+    at[nearest[inside_mask]] = np.flatnonzero(inside_mask)
     source = at[nearest]
     labels = inside.reshape(-1)[source]
-    rows, columns = np.nonzero(~known)
+    rows, columns = np.nonzero(~inside_mask)
     own, shades = colours[rows, columns].astype(np.float32), calm.reshape(-1, 3)
     best, least = labels[rows, columns], np.full(rows.size, np.inf, np.float32)
     for reach, down, right in product(REACHES_PX, (-1, 0, 1), (-1, 0, 1)):
@@ -127,4 +127,4 @@ def _divide_edges(
         return labels
     with plain_opencv():
         smooth = np.asarray(cv2.medianBlur(labels.astype(np.uint8), 5), np.int32)  # at a border of two, the majority
-    return np.where(known, labels, smooth)
+    return np.where(inside_mask, labels, smooth)

@@ -51,7 +51,7 @@ def reduce_to_side(colours: UInt8[np.ndarray, "h w 3"], side: int) -> UInt8[np.n
     factor = max(colours.shape[:2]) / side
     if factor <= 1:
         return colours
-    rows, columns = (max(1, round(each / factor)) for each in colours.shape[:2])
+    rows, columns = (max(1, round(side / factor)) for side in colours.shape[:2])
     with plain_opencv():
         return np.asarray(cv2.resize(colours, (columns, rows), interpolation=cv2.INTER_AREA), np.uint8)
 

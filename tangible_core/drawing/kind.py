@@ -105,7 +105,7 @@ def measure_kind(picture: np.ndarray) -> Float64[np.ndarray, "n"]:
         np.sort(np.bincount(np.einsum("ij,j->i", bins, [1, 16, 256]), minlength=1))[::-1] if flat.any() else np.ones(1)
     )
     size, inked = max(1, counts.sum()), max(1, np.count_nonzero(ink.mask))
-    letters = sum(each.letters for each in texts.boxes)
+    letters = sum(text.letters for text in texts.boxes)
     lined = np.count_nonzero(ink.mask & ~texts.ink)
     return np.array(
         [

@@ -79,14 +79,14 @@ def find_texts(ink: Ink) -> Texts:
     small = (high >= LETTER_PX) & (high <= large) & (wide <= LONG * high) & (wide <= 6 * large)
     dots = (high < LETTER_PX) & (wide <= large)
     small[0] = dots[0] = False
-    chosen = np.flatnonzero(small)
+    indices = np.flatnonzero(small)
     none = Texts((), np.zeros(pieces.shape, np.bool_))
-    if not 0 < chosen.size <= MAX_PIECES:
+    if not 0 < indices.size <= MAX_PIECES:
         return none
-    one, other = _neighbours(left[chosen], top[chosen], wide[chosen], high[chosen])
-    graph = coo_array((np.ones(one.size), (one, other)), (chosen.size, chosen.size))
+    one, other = _neighbours(left[indices], top[indices], wide[indices], high[indices])
+    graph = coo_array((np.ones(one.size), (one, other)), (indices.size, indices.size))
     row = np.asarray(connected_components(graph, directed=False)[1], np.int64)
-    letters, measures = np.bincount(row), _measure_rows(ink, pieces, boxes, chosen, row)
+    letters, measures = np.bincount(row), _measure_rows(ink, pieces, boxes, indices, row)
     mean, spread, first, second = MEASURES.T
     away = np.clip((measures - mean) / spread, -FAR, FAR)
     scores = np.einsum("rm,m->r", away, first) + np.einsum("rm,m->r", away**2, second)
@@ -94,10 +94,10 @@ def find_texts(ink: Ink) -> Texts:
     if not is_text.any():
         return none
     rows, columns = pieces.shape
-    found = list[Text]()
+    rows_found = list[Text]()
     on = np.zeros(count, np.bool_)
     for number in np.flatnonzero(is_text):
-        of = chosen[row == number]
+        of = indices[row == number]
         on[of] = True
         box = [int(edge.min()) for edge in (left[of], top[of])] + [
             int(edge.max()) for edge in ((left + wide)[of], (top + high)[of])
@@ -106,8 +106,8 @@ def find_texts(ink: Ink) -> Texts:
         on |= dots & inside & (top >= box[1] - high[of].max() / 2) & (top <= box[3] + high[of].max() / 4)
         shares = box[0] / columns, box[1] / rows, box[2] / columns, box[3] / rows
         own = on[pieces[box[1] : box[3], box[0] : box[2]]]
-        found.append(Text(*shares, int(letters[number]), _direction(own)))
-    return Texts(tuple(found), on[pieces])
+        rows_found.append(Text(*shares, int(letters[number]), _direction(own)))
+    return Texts(tuple(rows_found), on[pieces])
 
 
 def _direction(own: Bool[np.ndarray, "r c"]) -> float:
@@ -175,11 +175,11 @@ def _measure_rows(
         begins[1] / high / np.maximum(wide / high, 0.3),
     ]
     area = np.bincount(row, size[chosen])
-    solid, thick, holes, steps, dark, *crossed = (
+    solid, thick, holes, steps, dark, *crossings = (
         np.bincount(row, values[chosen] * size[chosen]) / area for values in of_pieces
     )
     logarithms = np.log(thick + 0.02), np.log(holes + 0.3), np.log(steps + 4)
-    return np.stack([np.log2(np.bincount(row)), solid, *logarithms, np.minimum(dark, DARK), *crossed], axis=1)
+    return np.stack([np.log2(np.bincount(row)), solid, *logarithms, np.minimum(dark, DARK), *crossings], axis=1)
 
 
 def _holes(pieces: Int32[np.ndarray, "r c"], count: int) -> Float64[np.ndarray, "n"]:

@@ -79,14 +79,21 @@ def _statements(
     parts: Mapping[str, np.ndarray], files: SceneFiles, page: VectorPage | None, whole: tuple[int, ...]
 ) -> dict[str, Any]:
     """Return the segments, and what vectors say of them: names, texts and the title."""
-    given = SegmentMap(parts["segments"]) if "segments" in parts and (page is None or files.segments) else None
+    segments = SegmentMap(parts["segments"]) if "segments" in parts and (page is None or files.segments) else None
     if page is None:
-        return {"segments": given}
-    said = {"segments": given, "title": page.title, "texts": frame_texts(page.texts, whole, files.crop, files.rotate)}
-    if given is not None or "segments" not in parts:
-        return said
+        return {"segments": segments}
+    statements = {
+        "segments": segments,
+        "title": page.title,
+        "texts": frame_texts(page.texts, whole, files.crop, files.rotate),
+    }
+    if segments is not None or "segments" not in parts:
+        return statements
     present, labels = rank_labels(parts["segments"])  # a crop may leave some out
-    return said | {"segments": SegmentMap(labels), "segment_names": tuple(page.names[each] for each in present)}
+    return statements | {
+        "segments": SegmentMap(labels),
+        "segment_names": tuple(page.names[number] for number in present),
+    }
 
 
 def _disparity(parts: Mapping[str, np.ndarray], files: SceneFiles, camera: Calibration | None) -> DisparityMap | None:

@@ -271,10 +271,10 @@ def smooth(relief: Relief, sigma_m: float) -> Relief:
     import cv2
 
     with plain_opencv():
-        smoothed = cv2.GaussianBlur(
+        heights = cv2.GaussianBlur(
             relief.height_m, (0, 0), max(sigmas[0], 1e-3), sigmaY=max(sigmas[1], 1e-3), borderType=cv2.BORDER_REPLICATE
         )
-    return Relief(np.maximum(smoothed, 0), relief.extent_m)
+    return Relief(np.maximum(heights, 0), relief.extent_m)
 
 
 def slopes(relief: Relief) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:

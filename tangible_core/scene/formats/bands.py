@@ -35,32 +35,32 @@ class WholePieceError(ValueError):
 
 def reduced(bands: Iterable[np.ndarray], rows: int, columns: int, times: int) -> np.ndarray:
     """Return the mean of each square of `times` x `times` pixels; raise ValueError for fewer than `rows` rows."""
-    small, rest, filled = np.empty(0), np.empty(0), 0
+    small, rest, row_count = np.empty(0), np.empty(0), 0
     for band in bands:
         together = np.concatenate([rest, band]) if rest.size else band
         if not small.size:
             small = np.empty((-(-rows // times), -(-columns // times), *band.shape[2:]), band.dtype)
         whole = len(together) // times * times
-        filled += _fill(small[filled:], together[:whole], times)
+        row_count += _fill(small[row_count:], together[:whole], times)
         rest = together[whole:]
-    filled += _fill(small[filled:], rest, times)
-    if filled < -(-rows // times):
+    row_count += _fill(small[row_count:], rest, times)
+    if row_count < -(-rows // times):
         raise ValueError("its rows end early")
     return small
 
 
 def _fill(small: np.ndarray, band: np.ndarray, times: int) -> int:
     """Write the means of a band to the first rows of `small`; return how many rows these are."""
-    filled = min(-(-len(band) // times), len(small))
-    if not filled:
+    row_count = min(-(-len(band) // times), len(small))
+    if not row_count:
         return 0
-    down, right = filled * times - len(band), small.shape[1] * times - band.shape[1]
+    down, right = row_count * times - len(band), small.shape[1] * times - band.shape[1]
     numbers = band if band.dtype.name in _AVERAGED else band.astype(np.float64)
     with plain_opencv():
         padded = cv2.copyMakeBorder(numbers, 0, down, 0, right, cv2.BORDER_REPLICATE) if down or right else numbers
-        mean = cv2.resize(padded, (small.shape[1], filled), interpolation=cv2.INTER_AREA)
-    small[:filled] = mean.reshape(small[:filled].shape)
-    return filled
+        mean = cv2.resize(padded, (small.shape[1], row_count), interpolation=cv2.INTER_AREA)
+    small[:row_count] = mean.reshape(small[:row_count].shape)
+    return row_count
 
 
 class _Header(NamedTuple):

@@ -73,7 +73,7 @@ def absent(path: Path, what: str) -> PictureError:
     """Return the error for a path at which nothing is, with a similar name from its folder as a hint."""
     if not path.parent.is_dir():
         return PictureError(f"{path}: there is no folder {path.parent}; check the path")
-    return PictureError(f"{path}: {what_is_missing(path, (each.name for each in path.parent.iterdir()), what)}")
+    return PictureError(f"{path}: {what_is_missing(path, (file.name for file in path.parent.iterdir()), what)}")
 
 
 def _array(path: Path, data: bytes) -> np.ndarray:
@@ -157,18 +157,18 @@ def _decode_tiff(path: Path, data: bytes, purpose: Purpose, notify: Notify) -> n
 
 def meaning(raster: TiffRaster, purpose: Purpose, nodata: float | None) -> np.ndarray:
     """Return the numbers of a TIFF as a picture's brightness or colours, as a masked map, or as labels."""
-    values, known = raster.values, raster.known
+    values, valid_mask = raster.values, raster.known
     if purpose == "labels":
         return values
     is_number = values.ndim == 2 and raster.palette is None
     if nodata is not None and is_number and (missing := is_nodata(values, nodata)).any():
-        known = ~missing if known is None else known & ~missing
+        valid_mask = ~missing if valid_mask is None else valid_mask & ~missing
     if purpose == "map":
         if values.ndim == 3 and not np.any(values != values[..., :1]):
             values = values[..., 0]
-        hidden = np.zeros(values.shape[:2], np.bool_) if known is None else ~known
-        hidden |= False if raster.alpha is None else ~is_opaque(raster.alpha)
-        return np.ma.masked_array(values, hidden) if hidden.any() and values.ndim == 2 else values
+        nodata_mask = np.zeros(values.shape[:2], np.bool_) if valid_mask is None else ~valid_mask
+        nodata_mask |= False if raster.alpha is None else ~is_opaque(raster.alpha)
+        return np.ma.masked_array(values, nodata_mask) if nodata_mask.any() and values.ndim == 2 else values
     alpha = raster.alpha
     if raster.palette is not None:
         values = _in_full(raster.palette[values], 0xFFFF if raster.palette.max() > 255 else 255)
@@ -176,7 +176,7 @@ def meaning(raster: TiffRaster, purpose: Purpose, nodata: float | None) -> np.nd
     elif raster.white is not None:
         values = _in_full(raster.white - values if raster.zero_is_white else values, raster.white)
         alpha = None if alpha is None else _in_full(alpha, raster.white)
-    return values if known is None and alpha is None else _with_alpha(values, known, alpha)
+    return values if valid_mask is None and alpha is None else _with_alpha(values, valid_mask, alpha)
 
 
 def _in_full(values: np.ndarray, white: int) -> np.ndarray:
@@ -184,8 +184,8 @@ def _in_full(values: np.ndarray, white: int) -> np.ndarray:
     if white > 0xFFFF:
         return values
     full = 255 if white < 256 else 0xFFFF
-    scaled = values if white == full else (values.astype(np.uint64) * full + white // 2) // white
-    return scaled.astype(np.uint8 if full == 255 else np.uint16, copy=False)
+    numbers = values if white == full else (values.astype(np.uint64) * full + white // 2) // white
+    return numbers.astype(np.uint8 if full == 255 else np.uint16, copy=False)
 
 
 def _with_alpha(values: np.ndarray, known: np.ndarray | None, alpha: np.ndarray | None = None) -> np.ndarray:
@@ -227,8 +227,12 @@ def _deep_png(image: "Image", path: Path, data: bytes, purpose: Purpose) -> np.n
     clear = image.info.get("transparency")
     if clear is None or purpose == "labels" or values.shape[2:] == (4,):
         return values
-    known = values != clear if values.ndim == 2 else (values != np.array(clear)).any(axis=2)
-    return np.ma.masked_array(values, ~known) if purpose == "map" and values.ndim == 2 else _with_alpha(values, known)
+    valid_mask = values != clear if values.ndim == 2 else (values != np.array(clear)).any(axis=2)
+    return (
+        np.ma.masked_array(values, ~valid_mask)
+        if purpose == "map" and values.ndim == 2
+        else _with_alpha(values, valid_mask)
+    )
 
 
 def _jpeg_2000(data: bytes, purpose: Purpose) -> np.ndarray | None:

@@ -110,11 +110,11 @@ def _geotiff(path: Path) -> Ground | None:
 
 def _srtm(path: Path) -> Ground | None:
     """Source: SRTM quickstart: the name is that of the lower left corner, and the tile a degree long."""
-    named = re.match(r"([NS])(\d\d)[EW]\d{3}", path.stem, re.IGNORECASE)
+    match = re.match(r"([NS])(\d\d)[EW]\d{3}", path.stem, re.IGNORECASE)
     side = math.isqrt(path.stat().st_size // 2)
-    if named is None:
+    if match is None:
         return None
-    latitude = 0.5 + int(named[2]) * (1 if named[1].upper() == "N" else -1)
+    latitude = 0.5 + int(match[2]) * (1 if match[1].upper() == "N" else -1)
     return Ground(cells_in_degrees(1 / (side - 1), 1 / (side - 1), latitude), (side, side))
 
 

@@ -42,7 +42,9 @@ _STILL = (b"avif", b"avis", *HEIC)
 def file_kind(path: Path) -> FileKind | None:
     """Return what a file is; by its name alone if it cannot be read; None for another kind."""
     suffix, head = path.suffix.lower(), _first_bytes(path)
-    named = "picture" if suffix in PICTURES else "video" if suffix in VIDEOS else "heights" if suffix in MAPS else None
+    suffix_kind = (
+        "picture" if suffix in PICTURES else "video" if suffix in VIDEOS else "heights" if suffix in MAPS else None
+    )
     if head[:4] in TIFF:
         return "heights" if holds_heights(path) else "picture"
     if head[:2] in (b"Pf", b"PF") or head[:6] == NPY or ASC.match(head):
@@ -51,9 +53,9 @@ def file_kind(path: Path) -> FileKind | None:
         return "picture" if head[8:12] == b"WEBP" else "video"
     if head[4:8] == b"ftyp":
         return "picture" if head[8:12] in _STILL else "video"
-    if head.startswith(_PICTURES) and named != "video":
+    if head.startswith(_PICTURES) and suffix_kind != "video":
         return "picture"
-    return "video" if head.startswith(_VIDEOS) else named
+    return "video" if head.startswith(_VIDEOS) else suffix_kind
 
 
 def is_binary(path: Path) -> bool:

@@ -28,18 +28,18 @@ def undeclared_nodata(heights: Float[np.ndarray, "h w"]) -> list[np.floating]:
     [np.float32(-9999.0)]
     """
     marks = list[np.floating]()
-    known = heights[np.isfinite(heights)]
-    while known.size:
-        ends = known.min(), known.max()
-        inner = known[(known > ends[0]) & (known < ends[1])]
+    finite_values = heights[np.isfinite(heights)]
+    while finite_values.size:
+        ends = finite_values.min(), finite_values.max()
+        inner = finite_values[(finite_values > ends[0]) & (finite_values < ends[1])]
         alone = [
             end for end, other in zip(ends, ends[::-1], strict=True)
-            if end != other and _is_mark(end, known, inner if inner.size else np.array([other]))
+            if end != other and _is_mark(end, finite_values, inner if inner.size else np.array([other]))
         ]  # fmt: skip
         if not alone:
             break
         marks += alone
-        known = known[~np.isin(known, alone)]
+        finite_values = finite_values[~np.isin(finite_values, alone)]
     return marks
 
 
@@ -75,9 +75,11 @@ def in_32_bits(heights: Float[np.ndarray, "h w"]) -> tuple[Float32[np.ndarray, "
     # The offset is 0 unless it would drown the differences: heights of planets are small beside their radius.
     if heights.dtype == np.float32:
         return heights, 0.0
-    known = heights[np.abs(heights) <= np.finfo(np.float32).max]
-    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 0.0)
-    drowned = 0 < RESOLVED * (high - low) < max(-low, high) and np.any(known.astype(np.float32) != known)
+    finite_values = heights[np.abs(heights) <= np.finfo(np.float32).max]
+    low, high = (float(finite_values.min()), float(finite_values.max())) if finite_values.size else (0.0, 0.0)
+    drowned = 0 < RESOLVED * (high - low) < max(-low, high) and np.any(
+        finite_values.astype(np.float32) != finite_values
+    )
     offset = low if drowned else 0.0
     with np.errstate(over="ignore"):
         numbers = (heights - offset).astype(np.float32)

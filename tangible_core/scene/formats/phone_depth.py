@@ -57,8 +57,8 @@ def read_phone_depth(path: Path, shape: tuple[int, int], notify: Notify = ignore
     """Read the nearness, 0 far to 1 near, that a phone stored in its photo of (h, w); None if there is none."""
     data = bytes_of(path)
     try:
-        found = _heic_depth(data) if is_heif(data) else _jpeg_depth(path, data)
-        return None if found is None else _nearness(path, *found, shape, notify)
+        depth = _heic_depth(data) if is_heif(data) else _jpeg_depth(path, data)
+        return None if depth is None else _nearness(path, *depth, shape, notify)
     except (PictureError, ValueError, struct.error) as error:
         notify(f"the depth map in {path.name} is damaged and left out: {shown(str(error))}")
         return None
@@ -75,8 +75,8 @@ def _jpeg_depth(path: Path, data: bytes) -> tuple[Float32[np.ndarray, "h w"], Ph
 
 
 def _heic_depth(data: bytes) -> tuple[Float32[np.ndarray, "h w"], PhoneDepth] | None:
-    found = heif_depth(data)
-    return None if found is None else (to_grey(found[0]), PhoneDepth(b"", found[1], "HEIC"))
+    depth = heif_depth(data)
+    return None if depth is None else (to_grey(depth[0]), PhoneDepth(b"", depth[1], "HEIC"))
 
 
 def _nearness(
@@ -101,9 +101,9 @@ def _nearness(
 def phone_depth(image: "Image", data: bytes) -> PhoneDepth | None:
     """Find the depth map in an open JPEG; None if there is none. Raises: ValueError or struct.error if damaged."""
     xmp = _xmp(image, len(data))
-    if found := _DATA.search(xmp):
-        end = xmp.find(b'"' if found[1] else b"<", found.end())
-        data = b64decode(xmp[found.end() : max(end, found.end())])
+    if match := _DATA.search(xmp):
+        end = xmp.find(b'"' if match[1] else b"<", match.end())
+        data = b64decode(xmp[match.end() : max(end, match.end())])
         return PhoneDepth(data, False, "GDepth", _linear_range(dict(_RANGE.findall(xmp))))
     if item := _depth_item(xmp, data):
         return PhoneDepth(item, False, "Dynamic Depth")
@@ -111,8 +111,8 @@ def phone_depth(image: "Image", data: bytes) -> PhoneDepth | None:
 
     for part in multi_pictures(image, data)[1:]:
         with suppress(SyntaxError), JpegImageFile(BytesIO(part)) as inner:  # a part may be of another kind
-            if found := _AUXILIARY.search(_xmp(inner, len(part))):
-                return PhoneDepth(part, found[1] == b"disparity", "an iPhone's")
+            if match := _AUXILIARY.search(_xmp(inner, len(part))):
+                return PhoneDepth(part, match[1] == b"disparity", "an iPhone's")
     return None
 
 

@@ -41,8 +41,8 @@ def read_picture(
     Raises: PictureError if the file is missing, not a picture, damaged, cut short or too large.
     """
     data = bytes_of(path)
-    if reduce and (reduced := decode_reduced(path, data, notify)) is not None:
-        return picture_of(reduced, str(path), non_finite)
+    if reduce and (picture := decode_reduced(path, data, notify)) is not None:
+        return picture_of(picture, str(path), non_finite)
     return picture_of(values_of(path, data, notify), str(path), non_finite)
 
 
@@ -66,10 +66,10 @@ def read_map(path: Path, notify: Notify = ignore, exact: bool = False) -> Float[
 
 def map_of(values: np.ndarray, name: str, exact: bool = False) -> Float[np.ndarray, "h w"]:
     """Return an array as `read_map` does, NaN where it is masked. Raises: PictureError for several numbers a pixel."""
-    masked: Any = values if np.ma.isMaskedArray(values) and values.dtype.kind in "buif" else None
-    if masked is not None:
-        values = cast(np.ndarray, masked.astype(np.result_type(masked.dtype, np.float32)).filled(np.nan))
-    shown = opaque(values) if values.ndim == 3 and values.shape[2] == 4 else None
+    masked_map: Any = values if np.ma.isMaskedArray(values) and values.dtype.kind in "buif" else None
+    if masked_map is not None:
+        values = cast(np.ndarray, masked_map.astype(np.result_type(masked_map.dtype, np.float32)).filled(np.nan))
+    opaque_mask = opaque(values) if values.ndim == 3 and values.shape[2] == 4 else None
     if values.ndim == 3 and values.shape[2] in (3, 4) and not np.any(values[..., :3] != values[..., :1]):
         values = values[..., 0]
     if values.ndim != 2 or values.size == 0 or values.dtype.kind not in "buif":
@@ -78,8 +78,8 @@ def map_of(values: np.ndarray, name: str, exact: bool = False) -> Float[np.ndarr
         )
     with np.errstate(over="ignore"):
         numbers = values.astype(np.result_type(values.dtype, np.float32) if exact else np.float32)
-    known = np.isfinite(numbers) if shown is None else np.isfinite(numbers) & shown
-    return np.where(known, numbers, numbers.dtype.type(np.nan))
+    valid_mask = np.isfinite(numbers) if opaque_mask is None else np.isfinite(numbers) & opaque_mask
+    return np.where(valid_mask, numbers, numbers.dtype.type(np.nan))
 
 
 def without(values: Float[np.ndarray, "h w"], *nodata: float) -> Float[np.ndarray, "h w"]:
@@ -156,8 +156,8 @@ def truth_of(
 ) -> Float32[np.ndarray, "h w"]:
     """Return an array as `read_truth` does. Source: the kit of MPI Sintel, sintel_io.py. Raises: PictureError."""
     if scale != "sintel":
-        stored = without(map_of(values, name), *nodata)
-        return stored if scale is None else np.where(stored > 0, stored / np.float32(scale), np.float32(np.nan))
+        numbers = without(map_of(values, name), *nodata)
+        return numbers if scale is None else np.where(numbers > 0, numbers / np.float32(scale), np.float32(np.nan))
     if values.ndim != 3 or values.shape[2] != 3 or values.dtype != np.uint8:
         raise PictureError(
             f"{name}: Sintel's disparities are pictures of three channels of 8 bits, not {values.shape} of "
@@ -192,12 +192,12 @@ def distinct_colours(count: int) -> UInt8[np.ndarray, "n 3"]:
     chroma = np.hypot(lab[:, 1], lab[:, 2])
     pleasant = (lab[:, 0] >= DARKEST) & (lab[:, 0] <= LIGHTEST) & (chroma <= MAX_CHROMA)
     colours, lab, chroma = colours[pleasant], lab[pleasant], chroma[pleasant]
-    chosen = [int(chroma.argmax())]
-    far = np.linalg.norm(lab - lab[chosen[0]], axis=1)
-    while len(chosen) < count:
-        chosen.append(int(far.argmax()))
-        far = np.minimum(far, np.linalg.norm(lab - lab[chosen[-1]], axis=1))
-    distinct = colours[chosen]
+    indices = [int(chroma.argmax())]
+    far = np.linalg.norm(lab - lab[indices[0]], axis=1)
+    while len(indices) < count:
+        indices.append(int(far.argmax()))
+        far = np.minimum(far, np.linalg.norm(lab - lab[indices[-1]], axis=1))
+    distinct = colours[indices]
     distinct.flags.writeable = False
     return distinct
 
@@ -207,14 +207,14 @@ def labels_by_colour(picture: UInt8[np.ndarray, "h w c"], name: str) -> Int32[np
     codes, places = np.unique(_codes(picture), return_inverse=True)
     ours = {int(code): number for number, code in enumerate(_codes(distinct_colours(MAX_IN_PALETTE)))}
     numbers = np.array([ours.get(int(code), -1) for code in codes[: 2 * MAX_IN_PALETTE]])
-    known = numbers >= 0
-    if known.sum() < 2 or numbers.max() >= 2 * known.sum() + SPARE:
+    valid_mask = numbers >= 0
+    if valid_mask.sum() < 2 or numbers.max() >= 2 * valid_mask.sum() + SPARE:
         return None
-    if len(codes) == known.sum():
+    if len(codes) == valid_mask.sum():
         return np.argsort(np.argsort(numbers)).astype(np.int32)[places].reshape(picture.shape[:2])
     pixels = np.bincount(places.ravel())
-    share = 1 - pixels[: len(numbers)][known].sum() / pixels.sum()
-    if share > 0.5 or len(codes) < 2 * known.sum():
+    share = 1 - pixels[: len(numbers)][valid_mask].sum() / pixels.sum()
+    if share > 0.5 or len(codes) < 2 * valid_mask.sum():
         return None
     raise PictureError(
         f"{name}: in {100 * share:.2g} % of its pixels, colours of parts are mixed: another program smoothed, scaled "

@@ -68,7 +68,7 @@ def _times(rows: int, columns: int) -> int | None:
     """Return the factor by which the sides of a picture are reduced; None if it is not too large, or much too large."""
     if not MAX_PIXELS < columns * rows <= MAX_REDUCED:
         return None
-    return next((each for each in (2, 4, 8) if -(-rows // each) * -(-columns // each) <= MAX_PIXELS), None)
+    return next((times for times in (2, 4, 8) if -(-rows // times) * -(-columns // times) <= MAX_PIXELS), None)
 
 
 def _notify_reduced(path: Path, rows: int, columns: int, times: int, notify: Notify) -> None:

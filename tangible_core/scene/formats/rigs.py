@@ -170,10 +170,10 @@ def _of_ros(path: Path, left: Mapping[str, Any], right: Mapping[str, Any], unit_
     sides = [_ros_camera(path, side, tree) for side, tree in (("left", left), ("right", right))]
     (first, turn, _), (second, other_turn, projection) = sides
     rotation = np.einsum("ji,jk->ik", other_turn, turn)
-    moved = np.einsum("ji,j->i", other_turn, unit_m * _translation(projection))
+    translation = np.einsum("ji,j->i", other_turn, unit_m * _translation(projection))
     size = plain(left.get("image_width", left.get("width"))), plain(left.get("image_height", left.get("height")))
     whole = type(size[0]) is int and type(size[1]) is int and min(size) > 0
-    return RigFile(StereoRig(first, second, rotation, moved), size if whole else None)
+    return RigFile(StereoRig(first, second, rotation, translation), size if whole else None)
 
 
 def _ros_camera(path: Path, side: str, tree: Mapping[str, Any]) -> tuple[Camera, np.ndarray, np.ndarray]:

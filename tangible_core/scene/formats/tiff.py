@@ -193,19 +193,19 @@ def _raster(page: "TiffPage", stored: np.ndarray, known: Bool[np.ndarray, "h w"]
         raise UnreadableError(
             f"holds {colours} channels and does not say which are red, green and blue; save one, or three as RGB"
         )
-    taken = 1 if grey else 3
+    colour_count = 1 if grey else 3
     values = samples[..., 0] if grey else samples[..., :3]
-    unsigned = values.dtype.kind in "bu"
-    if opacity is not None and alpha == _ASSOCIATED and unsigned:
+    is_unsigned = values.dtype.kind in "bu"
+    if opacity is not None and alpha == _ASSOCIATED and is_unsigned:
         values = _divide_by_alpha(values, opacity, (1 << page.bitspersample) - 1)
     return TiffRaster(
         np.ascontiguousarray(values),
         known,
         opacity,
         None if page.colormap is None or page.photometric != _PALETTE else page.colormap.T,
-        (1 << page.bitspersample) - 1 if unsigned else None,
+        (1 << page.bitspersample) - 1 if is_unsigned else None,
         page.photometric == _WHITE_IS_ZERO,
-        colours - taken,
+        colours - colour_count,
     )
 
 
@@ -223,8 +223,8 @@ def _bands(page: "TiffPage", data: bytes) -> Iterator[np.ndarray]:
     planes, _, rows, columns, samples = page.shaped
     dtype = cast("np.dtype[Any]", page.dtype)
     if page.is_contiguous and not page.is_tiled:
-        stored = np.frombuffer(data, dtype.newbyteorder(page.parent.byteorder), page.size, page.dataoffsets[0])
-        whole, high = stored.reshape(page.shaped), max(1, BAND_PIXELS // columns)
+        numbers = np.frombuffer(data, dtype.newbyteorder(page.parent.byteorder), page.size, page.dataoffsets[0])
+        whole, high = numbers.reshape(page.shaped), max(1, BAND_PIXELS // columns)
         yield from (whole[:, :, top : top + high].astype(dtype) for top in range(0, rows, high))
         return
     high, wide = (page.tilelength, page.tilewidth) if page.is_tiled else (min(rows, page.rowsperstrip), columns)

@@ -54,8 +54,8 @@ def _read_page(document: Any, number: int) -> VectorPage:
     texts = _texts(page)
     if picture_kind(whole).likely == PictureKind.text:
         return VectorPage(whole, texts=texts, title=_title(document, texts), kind=PictureKind.text)
-    for each in list(page.get_objects(filter=(raw.FPDF_PAGEOBJ_TEXT,), max_depth=1)):
-        page.remove_obj(each)
+    for page_object in list(page.get_objects(filter=(raw.FPDF_PAGEOBJ_TEXT,), max_depth=1)):
+        page.remove_obj(page_object)
     return VectorPage(_render(page), texts=texts, title=_title(document, texts))
 
 
@@ -71,7 +71,7 @@ def _title(document: Any, texts: tuple[PictureText, ...]) -> str:
 
 def _texts(page: Any) -> tuple[PictureText, ...]:
     """Return the lines of the text layer. Turned pages are turned back as they are shown."""
-    layer, found = page.get_textpage(), list[PictureText]()
+    layer, lines = page.get_textpage(), list[PictureText]()
     left_pt, bottom_pt, right_pt, top_pt = page.get_bbox()
     for number in range(layer.count_rects()):
         corners = np.reshape(layer.get_rect(number), (2, 2))
@@ -82,5 +82,5 @@ def _texts(page: Any) -> tuple[PictureText, ...]:
         left, top, right, bottom = shares[0, 0], 1 - shares[1, 1], shares[1, 0], 1 - shares[0, 1]
         for _ in range(page.get_rotation() // 90):
             left, top, right, bottom = 1 - bottom, left, 1 - top, right
-        found.append(PictureText(content, (float(left), float(top), float(right), float(bottom))))
-    return tuple(found)
+        lines.append(PictureText(content, (float(left), float(top), float(right), float(bottom))))
+    return tuple(lines)

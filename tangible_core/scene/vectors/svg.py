@@ -62,10 +62,10 @@ def read_svg(path: Path, data: bytes, notify: Notify = ignore) -> VectorPage:
         notify(f"scripts in {path.name} are not run; if they draw something, save the drawing as it is shown")
     shapes, texts = items_of(root)
     flat = _flat_styles(root, shapes, texts) if len(shapes) <= MAX_SHAPES else []
-    lettered = [_text_styles(shapes, texts)] if texts else []
-    ways = [{each.element: HIDE for each in texts}, *flat, *lettered]
+    text_styles = [_text_styles(shapes, texts)] if texts else []
+    ways = [{text.element: HIDE for text in texts}, *flat, *text_styles]
     try:
-        pixels, *numbered = _render([_styled(root, styles) for styles in ways])
+        pixels, *layers = _render([_styled(root, styles) for styles in ways])
     except ValueError as error:
         raise _unreadable(path, str(error)) from error
     if not pixels[..., 3].any():
@@ -75,8 +75,8 @@ def read_svg(path: Path, data: bytes, notify: Notify = ignore) -> VectorPage:
         raise PictureError(f"{path}: {what}")
     alpha = pixels[..., 3:].astype(np.float32) / 255
     picture = np.rint(pixels[..., :3] * alpha + 255 * (1 - alpha)).astype(np.uint8)
-    labels = _labels(numbered[0], numbered[1], shapes, picture) if flat else None
-    read = _read_texts(numbered[-1], texts) if texts else ()
+    labels = _labels(layers[0], layers[1], shapes, picture) if flat else None
+    read = _read_texts(layers[-1], texts) if texts else ()
     names: tuple[str, ...] = ()
     if labels is None:
         notify(f"{path.name} has more than {MAX_SHAPES} shapes, which is a texture: its parts are found by colour")
@@ -86,9 +86,9 @@ def read_svg(path: Path, data: bytes, notify: Notify = ignore) -> VectorPage:
     title = title_of(root) or title_among(loose)
     if left := [text.content for text in loose if text.content != title]:
         notify(f"texts of {path.name} that name no part are left out: {shown(', '.join(left))}")
-    raster = any(local(each) == "image" and "href" in "".join(each.attrib) for each, _, _ in walk(root))
-    drawn = PictureKind.drawing if labels is None or labels.any() else PictureKind.lines
-    return VectorPage(picture, labels, names, read, title, None if raster else drawn)
+    raster = any(local(element) == "image" and "href" in "".join(element.attrib) for element, _, _ in walk(root))
+    kind = PictureKind.drawing if labels is None or labels.any() else PictureKind.lines
+    return VectorPage(picture, labels, names, read, title, None if raster else kind)
 
 
 def _parse(path: Path, data: bytes) -> Element:
@@ -143,18 +143,18 @@ def _render(texts: Sequence[str]) -> list[UInt8[np.ndarray, "h w 4"]]:
     sheets = [None, *[PLAIN] * (len(texts) - 1)]
     calls = [{"svg_string": text, "style_sheet": sheet, **every} for text, sheet in zip(texts, sheets, strict=True)]
     try:
-        done = subprocess.run(
+        result = subprocess.run(
             python(CHILD.format(resvg_py.__name__, MAX_MEMORY)), input=json.dumps(calls), timeout=MAX_SECONDS,
             capture_output=True, text=True, encoding="utf-8", check=False,
         )  # fmt: skip
     except subprocess.TimeoutExpired as error:
         raise ValueError(f"it takes more than {MAX_SECONDS} s to draw") from error
-    if done.returncode:
-        said = re.findall(r"^ValueError: (.*)$", done.stderr, re.MULTILINE)
-        raise ValueError(said[-1] if said else "it takes too much memory to draw")
+    if result.returncode:
+        messages = re.findall(r"^ValueError: (.*)$", result.stderr, re.MULTILINE)
+        raise ValueError(messages[-1] if messages else "it takes too much memory to draw")
     pictures = list[UInt8[np.ndarray, "h w 4"]]()
     with plain_opencv():
-        for png in json.loads(done.stdout):
+        for png in json.loads(result.stdout):
             pixels = cv2.imdecode(np.frombuffer(b64decode(png), np.uint8), cv2.IMREAD_UNCHANGED)
             pictures.append(np.asarray(pixels, np.uint8)[..., [2, 1, 0, 3]])
     return pictures
@@ -169,7 +169,7 @@ def _numbers(pixels: UInt8[np.ndarray, "h w 4"], count: int) -> Int32[np.ndarray
 
 def _flat_styles(root: Element, shapes: list[Item], texts: list[Item]) -> list[dict[Element, str]]:
     """Return the styles by which each shape is its number, from 1, as a colour: without strokes, and with them."""
-    hidden = {each.element: HIDE for each in texts}
+    hidden = {text.element: HIDE for text in texts}
     hidden |= {element: HIDE for element, _, _ in walk(root) if local(element) == "image"}
     fills, drawn = dict(hidden), dict(hidden)
     for number, shape in enumerate(shapes, 1):
@@ -205,13 +205,13 @@ def _labels(
     least_px = (LEAST * max(labels.shape)) ** 2
     least = np.array([MIN_PIECE_PX, *(MIN_PIECE_PX if shape.label else least_px for shape in shapes)])
     large = (size >= least[shape_of]) & (2 * np.bincount(pieces.reshape(-1), letters.reshape(-1)) < size)
-    known: Bool[np.ndarray, "h w"] = large[pieces]
-    return labels if known.all() or not known.any() else fill_from_nearest(labels, known)
+    valid_mask: Bool[np.ndarray, "h w"] = large[pieces]
+    return labels if valid_mask.all() or not valid_mask.any() else fill_from_nearest(labels, valid_mask)
 
 
 def _text_styles(shapes: list[Item], texts: list[Item]) -> dict[Element, str]:
     """Return the styles by which each text is its number, from 1, as a colour."""
-    styles = {each.element: HIDE for each in shapes}
+    styles = {shape.element: HIDE for shape in shapes}
     for number, text in enumerate(texts, 1):
         for element, _, _ in walk(text.element):
             styles[element] = f";fill:#{number:06x}!important;stroke:none!important"
@@ -221,29 +221,29 @@ def _text_styles(shapes: list[Item], texts: list[Item]) -> dict[Element, str]:
 def _read_texts(pixels: UInt8[np.ndarray, "h w 4"], texts: list[Item]) -> tuple[PictureText, ...]:
     """Return what the texts say, and where; those that are not shown are left out."""
     numbers = _numbers(pixels, len(texts))
-    found, (rows, columns) = list[PictureText](), numbers.shape
+    shown_texts, (rows, columns) = list[PictureText](), numbers.shape
     for number, (down, across) in enumerate(_places(numbers, len(texts)), 1):
         content = " ".join(words_in(texts[number - 1].element).split())
         if content and down.stop:
             box = across.start / columns, down.start / rows, across.stop / columns, down.stop / rows
-            found.append(PictureText(content, box, _direction(texts[number - 1].element)))
-    return tuple(found)
+            shown_texts.append(PictureText(content, box, _direction(texts[number - 1].element)))
+    return tuple(shown_texts)
 
 
 def _places(numbers: Int32[np.ndarray, "h w"], count: int) -> list[tuple[slice, slice]]:
     """Return the rows and columns of each number; empty slices for one that is nowhere."""
     from scipy import ndimage  # pyright: ignore[reportMissingTypeStubs]
 
-    found: list[tuple[slice, slice] | None] = cast(Any, ndimage).find_objects(numbers, max_label=count)
-    return [each or (slice(0, 0), slice(0, 0)) for each in found]
+    slices: list[tuple[slice, slice] | None] = cast(Any, ndimage).find_objects(numbers, max_label=count)
+    return [place or (slice(0, 0), slice(0, 0)) for place in slices]
 
 
 def _direction(element: Element) -> float:
     """Return the direction of a text by its own turn, degrees counterclockwise."""
-    if found := re.search(r"rotate\(\s*(-?[\d.]+)", element.get("transform", "")):
-        return -float(found[1]) % 360
-    found = re.search(r"matrix\(\s*(-?[\d.]+)[\s,]+(-?[\d.]+)", element.get("transform", ""))
-    return -degrees(atan2(float(found[2]), float(found[1]))) % 360 if found else 0.0
+    if match := re.search(r"rotate\(\s*(-?[\d.]+)", element.get("transform", "")):
+        return -float(match[1]) % 360
+    match = re.search(r"matrix\(\s*(-?[\d.]+)[\s,]+(-?[\d.]+)", element.get("transform", ""))
+    return -degrees(atan2(float(match[2]), float(match[1]))) % 360 if match else 0.0
 
 
 def _name_shapes(

@@ -81,14 +81,14 @@ def cut_off(root: Element) -> tuple[set[str], bool]:
 def items_of(root: Element) -> tuple[list[Item], list[Item]]:
     """Return the shapes and the texts, in the order in which they are painted."""
     rules = [rule for element, _, _ in walk(root) if local(element) == "style" for rule in _rules(element.text or "")]
-    known: dict[Element, tuple[Mapping[str, str], str, str]] = {}
+    contexts: dict[Element, tuple[Mapping[str, str], str, str]] = {}
     shapes, texts, aside = list[Item](), list[Item](), set[Element]()
     for element, parent, _ in walk(root):
-        styles, label, name = (dict[str, str](), "", "") if parent is None else known[parent]
+        styles, label, name = (dict[str, str](), "", "") if parent is None else contexts[parent]
         styles = {**styles, **_declarations(element, rules)}
         if parent is not None:
             label, name = _label(element) or label, _own_name(element.get("id", "")) or name
-        known[element] = styles, label, name
+        contexts[element] = styles, label, name
         tag = local(element)
         if tag in ASIDE or parent in aside:
             aside.add(element)
@@ -116,19 +116,19 @@ def title_of(root: Element) -> str:
 
 
 def _shape(element: Element, styles: Mapping[str, str], label: str, name: str) -> Item:
-    seen = all(_number(styles.get(each, "1")) > 0 for each in ("opacity", "fill-opacity"))
-    filled = seen and styles.get("fill", "black") not in UNSEEN and local(element) != "line"
-    stroked = styles.get("stroke", "none") not in UNSEEN
-    closed = local(element) in CLOSED or element.get("d", "").rstrip().endswith(("Z", "z"))
+    is_visible = all(_number(styles.get(key, "1")) > 0 for key in ("opacity", "fill-opacity"))
+    is_filled = is_visible and styles.get("fill", "black") not in UNSEEN and local(element) != "line"
+    is_stroked = styles.get("stroke", "none") not in UNSEEN
+    is_closed = local(element) in CLOSED or element.get("d", "").rstrip().endswith(("Z", "z"))
     # Of outlines, those with a name are parts: tactile graphics have no fills.
-    outline = stroked and not filled and closed and bool(label)
-    return Item(element, label, name, filled or outline, outline, stroked)
+    outline = is_stroked and not is_filled and is_closed and bool(label)
+    return Item(element, label, name, is_filled or outline, outline, is_stroked)
 
 
 def _label(element: Element) -> str:
-    titles = (" ".join("".join(each.itertext()).split()) for each in element if local(each) == "title")
-    given = (value for key, value in element.attrib.items() if key == "aria-label" or key.endswith("inkscape}label"))
-    return next(filter(None, titles), "") or next((" ".join(each.split()) for each in given), "")
+    titles = (" ".join("".join(child.itertext()).split()) for child in element if local(child) == "title")
+    labels = (value for key, value in element.attrib.items() if key == "aria-label" or key.endswith("inkscape}label"))
+    return next(filter(None, titles), "") or next((" ".join(title.split()) for title in labels), "")
 
 
 def _own_name(own: str) -> str:
@@ -143,23 +143,23 @@ def _rules(sheet: str) -> Iterator[tuple[re.Match[str], dict[str, str]]]:
 
 
 def _pairs(block: str) -> dict[str, str]:
-    pairs = (each.partition(":") for each in block.split(";"))
+    pairs = (rule.partition(":") for rule in block.split(";"))
     return {name.strip(): value.replace("!important", "").strip() for name, _, value in pairs if value}
 
 
 def _declarations(element: Element, rules: list[tuple[re.Match[str], dict[str, str]]]) -> dict[str, str]:
     """Return what an element says of its paint: attributes, then rules in their order, then its own style."""
-    declared = dict(element.attrib)
+    values = dict(element.attrib)
     classes = element.get("class", "").split()
     for match, pairs in rules:
         tag, of_class, of_id = match.groups()
         if tag in ("", "*", local(element)) and of_class in (None, *classes) and of_id in (None, element.get("id")):
-            declared |= pairs
-    declared |= _pairs(element.get("style", ""))
+            values |= pairs
+    values |= _pairs(element.get("style", ""))
     names = ("fill", "stroke", "fill-opacity", "opacity")
-    return {name: declared[name] for name in names if declared.get(name, "inherit") != "inherit"}
+    return {name: values[name] for name in names if values.get(name, "inherit") != "inherit"}
 
 
 def _number(text: str) -> float:
-    found = re.match(r"\s*(\d*\.?\d+)", text)
-    return float(found[1]) if found else 1.0
+    match = re.match(r"\s*(\d*\.?\d+)", text)
+    return float(match[1]) if match else 1.0

@@ -124,10 +124,10 @@ def stiffness_is_no_less_than_felt(method: ForceRenderer) -> None:
         # measures.
         touch = method.touch(surface)
         if (stated := touch.stiffness_n_per_m) is not None:
-            measured = max(slopes(touch, DEVICE), default=0.0)
+            steepest = max(slopes(touch, DEVICE), default=0.0)
             demand(
-                measured <= 1.1 * stated + ROUNDING_N_PER_M,
-                f"on {name} {measured:.4g} N/m are measured, but {stated:.4g} stated; state the true value, or None",
+                steepest <= 1.1 * stated + ROUNDING_N_PER_M,
+                f"on {name} {steepest:.4g} N/m are measured, but {stated:.4g} stated; state the true value, or None",
             )
 
 

@@ -1,6 +1,6 @@
 from .app import main as main
 from .command_table import add as add
-from .commands.run import device_of as device_of
+from .commands.run import configured_device as configured_device
 from .commands.run import open_pipeline as open_pipeline
 from .options import FAILED as FAILED
 from .options import Config as Config

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from typing import Any, NamedTuple, Self, final
 
-from ..runtime.child_process import command, dumps, pipe_of
+from ..runtime.child_process import command, dumps, pipe_end
 from ..runtime.stopping import check_stopped
 from ..runtime.system.processes import exit_with_parent
 
@@ -78,8 +78,8 @@ class BackgroundCompiler:
             if self._listener is not None:
                 self._listener.join()
             with suppress(OSError):  # unsent data are not needed
-                pipe_of(child.stdin).close()
-            pipe_of(child.stdout).close()
+                pipe_end(child.stdin).close()
+            pipe_end(child.stdout).close()
 
     def begin(self) -> None:
         """Start the process, once, if there is work for it."""
@@ -114,9 +114,9 @@ class BackgroundCompiler:
 
     def _listen(self, child: "subprocess.Popen[bytes]", data: bytes) -> None:
         with suppress(OSError, ValueError):  # the process has ended
-            pipe_of(child.stdin).write(data)
-            pipe_of(child.stdin).flush()
-        for line in pipe_of(child.stdout):
+            pipe_end(child.stdin).write(data)
+            pipe_end(child.stdin).flush()
+        for line in pipe_end(child.stdout):
             with self._progress:
                 self._due -= {line.decode(errors="replace").strip()}
                 self._progress.notify_all()

@@ -2,7 +2,7 @@ from .child_process import Place as Place
 from .child_process import command as command
 from .child_process import dumps as dumps
 from .child_process import import_from as import_from
-from .child_process import pipe_of as pipe_of
+from .child_process import pipe_end as pipe_end
 from .child_process import place as place
 from .failure_log import where_kept as where_kept
 from .opencv import plain_opencv as plain_opencv

@@ -39,7 +39,7 @@ def python(code: str) -> list[str]:
     return [sys.executable, "-P", *flags, "-c", f"import sys; sys.path[:] = {search_path()!r}; {code}"]
 
 
-def pipe_of(end: IO[bytes] | None) -> IO[bytes]:
+def pipe_end(end: IO[bytes] | None) -> IO[bytes]:
     """Return an end of a pipe of a process that was started with pipes."""
     assert end is not None
     return end

@@ -18,21 +18,21 @@ from ..data.option_errors import sentences_about
 from ..errors import ConfigError, PictureError, wrong_argument
 from ..files.paths import as_path
 from .combining import PHONE_DEPTH, PICTURES, combine_parts
-from .formats.decoding import bytes_of
+from .formats.decoding import content_bytes
 from .formats.height_maps import find_picture, in_metres, metadata_beside, read_heights_metadata
 from .formats.multi_picture import Notify
-from .formats.pairs import Layout, Stored, halves, read_pair, read_stored, views_of
+from .formats.pairs import Layout, Stored, halves, read_pair, read_stored, to_views
 from .formats.phone_depth import read_phone_depth
 from .formats.pictures import (
     TruthScale,
-    labels_of,
-    map_of,
-    picture_of,
     read_labels,
     read_map,
     read_picture,
     read_truth,
-    truth_of,
+    to_labels,
+    to_map,
+    to_picture,
+    to_truth,
 )
 from .formats.rigs import find_rig, read_rig
 from .rig import StereoRig
@@ -63,7 +63,7 @@ _READERS: Mapping[str, Callable[[Path, Notify], np.ndarray]] = {
     "depth": read_map,
     "segments": read_labels,
 }
-_CONVERTERS = {"height": partial(map_of, exact=True), "depth": map_of, "segments": labels_of}
+_CONVERTERS = {"height": partial(to_map, exact=True), "depth": to_map, "segments": to_labels}
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,13 +99,13 @@ class SceneSource:
                 else read_stored(cast(Path, path), notes.append)
                 for part, path in (("left", files.left), ("right", files.right))
             )
-            parts |= views_of(left, right, files.non_finite, notes.append)._asdict()
+            parts |= to_views(left, right, files.non_finite, notes.append)._asdict()
         warnings: list[str] = []
         page, photo = None, paths.get("photo", Path())
         if photo.suffix.lower() == ".svg":
-            page = read_svg(photo, bytes_of(photo), warnings.append)
+            page = read_svg(photo, content_bytes(photo), warnings.append)
         elif photo.suffix.lower() == ".pdf":
-            page = read_pdf(photo, bytes_of(photo), files.page, warnings.append)
+            page = read_pdf(photo, content_bytes(photo), files.page, warnings.append)
         if page is not None:
             parts["photo"] = page.picture
             if page.labels is not None and files.segments is None:
@@ -214,8 +214,8 @@ def _convert(part: str, values: np.ndarray, files: SceneFiles) -> dict[str, np.n
     """Convert a copy of an array to the part of a scene, or to its two views."""
     name = str(getattr(files, part))
     if part in _DISPARITIES:
-        return {part: truth_of(values.copy(), name, *_scale(part, files))}
+        return {part: to_truth(values.copy(), name, *_scale(part, files))}
     if part not in PICTURES:
         return {part: _CONVERTERS[part](values.copy(), name)}
-    picture = picture_of(values.copy(), name, files.non_finite)
+    picture = to_picture(values.copy(), name, files.non_finite)
     return halves(picture, cast("Layout | None", files.layout), name)._asdict() if part == "stereo" else {part: picture}

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import DeviceError
 from ..plugins.interfaces import HapticDevice
-from ..runtime.child_process import command, pipe_of
+from ..runtime.child_process import command, pipe_end
 from ..runtime.system.processes import start_without_ctrl_c
 from . import limits, watchdog
 from .framing import End, Refusal, Start, receive, send, sendable
@@ -67,7 +67,7 @@ class LoopProcess:
     def send(self, message: Any) -> None:
         """Send a message. Raises: DeviceError, or a plugin's error, if the loop has ended."""
         try:
-            send(pipe_of(self.child.stdin), message)
+            send(pipe_end(self.child.stdin), message)
         except (OSError, ValueError) as error:  # the process is gone, or the host closed the pipe
             self._over.wait()  # then the reason is known
             raise self.failure() from error
@@ -94,7 +94,7 @@ class LoopProcess:
     def _close_pipe(self) -> None:
         if self._child is not None:
             with suppress(OSError):  # messages that were not sent are not needed any more
-                pipe_of(self._child.stdin).close()
+                pipe_end(self._child.stdin).close()
 
     def _kill(self, why: str) -> None:
         if self._child is not None and self._child.poll() is None:
@@ -118,11 +118,11 @@ class LoopProcess:
             self._child = child = start_without_ctrl_c(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         except OSError as error:
             raise DeviceError(f"no process can be started for the force loop: {error.strerror or error}") from error
-        with pipe_of(child.stdout) as replies:
+        with pipe_end(child.stdout) as replies:
             if ring.header[STOP]:
                 self._close_pipe()
             with suppress(OSError, ValueError):  # the process is gone, or the pipe was closed
-                send(pipe_of(child.stdin), start)
+                send(pipe_end(child.stdin), start)
             end = self._receive_until_end(replies)
             ring.header[STOP] = 1
             self._close_pipe()

@@ -46,7 +46,9 @@ def striped_scene(folder: Path) -> Path:
     labels[:, 40:42] = 2
     Image.fromarray(labels).save(folder / "labels.png")
     Image.fromarray(80 * labels + 20).save(folder / "mine.png")
-    text = TEXT.replace("{photo: mine.png}", "{photo: mine.png, segments: labels.png, kind: photograph}").replace("0.06", "0.08")
+    text = TEXT.replace("{photo: mine.png}", "{photo: mine.png, segments: labels.png, kind: photograph}").replace(
+        "0.06", "0.08"
+    )
     (folder / "mine.yaml").write_text(text.replace("texture: {use: gabor, segments: 3}\n", ""))
     return folder / "mine.yaml"
 

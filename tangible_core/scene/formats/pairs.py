@@ -7,10 +7,10 @@ import numpy as np
 
 from ...data.pictures import MOST, full_scale, size_in_words
 from ...errors import PictureError
-from .decoding import ORIENTATION, bytes_of, decode, look_at, upright, values_of
+from .decoding import ORIENTATION, content_bytes, decode, decode_values, look_at, upright
 from .kinds import JPEG
 from .multi_picture import Notify, ignore, view_numbers
-from .pictures import NonFinite, picture_of
+from .pictures import NonFinite, to_picture
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -37,15 +37,15 @@ class Stored(NamedTuple):
 
 def read_stored(path: Path, notify: Notify = ignore) -> Stored:
     """Read a picture file as it is. Raises: PictureError as `read_picture`."""
-    data = bytes_of(path)
-    return Stored(values_of(path, data, notify), _stated_orientation(path, data), str(path))
+    data = content_bytes(path)
+    return Stored(decode_values(path, data, notify), _stated_orientation(path, data), str(path))
 
 
-def views_of(left: Stored, right: Stored, non_finite: NonFinite = "error", notify: Notify = ignore) -> Pair:
+def to_views(left: Stored, right: Stored, non_finite: NonFinite = "error", notify: Notify = ignore) -> Pair:
     """Return stored pictures as a pair of one orientation, white and type of numbers. Raises: PictureError."""
     left, right = turn_alike(left, right, notify), turn_alike(right, left, notify)
     values = zip(same_type(left, right), (left.name, right.name), strict=True)
-    return Pair(*same_white(*(picture_of(picture, name, non_finite) for picture, name in values)))
+    return Pair(*same_white(*(to_picture(picture, name, non_finite) for picture, name in values)))
 
 
 def turn_alike(picture: Stored, other: Stored, notify: Notify = ignore) -> Stored:
@@ -88,21 +88,21 @@ def read_pair(
     layout: the order of the halves; None: the order that a .jps file states.
     Raises: PictureError as `read_picture`, or if there are no halves.
     """
-    data = bytes_of(path)
+    data = content_bytes(path)
     if layout is None and len(numbers := _view_numbers(path, data)) > 1:
         left, right = (
             Stored(decode(path, data, frame=number), _stated_orientation(path, data, number), str(path))
             for number in numbers[:2]
         )
-        return views_of(left, right, non_finite, notify)
+        return to_views(left, right, non_finite, notify)
     layout = layout or _stated_layout(path, data, notify)
-    whole = picture_of(values_of(path, data, notify), str(path), non_finite)
+    whole = to_picture(decode_values(path, data, notify), str(path), non_finite)
     return halves(whole, layout, str(path))
 
 
 def holds_two_views(path: Path) -> bool:
     """Return True for a Multi-Picture file of two views. Raises: PictureError as `read_picture`."""
-    return len(_view_numbers(path, bytes_of(path))) > 1
+    return len(_view_numbers(path, content_bytes(path))) > 1
 
 
 def _view_numbers(path: Path, data: bytes) -> list[int]:

@@ -21,7 +21,7 @@ from jaxtyping import Float32
 from ...data.pictures import size_in_words, to_grey
 from ...errors import PictureError, shown
 from ...runtime.opencv import plain_opencv
-from .decoding import bytes_of, decode, look_at, orientation, upright
+from .decoding import content_bytes, decode, look_at, orientation, upright
 from .heif import heif_depth, is_heif
 from .kinds import JPEG
 from .multi_picture import Notify, ignore, multi_pictures
@@ -55,7 +55,7 @@ class PhoneDepth(NamedTuple):
 
 def read_phone_depth(path: Path, shape: tuple[int, int], notify: Notify = ignore) -> Float32[np.ndarray, "h w"] | None:
     """Read the nearness, 0 far to 1 near, that a phone stored in its photo of (h, w); None if there is none."""
-    data = bytes_of(path)
+    data = content_bytes(path)
     try:
         depth = _heic_depth(data) if is_heif(data) else _jpeg_depth(path, data)
         return None if depth is None else _nearness(path, *depth, shape, notify)

@@ -15,7 +15,7 @@ from pydantic import Field
 from ...data.pictures import check_finite, check_picture, opaque
 from ...errors import PictureError
 from ...runtime.opencv import plain_opencv
-from .decoding import bytes_of, values_of
+from .decoding import content_bytes, decode_values
 from .kinds import JPEG
 from .multi_picture import Notify, ignore
 from .reducing import decode_reduced
@@ -40,13 +40,13 @@ def read_picture(
     reduce: halve the sides of a JPEG, PNG or TIFF that is too large, up to three times, while it is decoded.
     Raises: PictureError if the file is missing, not a picture, damaged, cut short or too large.
     """
-    data = bytes_of(path)
+    data = content_bytes(path)
     if reduce and (picture := decode_reduced(path, data, notify)) is not None:
-        return picture_of(picture, str(path), non_finite)
-    return picture_of(values_of(path, data, notify), str(path), non_finite)
+        return to_picture(picture, str(path), non_finite)
+    return to_picture(decode_values(path, data, notify), str(path), non_finite)
 
 
-def picture_of(values: np.ndarray, name: str, non_finite: NonFinite = "error") -> np.ndarray:
+def to_picture(values: np.ndarray, name: str, non_finite: NonFinite = "error") -> np.ndarray:
     """Return an array as `read_picture` does. Raises: PictureError if it is not a picture, or holds NaN or infinity."""
     if non_finite == "error":
         return check_picture(values, name)
@@ -61,10 +61,10 @@ def read_map(path: Path, notify: Notify = ignore, exact: bool = False) -> Float[
     NaN stands for infinity, for transparent pixels, and for a GeoTIFF's value for no data (GDAL's tag).
     Raises: PictureError as `read_picture`, or if there is more than one number a pixel.
     """
-    return map_of(values_of(path, bytes_of(path), notify, "map"), str(path), exact)
+    return to_map(decode_values(path, content_bytes(path), notify, "map"), str(path), exact)
 
 
-def map_of(values: np.ndarray, name: str, exact: bool = False) -> Float[np.ndarray, "h w"]:
+def to_map(values: np.ndarray, name: str, exact: bool = False) -> Float[np.ndarray, "h w"]:
     """Return an array as `read_map` does, NaN where it is masked. Raises: PictureError for several numbers a pixel."""
     masked_map: Any = values if np.ma.isMaskedArray(values) and values.dtype.kind in "buif" else None
     if masked_map is not None:
@@ -98,12 +98,12 @@ def read_labels(path: Path, notify: Notify = ignore) -> Int32[np.ndarray, "h w"]
     One of ours keeps its order in whatever form another program saved it.
     Raises: PictureError as `read_picture`, or if it holds too many labels to be a label picture.
     """
-    data = bytes_of(path)
-    values = values_of(path, data, notify, "labels")
-    colours = values_of(path, data, ignore) if values.ndim == 2 and values.dtype == np.uint8 else values
+    data = content_bytes(path)
+    values = decode_values(path, data, notify, "labels")
+    colours = decode_values(path, data, ignore) if values.ndim == 2 and values.dtype == np.uint8 else values
     is_coloured = colours.ndim == 3 and colours.dtype == np.uint8
     labels = labels_by_colour(colours, str(path)) if is_coloured else None
-    labels = labels_of(values, str(path)) if labels is None else labels
+    labels = to_labels(values, str(path)) if labels is None else labels
     if data.startswith(JPEG) and np.median(np.bincount(labels.ravel())) < labels.size * FEW_PIXELS:
         raise PictureError(
             f"{path}: holds {labels.max() + 1} labels, most of a few pixels: JPEG mixes the colours of segments; save "
@@ -112,7 +112,7 @@ def read_labels(path: Path, notify: Notify = ignore) -> Int32[np.ndarray, "h w"]
     return labels
 
 
-def labels_of(values: np.ndarray, name: str) -> Int32[np.ndarray, "h w"]:
+def to_labels(values: np.ndarray, name: str) -> Int32[np.ndarray, "h w"]:
     """Return an array as `read_labels` does. Raises: PictureError if it has too many labels, or is not a picture."""
     if values.ndim == 3 and values.dtype.kind == "u" and values.shape[2] <= 4:
         values = values.astype(np.uint64) @ (1 << 16 * np.arange(values.shape[2], dtype=np.uint64))
@@ -148,15 +148,15 @@ def read_truth(
     Raises: PictureError as `read_map`.
     """
     purpose = "picture" if scale == "sintel" else "map"
-    return truth_of(values_of(path, bytes_of(path), notify, purpose), str(path), scale, nodata)
+    return to_truth(decode_values(path, content_bytes(path), notify, purpose), str(path), scale, nodata)
 
 
-def truth_of(
+def to_truth(
     values: np.ndarray, name: str, scale: TruthScale | None = None, nodata: Sequence[float] = ()
 ) -> Float32[np.ndarray, "h w"]:
     """Return an array as `read_truth` does. Source: the kit of MPI Sintel, sintel_io.py. Raises: PictureError."""
     if scale != "sintel":
-        numbers = without(map_of(values, name), *nodata)
+        numbers = without(to_map(values, name), *nodata)
         return numbers if scale is None else np.where(numbers > 0, numbers / np.float32(scale), np.float32(np.nan))
     if values.ndim != 3 or values.shape[2] != 3 or values.dtype != np.uint8:
         raise PictureError(

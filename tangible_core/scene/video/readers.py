@@ -14,7 +14,7 @@ from ...data.pictures import UsedRange, full_scale, opaque, to_rgb8, used_range
 from ...errors import PictureError
 from ..formats.kinds import PICTURES
 from ..formats.pairs import Stored, read_stored, same_type, turn_alike
-from ..formats.pictures import picture_of
+from ..formats.pictures import to_picture
 from .capture import (
     USUAL_FPS,
     Capture,
@@ -214,10 +214,10 @@ class FolderFrames(VideoFrames):
         return self._frame(number, number / self.fps, picture, path)
 
     def _like_first(self, source: Stored) -> np.ndarray:
-        """Return a picture with the orientation and white of the first one. Raises: PictureError as `picture_of`."""
+        """Return a picture with the orientation and white of the first one. Raises: PictureError as `to_picture`."""
         # It decides the white of floats and wide integers, and the orientation of pictures that state none.
         first = self._first or source
-        picture = picture_of(same_type(first, turn_alike(source, first))[1], source.name)
+        picture = to_picture(same_type(first, turn_alike(source, first))[1], source.name)
         self._first = first
         if picture.dtype.kind == first.values.dtype.kind == "f":
             return np.clip(picture / full_scale(first.values), 0, 1)

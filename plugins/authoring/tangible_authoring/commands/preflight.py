@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tangible_core.cli import FAILED, Config, Json, NoCache, Sets, Verbose, device_of, open_pipeline
+from tangible_core.cli import FAILED, Config, Json, NoCache, Sets, Verbose, configured_device, open_pipeline
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -50,7 +50,7 @@ def preflight(
     if fix is not None and fix.exists() and not force:
         raise OutputError(f"{fix}: is there already; name another file, or --force writes over it")
     pipeline = open_pipeline(config, sets or [], not no_cache)
-    device = device_of(pipeline)
+    device = configured_device(pipeline)
     if fix is None:
         flight = Feeling(pipeline).flight(hand=hand, loop=loop)
         verdicts, changes = judge(flight), {}

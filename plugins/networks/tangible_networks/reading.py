@@ -24,7 +24,7 @@ MAX_WIDE = 40  # width of a row by its height; a longer one is seen narrower
 
 
 def read_texts(picture: np.ndarray, texts: Sequence[PictureText]) -> tuple[PictureText, ...]:
-    """Return the texts of a picture with what they say; "" where that is not sure, or without a network."""
+    """Return the texts of a picture (`to_rgb`) with what they say; "" where that is not sure, or without a network."""
     # Li et al., PP-OCRv3, 2022; letters by the best class of each step, Graves et al., CTC, 2006.
     networks = networks_here("text")
     if not texts or not networks:

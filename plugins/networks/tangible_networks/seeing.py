@@ -25,7 +25,11 @@ SURE = 0.5  # least value of a figure's surest pixel
 
 
 def look(picture: np.ndarray, tasks: Collection[Task] = ("figure", "borders", "faces")) -> Figure:
-    """Return the figure, the borders and the faces of a picture, as far as there are networks. Raises: ConfigError."""
+    """Return the figure, the borders and the faces of a picture, as far as there are networks for these tasks.
+
+    picture: uint8, uint16 or float (h, w), (h, w, 3) or (h, w, 4).
+    Raises: ConfigError for a network that cannot run.
+    """
     colours = to_rgb(picture)
     borders = look_for_borders(colours, colours.shape[:2]) if "borders" in tasks else None
     figure = look_for_figure(colours) if "figure" in tasks else None

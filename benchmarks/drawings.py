@@ -16,7 +16,7 @@ import numpy as np
 
 from tangible_core import Pipeline, Scene
 from tangible_core.data import SegmentMap, Views
-from tangible_core.drawing import find_areas, find_ink, find_lines, find_texts, picture_kind
+from tangible_core.drawing import find_areas, find_ink, find_lines, find_marks, find_texts, picture_kind
 from tangible_core.drawing.labels import texts_in, tie_texts
 from tangible_core.parts import find_parts
 from tangible_core.relief import ReliefChoice, edge_relief, line_relief
@@ -183,10 +183,10 @@ def _labels() -> Iterator[Figure]:
     right = named = wrong = tied = missed = letters = 0
     for made in made_drawings("told", "drawing", FEW):
         parts = find_parts(SegmentMap(find_areas(made.picture).labels)).labels
-        ink = find_ink(made.picture)
-        texts = texts_in(ink)
+        marks = find_marks(made.picture)
+        texts = texts_in(marks)
         size = np.tile(made.picture.shape[1::-1], 2)
-        for read, part_number in zip(read_texts(made.picture, texts), tie_texts(ink, texts, parts), strict=True):
+        for read, part_number in zip(read_texts(made.picture, texts), tie_texts(marks, texts, parts), strict=True):
             (column, row), at = read.middle * size[:2], np.array(made.texts).reshape(-1, 4)
             own = np.flatnonzero((at[:, 0] <= column) & (at[:, 2] >= column) & (at[:, 1] <= row) & (at[:, 3] >= row))
             if not own.size:

@@ -7,9 +7,8 @@ from jaxtyping import Bool, Float64, Int32
 
 from ..data import PictureText
 from ..runtime.opencv import plain_opencv
-from .ink import Ink
-from .lines import Lines, find_lines
-from .text import find_texts
+from .lines import Lines
+from .marks import Marks
 
 STEP_PX, WIDE_DEG = 3.0, 18.0
 """The step along a leader line, px, and the greatest turn at a step, degrees."""
@@ -25,12 +24,12 @@ PAPER = 0.5
 """The least share of the picture's rim that the paper of a drawing has."""
 
 
-def texts_in(ink: Ink) -> tuple[PictureText, ...]:
-    """Return the places of the texts in ink; nobody has read them yet."""
-    return tuple(PictureText("", text[:4], text.direction_deg) for text in find_texts(ink).boxes)
+def texts_in(marks: Marks) -> tuple[PictureText, ...]:
+    """Return the places of the texts in a picture; nobody has read them yet."""
+    return tuple(PictureText("", text[:4], text.direction_deg) for text in marks.texts.boxes)
 
 
-def tie_texts(ink: Ink, texts: Sequence[PictureText], parts: Int32[np.ndarray, "h w"]) -> tuple[int | None, ...]:
+def tie_texts(marks: Marks, texts: Sequence[PictureText], parts: Int32[np.ndarray, "h w"]) -> tuple[int | None, ...]:
     """Return for each text the number of the part that it names; None for a text on the paper without a leader line."""
     # A leader line ends near the text, points at it, and runs on without a sharp turn across whatever lies between.
     rows, columns = parts.shape
@@ -43,10 +42,10 @@ def tie_texts(ink: Ink, texts: Sequence[PictureText], parts: Int32[np.ndarray, "
         most = int(counts.argmax())
         names = counts[most] >= INSIDE * inside.size and numbers[most] != paper
         tied.append(int(numbers[most]) if names else None)
-    shape = ink.mask.shape
+    shape = marks.ink.mask.shape
     on_ink = boxes * np.tile(np.array(shape[::-1]), 2)
     nearest = np.full(len(boxes), np.inf)
-    for path in _paths(find_lines(ink, find_texts(ink).ink)):
+    for path in _paths(marks.lines):
         number, distance = _pointed_at(path, on_ink)
         if number is None or distance >= nearest[number]:
             continue

@@ -1,7 +1,7 @@
 """The names of parts that are read in the picture: their labels, and the labels that point to them."""
 
 from ..data import PartMap
-from ..drawing import find_ink
+from ..drawing import find_marks
 from ..drawing.labels import texts_in, tie_texts
 from ..plugins.registry import Registry
 from .config.model import PipelineConfig
@@ -22,11 +22,11 @@ def read_part_names(config: PipelineConfig, registry: Registry) -> dict[int, str
     views = engine.scene.views
     if views is None:
         return {}
-    ink = find_ink(views.left)
-    texts = read_function(registry)(views.left, texts_in(ink))
+    marks = find_marks(views.left)
+    texts = read_function(registry)(views.left, texts_in(marks))
     parts = engine.make_on_grid("parts") if any(text.content for text in texts) else None
     if not isinstance(parts, PartMap):
         return {}
-    tied = zip(texts, tie_texts(ink, texts, parts.labels), strict=True)
+    tied = zip(texts, tie_texts(marks, texts, parts.labels), strict=True)
     by_height = sorted(tied, key=lambda pair: pair[0].box[3] - pair[0].box[1])
     return dict(sorted({part: text.content for text, part in by_height if part is not None and text.content}.items()))

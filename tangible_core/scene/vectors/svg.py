@@ -18,7 +18,7 @@ from jaxtyping import Bool, Int32, UInt8
 
 from ...data import PictureText
 from ...data.pictures import fill_from_nearest
-from ...drawing import PictureKind, find_ink, find_texts
+from ...drawing import PictureKind, find_marks
 from ...errors import PictureError, shown
 from ...files.reading import in_words
 from ...runtime.child_process import python
@@ -196,9 +196,9 @@ def _labels(
         wide = np.asarray(cv2.morphologyEx((whole != labels).astype(np.uint8), cv2.MORPH_OPEN, disc)) > 0
     labels = np.where(wide, whole, labels)
     pieces = np.asarray(label(labels, connectivity=1, background=-1), np.int32)
-    ink = find_ink(picture)
+    letters_mask = find_marks(picture).texts.ink.astype(np.uint8)
     with plain_opencv():
-        letters = cv2.resize(find_texts(ink).ink.astype(np.uint8), labels.shape[::-1], interpolation=cv2.INTER_NEAREST)
+        letters = cv2.resize(letters_mask, labels.shape[::-1], interpolation=cv2.INTER_NEAREST)
     size = np.bincount(pieces.reshape(-1))
     shape_of = np.zeros(size.size, np.int32)
     shape_of[pieces.reshape(-1)] = labels.reshape(-1)

@@ -6,7 +6,7 @@ import pytest
 
 from tangible_core import Scene
 from tangible_core.data import PictureText
-from tangible_core.drawing import find_ink
+from tangible_core.drawing import find_marks
 from tangible_core.drawing.labels import texts_in, tie_texts
 from tangible_core.pipeline import part_names
 from tangible_core.pipeline.starter import suited_config
@@ -34,9 +34,9 @@ def cell(turn_deg: float = 0) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("turn_deg", [0, 6])
 def test_text_names_the_part_around_it_or_at_the_end_of_its_leader_line(turn_deg):
     picture, parts = cell(turn_deg)
-    ink = find_ink(picture)
-    texts = texts_in(ink)
-    tied = dict(zip((text.middle for text in texts), tie_texts(ink, texts, parts), strict=True))
+    marks = find_marks(picture)
+    texts = texts_in(marks)
+    tied = dict(zip((text.middle for text in texts), tie_texts(marks, texts, parts), strict=True))
     assert [tied[place] for place in sorted(tied, key=lambda place: place[0])] == [CELL, NUCLEUS, None]
     assert all(abs(text.direction_deg - turn_deg) < 8 for text in texts if text.direction_deg)
 
@@ -47,9 +47,9 @@ def test_leader_line_that_stops_at_an_outline_names_what_is_behind_it():
     picture[:, 100:400] = np.where(parts[:, 100:400, None] == PAPER, 255, picture[:, 100:400])
     cv2.line(picture, (402, 200), (510, 200), (20, 20, 20), 2)
     cv2.putText(picture, "cell", (525, 207), cv2.FONT_HERSHEY_SIMPLEX, 0.7, (20, 20, 20), 2, cv2.LINE_AA)
-    ink = find_ink(picture)
-    texts = [text for text in texts_in(ink) if text.middle[0] > 0.7]
-    assert tie_texts(ink, texts, parts) == (CELL,)
+    marks = find_marks(picture)
+    texts = [text for text in texts_in(marks) if text.middle[0] > 0.7]
+    assert tie_texts(marks, texts, parts) == (CELL,)
 
 
 def test_starter_names_parts_as_a_network_reads_them(monkeypatch):

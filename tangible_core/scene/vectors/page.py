@@ -10,6 +10,7 @@ from jaxtyping import Int32, UInt8
 from ...data import PictureText
 from ...drawing import PictureKind
 
+Box = tuple[float, float, float, float]
 SIDE_PX = 2000
 """The longer side of a page as a picture, px: a tenth of a millimetre on A4."""
 
@@ -45,6 +46,13 @@ def rank_labels(labels: Int32[np.ndarray, "h w"]) -> tuple[tuple[int, ...], Int3
     return tuple(map(int, np.flatnonzero(there))), (np.cumsum(there, dtype=np.int32) - 1)[labels]
 
 
+def turn_box(left: float, top: float, right: float, bottom: float, clockwise_deg: int) -> Box:
+    """Return a box, by shares, in a picture that is turned by quarters."""
+    for _ in range(clockwise_deg // 90):
+        left, top, right, bottom = 1 - bottom, left, 1 - top, right
+    return float(left), float(top), float(right), float(bottom)
+
+
 def frame_texts(
     texts: tuple[PictureText, ...], shape: tuple[int, ...], crop: tuple[int, int, int, int] | None, clockwise_deg: int
 ) -> tuple[PictureText, ...]:
@@ -57,8 +65,6 @@ def frame_texts(
         (left, top), (right, bottom) = (corners - (x, y)) / (width, height)
         if not (0 <= (left + right) / 2 <= 1 and 0 <= (top + bottom) / 2 <= 1):
             continue
-        for _ in range(clockwise_deg // 90):
-            left, top, right, bottom = 1 - bottom, left, 1 - top, right
-        box = float(left), float(top), float(right), float(bottom)
+        box = turn_box(left, top, right, bottom, clockwise_deg)
         framed.append(replace(text, box=box, direction_deg=(text.direction_deg - clockwise_deg) % 360))
     return tuple(framed)

@@ -13,7 +13,7 @@ from ...data import PictureText
 from ...drawing import PictureKind, picture_kind
 from ...errors import PictureError
 from ..formats.multi_picture import Notify, ignore
-from .page import SIDE_PX, VectorPage, title_among
+from .page import SIDE_PX, VectorPage, title_among, turn_box
 
 _turn = Lock()
 """Lock around the library, which keeps its state in global variables."""
@@ -79,8 +79,6 @@ def _texts(page: Any) -> tuple[PictureText, ...]:
         if not content:
             continue
         shares = (corners - (left_pt, bottom_pt)) / (right_pt - left_pt, top_pt - bottom_pt)
-        left, top, right, bottom = shares[0, 0], 1 - shares[1, 1], shares[1, 0], 1 - shares[0, 1]
-        for _ in range(page.get_rotation() // 90):
-            left, top, right, bottom = 1 - bottom, left, 1 - top, right
-        lines.append(PictureText(content, (float(left), float(top), float(right), float(bottom))))
+        upright = shares[0, 0], 1 - shares[1, 1], shares[1, 0], 1 - shares[0, 1]
+        lines.append(PictureText(content, turn_box(*upright, page.get_rotation())))
     return tuple(lines)

@@ -25,7 +25,7 @@ from ...runtime.child_process import python
 from ...runtime.opencv import plain_opencv
 from ..formats.multi_picture import Notify, ignore
 from .page import SIDE_PX, VectorPage, rank_labels, title_among
-from .tree import HIDE, Item, cut_off, items_of, local, title_of, walk, words_in
+from .tree import HIDE, Item, cut_off, find_items, find_label, local, walk, words_in
 
 MAX_BYTES = 20_000_000
 """The most bytes of an SVG: what is larger is a scan, or a map of a whole country."""
@@ -60,7 +60,7 @@ def read_svg(path: Path, data: bytes, notify: Notify = ignore) -> VectorPage:
         notify(f"{path.name} refers to {', '.join(sorted(outside)[:3])}, which is not read; embed it in the file")
     if runs:
         notify(f"scripts in {path.name} are not run; if they draw something, save the drawing as it is shown")
-    shapes, texts = items_of(root)
+    shapes, texts = find_items(root)
     flat = _flat_styles(root, shapes, texts) if len(shapes) <= MAX_SHAPES else []
     text_styles = [_text_styles(shapes, texts)] if texts else []
     ways = [{text.element: HIDE for text in texts}, *flat, *text_styles]
@@ -83,7 +83,7 @@ def read_svg(path: Path, data: bytes, notify: Notify = ignore) -> VectorPage:
     else:
         labels, names = _name_shapes(labels, shapes, read)
     loose = [text for text in read if text.content not in names]
-    title = title_of(root) or title_among(loose)
+    title = find_label(root) or title_among(loose)
     if left := [text.content for text in loose if text.content != title]:
         notify(f"texts of {path.name} that name no part are left out: {shown(', '.join(left))}")
     raster = any(local(element) == "image" and "href" in "".join(element.attrib) for element, _, _ in walk(root))

@@ -78,7 +78,7 @@ def cut_off(root: Element) -> tuple[set[str], bool]:
     return outside, runs
 
 
-def items_of(root: Element) -> tuple[list[Item], list[Item]]:
+def find_items(root: Element) -> tuple[list[Item], list[Item]]:
     """Return the shapes and the texts, in the order in which they are painted."""
     rules = [rule for element, _, _ in walk(root) if local(element) == "style" for rule in _rules(element.text or "")]
     contexts: dict[Element, tuple[Mapping[str, str], str, str]] = {}
@@ -87,7 +87,7 @@ def items_of(root: Element) -> tuple[list[Item], list[Item]]:
         styles, label, name = (dict[str, str](), "", "") if parent is None else contexts[parent]
         styles = {**styles, **_declarations(element, rules)}
         if parent is not None:
-            label, name = _label(element) or label, _own_name(element.get("id", "")) or name
+            label, name = find_label(element) or label, _own_name(element.get("id", "")) or name
         contexts[element] = styles, label, name
         tag = local(element)
         if tag in ASIDE or parent in aside:
@@ -110,11 +110,6 @@ def words_in(element: Element) -> str:
     return apart + (element.text or "") + "".join(words_in(child) + (child.tail or "") for child in element)
 
 
-def title_of(root: Element) -> str:
-    """Return the title of the document, or its label; "" without one."""
-    return _label(root)
-
-
 def _shape(element: Element, styles: Mapping[str, str], label: str, name: str) -> Item:
     is_visible = all(_number(styles.get(key, "1")) > 0 for key in ("opacity", "fill-opacity"))
     is_filled = is_visible and styles.get("fill", "black") not in UNSEEN and local(element) != "line"
@@ -125,7 +120,8 @@ def _shape(element: Element, styles: Mapping[str, str], label: str, name: str) -
     return Item(element, label, name, is_filled or outline, outline, is_stroked)
 
 
-def _label(element: Element) -> str:
+def find_label(element: Element) -> str:
+    """Return the title of an element, or its label; "" without one."""
     titles = (" ".join("".join(child.itertext()).split()) for child in element if local(child) == "title")
     labels = (value for key, value in element.attrib.items() if key == "aria-label" or key.endswith("inkscape}label"))
     return next(filter(None, titles), "") or next((" ".join(title.split()) for title in labels), "")

@@ -126,7 +126,7 @@ def _list(
     result = draw_numbers(file, path, sets, renumber=renumber, force=force, with_cache=not no_cache)
     parts = result.parts.parts
     if as_json:
-        rows = [{**path._asdict(), "was": was and was.number} for path, was in _with_earlier(parts, result.before)]
+        rows = [{**part._asdict(), "was": was and was.number} for part, was in _with_earlier(parts, result.before)]
         show.print_json({"title": result.title, "parts": rows, "files": [str(path) for path in result.files]})
     elif not is_quiet():
         show.sentence(_summary(result.title, len(parts)))

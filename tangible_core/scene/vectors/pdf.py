@@ -28,7 +28,7 @@ def read_pdf(path: Path, data: bytes, page: int | None = None, notify: Notify = 
             document: Any = pypdfium2.PdfDocument(data)
         except pypdfium2.PdfiumError as error:
             why = "is locked by a password; save it without one" if "password" in str(error).lower() else (
-                f"cannot be read as PDF: {error}; save it again, or its page as PNG"
+                f"cannot be read as PDF: {str(error).rstrip('.')}; save it again, or its page as PNG"
             )  # fmt: skip
             raise PictureError(f"{path}: {why}") from error
         try:
@@ -41,7 +41,9 @@ def read_pdf(path: Path, data: bytes, page: int | None = None, notify: Notify = 
                 notify(f"{path.name} has {count} pages, of which the first is taken; `page: 2` takes another")
             return _read_page(document, (page or 1) - 1)
         except pypdfium2.PdfiumError as error:
-            raise PictureError(f"{path}: cannot be read as PDF: {error}; save its page as PNG") from error
+            raise PictureError(
+                f"{path}: cannot be read as PDF: {str(error).rstrip('.')}; save its page as PNG"
+            ) from error
         finally:
             document.close()
 

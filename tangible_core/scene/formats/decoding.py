@@ -228,11 +228,9 @@ def _deep_png(image: "Image", path: Path, data: bytes, purpose: Purpose) -> np.n
     if clear is None or purpose == "labels" or values.shape[2:] == (4,):
         return values
     valid_mask = values != clear if values.ndim == 2 else (values != np.array(clear)).any(axis=2)
-    return (
-        np.ma.masked_array(values, ~valid_mask)
-        if purpose == "map" and values.ndim == 2
-        else _with_alpha(values, valid_mask)
-    )
+    if purpose == "map" and values.ndim == 2:
+        return np.ma.masked_array(values, ~valid_mask)
+    return _with_alpha(values, valid_mask)
 
 
 def _jpeg_2000(data: bytes, purpose: Purpose) -> np.ndarray | None:

@@ -35,13 +35,13 @@ def tie_texts(marks: Marks, texts: Sequence[PictureText], parts: Int32[np.ndarra
     rows, columns = parts.shape
     paper = _paper(parts)
     boxes = np.array([text.box for text in texts], np.float64).reshape(-1, 4)
-    tied: list[int | None] = []
+    named_parts: list[int | None] = []
     for left, top, right, bottom in boxes * np.array([columns, rows, columns, rows]):
         inside = parts[int(top) : max(int(top) + 1, round(bottom)), int(left) : max(int(left) + 1, round(right))]
         numbers, counts = np.unique(inside, return_counts=True)
         most = int(counts.argmax())
         names = counts[most] >= INSIDE * inside.size and numbers[most] != paper
-        tied.append(int(numbers[most]) if names else None)
+        named_parts.append(int(numbers[most]) if names else None)
     shape = marks.ink.mask.shape
     on_ink = boxes * np.tile(np.array(shape[::-1]), 2)
     nearest = np.full(len(boxes), np.inf)
@@ -53,8 +53,8 @@ def tie_texts(marks: Marks, texts: Sequence[PictureText], parts: Int32[np.ndarra
         for column, row in (path[-1], ahead) if parts[_at(path[-1], shape, parts)] == paper else (path[-1],):
             part = int(parts[_at(np.array([column, row]), shape, parts)])
             if part != paper:
-                nearest[number], tied[number] = distance, part
-    return tuple(tied)
+                nearest[number], named_parts[number] = distance, part
+    return tuple(named_parts)
 
 
 def _at(place: Float64[np.ndarray, "2"], shape: tuple[int, ...], parts: np.ndarray) -> tuple[int, int]:

@@ -27,6 +27,6 @@ def read_part_names(config: PipelineConfig, registry: Registry) -> dict[int, str
     parts = engine.make_on_grid("parts") if any(text.content for text in texts) else None
     if not isinstance(parts, PartMap):
         return {}
-    tied = zip(texts, tie_texts(marks, texts, parts.labels), strict=True)
-    by_height = sorted(tied, key=lambda pair: pair[0].box[3] - pair[0].box[1])
+    named_texts = zip(texts, tie_texts(marks, texts, parts.labels), strict=True)
+    by_height = sorted(named_texts, key=lambda pair: pair[0].box[3] - pair[0].box[1])
     return dict(sorted({part: text.content for text, part in by_height if part is not None and text.content}.items()))

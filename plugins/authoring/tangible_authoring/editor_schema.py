@@ -54,8 +54,8 @@ def _by_type(alternatives: Sequence[Schema], types: Sequence[tuple[str, ...]]) -
     for alternative, kinds in zip(alternatives, types, strict=True):
         for kind in kinds:
             groups.setdefault(kind, []).append(alternative)
-    chosen = [{"if": {"type": kind}, "then": _one(group)} for kind, group in groups.items()]
-    return {"type": list(groups), "allOf": chosen} if len(groups) > 1 else _one(list(alternatives))
+    branches = [{"if": {"type": kind}, "then": _one(group)} for kind, group in groups.items()]
+    return {"type": list(groups), "allOf": branches} if len(groups) > 1 else _one(list(alternatives))
 
 
 def _one(group: list[Schema]) -> Schema:
@@ -70,8 +70,8 @@ def _one(group: list[Schema]) -> Schema:
         return one
     about = [str(schema.get("description", "")).partition("\n")[0] for schema in group]
     use = {"enum": names, "enumDescriptions": about, "markdownEnumDescriptions": about}
-    chosen = [
+    branches = [
         {"if": {"properties": {"use": {"const": name}}, "required": ["use"]}, "then": schema}
         for name, schema in zip(names, group, strict=True)
     ]
-    return {"type": "object", "required": ["use"], "properties": {"use": use}, "allOf": chosen}
+    return {"type": "object", "required": ["use"], "properties": {"use": use}, "allOf": branches}

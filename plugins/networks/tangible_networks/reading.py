@@ -31,13 +31,13 @@ def read_texts(picture: np.ndarray, texts: Sequence[PictureText]) -> tuple[Pictu
         return tuple(texts)
     network, colours = networks[0], to_rgb(np.nan_to_num(picture))
     card, letters = network.card, _letters(network.path, network.path.stat().st_mtime_ns)
-    read = list[PictureText]()
+    results = list[PictureText]()
     for text in texts:
         row = _upright_row(colours, text)
-        given = tensor(row, card.input, fit_size((row.shape[0], row.shape[1]), card.input, row.size))
-        steps = run(network.path, card.runtime or "opencv", {card.input.left: given}, [card.output.name])[0]
-        read.append(replace(text, content=_content(steps.reshape(-1, steps.shape[-1]), letters)))
-    return tuple(read)
+        values = tensor(row, card.input, fit_size((row.shape[0], row.shape[1]), card.input, row.size))
+        steps = run(network.path, card.runtime or "opencv", {card.input.left: values}, [card.output.name])[0]
+        results.append(replace(text, content=_content(steps.reshape(-1, steps.shape[-1]), letters)))
+    return tuple(results)
 
 
 @lru_cache(maxsize=2)

@@ -76,19 +76,19 @@ def read_svg(path: Path, data: bytes, notify: Notify = ignore) -> VectorPage:
     alpha = pixels[..., 3:].astype(np.float32) / 255
     picture = np.rint(pixels[..., :3] * alpha + 255 * (1 - alpha)).astype(np.uint8)
     labels = _labels(layers[0], layers[1], shapes, picture) if flat else None
-    read = _read_texts(layers[-1], texts) if texts else ()
+    known_texts = _read_texts(layers[-1], texts) if texts else ()
     names: tuple[str, ...] = ()
     if labels is None:
         notify(f"{path.name} has more than {MAX_SHAPES} shapes, which is a texture: its parts are found by colour")
     else:
-        labels, names = _name_shapes(labels, shapes, read)
-    loose = [text for text in read if text.content not in names]
+        labels, names = _name_shapes(labels, shapes, known_texts)
+    loose = [text for text in known_texts if text.content not in names]
     title = find_label(root) or title_among(loose)
-    if left := [text.content for text in loose if text.content != title]:
-        notify(f"texts of {path.name} that name no part are left out: {shown(', '.join(left))}")
+    if unused := [text.content for text in loose if text.content != title]:
+        notify(f"texts of {path.name} that name no part are left out: {shown(', '.join(unused))}")
     raster = any(local(element) == "image" and "href" in "".join(element.attrib) for element, _, _ in walk(root))
     kind = PictureKind.drawing if labels is None or labels.any() else PictureKind.lines
-    return VectorPage(picture, labels, names, read, title, None if raster else kind)
+    return VectorPage(picture, labels, names, known_texts, title, None if raster else kind)
 
 
 def _parse(path: Path, data: bytes) -> Element:

@@ -19,10 +19,8 @@ from ..runtime.system.processes import exit_with_parent
 log: logging.Logger = logging.getLogger(__name__)
 LATE_STEPS = "late steps of the depth"
 """The name of the steps that `DepthEstimator.rehearse` runs."""
-LOOK_EVERY_S = 0.1
-"""The period, s, at which a waiting thread checks whether it shall stop."""
-LONGEST_S = 300.0
-"""The longest wait for one kernel, s; the slowest takes a tenth of it."""
+LOOK_EVERY_S = 0.1  # the period, s, at which a waiting thread checks whether it shall stop
+LONGEST_S = 300.0  # the longest wait for one kernel, s; the slowest takes a tenth of it
 
 
 class Work(NamedTuple):

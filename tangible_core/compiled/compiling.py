@@ -15,11 +15,11 @@ from numba.extending import overload, register_jitable
 from .background import start_waiting
 
 log: logging.Logger = logging.getLogger(__name__)
+# The time that is left, once a second, for those who show it: a terminal's line, a page. Nobody else hears of it.
 progress_log: logging.Logger = log.getChild("progress")
-"""The time that is left, once a second, for those who show it: a terminal's line, a page. Nobody else hears of it."""
 progress_log.propagate = False
+# The bytes of bytecode that a process of a first `tangible demo` compiles, by family: time is proportional to them.
 BYTECODE = {"depth": 28_500, "texture": 3_700, "render": 10_600, "core": 14_000}
-"""The bytes of bytecode that a process of a first `tangible demo` compiles, by family: time is proportional to them."""
 
 njit: Any = _njit
 """Numba's decorator. What it returns is called from Python and from kernels, with types that no checker knows."""

@@ -10,10 +10,9 @@ import numpy as np
 
 from .compiling import njit
 
-ROUNDS = 50
-"""The most QL steps for one eigenvalue; two or three are usual."""
+ROUNDS = 50  # the most QL steps for one eigenvalue; two or three are usual
+# The share of the neighbouring diagonal values below which an off-diagonal value counts as zero.
 CLEAN = 1e-15
-"""The share of the neighbouring diagonal values below which an off-diagonal value counts as zero."""
 
 
 @njit(cache=True, nogil=True)

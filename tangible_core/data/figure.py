@@ -10,8 +10,7 @@ from .arguments import named_fields
 from .records import Record
 from .views import PartMap
 
-IS_FIGURE = 0.5
-"""Least value of the figure's map at a pixel of the figure."""
+IS_FIGURE = 0.5  # least value of the figure's map at a pixel of the figure
 
 
 @named_fields

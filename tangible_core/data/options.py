@@ -16,8 +16,7 @@ class Option(NamedTuple):
 
     name: str
     unit: str
-    values: str
-    """The values that may be written, with bounds."""
+    values: str  # the values that may be written, with bounds
     default: str
     meaning: str
 

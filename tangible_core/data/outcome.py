@@ -6,8 +6,8 @@ from html import escape
 from typing import Literal
 
 Kind = Literal["depth", "texture", "render", "device", "export"]
+# The outcomes of a product; `refused`: known to be impossible for this scene before anything is run.
 OutcomeKind = Literal["given", "ran", "cached", "skipped", "failed", "refused"]
-"""The outcomes of a product; `refused`: known to be impossible for this scene before anything is run."""
 HEADINGS = ("product", "method", "outcome", "why", "seconds")
 
 

@@ -12,18 +12,17 @@ from jaxtyping import Bool, Float32, UInt8
 from ..errors import PictureError
 from .arguments import as_picture
 
+# The weights of R and B in luma (ITU-R BT.601); the weight of G is the rest of 1.
 RED, BLUE = np.float32(0.299), np.float32(0.114)
-"""The weights of R and B in luma (ITU-R BT.601); the weight of G is the rest of 1."""
 
 
-MOST = 65535
-"""The largest value of a picture: 16 bits."""
+MOST = 65535  # the largest value of a picture: 16 bits
+# Share of its range below which the values of a picture are one: less than a step of 16 bits.
 FAINT = 1e-5
-"""Share of its range below which the values of a picture are one: less than a step of 16 bits."""
+# Share of its range, from black to white, that a picture of more than 8 bits uses if it is full: 14 bits of 16.
 USED_SHARE = 0.25
-"""Share of its range, from black to white, that a picture of more than 8 bits uses if it is full: 14 bits of 16."""
+# The largest value of a float picture in 0..1, two stops above white; one that exceeds it is in 0..255.
 BRIGHTEST = 4.0
-"""The largest value of a float picture in 0..1, two stops above white; one that exceeds it is in 0..255."""
 
 
 def check_picture(picture: np.ndarray, name: str = "picture") -> np.ndarray:

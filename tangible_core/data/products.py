@@ -38,8 +38,8 @@ PRODUCTS: Mapping[Product, ProductRow] = {
     "touch": ProductRow(None),
 }
 """Every product, in the order in which a picture becomes a force."""
+# The products that an exporter may need: all that are records.
 EXPORTABLE = tuple(name for name, row in PRODUCTS.items() if row.record is not None)
-"""The products that an exporter may need: all that are records."""
 IN_REPORT = tuple(name for name, row in PRODUCTS.items() if row.in_report)
 """The products that a run keeps and shows on its sheet, besides the requested one."""
 

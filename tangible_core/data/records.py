@@ -80,8 +80,8 @@ def named_values(record: Any) -> Iterator[tuple[str, Any]]:
     return ((f.name, getattr(record, f.name)) for f in fields(record))
 
 
+# A function from a field's name and a given value to the value that the field holds. Raises: ArgumentError.
 Convert = Callable[[str, Any], Any]
-"""A function from a field's name and a given value to the value that the field holds. Raises: ArgumentError."""
 
 
 def settle(record: Any) -> None:

@@ -17,8 +17,8 @@ from .records import Record
 
 Texture = Literal["smooth", "periodic", "stochastic", "stick-slip", "drag"]
 TEXTURES: tuple[Texture, ...] = get_args(Texture)
+# Difference of heights below which a relief is flat: a third of what a Falcon resolves.
 FLAT_M = 1e-5
-"""Difference of heights below which a relief is flat: a third of what a Falcon resolves."""
 
 
 @named_fields

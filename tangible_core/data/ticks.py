@@ -37,8 +37,8 @@ class TickFlag(IntFlag):
 
 BEACON_SHIFT = 11
 """The lowest bit of the number of a beacon's part in the flags of a tick."""
+# The number of parts that a beacon can pull to: larger numbers do not fit into the flags.
 MAX_BEACON_PARTS = 1 << 20
-"""The number of parts that a beacon can pull to: larger numbers do not fit into the flags."""
 
 
 def beacon_part(flags: int) -> int | None:

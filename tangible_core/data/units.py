@@ -53,9 +53,9 @@ def option_title(name: str) -> str:
     return words[:1].upper() + words[1:]
 
 
+# The end of an option's name -> its unit, including units without alternatives.
 _OPTION_UNITS = {suffix: next(iter(units)) for suffix, units in UNITS.items()} | {
     "_px": "px",
     "_mb": "MB",
     "_percent": "%",
 }
-"""The end of an option's name -> its unit, including units without alternatives."""

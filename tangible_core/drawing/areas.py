@@ -10,22 +10,19 @@ from ..runtime.opencv import plain_opencv
 from .ink import eight_bits, noise_level
 from .marks import find_marks
 
+# The greatest difference within an area from a pixel to its neighbours, of 255: more than the noise of JPEG.
 ALIKE = 9.0
-"""The greatest difference within an area from a pixel to its neighbours, of 255: more than the noise of JPEG."""
-NOISY = 3.5
-"""The same in standard deviations of the noise that a blur leaves."""
-SAME = 14.0
-"""The greatest difference of two areas of one colour, of 255."""
+NOISY = 3.5  # the same in standard deviations of the noise that a blur leaves
+SAME = 14.0  # the greatest difference of two areas of one colour, of 255
+# The side of a square as large as the least area, as a share of the longer side; less is a speck.
 MIN_SIDE = 1 / 110
-"""The side of a square as large as the least area, as a share of the longer side; less is a speck."""
+# How far a pixel on an edge looks for the areas on both sides of the edge, px; a block of JPEG has 8.
 REACHES_PX = (3, 8, 14)
-"""How far a pixel on an edge looks for the areas on both sides of the edge, px; a block of JPEG has 8."""
+# The difference to an area up to which a thin place is a piece of this area, and no stroke on it, of 255.
 NO_STROKE = 40
-"""The difference to an area up to which a thin place is a piece of this area, and no stroke on it, of 255."""
+# Red, green and blue to light and half of its two colour differences: JPEG blurs colours by two pixels, not light.
 LIGHT_FIRST = np.array([(0.299, 0.35, -0.15), (0.587, -0.29, -0.29), (0.114, -0.06, 0.44)], np.float32)
-"""Red, green and blue to light and half of its two colour differences: JPEG blurs colours by two pixels, not light."""
-PAPER_SHARE = 0.3
-"""The least share of the picture's rim that paper takes."""
+PAPER_SHARE = 0.3  # the least share of the picture's rim that paper takes
 
 
 class Areas(NamedTuple):

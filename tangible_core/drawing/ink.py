@@ -8,35 +8,26 @@ from jaxtyping import Bool, Float32, UInt8
 from ..data.pictures import to_rgb8
 from ..runtime.opencv import plain_opencv
 
-MAX_SIDE = 1600
-"""The most pixels of a side at which ink is looked for."""
+MAX_SIDE = 1600  # the most pixels of a side at which ink is looked for
+# The greatest width of a stroke, as a share of the longer side; what is wider is an area.
 WIDEST = 1 / 55
-"""The greatest width of a stroke, as a share of the longer side; what is wider is an area."""
-LEAST = 0.1
-"""The least darkness of ink, as a share of the light of its ground."""
-NOISY = 4.0
-"""The darkness that noise alone has beneath a closing, in standard deviations of the noise."""
+LEAST = 0.1  # the least darkness of ink, as a share of the light of its ground
+NOISY = 4.0  # the darkness that noise alone has beneath a closing, in standard deviations of the noise
+# The darkness of ink that takes all the light of one colour, and hardly any brightness; JPEG makes such at edges.
 COLOUR = 0.6
-"""The darkness of ink that takes all the light of one colour, and hardly any brightness; JPEG makes such at edges."""
-HALF = 0.5
-"""The darkness at the edge of a stroke, as a share of the darkest ink around."""
+HALF = 0.5  # the darkness at the edge of a stroke, as a share of the darkest ink around
+# The light below which a ground counts as this light, of 255: darker, noise would be taken for ink.
 DARKEST = 40
-"""The light below which a ground counts as this light, of 255: darker, noise would be taken for ink."""
 
 
 class Ink(NamedTuple):
     """The ink of a picture, on a picture reduced to MAX_SIDE."""
 
-    mask: Bool[np.ndarray, "r c"]
-    """True on strokes; areas are left out."""
-    darkness: Float32[np.ndarray, "r c"]
-    """The share of the ground's light that is missing, 0 to 1."""
-    ground: UInt8[np.ndarray, "r c 3"]
-    """The colours without the strokes; the others of an inverted picture."""
-    widest_px: int
-    """The width beyond which a stroke is an area, px."""
-    inverted: bool
-    """True where ink is lighter than its ground."""
+    mask: Bool[np.ndarray, "r c"]  # true on strokes; areas are left out
+    darkness: Float32[np.ndarray, "r c"]  # the share of the ground's light that is missing, 0 to 1
+    ground: UInt8[np.ndarray, "r c 3"]  # the colours without the strokes; the others of an inverted picture
+    widest_px: int  # the width beyond which a stroke is an area, px
+    inverted: bool  # true where ink is lighter than its ground
 
 
 def eight_bits(picture: np.ndarray) -> UInt8[np.ndarray, "h w 3"]:

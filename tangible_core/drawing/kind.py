@@ -11,20 +11,13 @@ from ..runtime.opencv import plain_opencv
 from .ink import eight_bits, find_ink, noise_level, reduce_to_side
 from .text import find_texts
 
-SIDE = 800
-"""The most pixels of a side on which a kind is measured."""
-PATCH_PX = 5
-"""The side of a square that is flat or not, px."""
-QUIET = 1.8
-"""The greatest standard deviation in a flat square, by that of the noise."""
-SHADES = 24
-"""The width of a bin of colour, of 255."""
-MAX_NOISE = 25.0
-"""The greatest noise of a scan, of 255."""
-NOISE, STEPS, INK = 4, 5, 6
-"""The places of three measures."""
-FEW = 6
-"""The number of colours that most of a flat drawing has."""
+SIDE = 800  # the most pixels of a side on which a kind is measured
+PATCH_PX = 5  # the side of a square that is flat or not, px
+QUIET = 1.8  # the greatest standard deviation in a flat square, by that of the noise
+SHADES = 24  # the width of a bin of colour, of 255
+MAX_NOISE = 25.0  # the greatest noise of a scan, of 255
+NOISE, STEPS, INK = 4, 5, 6  # the places of three measures
+FEW = 6  # the number of colours that most of a flat drawing has
 
 
 WEIGHTS = np.array([
@@ -44,8 +37,7 @@ WEIGHTS = np.array([
 """The weights of each measure of `measure_kind` in the score of each kind; the last row is constants."""
 
 
-LIKELY = 0.5
-"""The least confidence with which a picture is taken for a drawing."""
+LIKELY = 0.5  # the least confidence with which a picture is taken for a drawing
 
 
 class PictureKind(StrEnum):
@@ -74,10 +66,8 @@ class DrawnPicture(NamedTuple):
 
     kind: PictureKind
     picture: np.ndarray
-    lines: bool
-    """True where its lines are drawn or raised as lines."""
-    whole: PartMap | None = None
-    """All its parts, before any was left out."""
+    lines: bool  # true where its lines are drawn or raised as lines
+    whole: PartMap | None = None  # all its parts, before any was left out
 
 
 def measure_kind(picture: np.ndarray) -> Float64[np.ndarray, "n"]:

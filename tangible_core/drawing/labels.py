@@ -10,18 +10,13 @@ from ..runtime.opencv import plain_opencv
 from .lines import Lines
 from .marks import Marks
 
-STEP_PX, WIDE_DEG = 3.0, 18.0
-"""The step along a leader line, px, and the greatest turn at a step, degrees."""
+STEP_PX, WIDE_DEG = 3.0, 18.0  # the step along a leader line, px, and the greatest turn at a step, degrees
 SHORT, LONG = 1.5, 6.0
 """The least length of a leader line, and the greatest distance from its end to its text, by the text's height."""
-AROUND = 0.6
-"""The space around a text at which a leader line points, by the text's height."""
-ALONG = 5
-"""The steps from the end of a line that give its direction."""
-INSIDE = 0.5
-"""The least share of a text that lies in the part that it names."""
-PAPER = 0.5
-"""The least share of the picture's rim that the paper of a drawing has."""
+AROUND = 0.6  # the space around a text at which a leader line points, by the text's height
+ALONG = 5  # the steps from the end of a line that give its direction
+INSIDE = 0.5  # the least share of a text that lies in the part that it names
+PAPER = 0.5  # the least share of the picture's rim that the paper of a drawing has
 
 
 def texts_in(marks: Marks) -> tuple[PictureText, ...]:

@@ -10,19 +10,16 @@ from jaxtyping import Bool, Float32
 from ..runtime.opencv import plain_opencv
 from .ink import Ink
 
+# The least length of a line, as a share of the longer side; what is shorter is a speck.
 MIN_LONG = 1 / 60
-"""The least length of a line, as a share of the longer side; what is shorter is a speck."""
 
 
 class Lines(NamedTuple):
     """Lines on the grid of the ink."""
 
-    mask: Bool[np.ndarray, "r c"]
-    """The strokes themselves."""
-    centre: Bool[np.ndarray, "r c"]
-    """Their centre lines, one pixel wide; branches and junctions are kept."""
-    width_px: Float32[np.ndarray, "r c"]
-    """The width of the stroke at its centre line, px; 0 elsewhere."""
+    mask: Bool[np.ndarray, "r c"]  # the strokes themselves
+    centre: Bool[np.ndarray, "r c"]  # their centre lines, one pixel wide; branches and junctions are kept
+    width_px: Float32[np.ndarray, "r c"]  # the width of the stroke at its centre line, px; 0 elsewhere
 
     def share_near(self, distance_px: float) -> float:
         """Return the share of the length of the lines that lies nearer than this to another piece of a line."""

@@ -10,16 +10,12 @@ from jaxtyping import Bool, Float64, Int32
 from ..runtime.opencv import plain_opencv
 from .ink import Ink
 
+# The least height of a letter, px, and the greatest, as a share of the longer side.
 LETTER_PX, LETTER = 5, 1 / 14
-"""The least height of a letter, px, and the greatest, as a share of the longer side."""
-LONG = 9.0
-"""The greatest width of a piece of a row, by its height: letters may touch."""
-APART = 1.2
-"""The greatest distance from a letter to the next, by the height of the higher one."""
-TALLER = 2.4
-"""The greatest ratio of the heights of two letters next to each other."""
-MAX_PIECES = 12_000
-"""The most pieces that are looked at: more are a texture."""
+LONG = 9.0  # the greatest width of a piece of a row, by its height: letters may touch
+APART = 1.2  # the greatest distance from a letter to the next, by the height of the higher one
+TALLER = 2.4  # the greatest ratio of the heights of two letters next to each other
+MAX_PIECES = 12_000  # the most pieces that are looked at: more are a texture
 
 
 CONSTANTS: tuple[float, float] = (-1.68, -0.55)
@@ -35,12 +31,11 @@ MEASURES: Float64[np.ndarray, "measures 4"] = np.array([
 ])  # fmt: skip
 """The constants of a score that is above 0 for text, for a row of one piece and of more; and for each measure of
 `_measure_rows` its mean and spread, and the weights of its deviation and of the square of that."""
+# The darkness from which on ink is as dark as letters are; bold ones are darker.
 DARK = 0.35
-"""The darkness from which on ink is as dark as letters are; bold ones are darker."""
-FAR = 4.0
-"""The greatest deviation of a measure that counts, in spreads."""
+FAR = 4.0  # the greatest deviation of a measure that counts, in spreads
+# The least width of a row by its height whose direction is that of its ink; a shorter one counts as level.
 TILTED = 3.0
-"""The least width of a row by its height whose direction is that of its ink; a shorter one counts as level."""
 
 
 class Text(NamedTuple):
@@ -60,8 +55,7 @@ class Texts(NamedTuple):
     """Texts and their ink."""
 
     boxes: tuple[Text, ...]
-    ink: Bool[np.ndarray, "r c"]
-    """True on letters, on the grid of the ink."""
+    ink: Bool[np.ndarray, "r c"]  # true on letters, on the grid of the ink
 
 
 def find_texts(ink: Ink) -> Texts:

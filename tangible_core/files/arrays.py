@@ -17,8 +17,8 @@ _CHUNK = 1 << 20
 _ZIP = b"PK"
 _SAMPLES, _SAMPLE = 8, 1 << 14
 """The number of samples that decide whether an array is worth compressing, and the bytes of each."""
+# The largest share of its size that the samples may have after compression for an array to be compressed.
 _MAX_SHARE = 0.4
-"""The largest share of its size that the samples may have after compression for an array to be compressed."""
 
 
 @final

@@ -105,8 +105,7 @@ def read_lines(path: Path) -> Iterator[tuple[int, str]]:
                 yield number, line[:-1].decode()
 
 
-SYNC_EVERY_S = 1.0
-"""The longest time, s, until a row is on the disk."""
+SYNC_EVERY_S = 1.0  # the longest time, s, until a row is on the disk
 IN_USE = "another program is writing to it; wait for that one or choose another folder"
 
 

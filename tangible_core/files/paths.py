@@ -8,13 +8,13 @@ from typing import cast
 
 from ..errors import ConfigError, did_you_mean, quoted, shown, wrong_argument
 
+# Characters that a line of text, or an XML file, cannot have: controls, line breaks, halves of characters.
 CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff]")
-"""Characters that a line of text, or an XML file, cannot have: controls, line breaks, halves of characters."""
+# The most bytes of a file's name; every common file system allows as many and no more.
 MAX_NAME_BYTES = 255
-"""The most bytes of a file's name; every common file system allows as many and no more."""
 
+# The most bytes of a path on Linux; other systems allow fewer, and then their own message is shown.
 MAX_PATH_BYTES = 4095
-"""The most bytes of a path on Linux; other systems allow fewer, and then their own message is shown."""
 
 
 def as_path(value: object, name: str = "path") -> Path:
@@ -43,8 +43,7 @@ def what_is_missing(path: Path, names: Iterable[str], what: str = "file") -> str
     return f"there is no such {what}{did_you_mean(path.name, names)}"
 
 
-LEFT = ("left", "l", "im0", "im2", "view0", "view1")
-"""Names that the left views of all pairs have."""
+LEFT = ("left", "l", "im0", "im2", "view0", "view1")  # names that the left views of all pairs have
 
 
 def without_folders(name: str) -> str:

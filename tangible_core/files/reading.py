@@ -17,8 +17,8 @@ MAX_TEXT_BYTES = 250_000
 """The most bytes of a file that people write by hand; the time to parse YAML grows faster than its length."""
 TOO_MANY_PIXELS = f"is larger than {MAX_PIXELS // 1_000_000} megapixels"
 
+# The most bytes to read from a file whose size is given as 0; some files of Linux say so and have no end.
 _UNKNOWN_SIZE = 1 << 16
-"""The most bytes to read from a file whose size is given as 0; some files of Linux say so and have no end."""
 _CHUNK = 1 << 20
 
 

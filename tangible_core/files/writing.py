@@ -14,8 +14,8 @@ from typing import IO
 from ..errors import OutputError
 from ..runtime.system.files import BINARY, folder_lock, is_in_use, left_by_others, lock, wait_for_lock
 
+# Number of characters of a file's name in the name of its temporary file: of four bytes each, they still fit.
 MAX_OF_NAME = 50
-"""Number of characters of a file's name in the name of its temporary file: of four bytes each, they still fit."""
 TEMPORARY = re.compile(r"\..*\.[0-9a-f]{12}\.tangible")
 LEFT_S = 60.0
 """Age from which a temporary file that nobody has locked was left by a process that was killed, seconds."""

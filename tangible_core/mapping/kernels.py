@@ -16,8 +16,8 @@ from .placement import Placement
 PLACEMENT: Any = typeof(Placement())
 ARRAY = float64[::1]
 VECTOR = types.UniTuple(float64, 3)
+# Fields of a link's memory: the clutch's shift, the hand's last position, whether there is one, barred, muted.
 DRIFT_X, DRIFT_Y, HAND_X, HAND_Y, STARTED, BARRED, MUTED = range(7)
-"""Fields of a link's memory: the clutch's shift, the hand's last position, whether there is one, barred, muted."""
 MEMORY = 7
 
 

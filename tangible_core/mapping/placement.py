@@ -9,8 +9,7 @@ from pydantic import Field
 from ..data import DeviceSpec, Vector
 from ..data.quantities import Quantities
 
-QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
-"""Cosine and sine of the quarter turns, exactly."""
+QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))  # cosine and sine of the quarter turns, exactly
 
 
 class Placement(NamedTuple):

@@ -20,8 +20,8 @@ log: logging.Logger = logging.getLogger(__name__)
 Colour = Literal["black", "grey", "white", "red", "orange", "brown", "yellow", "green", "blue", "purple", "pink"]
 COLOURS: tuple[Colour, ...] = get_args(Colour)
 
+# Bounds in CIELAB (D65): duller colours are grey; darker greys are black and lighter ones white.
 GREY_CHROMA, BLACK_L, WHITE_L = 10.0, 20.0, 85.0
-"""Bounds in CIELAB (D65): duller colours are grey; darker greys are black and lighter ones white."""
 HUES: tuple[tuple[float, Colour], ...] = (
     (20, "pink"), (48, "red"), (85, "orange"), (118, "yellow"), (195, "green"), (308, "blue"), (335, "purple"),
     (360, "pink"),

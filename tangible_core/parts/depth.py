@@ -9,8 +9,8 @@ from .find import part_sizes
 from .heights import PartHeights
 from .neighbours import neighbours
 
+# Shares of the picture, counted from the farthest part, between which the heights run; others are clipped.
 RANGE = (0.005, 0.995)
-"""Shares of the picture, counted from the farthest part, between which the heights run; others are clipped."""
 
 
 def depth_heights(parts: PartMap, disparity: DisparityMap, top_m: float) -> PartHeights:

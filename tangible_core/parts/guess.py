@@ -12,20 +12,17 @@ from .find import part_sizes, reduced_parts
 from .heights import PartHeights
 from .neighbours import Neighbours, in_front, neighbours
 
+# Weights of cues: foot, middle, shares of rims and of the picture, enclosure, occlusion (`benchmarks parts`).
 FOOT, MIDDLE, RIM, SIZE, ENCLOSED, FRONT = 0.7, 0.3, 1.5, 0.1, 0.25, 0.5
-"""Weights of cues: foot, middle, shares of rims and of the picture, enclosure, occlusion (`benchmarks parts`)."""
+# Largest difference in colour of a hole from a part beyond, as a share of that from the part around it.
 LIKE = 0.5
-"""Largest difference in colour of a hole from a part beyond, as a share of that from the part around it."""
+# Nearness by which a hole is in front of what is seen through it, so that the two have an order.
 APART = 1e-6
-"""Nearness by which a hole is in front of what is seen through it, so that the two have an order."""
-OWN = 0.5
-"""Weight of a part's own cues; those of its neighbours have weight 1."""
+OWN = 0.5  # weight of a part's own cues; those of its neighbours have weight 1
 ROUNDS = 40
-SURE, MAX_NAMED = 0.3, 3
-"""Smallest certainty of an occlusion that the reasons name, and how many they name."""
+SURE, MAX_NAMED = 0.3, 3  # smallest certainty of an occlusion that the reasons name, and how many they name
 LONGEST_PX = 1000
-SPECK = 0.001
-"""Share of the picture below which a part shares a neighbour's height step."""
+SPECK = 0.001  # share of the picture below which a part shares a neighbour's height step
 
 
 def guess_heights(parts: PartMap, top_m: float, picture: np.ndarray | None = None) -> PartHeights:

@@ -17,8 +17,8 @@ from ..runtime.opencv import plain_opencv
 from ..scene.scaling import felt_factor, reduce_views
 from .heights import HeightChoice
 
+# Width of the seam along a border in which the detail fades out, so that it does not mask the border.
 QUIET_M = np.float32(0.0016)
-"""Width of the seam along a border in which the detail fades out, so that it does not mask the border."""
 FINEST_M, COARSEST_M = 0.00025, 0.0012
 """Standard deviations of the two Gaussians whose difference is the detail, metres."""
 

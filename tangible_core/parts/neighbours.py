@@ -8,8 +8,8 @@ from jaxtyping import Bool, Float64, Int32, Int64
 
 from ..data import PartMap
 
+# Radius of the disc in which the angles at a junction are measured, as a share of the picture's diagonal.
 REACH = 0.012
-"""Radius of the disc in which the angles at a junction are measured, as a share of the picture's diagonal."""
 MAX_JUNCTIONS, ACROSS = 20_000, 15
 """Largest number of junctions that are examined, evenly chosen, and points across the disc of each."""
 STRAIGHT, THIN = 0.15, 0.08
@@ -21,8 +21,7 @@ class Neighbours(NamedTuple):
 
     low: Int64[np.ndarray, "m"]
     high: Int64[np.ndarray, "m"]
-    sides: Int64[np.ndarray, "m"]
-    """Length of the common border, in sides of pixels."""
+    sides: Int64[np.ndarray, "m"]  # length of the common border, in sides of pixels
 
 
 def neighbours(parts: PartMap) -> Neighbours:

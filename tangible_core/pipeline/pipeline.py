@@ -35,12 +35,12 @@ from .output.exporting import chosen_exporters, export
 from .output.runs import Run, Sheet, make_run
 from .starter import suited_config
 
+# The name of an installed method, or the block of a file with its options: `{"use": "proxy", ...}`.
 Named = Mapping[str, Any] | str
-"""The name of an installed method, or the block of a file with its options: `{"use": "proxy", ...}`."""
+# The key `materials:`: a rule's name, a map from label to material, or a block of options.
 Materials = MaterialChoice | Mapping[Any, Any] | str
-"""The key `materials:`: a rule's name, a map from label to material, or a block of options."""
+# The key `parts:`: by number, the name of a part, or a block of options.
 Parts = Mapping[int, PartChoice | Mapping[str, Any] | str]
-"""The key `parts:`: by number, the name of a part, or a block of options."""
 Heights = HeightChoice | Mapping[str, Any] | Literal["depth", "given", "guess"]
 """The key `heights:`: the source of the heights of parts, or a block of options."""
 

@@ -62,11 +62,10 @@ STEEPEST = 0.6
 """The slope that at most a twentieth of the relief exceeds: from 1 on, 45 degrees, the sideways force is larger than
 the force down."""
 MIN_MM = 2.0
+# The greatest height of the relief by kind of scene, mm; less for photos, as their brightness is not a depth.
 MAX_MM: Mapping[str, float] = {"photo": 8.0, "heights": 15.0}
-"""The greatest height of the relief by kind of scene, mm; less for photos, as their brightness is not a depth."""
 READ = "as read in the picture; correct what is wrong"
-CELLS = 400
-"""The cells along the longer side, at which slopes are measured."""
+CELLS = 400  # the cells along the longer side, at which slopes are measured
 
 Kind = Literal["photo", "pair", "heights"]
 

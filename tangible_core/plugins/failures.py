@@ -28,8 +28,7 @@ PACKAGES = {
 }
 NO_MEMORY = re.compile("failed to map segment|[Cc]annot allocate memory|Insufficient memory")
 """What the system's loader, the C library and OpenCV say when the memory runs out."""
-_PLACE = "tangible_place"
-"""The attribute of an error from another process that holds its place there."""
+_PLACE = "tangible_place"  # the attribute of an error from another process that holds its place there
 
 
 class Place(NamedTuple):

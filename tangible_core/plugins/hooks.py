@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 log: logging.Logger = logging.getLogger(__name__)
 hookspec: pluggy.HookspecMarker = pluggy.HookspecMarker("tangible")
 hookimpl: pluggy.HookimplMarker = pluggy.HookimplMarker("tangible")
+# Observers that failed and the hooks in which they did: a hook may run ten times a second, and is reported once.
 _failed: WeakKeyDictionary[pluggy.PluginManager, set[tuple[str, str]]] = WeakKeyDictionary()
-"""Observers that failed and the hooks in which they did: a hook may run ten times a second, and is reported once."""
 
 
 class Panel(NamedTuple):

@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from importlib.metadata import Distribution
 
 KIND_NAMES = ("depth", "texture", "render", "device", "export")
-GROUPS = "tangible."
-"""The prefix of our groups of entry points; a kind follows, or `hooks`."""
+GROUPS = "tangible."  # the prefix of our groups of entry points; a kind follows, or `hooks`
 _HEADER = re.compile(r"^(Name|Version): *(.+?) *$", re.MULTILINE)
 
 

@@ -12,12 +12,12 @@ from ..scene.geometry import resample
 
 FELT = ((3.2e-3, 29e-6), (10e-3, 130e-6))
 """(width, height) of Gaussian profiles that a bare hand just distinguishes from a flat surface, metres."""
+# Widths of the features measured; from 1 mm on the thresholds follow one power of the width.
 WIDTHS_M = (1e-3, 3.2e-3, 10e-3, 32e-3)
-"""Widths of the features measured; from 1 mm on the thresholds follow one power of the width."""
+# Standard deviations of the Gaussians whose difference passes a feature, as shares of its width.
 FINE, COARSE = 0.5, 2.0
-"""Standard deviations of the Gaussians whose difference passes a feature, as shares of its width."""
+# Fewest cells a feature's width to which a fine relief is reduced before it is filtered.
 PER_WIDTH = 4
-"""Fewest cells a feature's width to which a fine relief is reduced before it is filtered."""
 
 
 def threshold_m(width_m: float) -> float:

@@ -13,8 +13,7 @@ from ..servo.guard.safety import (
     stiffness_limit_n_per_m,
 )
 
-EXPLORING_N = 1.0
-"""Press of a hand that explores (HaTT), under which the curvature of a texture adds stiffness."""
+EXPLORING_N = 1.0  # press of a hand that explores (HaTT), under which the curvature of a texture adds stiffness
 
 
 def fit(material: Material, spec: DeviceSpec, safety: Safety) -> Material:

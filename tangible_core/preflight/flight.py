@@ -73,8 +73,7 @@ class Ceiling(NamedTuple):
     """A limit of stiffness."""
 
     limit_n_per_m: float
-    share: float
-    """Share of the limit that the guard leaves to a force law; a stiffer one is softened."""
+    share: float  # share of the limit that the guard leaves to a force law; a stiffer one is softened
     source: str
 
     @property

@@ -12,17 +12,16 @@ from ..scene.geometry import picture_to_workspace
 
 PLACES = 64
 SKIN_M = 1e-6
+# Further depth at which the stiffness is measured: about the movement of a hand in a tick.
 STEP_M = 1e-4
-"""Further depth at which the stiffness is measured: about the movement of a hand in a tick."""
+# Step at which the damping is measured: so short that waves of a fine texture, which fade with speed, do not fade.
 SLOW_STEP_M = 2e-5
-"""Step at which the damping is measured: so short that waves of a fine texture, which fade with speed, do not fade."""
+# Depth of the hand under a force law that is not a spring and does not hold the hand up.
 SOFT_M = 1e-3
-"""Depth of the hand under a force law that is not a spring and does not hold the hand up."""
 CLEAR_M = 0.02
-RESTS = 8
-"""Ticks at rest, in which a proxy settles."""
+RESTS = 8  # ticks at rest, in which a proxy settles
+# Depths tried until the force equals the press; one is enough if force is proportional to depth.
 ROUNDS = 3
-"""Depths tried until the force equals the press; one is enough if force is proportional to depth."""
 
 Points = Float64[np.ndarray, "n 3"]
 Each = Float64[np.ndarray, " n"]

@@ -11,19 +11,19 @@ from ..data import HapticState, HapticSurface, Record
 from ..plugins.interfaces import Touch
 
 LINES = 6
+# The most ticks of a stroke; a stroke over a wider surface is shorter than the surface, about its middle.
 MAX_TICKS = 1000
-"""The most ticks of a stroke; a stroke over a wider surface is shorter than the surface, about its middle."""
+# The hand: that of the simulated devices, of the order of a relaxed hand that holds a handle.
 MASS_KG, SPRING_N_PER_M, DAMPING_N_S_PER_M = 0.1, 300.0, 6.0
-"""The hand: that of the simulated devices, of the order of a relaxed hand that holds a handle."""
+# The most that a hand pushes sideways, of its press: with more, it lifts off instead.
 SIDEWAYS = 2.0
-"""The most that a hand pushes sideways, of its press: with more, it lifts off instead."""
+# The time in which a hand that is held up eases its press to nothing; in as much again it lifts as strongly.
 EASES_S = 0.1
-"""The time in which a hand that is held up eases its press to nothing; in as much again it lifts as strongly."""
+# Depth of the target under the lowest point of the surface, so that the hand presses everywhere.
 REACH_DOWN_M = 0.02
-"""Depth of the target under the lowest point of the surface, so that the hand presses everywhere."""
 CLEAR_M = 0.003
+# Ticks at the start of a stroke in which the hand comes down; they do not count.
 APPROACH = 150
-"""Ticks at the start of a stroke in which the hand comes down; they do not count."""
 MARGIN = 0.04
 
 

@@ -8,8 +8,7 @@ from typing import Any, Literal, NamedTuple
 
 Grade = Literal["ok", "warn", "unsafe", "illegible"]
 """`warn`: it will not feel as intended. `unsafe`: the device may buzz. `illegible`: fingers cannot read it."""
-FEW = 0.01
-"""Share of the surface up to which places count as exceptions."""
+FEW = 0.01  # share of the surface up to which places count as exceptions
 
 Unit = Literal["m", "s", "N", "N/m", "N s/m", "share", "pins", "parts", "textures", "JND"]
 

@@ -2,5 +2,5 @@
 
 import time
 
+# The approximate start of this process: a file that changed later may not be the code that runs.
 STARTED_NS = time.time_ns()
-"""The approximate start of this process: a file that changed later may not be the code that runs."""

@@ -20,10 +20,10 @@ SOURCE_DIGITS, VERSION_DIGITS = 24, 12
 _OF_THIS_PROCESS = f"{os.getpid()} {STARTED_NS}"
 
 
+# An import on lines of its own, without another import behind a quote, a bracket or a line's end.
 _LINE = re.compile(
     rb"(?<!\\\n)(?<!\\\r\n)^[ \t]*((?:from|import)\b[^\n('\"\\]*(?:\([^)#]*\))?[^\n('\"\\]*)$", re.MULTILINE
 )
-"""An import on lines of its own, without another import behind a quote, a bracket or a line's end."""
 _CALL = re.compile(rb"\b(?:import_module|__import__)\(\s*['\"](\.*)([\w.]+)['\"]")
 
 

@@ -28,8 +28,8 @@ FEATURES: Mapping[str, tuple[str, ...]] = {
     "generic": (),
 }
 """The processors for which code is compiled, and the features, by LLVM's names, that they have beside the baseline."""
+# Variables by which a user asks numba for other code than that of the wheel.
 CHOICES = ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES", "NUMBA_OPT", "NUMBA_DEBUGINFO", "NUMBA_DISABLE_JIT")
-"""Variables by which a user asks numba for other code than that of the wheel."""
 
 
 def requirements() -> dict[str, str]:

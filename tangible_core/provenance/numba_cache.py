@@ -19,8 +19,8 @@ from .closure import SOURCE_DIGITS, closure_of_function
 
 log: logging.Logger = logging.getLogger(__name__)
 
+# The number of closures of a kernel whose code is kept, so that branches and environments can share a folder.
 KEPT = 4
-"""The number of closures of a kernel whose code is kept, so that branches and environments can share a folder."""
 
 
 def extend(caching: Any) -> None:

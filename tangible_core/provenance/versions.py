@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 _OPENCV = ("opencv-contrib-python-headless", "opencv-contrib-python", "opencv-python-headless", "opencv-python")
 
+# The libraries that compute results: import name -> the distributions that it may come in, and those below it.
 LIBRARIES: Mapping[str, tuple[str, ...]] = {
     "numpy": ("numpy",),
     "scipy": ("scipy", "numpy"),
@@ -22,10 +23,9 @@ LIBRARIES: Mapping[str, tuple[str, ...]] = {
     "torch": ("torch",),
     "kornia": ("kornia", "torch"),
 }
-"""The libraries that compute results: import name -> the distributions that it may come in, and those below it."""
 
+# Further distributions named unlike their import; looking one up takes a fifth of a second.
 _OTHERS: Mapping[str, tuple[str, ...]] = {"ruamel": ("ruamel.yaml",), "usb": ("pyusb",)}
-"""Further distributions named unlike their import; looking one up takes a fifth of a second."""
 
 _VERSION = re.compile(r"^Version:\s*(\S+)", re.MULTILINE)
 
@@ -73,8 +73,8 @@ def _version(distribution: str) -> str | None:
     return match[1] if match else metadata.version(distribution)
 
 
+# The folders of installed packages, whose source does not change between versions.
 INSTALLED = {"site-packages", "dist-packages"}
-"""The folders of installed packages, whose source does not change between versions."""
 
 HOME = __name__.partition(".")[0]
 

@@ -6,12 +6,12 @@ from pydantic import Field, model_validator
 
 from ..scene.workspace import Section
 
+# The default share of the height that goes where borders are: more steepens level ground between them.
 SPREAD = 0.5
-"""The default share of the height that goes where borders are: more steepens level ground between them."""
+# The default of the most by which a border is accented, m: twice the least step that is felt under a fingertip.
 ACCENT_M = 0.001
-"""The default of the most by which a border is accented, m: twice the least step that is felt under a fingertip."""
+# The default slope of what networks see: a hand gets over the wall around a figure, also on rough materials.
 FIGURE_SLOPE = 0.8
-"""The default slope of what networks see: a hand gets over the wall around a figure, also on rough materials."""
 
 Length = Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)]
 

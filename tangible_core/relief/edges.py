@@ -15,22 +15,22 @@ from .shaping import filter_coefficients
 from .slope_limit import limit_slopes
 
 CELL_M = 3.3e-4
+# The blur's sigma is the geometric mean of this length, m, and this share of the width: wide ones hold more lines.
 BLUR_M, BLUR_SHARE = 0.001, 1 / 80
-"""The blur's sigma is the geometric mean of this length, m, and this share of the width: wide ones hold more lines."""
+# Share of the picture below an edge's contrast; by how much less an edge may have that continues a strong one.
 STRONG, WEAK = 0.94, 1.5
-"""Share of the picture below an edge's contrast; by how much less an edge may have that continues a strong one."""
+# The least contrast of an edge, Lab units over the blur: about what is seen between two shades side by side.
 LEAST = 1.0
-"""The least contrast of an edge, Lab units over the blur: about what is seen between two shades side by side."""
 LONG = 10.0
+# The standard deviation of the profile of a line, m: a line of 1 mm, as tactile graphics have.
 LINE_M = 0.0004
-"""The standard deviation of the profile of a line, m: a line of 1 mm, as tactile graphics have."""
+# The share of the height that lines have; the rest is that of light over dark.
 LINES = 0.6
-"""The share of the height that lines have; the rest is that of light over dark."""
 HALF = 0.5
+# Least value of a map of borders in a line: of .55 to .7, the best for the borders of 30 drawn photographs.
 SURE = 0.55
-"""Least value of a map of borders in a line: of .55 to .7, the best for the borders of 30 drawn photographs."""
+# The radius, m, within which light and dark are made even, and their standard deviation up to which they are.
 CALM_M, CALM = 0.0015, 0.1
-"""The radius, m, within which light and dark are made even, and their standard deviation up to which they are."""
 
 
 def edge_relief(

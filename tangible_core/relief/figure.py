@@ -14,23 +14,22 @@ from ..scene.workspace import FeltSize
 from .choice import ReliefChoice
 from .slope_limit import limit_slopes
 
+# Side of the cells on which heights are made, m: finer than a fingertip resolves.
 CELL_M = 2e-4
-"""Side of the cells on which heights are made, m: finer than a fingertip resolves."""
+# Shares of the height: ground, step to the figure, its rounding, a face; networks know most faces again with them.
 GROUND, STEP, BODY, FACE = 0.1, 0.2, 0.25, 0.2
-"""Shares of the height: ground, step to the figure, its rounding, a face; networks know most faces again with them."""
+# Distance from its rim at which a figure is level, m: a thinner limb stays lower, a broad thing stays flat.
 ROUNDING_M = 0.014
-"""Distance from its rim at which a figure is level, m: a thinner limb stays lower, a broad thing stays flat."""
+# Share of the rectangle around a figure from which it is a level board, such as a page; no other fills over 0.89.
 BOARD = 0.95
-"""Share of the rectangle around a figure from which it is a level board, such as a page; no other fills over 0.89."""
 SOFT_M = 0.0004
+# Distance from an outline within which depth is that of the places behind it: networks for depth have spikes there.
 HALO_M = 0.001
-"""Distance from an outline within which depth is that of the places behind it: networks for depth have spikes there."""
+# Smallest range of nearness, of the picture's, that is stretched to a full share: what is flatter stays flatter.
 SHALLOW = 0.1
-"""Smallest range of nearness, of the picture's, that is stretched to a full share: what is flatter stays flatter."""
 GROOVE_M, GROOVE_SIGMA_M = 0.0004, 0.00025
 """Depth of the groove at a sure border, and the standard deviation of its profile, m."""
-FACE_SCALE = 0.8
-"""Largest ratio of a face's depth to its true depth."""
+FACE_SCALE = 0.8  # largest ratio of a face's depth to its true depth
 RIM_M = 0.003
 FEATURES = 0.01
 """Height of a face's features by brightness, for one standard deviation of it, over the face's width."""

@@ -16,10 +16,9 @@ from .choice import ReliefChoice
 from .slope_limit import limit_slopes
 
 CELL_M = 1e-4
+# The least width of the top of a line, m, as in tactile graphics; a wider stroke keeps its width.
 LINE_M = 0.001
-"""The least width of the top of a line, m, as in tactile graphics; a wider stroke keeps its width."""
-AREAS = 0.6
-"""The share of the height that the highest area has; lines have all of it."""
+AREAS = 0.6  # the share of the height that the highest area has; lines have all of it
 
 
 def line_relief(views: Views, size: FeltSize, choice: ReliefChoice, *, areas: bool) -> tuple[Relief, int]:

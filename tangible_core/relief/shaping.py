@@ -13,21 +13,19 @@ from ..scene.workspace import FeltSize
 from .choice import ReliefChoice
 from .slope_limit import limit_slopes
 
+# The finest cells on which a relief is shaped, m; what is rounded by 0.25 mm has no finer detail.
 CELL_M = 1e-4
-"""The finest cells on which a relief is shaped, m; what is rounded by 0.25 mm has no finer detail."""
 CELL_SHARE = 0.4
+# The standard deviation below which a neighbourhood is noise, m: what a Falcon feels is three times as high.
 GRAIN_HIGH_M = 1e-4
-"""The standard deviation below which a neighbourhood is noise, m: what a Falcon feels is three times as high."""
-ACCENT_REACH_M = 0.0015
-"""The standard deviation of the Gaussian that says how high the surroundings are, m."""
+ACCENT_REACH_M = 0.0015  # the standard deviation of the Gaussian that says how high the surroundings are, m
 
 
 class ReliefScale(NamedTuple):
     """What the frames of a film share, so that a thing that stands still keeps its height."""
 
     spans: ValueRange
-    tones: Float64[np.ndarray, "n"]
-    """Heights, 0 to 1, of evenly spaced values of nearness between these."""
+    tones: Float64[np.ndarray, "n"]  # heights, 0 to 1, of evenly spaced values of nearness between these
 
 
 def relief_scale(
@@ -112,14 +110,12 @@ def _enlarge(values: Float32[np.ndarray, "r c"], shape: tuple[int, int]) -> Floa
         return np.asarray(cv2.resize(values, shape[::-1], interpolation=cv2.INTER_LINEAR))
 
 
-BINS = 256
-"""Places of the map, less one: as many as a lookup table of OpenCV has."""
-BORDER = 0.03
-"""The least difference of nearness of two cells at a border, of its whole range."""
+BINS = 256  # places of the map, less one: as many as a lookup table of OpenCV has
+BORDER = 0.03  # the least difference of nearness of two cells at a border, of its whole range
+# Distance between these two cells: matched borders are one or two cells wide.
 REACH = 2
-"""Distance between these two cells: matched borders are one or two cells wide."""
+# The greatest density of borders, over its mean; what is cut off is shared out to all depths.
 STEEPEST = 4.0
-"""The greatest density of borders, over its mean; what is cut off is shared out to all depths."""
 STRAIGHT = np.linspace(0, 1, BINS + 1)
 
 

@@ -15,8 +15,8 @@ from typing import IO, Any, NamedTuple
 from ..errors import BrokenMethod
 
 MAIN = "__main__"
+# Attributes of `sys.flags` -> options of Python that a child gets as well.
 FLAGS = {"isolated": "-I", "ignore_environment": "-E", "no_user_site": "-s", "no_site": "-S"}
-"""Attributes of `sys.flags` -> options of Python that a child gets as well."""
 
 
 class Place(NamedTuple):

@@ -9,12 +9,12 @@ from typing import Any
 from .threads import limiters
 
 _LOCK = Lock()
+# The open blocks: the greatest number of threads, and True for one without code for special processors.
 _blocks: list[tuple[int, bool]] = []
-"""The open blocks: the greatest number of threads, and True for one without code for special processors."""
+# OpenCV's own setting (is it optimised, number of threads) before the first block.
 _before = (True, 1)
-"""OpenCV's own setting (is it optimised, number of threads) before the first block."""
+# The number of blocks that want OpenCV silent, and its log level before the first of them.
 _silent, _log_level = 0, 0
-"""The number of blocks that want OpenCV silent, and its log level before the first of them."""
 _QUIET = "-8"  # AV_LOG_QUIET
 
 

@@ -10,8 +10,7 @@ from typing import Any, TextIO, TypeGuard, final
 from ..errors import OutputError
 
 OUT, ERR = 1, 2
-_own: list[TextIO] = []
-"""The program's own stream while `protect` is open."""
+_own: list[TextIO] = []  # the program's own stream while `protect` is open
 
 
 def stream() -> TextIO | None:

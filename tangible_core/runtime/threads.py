@@ -8,8 +8,8 @@ from contextvars import ContextVar
 from ..errors import ConfigError, quoted, wrong_argument
 
 VARIABLE = "TANGIBLE_THREADS"
+# Functions (most) -> a block in which a library has at most that many threads; modules register theirs here.
 limiters: list[Callable[[int], AbstractContextManager[None]]] = []
-"""Functions (most) -> a block in which a library has at most that many threads; modules register theirs here."""
 _limit: ContextVar[int | None] = ContextVar("tangible_threads", default=None)
 
 

@@ -15,8 +15,7 @@ if TYPE_CHECKING:
 
 TorchDevice = Literal["auto", "cpu", "cuda"]
 """The device to compute on; `auto` takes a GPU if there is one."""
-_own_threads = 0
-"""Torch's own number of threads, if it was limited when it was imported."""
+_own_threads = 0  # torch's own number of threads, if it was limited when it was imported
 
 
 def need(name: str) -> ModuleType:

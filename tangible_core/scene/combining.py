@@ -20,11 +20,10 @@ from .video.files import still
 
 PICTURES = {"left", "right", "photo", "stereo"}
 PHONE_DEPTH = "phone depth"
-_UNIT_CAMERA = Calibration(focal_px=1.0, baseline_m=1.0)
-"""The cameras whose disparity is one over the depth."""
+_UNIT_CAMERA = Calibration(focal_px=1.0, baseline_m=1.0)  # the cameras whose disparity is one over the depth
 _DEPTH_UNIT_M = 0.001
+# Baseline from which millimetres are more likely than metres, unless the pictures were taken from the air.
 FAR_APART_M = 10.0
-"""Baseline from which millimetres are more likely than metres, unless the pictures were taken from the air."""
 
 
 def combine_parts(

@@ -15,10 +15,8 @@ from .formats.multi_picture import Notify, ignore
 from .formats.pictures import read_map, without
 from .scene_files import SceneFiles, as_numbers
 
-OFFSET = "offset"
-"""The part of a framed scene that is the offset that was taken off its heights."""
-SAMPLED = 4_000_000
-"""Approximate number of pixels of a photo from which percentiles are computed."""
+OFFSET = "offset"  # the part of a framed scene that is the offset that was taken off its heights
+SAMPLED = 4_000_000  # approximate number of pixels of a photo from which percentiles are computed
 
 
 def apply_framing(parts: Mapping[str, np.ndarray], files: SceneFiles, warn: Notify = ignore) -> dict[str, np.ndarray]:

@@ -9,12 +9,11 @@ from ..data import Calibration, DisparityMap, Relief
 from ..errors import GeometryError
 from ..runtime.opencv import plain_opencv
 
+# Treatment of unknown places: `fill` takes the farther neighbour in the row, `cut` goes down to the base plane.
 Holes = Literal["fill", "cut"]
-"""Treatment of unknown places: `fill` takes the farther neighbour in the row, `cut` goes down to the base plane."""
 RANGE_PERCENT = (0.5, 99.5)
 """Percentiles of an estimated map between which the relief spans; values beyond, mostly wrong matches, are clipped."""
-TINY, HUGE = 1e-30, 1e30
-"""Magnitudes beyond which operations on a float32 may leave its range."""
+TINY, HUGE = 1e-30, 1e30  # magnitudes beyond which operations on a float32 may leave its range
 MAX_RELIEF_M = 1
 
 Coordinate = TypeVar("Coordinate", float, np.ndarray)

@@ -9,22 +9,21 @@ from ..data import DisparityMap, Views
 from ..data.pictures import to_grey
 
 MATCHED = 0.15
+# Disparities count as negative throughout if all but one in twenty are below this.
 NEGATIVE_PX = -2.0
-"""Disparities count as negative throughout if all but one in twenty are below this."""
 MAX_ROWS = 512
 MIN_STEP_PX = 3.0
+# Largest difference between a step and the width of its strip, as a share of the step; 2 px are always allowed.
 STEP_SHARE = 0.4
-"""Largest difference between a step and the width of its strip, as a share of the step; 2 px are always allowed."""
+# Factor by which the edge at one end of a strip must exceed the other, plus this share of white.
 CLEARER, MIN_EDGE = 1.5, 0.01
-"""Factor by which the edge at one end of a strip must exceed the other, plus this share of white."""
-MIN_MATCHED_TO_JUDGE = 0.2
-"""Smallest matched share of the picture for a judgement on the order."""
+MIN_MATCHED_TO_JUDGE = 0.2  # smallest matched share of the picture for a judgement on the order
 MIN_STRIPS, MAJORITY = 20, 1.8
 """Fewest strips that decide where disparities are negative throughout, and the ratio of their votes."""
 MIN_STRIPS_AGAINST, MAJORITY_MIXED, MAJORITY_POSITIVE = 50, 2.0, 3.0
 """The same to overrule an order that mixed signs, or positive ones throughout, allow. Real pairs reach 2 to 40."""
+# Share of the picture below which hardly anything was matched: good pairs reach 0.5 to 0.9, noise 0.02 to 0.12.
 MIN_MATCHED = 0.25
-"""Share of the picture below which hardly anything was matched: good pairs reach 0.5 to 0.9, noise 0.02 to 0.12."""
 
 
 class ViewOrder(NamedTuple):
@@ -32,8 +31,7 @@ class ViewOrder(NamedTuple):
 
     exchanged: bool
     message: str
-    open: bool = False
-    """True if the disparities are odd for this order, and the contours do not decide."""
+    open: bool = False  # true if the disparities are odd for this order, and the contours do not decide
 
 
 IN_ORDER = ViewOrder(False, "")

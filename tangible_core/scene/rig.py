@@ -19,10 +19,10 @@ COEFFICIENTS: dict[Distortion, tuple[int, ...]] = {
     "equidistant": (0, 4),
 }
 """Numbers of distortion coefficients that each lens model may have."""
+# Largest deviation from a rotation that is taken for rounding, as of a matrix that is printed with 4 decimals.
 NEARLY = 1e-3
-"""Largest deviation from a rotation that is taken for rounding, as of a matrix that is printed with 4 decimals."""
+# Largest width and height of a rectified picture, as a multiple of the raw one.
 GROWTH = 2.0
-"""Largest width and height of a rectified picture, as a multiple of the raw one."""
 
 
 @named_fields
@@ -83,10 +83,8 @@ class StereoRig(Record):
 class RectifiedViews(NamedTuple):
     """A pair whose rows correspond; its columns, if one camera stands below the other."""
 
-    views: Views
-    """The rectified pair, with the calibration that gives Z = f B / d."""
-    known: Bool[np.ndarray, "h w"]
-    """Mask of the pixels at which the rectified left picture shows the raw one."""
+    views: Views  # the rectified pair, with the calibration that gives Z = f B / d
+    known: Bool[np.ndarray, "h w"]  # mask of the pixels at which the rectified left picture shows the raw one
 
 
 def rectify_views(views: Views, rig: StereoRig) -> RectifiedViews:

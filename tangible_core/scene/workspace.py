@@ -22,6 +22,7 @@ SceneKind = Literal["photograph", "depth", "heights"]
 ReliefKind = SceneKind | Literal["edges", "figure", "lines", "parts"]
 """Source of a relief, or a picture's edges, what networks see in it, a drawing's lines, or parts with heights."""
 
+# Default height h and smoothing s, metres: an edge is no steeper than h / (s sqrt(2 pi)), 1.06 in a photograph.
 SUITS: dict[ReliefKind, tuple[float, float]] = {
     "photograph": (0.004, 0.0015),
     "edges": (0.002, 0.00025),
@@ -31,7 +32,6 @@ SUITS: dict[ReliefKind, tuple[float, float]] = {
     "heights": (0.02, 0.0),
     "parts": (0.006, 0.0005),
 }
-"""Default height h and smoothing s, metres: an edge is no steeper than h / (s sqrt(2 pi)), 1.06 in a photograph."""
 
 
 FLAT: dict[ReliefKind, str] = {

@@ -19,26 +19,22 @@ from ..data.records import Record
 from ..data.ticks import MAX_BEACON_PARTS
 from ..errors import ConfigError, GeometryError, did_you_mean, quoted
 
+# The pull far away from the part, N; and the greatest force of a beacon, with its damping.
 PULL_N, MAX_N = 0.8, 1.0
-"""The pull far away from the part, N; and the greatest force of a beacon, with its damping."""
-SOFT_M = 0.005
-"""Distance at which the pull is 0.7 of PULL_N, and the spring changes into a constant pull."""
+SOFT_M = 0.005  # distance at which the pull is 0.7 of PULL_N, and the spring changes into a constant pull
+# Damping along the surface, wherever the beacon pulls; its force is at most MAX_N - PULL_N.
 DAMPING_N_S_PER_M = 0.5
-"""Damping along the surface, wherever the beacon pulls; its force is at most MAX_N - PULL_N."""
 BRAKED_FROM = 0.125
 """Share of the pull from which on the damping is whole: sampling a spring adds energy where it is steep, next to the
 part, where the pull itself is nearly zero."""
 RAMP_S = 0.5
-STIFFNESS_N_PER_M = PULL_N / SOFT_M
-"""The steepest slope of the pull, next to the part."""
-ROUNDED_M = 0.0015
-"""Standard deviation of the Gaussian that rounds the ridges of the distance."""
+STIFFNESS_N_PER_M = PULL_N / SOFT_M  # the steepest slope of the pull, next to the part
+ROUNDED_M = 0.0015  # standard deviation of the Gaussian that rounds the ridges of the distance
+# Margin of the grid around the picture, in which a hand is pulled back; beyond it the pull is along the edge alone.
 MARGIN_M = 0.03
-"""Margin of the grid around the picture, in which a hand is pulled back; beyond it the pull is along the edge alone."""
+# Greatest number of cells of a beacon's grid, margins included: cells of 0.2 mm on a picture of 160 mm.
 MAX_CELLS = 1 << 20
-"""Greatest number of cells of a beacon's grid, margins included: cells of 0.2 mm on a picture of 160 mm."""
-ALL_BUTTONS = 0x7FFFFFFF
-"""Bits of every button of a device."""
+ALL_BUTTONS = 0x7FFFFFFF  # bits of every button of a device
 
 (ASKED, PART, ROWS, COLUMNS, BUTTONS, SEEN, LET_GO, WHY, HELD, TICKS, WORDS) = range(11)
 """Indices of the words; the last is their number.
@@ -53,10 +49,8 @@ the tick before (-1 before the first), and the number of ticks with a beacon.
 The program writes the place of the grid's first value and the pitches. The loop writes the factor by which the force
 has faded in, and the place and the potential of the tick before.
 """
-BY_BUTTON, BY_SCENE = 1, 2
-"""Values of WHY: a button was pressed; another scene was swapped in."""
-BUTTON, SCENE = "button", "scene"
-"""The same reasons in `BeaconState.why`."""
+BY_BUTTON, BY_SCENE = 1, 2  # values of WHY: a button was pressed; another scene was swapped in
+BUTTON, SCENE = "button", "scene"  # the same reasons in `BeaconState.why`
 REASONS = {0: "", BY_BUTTON: BUTTON, BY_SCENE: SCENE}
 
 

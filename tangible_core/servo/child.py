@@ -22,8 +22,8 @@ from .ticks import loop
 
 TERMINATED = "the process received a signal to end"
 PAUSED = "the program was paused from the keyboard"
+# Time after which a thread passes Python's lock to a waiting one, such as a loop that needs Python.
 SWITCH_S = 1e-4
-"""Time after which a thread passes Python's lock to a waiting one, such as a loop that needs Python."""
 
 
 class _InLanguage(logging.Handler):

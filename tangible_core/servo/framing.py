@@ -15,17 +15,12 @@ from ..runtime.child_process import dumps
 class Start(NamedTuple):
     """The first message to the loop's process: start."""
 
-    ring: str
-    """File of the ring."""
-    scene: str
-    """File of the parcel with the touch."""
+    ring: str  # file of the ring
+    scene: str  # file of the parcel with the touch
     device: HapticDevice
-    settings: np.ndarray
-    """Settings of the guard."""
-    timeout_s: float
-    """The watchdog's time-out."""
-    language: str
-    """The language of what a device asks of the person while it is opened, such as to home it."""
+    settings: np.ndarray  # settings of the guard
+    timeout_s: float  # the watchdog's time-out
+    language: str  # the language of what a device asks of the person while it is opened, such as to home it
 
 
 class Swap(NamedTuple):
@@ -39,15 +34,13 @@ class Swap(NamedTuple):
 class StartReply(NamedTuple):
     """The reply to `Start`: the device is open, everything is compiled, the first tick is due."""
 
-    how: str
-    """The rights that the operating system granted, and the kind of loop."""
+    how: str  # the rights that the operating system granted, and the kind of loop
 
 
 class SwapReply(NamedTuple):
     """The reply to `Swap`: the loop has gone on with the new scene."""
 
-    how: str
-    """The sentence of `StartReply`, for this scene."""
+    how: str  # the sentence of `StartReply`, for this scene
 
 
 class Refusal(NamedTuple):
@@ -59,10 +52,8 @@ class Refusal(NamedTuple):
 class End(NamedTuple):
     """The last message of the loop's process: the loop is over and the device has no force."""
 
-    stopped: str
-    """The reason for an early end, if the process knows it; else empty."""
-    error: Exception | None = None
-    """The error of a plugin that ended the loop."""
+    stopped: str  # the reason for an early end, if the process knows it; else empty
+    error: Exception | None = None  # the error of a plugin that ended the loop
 
 
 def sendable(error: BaseException) -> Exception:

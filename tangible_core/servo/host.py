@@ -22,8 +22,7 @@ from .ring import LAST, PERIOD_NS, STOP, Ring
 from .supervisor import NOT_STARTED, OVER, LoopProcess
 from .watchdog import STOOD_STILL, timeout_s
 
-FOREVER = 2**62
-"""Number of ticks of a loop without end."""
+FOREVER = 2**62  # number of ticks of a loop without end
 
 
 @final

@@ -3,32 +3,30 @@
 The table of docs/safety.md is made of these constants and their docstrings, in this order.
 """
 
+# Stale sample: age of the newest position at which the force is cut to zero; the default of `safety.stale_s`.
 STALE_SAMPLE_S = 0.02
-"""Stale sample: age of the newest position at which the force is cut to zero; the default of `safety.stale_s`."""
 WATCHDOG_S = 0.2
 """Watchdog time-out: time without a tick after which the host kills the loop's process and opens the device once more
 to release it; the default of `safety.watchdog_s`."""
+# Least watchdog time-out: the loop's own watchdog needs `WATCHDOG_POLLS` polls within its share of it.
 MIN_WATCHDOG_S = 0.12
-"""Least watchdog time-out: the loop's own watchdog needs `WATCHDOG_POLLS` polls within its share of it."""
+# Greatest watchdog time-out: the longest time for which a loop that stands still may hold a force.
 MAX_WATCHDOG_S = 0.5
-"""Greatest watchdog time-out: the longest time for which a loop that stands still may hold a force."""
-WATCHDOG_PERIODS = 4
-"""Watchdog time-out of a slow loop in periods, where that is longer."""
+WATCHDOG_PERIODS = 4  # watchdog time-out of a slow loop in periods, where that is longer
 WATCHDOG_OWN_SHARE = 0.7
 """Share of the watchdog time-out after which the loop's own process gives up, which needs no new process to release the
 device. The host's is for a force law that holds Python's lock, a driver that does not return, and a suspended process.
 """
-WATCHDOG_POLL_S = 0.02
-"""Watchdog poll: interval at which both watchdogs look for new ticks."""
+WATCHDOG_POLL_S = 0.02  # watchdog poll: interval at which both watchdogs look for new ticks
+# Least number of polls without a tick: where the watching process stood still itself, the loop may be well.
 WATCHDOG_POLLS = 4
-"""Least number of polls without a tick: where the watching process stood still itself, the loop may be well."""
+# Longest time until the first tick; compiling everything takes a tenth of it.
 FIRST_TICK_S = 300.0
-"""Longest time until the first tick; compiling everything takes a tenth of it."""
 ABANDON_S = 0.5
 """Time after which the loop's process abandons a loop that was stopped and still runs: it is stuck in its force law or
 its device."""
+# Time after which the host kills the process of a loop that was stopped and has not ended.
 KILL_S = 3.0
-"""Time after which the host kills the process of a loop that was stopped and has not ended."""
 POINTER_SILENCE_S = 0.1
 """Silence of a pointer's client after which its position is stale; the default of the device's `stale_after_s`."""
 POINTER_DEVICE_SILENCE_S = 0.5

@@ -16,12 +16,11 @@ from .guard import safety
 from .ring import LONGEST_S, MAX_LATE_S, PEAK_N, WORK_J, Ring
 
 AT = {name: column for column, name in enumerate(TICK_COLUMNS)}
+# The row of a loop before its first tick.
 NOTHING_YET = np.array([np.nan if name == "frame" else 0.0 for name in TICK_COLUMNS])
-"""The row of a loop before its first tick."""
+# Totals of several loops that are the greatest of theirs; the others are sums.
 GREATEST = ("peak_force_n", "most_late_s", "longest_s")
-"""Totals of several loops that are the greatest of theirs; the others are sums."""
-Counts = Int64[np.ndarray, "n"]
-"""A histogram of a ring."""
+Counts = Int64[np.ndarray, "n"]  # a histogram of a ring
 
 
 class LoopTotals(NamedTuple):

@@ -35,8 +35,7 @@ from ..runtime.system import shared_memory
 from ..runtime.system.shared_memory import shared_folder
 from .beacon import HELD, MAX_CELLS, BeaconMemory
 
-MAGIC, LAYOUT = 0x54414E47_49424C45, 5
-"""The first word of every ring, and the version of this layout."""
+MAGIC, LAYOUT = 0x54414E47_49424C45, 5  # the first word of every ring, and the version of this layout
 (
     IS_MAGIC,
     IS_LAYOUT,
@@ -58,14 +57,11 @@ MAGIC, LAYOUT = 0x54414E47_49424C45, 5
 ended; the period; the time of its first tick and of the next one, in nanoseconds of the monotonic clock; number of
 periods without a tick; lead with which the loop wakes before a tick; number of ticks after which it ends; time of the
 last tick; 1 if it may spin before a tick; flags for the next tick; 1 if another scene is ready."""
+# Indices of the sums: greatest force; work on the hand; greatest lateness of a tick; longest period.
 PEAK_N, WORK_J, MAX_LATE_S, LONGEST_S = range(4)
-"""Indices of the sums: greatest force; work on the hand; greatest lateness of a tick; longest period."""
-WIDEST_US = 4096
-"""Number of bins of `late` and `period`, 1 us each."""
-STRONGEST_MN = 32768
-"""Number of bins of `contact`, 1 mN each."""
-ALIGN = 64
-"""Alignment of the sections, bytes: a cache line."""
+WIDEST_US = 4096  # number of bins of `late` and `period`, 1 us each
+STRONGEST_MN = 32768  # number of bins of `contact`, 1 mN each
+ALIGN = 64  # alignment of the sections, bytes: a cache line
 
 
 @final

@@ -7,8 +7,7 @@ from jaxtyping import Int64
 
 from ..data import TickFlag
 
-MOST = 0.5
-"""Share of the ticks in contact above which a limit is reported."""
+MOST = 0.5  # share of the ticks in contact above which a limit is reported
 
 SENTENCES = {
     TickFlag.STIFFNESS_LIMITED: "the force was scaled down, because the force law is stiffer than this device and loop "

@@ -19,8 +19,8 @@ from .recording import INTERRUPTED, STOPPED, Recording
 from .recording.tick_file import About, Writer
 
 log: logging.Logger = logging.getLogger(__name__)
+# Interval at which ticks are taken from the loop's ring, and so the most that a crash can lose of a recording.
 LOOK_EVERY_S = 0.05
-"""Interval at which ticks are taken from the loop's ring, and so the most that a crash can lose of a recording."""
 REPORT_EVERY_S = 0.1
 
 

@@ -24,8 +24,8 @@ from .recording import INTERRUPTED, STOPPED, Recording
 from .recording.replay import proxy_reader
 
 log: logging.Logger = logging.getLogger(__name__)
+# Greatest number of ticks of a recording in memory, at which the loop stops: an hour at 1 kHz, half a gigabyte.
 MAX_TICKS = 3_600_000
-"""Greatest number of ticks of a recording in memory, at which the loop stops: an hour at 1 kHz, half a gigabyte."""
 FIRST_S = 0.001
 
 

@@ -10,19 +10,16 @@ from .recording import Recording
 
 EVERY = 10
 """Interval of the ticks that are examined."""
-MAX_LOOKS = 360_000
-"""Greatest number of ticks that are examined: an hour at 1 kHz."""
+MAX_LOOKS = 360_000  # greatest number of ticks that are examined: an hour at 1 kHz
+# Tracking error above which a hand is off its path; at most this fraction, 1 / 8, of the surface's shorter side.
 OFF_M, OFF_PART = 0.01, 8
-"""Tracking error above which a hand is off its path; at most this fraction, 1 / 8, of the surface's shorter side."""
-LATE_S = 0.25
-"""Greatest lag of a hand behind its path that does not count as an error."""
-REPORTED_SHARE = 0.05
-"""Share of the time below which a problem is not reported."""
+LATE_S = 0.25  # greatest lag of a hand behind its path that does not count as an error
+REPORTED_SHARE = 0.05  # share of the time below which a problem is not reported
 FOOT_M, AROUND_M, RISE_M = 0.003, 0.03, 0.001
 """Radius of the ground on which the hand stands; radius in which an obstacle is searched; its least height."""
 HOLDS_N = 0.5
+# Number of directions in which the ground is searched, and how many must rise around a hand in a pit.
 DIRECTIONS, IN_A_PIT = 16, 14
-"""Number of directions in which the ground is searched, and how many must rise around a hand in a pit."""
 
 Places = Float64[np.ndarray, "n 3"]
 Which = Bool[np.ndarray, " n"]

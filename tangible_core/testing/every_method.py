@@ -13,8 +13,8 @@ from ..plugins.registry import Listing
 from ..runtime.child_process import python
 from .checks import Check, CheckFailure, checks_in, demand
 
+# Packages that take longer to import than a listing of plugins may take.
 HEAVY = ("torch", "kornia", "cv2", "skimage", "numba", "usb", "scipy", "matplotlib")
-"""Packages that take longer to import than a listing of plugins may take."""
 
 
 def name_is_plain(listing: Listing) -> None:

@@ -16,6 +16,7 @@ from .kinds import depth, device, export, film, render, texture, touch
 
 log: logging.Logger = logging.getLogger(__name__)
 
+# The checks of each kind; those of `every_method` come before them.
 FAMILIES: dict[str, tuple[Check, ...]] = {
     "depth": depth.CHECKS,
     "texture": texture.CHECKS,
@@ -23,10 +24,9 @@ FAMILIES: dict[str, tuple[Check, ...]] = {
     "device": device.CHECKS,
     "export": export.CHECKS,
 }
-"""The checks of each kind; those of `every_method` come before them."""
 PASSES = "it passes, though the method declares that it fails ({reason}): take {check} out of its expected_failures"
+# Environment variable that lets a test suite push with real devices; `tangible check device NAME` needs none.
 MOTORS = "TANGIBLE_MOTORS"
-"""Environment variable that lets a test suite push with real devices; `tangible check device NAME` needs none."""
 
 
 class CheckResult(NamedTuple):

@@ -9,8 +9,7 @@ from importlib.resources import files
 UNITS = r"%|[mcu]?m|[mu]?s|N|N/m|N/mm|N s/m|m/s|mm/s|k?Hz|px|[kMG]i?B|bytes|deg|min|h|g|J|dB"
 NUMBER = re.compile(rf"([-\u2212+±]?)([1-9]\d{{0,2}}(?:,\d{{3}})+|\d+)(?:\.(\d+))?(e[-+]?\d+)?(?:| ?(?:{UNITS}))")
 """A number alone, with its unit."""
-NUMBER_MARKS = {"de": (",", "."), "fr": (",", "\u202f")}
-"""The decimal mark, and the mark between thousands."""
+NUMBER_MARKS = {"de": (",", "."), "fr": (",", "\u202f")}  # the decimal mark, and the mark between thousands
 
 
 class Numerals:
@@ -31,8 +30,7 @@ class Numerals:
 
 
 PLACEHOLDER = re.compile(r"\{(\w+)(!s)?\}")
-LONG = 9
-"""The fewest characters of a literal that is not in a text twice by chance."""
+LONG = 9  # the fewest characters of a literal that is not in a text twice by chance
 
 
 class Template:
@@ -101,15 +99,14 @@ ENTRY = re.compile(r'^msgid((?:\s*"(?:[^"\\]|\\.)*")+)\s*msgstr((?:\s*"(?:[^"\\]
 LINE = re.compile(r'"(?:[^"\\]|\\.)*"')
 JOINTS = ("; ", ": ", " -> ", ", ", " (", " <= ", " >= ", " < ", " > ", " ≥ ", " ≤ ", " / ", " x ", " and ", " or ")
 """The marks between texts that stand in one line, those that bind least first."""
+# Fewest letters of a template that are recognised between words which are not known.
 WEAK = 9
-"""Fewest letters of a template that are recognised between words which are not known."""
-MAX_WORDS = 2
-"""Most words of a name, which stays as it is between texts that are known."""
+MAX_WORDS = 2  # most words of a name, which stays as it is between texts that are known
 MAX_CHARACTERS = 3000
+# Most marks of one kind at which a text is taken apart: a longer list stays as it is.
 MAX_JOINTS = 30
-"""Most marks of one kind at which a text is taken apart: a longer list stays as it is."""
+# Texts that are kept with their translations: a page shows the same ones again and again.
 CACHED = 8192
-"""Texts that are kept with their translations: a page shows the same ones again and again."""
 
 
 class Catalogue:
@@ -244,10 +241,8 @@ class Catalogue:
         return joint.replace(word, self._exact.get(word, word))
 
 
-MARKS = " ,;.:(["
-"""The marks with which an addition to a text begins."""
-LAST = 5
-"""Last letters by which additions are found."""
+MARKS = " ,;.:(["  # the marks with which an addition to a text begins
+LAST = 5  # last letters by which additions are found
 
 
 def is_name(text: str) -> bool:

@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
+# The languages of which there is a catalogue; English, the first, is the language of the source and needs none.
 LANGUAGES = ("en", "de", "fr")
-"""The languages of which there is a catalogue; English, the first, is the language of the source and needs none."""
 LOCALES = ("LC_ALL", "LC_MESSAGES", "LANG")
 """The variables of the environment that name the locale of messages, the strongest first."""
 WITHOUT_LANGUAGE = ("", "C", "POSIX")

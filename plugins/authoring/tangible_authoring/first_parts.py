@@ -34,8 +34,8 @@ MAX_PARTS = 12  # a person names these in a few minutes, and fingers tell them a
 SMALLEST_MM = 5.0  # disc that each part must hold: narrower ones are felt as edges
 SEGMENTS_PER_PART = 4 / 3  # requested: segments that are too small go to their neighbours
 THE_FIGURE = "the figure"  # what a network sees stand out from its ground
+# Share of the height for the parts of the ground where a network sees a figure; those of the figure have the rest.
 GROUND = 0.5
-"""Share of the height for the parts of the ground where a network sees a figure; those of the figure have the rest."""
 STEPS_PER_M = 10_000  # a tenth of a millimetre is easy to read, and nobody feels less
 
 

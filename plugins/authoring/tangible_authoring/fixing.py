@@ -83,6 +83,7 @@ def _is_new(change: Change, changes: Mapping[str, Change]) -> bool:
     return before.towards == change.towards != "is" and before.stricter(change).value != before.value
 
 
+# The effect of a greater number on the surface, and of a smaller one, by key; `{times}` is the ratio.
 LOSSES: Mapping[str, tuple[str, str]] = {
     "workspace.smooth_m": ("blurs {times} as much", "blurs less"),
     "workspace.relief_m": ("is {times} as high", "is {times} as high"),
@@ -92,7 +93,6 @@ LOSSES: Mapping[str, tuple[str, str]] = {
     "render.damping_n_s_per_m": ("is damped {times} as much", "is damped {times} as much"),
     "safety.stiffness_margin": ("may be {times} as stiff", "may be only {times} as stiff"),
 }
-"""The effect of a greater number on the surface, and of a smaller one, by key; `{times}` is the ratio."""
 WORDS: Mapping[str, str] = {
     "materials.fit": "has materials that are felt more gently than they are, where the device cannot do better",
     "safety.coupling": "is felt through a spring, which makes hard things softer",

@@ -19,16 +19,14 @@ from .extra import need
 
 J = TypeVar("J")
 R = TypeVar("R")
+# Environment variables that limit the threads of a worker's libraries; set before the worker imports them.
 LIMITS = ("TANGIBLE_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-"""Environment variables that limit the threads of a worker's libraries; set before the worker imports them."""
+# The number of jobs with the scheduler for each worker: enough that none waits, and memory does not grow with jobs.
 AHEAD = 4
-"""The number of jobs with the scheduler for each worker: enough that none waits, and memory does not grow with jobs."""
+# The number of jobs, about, after which a worker is restarted: Dask keeps some 10 kB of each job.
 FRESH_AFTER = 2000
-"""The number of jobs, about, after which a worker is restarted: Dask keeps some 10 kB of each job."""
-CONNECT_S = 10
-"""The time limit for a connection to a scheduler, seconds."""
-LONGEST_S = 3600.0
-"""The default time limit of a job, seconds."""
+CONNECT_S = 10  # the time limit for a connection to a scheduler, seconds
+LONGEST_S = 3600.0  # the default time limit of a job, seconds
 DISTRIBUTION = "tangible-images"
 NOISY_LOGGERS = ("distributed", "tornado", "bokeh")
 
@@ -38,10 +36,8 @@ class Done(Generic[J, R]):
     """A finished job with its result."""
 
     job: J
-    result: R | None
-    """The result; None if its worker died of it."""
-    death: str = ""
-    """The reason of the worker's death; empty if it did not die."""
+    result: R | None  # the result; None if its worker died of it
+    death: str = ""  # the reason of the worker's death; empty if it did not die
 
 
 class Farm:

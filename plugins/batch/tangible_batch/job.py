@@ -29,10 +29,8 @@ log = logging.getLogger(__name__)
 Row = dict[str, Any]
 """The result of a scene as JSON: `id`, `key`, `outcome` (ok or failed), `error`, `seconds`, `figures`, `stages`
 (seconds of each that ran), `notes`, `files`."""
-FULL = "full"
-"""The key of an error that is not a scene's fault: the disk is full."""
-MAX_IN_ERROR = 500
-"""The most characters of an error message in a row."""
+FULL = "full"  # the key of an error that is not a scene's fault: the disk is full
+MAX_IN_ERROR = 500  # the most characters of an error message in a row
 
 
 @dataclass(frozen=True)
@@ -40,19 +38,14 @@ class Job:
     """The description of a scene's job, in plain values."""
 
     id: str
-    key: str
-    """The hash of all that the scene's result depends on, as far as it is known beforehand."""
+    key: str  # the hash of all that the scene's result depends on, as far as it is known beforehand
     text: str
-    path: str
-    """The path of the pipeline file: for relative files in it, and for error messages."""
+    path: str  # the path of the pipeline file: for relative files in it, and for error messages
     sets: tuple[str, ...]
     folder: str
-    threads: int | None = None
-    """The number of threads; None for the limit of the worker's environment."""
-    sheet: bool = False
-    """True to draw a whole report, not a card alone."""
-    cache: str = ""
-    """The folder for results that scenes have in common; empty for none."""
+    threads: int | None = None  # the number of threads; None for the limit of the worker's environment
+    sheet: bool = False  # true to draw a whole report, not a card alone
+    cache: str = ""  # the folder for results that scenes have in common; empty for none
 
 
 def make_scene(job: Job) -> Row:
@@ -182,8 +175,7 @@ def _disk_is_full(error: BaseException | None) -> bool:
 
 CARD = "card.jpg"
 SIDE_PX = 160
-LIGHT = np.array([-1.0, 1.0, 1.2])
-"""The direction to the light: from the upper left, as on maps."""
+LIGHT = np.array([-1.0, 1.0, 1.2])  # the direction to the light: from the upper left, as on maps
 
 
 def write_card(pipeline: Pipeline, folder: Path) -> str:

@@ -18,27 +18,23 @@ from tangible_core.scene.formats import MAPS, file_kind
 
 log: logging.Logger = logging.getLogger(__name__)
 MANIFESTS = (".csv", ".parquet")
+# The keys whose values are files; in a manifest, they are relative to the manifest.
 FILES = tuple(f"scene.{name}" for name, field in SceneFiles.model_fields.items() if "Path" in str(field.annotation))
-"""The keys whose values are files; in a manifest, they are relative to the manifest."""
 SIDES = (("_left", "_right"), ("_l", "_r"), ("-left", "-right"), ("_L", "_R"))
 """The ends of the names of a pair's two pictures."""
 ID = "id"
-STILL = ("picture", "heights")
-"""Kinds of files that are felt as they stand."""
+STILL = ("picture", "heights")  # kinds of files that are felt as they stand
+# Beginning of the names of files that macOS writes beside others on foreign disks; they hold no picture.
 BESIDE_FILE = "._"
-"""Beginning of the names of files that macOS writes beside others on foreign disks; they hold no picture."""
-MAX_NAMED = 5
-"""Number of files left out that are named."""
-MAX_IN_REASON = 200
-"""Number of characters of a library's reason in a message."""
+MAX_NAMED = 5  # number of files left out that are named
+MAX_IN_REASON = 200  # number of characters of a library's reason in a message
 
 
 class SceneRow(NamedTuple):
     """A scene: its name, and its changes to the pipeline file."""
 
     id: str
-    sets: tuple[str, ...]
-    """The changes, `key.key=value` each, as for `--set`."""
+    sets: tuple[str, ...]  # the changes, `key.key=value` each, as for `--set`
 
 
 def find_rows(over: str | Sequence[str], besides: Path | None = None) -> Iterator[SceneRow]:

@@ -26,8 +26,8 @@ from .results import ROWS, last_rows
 
 SCENES = "scenes"
 SAFE = re.compile(r"[^\w.+-]")
+# The most characters of a folder's name: four bytes each, with a digest, are allowed on any file system.
 MAX_IN_NAME = 60
-"""The most characters of a folder's name: four bytes each, with a digest, are allowed on any file system."""
 
 
 @dataclass(frozen=True)
@@ -168,10 +168,8 @@ class Workforce:
 class Tally:
     """The progress of a batch, in scenes."""
 
-    wanted: int = 0
-    """The number of rows that were read so far."""
-    kept: int = 0
-    """The number of rows that are kept from an earlier run, as they would be the same now."""
+    wanted: int = 0  # the number of rows that were read so far
+    kept: int = 0  # the number of rows that are kept from an earlier run, as they would be the same now
     made: int = 0
     failed: int = 0
 

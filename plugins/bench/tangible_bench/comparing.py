@@ -27,10 +27,8 @@ ROWS, PLOT = "results.jsonl", "plot.png"
 class Step(NamedTuple):
     """The start or the end of a measurement."""
 
-    number: int
-    """The number of the measurement, from 0."""
-    of: int
-    """The number of all measurements to do."""
+    number: int  # the number of the measurement, from 0
+    of: int  # the number of all measurements to do
     row: Row
     is_end: bool
 

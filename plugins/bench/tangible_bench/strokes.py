@@ -101,14 +101,12 @@ Heights = Callable[[Float64[np.ndarray, "n"], Float64[np.ndarray, "n"]], Float64
 """(x, y) -> z, metres."""
 PERIOD_S = 0.001
 LOOPS, LOOP_TICKS = 4, 2000
-LIFTED = 0.2
-"""Share of a loop that each lift takes, up or down."""
-CLEAR_M = 0.001
-"""Height of the lifted hand over the highest point."""
+LIFTED = 0.2  # share of a loop that each lift takes, up or down
+CLEAR_M = 0.001  # height of the lifted hand over the highest point
+# Largest distance of the hand from the centre, as a share of the surface's width and length.
 REACH = 0.375
-"""Largest distance of the hand from the centre, as a share of the surface's width and length."""
+# Sigma of the Gaussian that removes details finer than a fingertip from the path over a relief.
 FINGER_M = 0.001
-"""Sigma of the Gaussian that removes details finer than a fingertip from the path over a relief."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,22 +13,20 @@ from tangible_core.plugins import DepthEstimator, note
 from tangible_core.runtime import plain_opencv
 
 log: logging.Logger = logging.getLogger(__name__)
-CELLS = 40_000
-"""Largest number of cells on which regions are found."""
+CELLS = 40_000  # largest number of cells on which regions are found
+# Options of the regions: preference for large ones, standard deviation of the blur, and fewest cells of one.
 SCALE, SIGMA, MIN_CELLS = 400, 0.8, 80
-"""Options of the regions: preference for large ones, standard deviation of the blur, and fewest cells of one."""
 BOTTOM, MIDDLE, OWN_ROW = 1.0, 0.25, 1.0
 """Weights of the lowest row of a pixel's region, of the mean row of its region, and of its own row."""
+# Weights of the figure's map, if there is a network for it: of a pixel, and of the mean of its region.
 FIGURE, FIGURE_REGION = 0.2, 0.2
-"""Weights of the figure's map, if there is a network for it: of a pixel, and of the mean of its region."""
+# Probability that an order is right: 1 / (1 + exp(-STEEPNESS |difference of scores|)), fitted to four scenes.
 STEEPNESS = 2.6
-"""Probability that an order is right: 1 / (1 + exp(-STEEPNESS |difference of scores|)), fitted to four scenes."""
+# Largest share of the lower rim that a figure may cover: of a portrait no ground is seen.
 MAX_RIM = 0.75
-"""Largest share of the lower rim that a figure may cover: of a portrait no ground is seen."""
+# Largest share of the picture of about one colour: more is paper, and no ground.
 MAX_PAPER = 0.5
-"""Largest share of the picture of about one colour: more is paper, and no ground."""
-SHADES = 16
-"""Shades of each colour that count as about one."""
+SHADES = 16  # shades of each colour that count as about one
 
 
 class Cues(DepthEstimator):

@@ -131,8 +131,8 @@ class Onnx(DepthEstimator, Skippable):
         return next_to_model if next_to_model.is_file() else path
 
 
+# Ratio of sides from which a network sees things much larger or smaller than those it was trained with.
 FAR = 1.4
-"""Ratio of sides from which a network sees things much larger or smaller than those it was trained with."""
 
 
 def _note_size(size: tuple[int, int], trained_px: tuple[int, int] | None) -> None:

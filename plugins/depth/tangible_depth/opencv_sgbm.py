@@ -27,8 +27,8 @@ def left_right_confidence(
 
 MODES = {"sgbm": 0, "hh": 1, "3way": 2, "hh4": 3}
 
+# Steps of a pixel in OpenCV's disparities, and the number of which its range must be a multiple.
 STEP = 16
-"""Steps of a pixel in OpenCV's disparities, and the number of which its range must be a multiple."""
 AGREEMENT_PX, DERIVATIVE_CAP = 1, 63
 """Tolerance of OpenCV's own left-right check, in pixels, and the limit of the derivatives that it compares."""
 

@@ -15,8 +15,7 @@ from tangible_core.plugins.failures import sentence
 from tangible_core.plugins.registry import Listing, Registry
 
 WARM_UP = 100
-MAX_CYCLES = 10_000_000
-"""Greatest number of cycles, as all of their times are in memory."""
+MAX_CYCLES = 10_000_000  # greatest number of cycles, as all of their times are in memory
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,7 @@ from tangible_core.errors import DeviceError, did_you_mean, quoted
 from tangible_core.files import read_table
 
 Points = Float64[np.ndarray, "n 3"]
-COLUMNS = ("time_s", "x_m", "y_m", "z_m")
-"""Columns that a CSV file must have; others are ignored."""
+COLUMNS = ("time_s", "x_m", "y_m", "z_m")  # columns that a CSV file must have; others are ignored
 
 
 @final
@@ -28,8 +27,7 @@ class Stroke:
     times_s: tuple[float, ...]
     points_m: tuple[Vector, ...]
     period_s: float
-    lap_ticks: int | None
-    """Ticks until a closed stroke repeats; None for an open one."""
+    lap_ticks: int | None  # ticks until a closed stroke repeats; None for an open one
 
     def at(self, tick: int) -> Vector:
         """Return the position at a tick; negative ticks are before the start."""
@@ -80,17 +78,17 @@ def press(size_m: tuple[float, float], lines: int, low_m: float, high_m: float) 
     return np.array([[0.0, 0.0, high_m], [0.0, 0.0, low_m]])
 
 
+# Paths by name; each takes size_m, lines, low_m and high_m.
 DRAWN: dict[str, Callable[[tuple[float, float], int, float, float], Points]] = {
     "raster": raster,
     "circle": circle,
     "spiral": spiral,
     "press": press,
 }
-"""Paths by name; each takes size_m, lines, low_m and high_m."""
 
 
+# Largest share of a surface's width and length that a path takes, as hands overshoot.
 LARGEST_SHARE = 0.75
-"""Largest share of a surface's width and length that a path takes, as hands overshoot."""
 
 
 def path_size(extent_m: tuple[float, float], most_m: tuple[float, float]) -> tuple[float, float]:

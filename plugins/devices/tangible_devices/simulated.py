@@ -6,6 +6,7 @@ from typing import final
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
 from tangible_core.plugins import Link
 
+# Limits of a Novint Falcon, as in CHAI3D's tables; a resolution of a picometre, as positions are not rounded.
 LIKE_A_FALCON = DeviceSpec(
     max_force_n=8.0,
     max_stiffness_n_per_m=3000.0,
@@ -14,7 +15,6 @@ LIKE_A_FALCON = DeviceSpec(
     resolution_m=1e-12,
     simulated=True,
 )
-"""Limits of a Novint Falcon, as in CHAI3D's tables; a resolution of a picometre, as positions are not rounded."""
 
 
 @final

@@ -27,8 +27,7 @@ class Raised(NamedTuple):
 
     pins: UInt8[np.ndarray, "rows columns"]
     place: "Place"
-    most: Int32[np.ndarray, "r c"]
-    """The part that has most of each pin's place."""
+    most: Int32[np.ndarray, "r c"]  # the part that has most of each pin's place
     labels: dict[int, str]
 
 

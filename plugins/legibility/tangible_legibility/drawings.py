@@ -15,8 +15,8 @@ from .words.places import describe_part, describe_place, join_texts
 
 MAX_LOST = 0.1  # share of the lines' length that may be lost before the picture is
 MAX_CLOSE = 0.3  # share of the lines' length that may lie too near to another line
+# The least shares of the picture of a part that is named when it is lost, and without which the picture is lost.
 NOTICED, IMPORTANT = 0.001, 0.02
-"""The least shares of the picture of a part that is named when it is lost, and without which the picture is lost."""
 
 
 def judge_drawing(

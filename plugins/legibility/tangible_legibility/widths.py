@@ -10,8 +10,8 @@ from tangible_core.runtime import plain_opencv
 from .cells import nearest
 
 ROUND_OFF = 1e-6  # relative
+# Distance, and at least a cell, by which discs reach further, so that stairs of pixels do not count as places.
 SLACK_M = 0.2e-3
-"""Distance, and at least a cell, by which discs reach further, so that stairs of pixels do not count as places."""
 
 
 class Widths(NamedTuple):

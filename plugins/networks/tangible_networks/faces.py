@@ -24,8 +24,8 @@ SCORE, PRESENCE = 0.77, 0.5
 have scores from 0.81 on, and all else up to 0.73."""
 LOWEST_SCORE = 0.5  # from which the finder's boxes are looked at, as published
 MARGIN = 1.5  # side of the square around a face over that of the finder's box
+# Sizes of squares that are looked at: the whole picture, a half and a quarter of it, so that a face may be small.
 LEVELS = 3
-"""Sizes of squares that are looked at: the whole picture, a half and a quarter of it, so that a face may be small."""
 OVERLAP = 0.5  # share of a square that the next one covers too
 SAME = 0.3  # intersection over union of two boxes from which they are of one face
 

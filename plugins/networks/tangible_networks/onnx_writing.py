@@ -8,8 +8,8 @@ import numpy as np
 IR_VERSION, OPERATORS = 8, 13  # of the format and of the set of operators
 FLOAT = 1  # float32
 INTEGER, TEXT, INTEGERS = 2, 3, 7  # the types of attributes
+# A message: numbers of fields with their values, an int, a text, bytes or a message, in the order of writing.
 Fields: TypeAlias = Iterable[tuple[int, Any]]
-"""A message: numbers of fields with their values, an int, a text, bytes or a message, in the order of writing."""
 
 
 def message(fields: Fields) -> bytes:

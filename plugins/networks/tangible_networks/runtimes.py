@@ -42,11 +42,11 @@ which kornia builds the network for."""
 LIBRARIES: Mapping[Runtime, tuple[str, ...]] = {
     "opencv": ("cv2",), "onnxruntime": ("onnxruntime",), "kornia": ("kornia", "torch", "onnxruntime"),
 }  # fmt: skip
+# Oldest version of OpenCV that runs transformers, and pictures of another size than the network's own.
 OLDEST_OPENCV = 5
-"""Oldest version of OpenCV that runs transformers, and pictures of another size than the network's own."""
 RAN = Calibration(1.0, 1.0)  # entry of the cache that marks a file as run: its key says all
+# Lock for one network at a time: none is thread-safe, and each uses all threads itself.
 _lock = Lock()
-"""Lock for one network at a time: none is thread-safe, and each uses all threads itself."""
 
 
 class Network(Protocol):

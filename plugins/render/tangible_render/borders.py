@@ -7,14 +7,13 @@ from jaxtyping import Float32, Float64, Int32, Int64
 
 BLUR = 128
 """The number of averages of neighbours, which make a Gaussian with a standard deviation of 8 points of a line."""
-PASSES = 5
-"""The number of Gaussians in a low-pass, the same as in `surface.dequantise`."""
+PASSES = 5  # the number of Gaussians in a low-pass, the same as in `surface.dequantise`
+# The number of low-passes, each clipped to half a cell around the staircase, the same as in `surface.dequantise`.
 ROUNDS = 8
-"""The number of low-passes, each clipped to half a cell around the staircase, the same as in `surface.dequantise`."""
 
 Points = Float64[np.ndarray, "n 2"]
+# The points, coordinate by coordinate: neighbours are then taken in a third of the time.
 Lanes = Float64[np.ndarray, "2 n"]
-"""The points, coordinate by coordinate: neighbours are then taken in a third of the time."""
 
 
 class Borders(NamedTuple):

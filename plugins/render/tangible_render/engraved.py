@@ -15,8 +15,8 @@ from .borders import border_distance
 from .effects.inner_law import Law, build_law, complete_options
 
 log: logging.Logger = logging.getLogger(__name__)
+# The least cells across a groove: with fewer, a cubic spline changes its section.
 FEWEST_CELLS = 6
-"""The least cells across a groove: with fewer, a cubic spline changes its section."""
 
 
 def _refusal(cls: type[ForceRenderer]) -> str:

@@ -17,8 +17,8 @@ from .effects.material_table import material_table
 from .surface.coefficients import spline_surface, tile_bounds
 from .surface.dequantise import Filter
 
+# The largest ball, m: nothing narrower than twice this, a fingertip's width, would be left in a groove.
 MAX_RADIUS_M = 0.002
-"""The largest ball, m: nothing narrower than twice this, a fingertip's width, would be left in a groove."""
 
 
 class _Law(NamedTuple):

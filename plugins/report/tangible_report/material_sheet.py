@@ -62,14 +62,12 @@ def draw_stroke(axes: Axes, material: Material, stroke: Stroke, conditions: str)
     return f"Force against a stroke, {conditions}: {drag_n.mean():.2f} N on average"
 
 
+# The width of the drawn surface, the same for all materials, so that grains can be compared.
 WIDTH_M = 0.012
-"""The width of the drawn surface, the same for all materials, so that grains can be compared."""
-GRAINS, PIXELS = 96, 480
-"""The grains and pixels along a side of the tile from which the spectrum is computed."""
+GRAINS, PIXELS = 96, 480  # the grains and pixels along a side of the tile from which the spectrum is computed
 SPEED_M_PER_S, NORMAL_N, PERIOD_S, LENGTH_M = 0.05, 1.0, 0.001, 0.02
 """The speed, normal force, sampling period and length of the drawn stroke."""
-FINE = 0.02
-"""The step of the slow stroke from which the friction's spectrum is computed, grains a tick."""
+FINE = 0.02  # the step of the slow stroke from which the friction's spectrum is computed, grains a tick
 
 MATERIAL_PANELS = (
     Panel(draw_surface, {"relief"}, aspect=1.45, right_in=0.85),

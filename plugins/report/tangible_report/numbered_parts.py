@@ -25,12 +25,11 @@ if TYPE_CHECKING:
 SHORTEST_PX, LONGEST_PX = 1200, 2400
 """The limits of the drawn picture's longer side: small pictures grow and large ones shrink, so that numbers look alike
 on a screen."""
+# The height of a number with and without enough room in its part, as a share of the longer side.
 LARGE, SMALL = 1 / 32, 1 / 52
-"""The height of a number with and without enough room in its part, as a share of the longer side."""
+# The PNG's text chunks: the digest of the drawn pixels, and the numbers of the parts, which later show changes.
 DRAWN, NUMBERS = "tangible parts", "tangible numbers"
-"""The PNG's text chunks: the digest of the drawn pixels, and the numbers of the parts, which later show changes."""
-COARSE = 256
-"""The longer side of the grid on which the numbers are saved."""
+COARSE = 256  # the longer side of the grid on which the numbers are saved
 INK, HALO = (0, 0, 0), (255, 255, 255)
 
 
@@ -60,17 +59,14 @@ def numbered_parts(picture: np.ndarray, parts: PartMap, names: Sequence[str] = (
 class Before(NamedTuple):
     """The former state of a part, when the picture was drawn."""
 
-    number: int | None
-    """The former number; None for a new part."""
-    cut_from: int
-    """The former part that most of it was in."""
+    number: int | None  # the former number; None for a new part
+    cut_from: int  # the former part that most of it was in
 
 
 class Drawn(NamedTuple):
     """The parts of a picture of numbered parts, when it was drawn."""
 
-    numbers: Int32[np.ndarray, "r c"]
-    """The number of the part at each place of a coarse grid."""
+    numbers: Int32[np.ndarray, "r c"]  # the number of the part at each place of a coarse grid
 
     def before(self, parts: PartMap) -> tuple[Before, ...] | None:
         """Return the former state of each part, of which each covers most of the other; None from another picture."""

@@ -11,17 +11,15 @@ from matplotlib.colors import Colormap, ListedColormap, to_rgb
 
 INK = "#222222"
 PALE = "#e9e9e9"
-STYLE = Path(__file__).with_name("report.mplstyle")
-"""The style sheet of every panel, for `matplotlib.style`."""
+STYLE = Path(__file__).with_name("report.mplstyle")  # the style sheet of every panel, for `matplotlib.style`
 
 OKABE_ITO = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999")
 """Eight colours that colour-blind readers tell apart, from Okabe & Ito, Color Universal Design (2008), reordered."""
+# The colours of disparities and heights: perceptually uniform, monotonous in lightness.
 VIRIDIS: Colormap = colormaps["viridis"]
-"""The colours of disparities and heights: perceptually uniform, monotonous in lightness."""
-ERRORS: Colormap = colormaps["magma_r"]
-"""The colours of errors: pale is right, dark is wrong."""
+ERRORS: Colormap = colormaps["magma_r"]  # the colours of errors: pale is right, dark is wrong
+# The colours of forces: dark enough at the pale end for a white ground.
 FORCES = ListedColormap(colormaps["magma_r"](np.linspace(0.3, 0.95, 256)), "forces")
-"""The colours of forces: dark enough at the pale end for a white ground."""
 
 
 def colours(count: int) -> Float64[np.ndarray, "n 3"]:

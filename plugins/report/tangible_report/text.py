@@ -19,8 +19,7 @@ from .description import PartFacts, describe_at_length, facts, page_of
 
 log = logging.getLogger(__name__)
 
-RUNOVER_CELLS = 2
-"""The indentation of the further lines of a paragraph in braille, cells."""
+RUNOVER_CELLS = 2  # the indentation of the further lines of a paragraph in braille, cells
 
 
 @final

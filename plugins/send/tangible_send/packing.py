@@ -25,12 +25,11 @@ from tangible_report.description import describe, facts
 from tangible_report.description.at_length import tell
 from tangible_web.materials import distinct_materials, surface_facts
 
+# The most cells: software draws them in a fraction of a second, and the page is one for old phones too.
 MAX_CELLS = 400_000
-"""The most cells: software draws them in a fraction of a second, and the page is one for old phones too."""
+# Steps of heights: half of one is what a height is off by. Fingers feel no height below 10 um on a smooth surface.
 STEPS_M = (1e-6, 2e-6, 4e-6)
-"""Steps of heights: half of one is what a height is off by. Fingers feel no height below 10 um on a smooth surface."""
-COARSER = 1.25
-"""The factor from one size of cells to the next."""
+COARSER = 1.25  # the factor from one size of cells to the next
 MAX_COARSER = 12
 
 
@@ -38,8 +37,7 @@ MAX_COARSER = 12
 class SentSurface:
     """A surface in whole steps of height."""
 
-    numbers: UInt16[np.ndarray, "h4 w4"]
-    """Coefficients of the spline: `low_m` plus this number of steps."""
+    numbers: UInt16[np.ndarray, "h4 w4"]  # coefficients of the spline: `low_m` plus this number of steps
     low_m: float
     step_m: float
     labels: Int32[np.ndarray, "h w"] | None
@@ -94,14 +92,13 @@ def _quantise(surface: HapticSurface, step_m: float) -> SentSurface:
     return SentSurface(numbers, low_m, step_m, surface.labels, surface.extent_m)
 
 
+# The longest side of the picture: more than a phone shows, and opened a quarter sooner in software than 2048.
 MAX_SIDE_PX = 1600
-"""The longest side of the picture: more than a phone shows, and opened a quarter sooner in software than 2048."""
+# The room that is left for a picture at least, bytes: the surface is made coarser for it.
 MIN_PHOTO = 200_000
-"""The room that is left for a picture at least, bytes: the surface is made coarser for it."""
 QUALITIES = (88, 80, 70, 60)
 SMALLER = 0.8
-PLAIN = Material("", 800.0, 0.0, 0.0, 0.0)
-"""Values that `proxy` takes for a surface without materials."""
+PLAIN = Material("", 800.0, 0.0, 0.0, 0.0)  # values that `proxy` takes for a surface without materials
 
 
 def pack(spline: SentSurface, work: Work) -> dict[str, Any]:

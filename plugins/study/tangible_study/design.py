@@ -132,8 +132,7 @@ class Study(Quantities):
         return next(comparison for comparison in self.comparisons if comparison.name == name)
 
 
-SAME, DIFFERENT = "same", "different"
-"""Responses to two intervals that may be equal."""
+SAME, DIFFERENT = "same", "different"  # responses to two intervals that may be equal
 
 
 class Stimulus(NamedTuple):

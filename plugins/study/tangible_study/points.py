@@ -8,6 +8,7 @@ from tangible_core.plugins.registry import Listing
 QUESTIONS = ("rougher", "higher", "same", "different", "equal", "name", "rating")
 """The kinds of question, each a file in `questions/kinds/`."""
 GROUP = "tangible.procedure"
+# Our own procedures below `procedures/`, which no other package can replace.
 OURS = {
     "constant": "pairs:Constant",
     "2afc": "pairs:TwoAfc",
@@ -18,7 +19,6 @@ OURS = {
     "naming": "single:Naming",
     "rating": "single:Rating",
 }
-"""Our own procedures below `procedures/`, which no other package can replace."""
 
 
 def points() -> dict[str, EntryPoint]:

@@ -22,8 +22,7 @@ class Recipe(NamedTuple):
     """The pipeline of a stimulus: its file, and the changes to it."""
 
     pipeline: Path
-    sets: tuple[str, ...]
-    """Changes, `key.key=value` each."""
+    sets: tuple[str, ...]  # changes, `key.key=value` each
 
 
 @dataclass(frozen=True)
@@ -33,8 +32,7 @@ class StudyFile:
     path: Path
     text: str
     study: Study
-    procedures: Mapping[str, Procedure]
-    """Procedure of each comparison, by its name."""
+    procedures: Mapping[str, Procedure]  # procedure of each comparison, by its name
     source: Source = field(repr=False)
 
     @property

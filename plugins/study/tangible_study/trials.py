@@ -8,8 +8,7 @@ from typing import Any, Self, final, get_args
 from tangible_core.errors import ResultsError
 from tangible_core.files import LineFile, read_table
 
-MISSING = "n/a"
-"""The text of a missing value, as BIDS has it."""
+MISSING = "n/a"  # the text of a missing value, as BIDS has it
 
 
 @dataclass(frozen=True)

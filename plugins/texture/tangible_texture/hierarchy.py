@@ -15,8 +15,8 @@ from .signal.skipping import Dividing, one_segment
 
 log: logging.Logger = logging.getLogger(__name__)
 
+# The level of a border that chance makes: such regions are joined, however many segments are requested.
 MIN_LEVEL = 0.12
-"""The level of a border that chance makes: such regions are joined, however many segments are requested."""
 
 
 class Hierarchy(Dividing, Hierarchical):

@@ -12,16 +12,16 @@ from tangible_core.plugins import note
 
 from .signal.skipping import Dividing, one_segment
 
+# The number of grey levels between the darkest and the brightest: that of 8 bits.
 BINS = 256
-"""The number of grey levels between the darkest and the brightest: that of 8 bits."""
+# The largest number of segments under `auto`: more than the modes of any histogram seen.
 MAX_LEVELS = 16
-"""The largest number of segments under `auto`: more than the modes of any histogram seen."""
+# The share of the pixels, the flattest ones, that make up the histogram: edges have levels of their own.
 FLAT_SHARE = 0.8
-"""The share of the pixels, the flattest ones, that make up the histogram: edges have levels of their own."""
 NOTHING = 1e-6
 """The largest difference of grey that rounding can produce in a picture of one colour, when white is 1."""
+# The largest ratio of Marriott's criterion at which levels count as several classes.
 CLEAR = 0.75
-"""The largest ratio of Marriott's criterion at which levels count as several classes."""
 
 log: logging.Logger = logging.getLogger(__name__)
 GreyLevels = Float64[np.ndarray, "n"]

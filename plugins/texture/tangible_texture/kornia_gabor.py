@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
     from .energies.gabor_bank import Gabor
 
+# The number of extra clusters to try while some of the requested ones turn out to be seams.
 MORE = 3
-"""The number of extra clusters to try while some of the requested ones turn out to be seams."""
 
 
 class KorniaGabor(Dividing):

@@ -52,8 +52,8 @@ def standardise_roots(planes: Tensor) -> Tensor:
     return rows / torch.where(deviation > 0, deviation, 1.0)
 
 
+# The label of each row, int64, the centres (k, d), and the cost, as `lloyd.Clusters`.
 Clustering = tuple[Tensor, Tensor, float]
-"""The label of each row, int64, the centres (k, d), and the cost, as `lloyd.Clusters`."""
 
 
 def kmeans(rows: Tensor, clusters: int, restarts: int = 1, seed: int = 0, rounds: int = 1000) -> Clustering:

@@ -12,8 +12,8 @@ from tangible_core.runtime import TorchDevice, need, pick_device
 
 from .signal.skipping import Dividing, one_segment
 
+# The share of the slopes taken as noise; the largest of these is that quantile of a Rayleigh distribution.
 QUIET = 0.25
-"""The share of the slopes taken as noise; the largest of these is that quantile of a Rayleigh distribution."""
 SOBEL = 8
 """The factor between the sums of kornia's Canny, which leaves Sobel's unnormalised, and slopes per pixel."""
 

@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable
 from typing import final
 
+# Packages whose information pages get too; from others, warnings and errors.
 OWN = (
     "tangible_core",
     "tangible_depth",
@@ -14,16 +15,15 @@ OWN = (
     "tangible_ui",
     "tangible_web",
 )
-"""Packages whose information pages get too; from others, warnings and errors."""
+# The logger of stages, left out because pages get events of stages.
 KNOWN = "tangible_core.plugins.observers.log"
-"""The logger of stages, left out because pages get events of stages."""
+# The logger of the time that compiling still takes, which passes nothing to its parents.
 COMPILING = "tangible_core.compiled.compiling.progress"
-"""The logger of the time that compiling still takes, which passes nothing to its parents."""
 MAX_A_SECOND = 50
 
 
+# A function that sends a line to all pages without waiting: `level` (detail, warning, error), `logger` and `text`.
 Tell = Callable[..., None]
-"""A function that sends a line to all pages without waiting: `level` (detail, warning, error), `logger` and `text`."""
 
 
 @final

@@ -16,13 +16,12 @@ from tangible_core.errors import ConfigError
 from tangible_core.runtime import stream
 
 HOST = "127.0.0.1"
-HTTP_PORT = 80
-"""The port that an address may leave out."""
+HTTP_PORT = 80  # the port that an address may leave out
+# Complaint of everything that needs the built page.
 NOT_BUILT = (
     "the page was not built when this was installed, as npm could not be reached; install again where it can (`pip "
     "install --force-reinstall --no-deps .`), or build it: `npm ci && npm run build` in plugins/web"
 )
-"""Complaint of everything that needs the built page."""
 
 
 @dataclass(frozen=True)

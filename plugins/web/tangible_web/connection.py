@@ -11,14 +11,12 @@ from starlette.websockets import WebSocket
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
-MAX_STRANGERS = 256
-"""Maximum number of connections that have not shown the key."""
-HEAD_S = 10.0
-"""Time within which the head of a request must be complete, s."""
+MAX_STRANGERS = 256  # maximum number of connections that have not shown the key
+HEAD_S = 10.0  # time within which the head of a request must be complete, s
+# Bytes of one read: of a flood of small messages, what is handled before anything else has its turn.
 AT_ONCE_BYTES = 8192
-"""Bytes of one read: of a flood of small messages, what is handled before anything else has its turn."""
+# Interval of pings, s; a tab whose browser does not answer for twice as long is gone.
 PING_S = 5.0
-"""Interval of pings, s; a tab whose browser does not answer for twice as long is gone."""
 
 
 @final

@@ -13,14 +13,13 @@ from tangible_devices.pointer import PointerClient
 from .framing import BUTTON_BITS, TAGS
 
 FARTHEST_M = 1.0
-KEEP_S = 0.01
-"""Interval at which a program polls `Hand.keep`, s."""
+KEEP_S = 0.01  # interval at which a program polls `Hand.keep`, s
+# Longest wait for the pointer's channel, s; a running loop has opened its device long before.
 OPENING_S = 1.0
-"""Longest wait for the pointer's channel, s; a running loop has opened its device long before."""
 HIGH_M: Vector = (0.0, 0.0, FARTHEST_M)
 """Position of a released hand in the picture's frame, above every surface."""
+# Minimum height of a released pointer in the picture, m; a lower one is held up from here.
 CLEAR_M = 0.5
-"""Minimum height of a released pointer in the picture, m; a lower one is held up from here."""
 
 
 class HandPosition(NamedTuple):

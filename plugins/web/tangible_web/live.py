@@ -17,21 +17,20 @@ from .connection import cut_off
 from .hand import Hand
 from .parsing import BadRequest, ParsedRequest, Request, parse
 
+# Maximum number of states that a tab has not drawn yet; more would only queue up in the browser.
 IN_FLIGHT = 2
-"""Maximum number of states that a tab has not drawn yet; more would only queue up in the browser."""
 PAUSE_S = 0.01
 """Pause from a drawn state to the next one, s. A state sent at once would wait in a busy browser until the frame after
 next, and show where the hand was; a screen draws every 17 ms."""
-SPACING_S = 0.012
-"""Minimum time between two states, s; a screen draws sixty a second."""
+SPACING_S = 0.012  # minimum time between two states, s; a screen draws sixty a second
+# Minimum time between two states without force, s: nothing moves, and loop and surface need the processor to start.
 IDLE_SPACING_S = 0.1
-"""Minimum time between two states without force, s: nothing moves, and loop and surface need the processor to start."""
+# Longest time without an event or a beat, s: a page that hears nothing for three times as long says so.
 BEAT_S = 1.0
-"""Longest time without an event or a beat, s: a page that hears nothing for three times as long says so."""
+# Limits of unread events, in number and characters; a tab that reads none is cut off.
 MAX_WAITING, MAX_WAITING_CHARACTERS = 2000, 16_000_000
-"""Limits of unread events, in number and characters; a tab that reads none is cut off."""
+# Maximum number of requests that a tab may wait for at once; `stop` is always taken.
 MAX_ASKS = 32
-"""Maximum number of requests that a tab may wait for at once; `stop` is always taken."""
 
 
 class Program(Protocol):

@@ -10,10 +10,9 @@ from pydantic import BaseModel, ConfigDict, ValidationError, create_model
 
 from tangible_core.errors import ConfigError, TangibleError, quoted, shown
 
+# A request's function: called with the program's state, the tab, and the tab's arguments by name.
 Request = Callable[..., Awaitable[Any]]
-"""A request's function: called with the program's state, the tab, and the tab's arguments by name."""
-FindRequest = Callable[[str], Request | None]
-"""A finder of requests by name; None if there is none."""
+FindRequest = Callable[[str], Request | None]  # a finder of requests by name; None if there is none
 
 
 class BadRequest(TangibleError):

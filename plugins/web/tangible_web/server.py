@@ -19,10 +19,9 @@ from .address import Address
 from .connection import PING_S, Connection, Exchange, Strangers
 from .hand import KEEP_S, Hand
 
+# Cache rule: a browser may keep the file, and asks each time if it is still current.
 ASK_AGAIN = "no-cache"
-"""Cache rule: a browser may keep the file, and asks each time if it is still current."""
-MAX_MESSAGE_BYTES = 2**20
-"""Size limit of a message, bytes; pipeline files are smaller."""
+MAX_MESSAGE_BYTES = 2**20  # size limit of a message, bytes; pipeline files are smaller
 T = TypeVar("T")
 
 

@@ -261,8 +261,8 @@ def _force_lines(figures: Mapping[Any, Any]) -> list[str]:
     ]
 
 
+# The figures that tell the scale, and what went differently from what was requested: printed without --verbose too.
 SENTENCES = ("heights", "guard", "hand")
-"""The figures that tell the scale, and what went differently from what was requested: printed without --verbose too."""
 
 LINES: dict[str, tuple[str, Callable[[Mapping[Any, Any]], list[str]]]] = {
     "disparity": ("error against the truth", _error_lines),

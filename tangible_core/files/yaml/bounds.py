@@ -11,17 +11,15 @@ from ruamel.yaml.scanner import RoundTripScanner
 
 from ...errors import quoted
 
-MAX_DEPTH = 20
-"""The most levels of nested blocks; files for this program need six."""
+MAX_DEPTH = 20  # the most levels of nested blocks; files for this program need six
 TOO_DEEP = f"more than {MAX_DEPTH} blocks are nested"
+# The most keys, values and blocks with aliases expanded: enough for a rule for each of 4,096 segments.
 MAX_NODES = 40_000
-"""The most keys, values and blocks with aliases expanded: enough for a rule for each of 4,096 segments."""
-MAX_DIGITS = 64
-"""The most characters of a number, with its sign, point and exponent."""
+MAX_DIGITS = 64  # the most characters of a number, with its sign, point and exponent
 
 _TAG = "tag:yaml.org,2002:"
+# Tags of which the parser makes plain values; of others, also that of a text, it makes objects of its own.
 _PLAIN = (None, *(_TAG + kind for kind in ("int", "float", "bool", "null")))
-"""Tags of which the parser makes plain values; of others, also that of a text, it makes objects of its own."""
 _NUMBERS = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
 
 

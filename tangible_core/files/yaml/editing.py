@@ -16,8 +16,7 @@ from ..paths import CONTROLS
 from .bounds import MAX_DEPTH
 from .source import Location, Shorthand, expand_shorthand, find_key, no_shorthand, parse_value, plain_tree
 
-Node = Any
-"""A key or a value with its position in the text."""
+Node = Any  # a key or a value with its position in the text
 
 
 class _Remove(Enum):
@@ -27,8 +26,8 @@ class _Remove(Enum):
 REMOVE: Final = _Remove.REMOVE
 """The value that removes a key."""
 
+# Keys from the top of the file, as `render.stiffness_n_per_m` or a tuple, to values of JSON or `REMOVE`.
 Changes = Mapping[str | Location, Any]
-"""Keys from the top of the file, as `render.stiffness_n_per_m` or a tuple, to values of JSON or `REMOVE`."""
 
 
 def change_text(text: str, path: Path, changes: Changes, shorthand: Shorthand = no_shorthand) -> str:

@@ -20,6 +20,7 @@ from ..reading import MAX_TEXT_BYTES, in_words, read_bytes
 from .bounds import MAX_DEPTH, MAX_DIGITS, BoundedConstructor, BoundedScanner, check_events
 
 CONFLICT = re.compile(r"(<{7}|>{7}|={7}|\|{7})( |$)")
+# Cures by a part of what the parser says; the first one counts.
 CURES = {
     "\\t": "{text}; indent with spaces, not tabs",
     "mapping values are not allowed": "{text}; a text with a colon and a space stands in quotes, keys in one column",
@@ -30,11 +31,9 @@ CURES = {
     "duplicate key": "{text}; remove one of them",
     "expected <block end>": "this line is indented unlike those above it; begin all lines of a block in one column",
 }
-"""Cures by a part of what the parser says; the first one counts."""
-Tree = dict[Any, Any]
-"""The parser's own mapping: a dict with the line and column of its parts."""
+Tree = dict[Any, Any]  # the parser's own mapping: a dict with the line and column of its parts
+# The option that a bare word stands for where a block is expected, by location; "" for none.
 Shorthand = Callable[[Location], str]
-"""The option that a bare word stands for where a block is expected, by location; "" for none."""
 
 
 def no_shorthand(place: Location) -> str:

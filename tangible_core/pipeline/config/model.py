@@ -40,10 +40,9 @@ from .keys.key import find_keys
 from .material_choice import MaterialChoice, check_material_names
 from .methods import NamedMethod
 
-Wrong = tuple[Location, str]
-"""A complaint: the keys that it is about, and a sentence."""
+Wrong = tuple[Location, str]  # a complaint: the keys that it is about, and a sentence
+# The most characters of a title: what a person reads at a glance, and what fits a line of braille or two.
 MAX_TITLE = 200
-"""The most characters of a title: what a person reads at a glance, and what fits a line of braille or two."""
 LANGUAGE_TAG = "^[A-Za-z]{2,8}(-[A-Za-z0-9]{1,8})*$"
 
 
@@ -59,8 +58,8 @@ def _check_tag(language: str) -> str:
     return language
 
 
+# Width of a line that no value reaches: a text that ruamel folds behind an escaped line break gets a space more.
 UNFOLDED = 1 << 20
-"""Width of a line that no value reaches: a text that ruamel folds behind an escaped line break gets a space more."""
 
 
 @final

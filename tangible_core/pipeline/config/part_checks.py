@@ -13,8 +13,8 @@ from ...scene.scene_files import SceneFiles
 from ...scene.workspace import MAX_WIDTH_M, MIN_WIDTH_M, kind_of
 from .model import PipelineConfig, Wrong
 
+# The tolerance of a sum of lengths, m: far less than can be felt, far more than a rounding error.
 ROUNDING_M = 1e-9
-"""The tolerance of a sum of lengths, m: far less than can be felt, far more than a rounding error."""
 
 
 def wrong_of_parts(config: PipelineConfig) -> Iterator[Wrong]:

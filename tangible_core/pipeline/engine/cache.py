@@ -26,16 +26,15 @@ from ...runtime.system.files import BINARY
 log: logging.Logger = logging.getLogger(__name__)
 
 DEFAULT_BYTES = 2 << 30
+# The share of the limit that is left after pruning: the next results then fit without counting the files.
 LEFT = 7 / 8
-"""The share of the limit that is left after pruning: the next results then fit without counting the files."""
 TALLY = ".tally"
+# The numbers of a tally that are read; a longer one is unknown, and counting the folder again makes it short.
 MAX_NUMBERS = 1 << 17
-"""The numbers of a tally that are read; a longer one is unknown, and counting the folder again makes it short."""
 NOTES = "notes"
-_OURS = re.compile(r"[0-9a-f]{32,64}\.npz")
-"""The names of entries: the folder may hold other files too."""
+_OURS = re.compile(r"[0-9a-f]{32,64}\.npz")  # the names of entries: the folder may hold other files too
+# Folders of which the log has a warning: one for each folder, not for each result.
 _unwritable: set[Path] = set()
-"""Folders of which the log has a warning: one for each folder, not for each result."""
 KEPT = frozenset(name for name in dir(data) if is_dataclass(getattr(data, name)))
 """The names of the classes that an entry may be made of."""
 

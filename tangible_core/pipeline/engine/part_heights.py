@@ -14,10 +14,9 @@ from .working_grid import transparent_parts
 
 log: logging.Logger = logging.getLogger(__name__)
 
+# The decimals of a computed height in metres: a hundredth of a millimetre cannot be felt, and is easy to read.
 FINEST_DIGITS = 5
-"""The decimals of a computed height in metres: a hundredth of a millimetre cannot be felt, and is easy to read."""
-MAX_NAMED = 8
-"""The most parts that a note names."""
+MAX_NAMED = 8  # the most parts that a note names
 
 
 def choose_heights(

@@ -18,12 +18,11 @@ from ..config.part_checks import ROUNDING_M, all_part_names, part_numbers
 
 log: logging.Logger = logging.getLogger(__name__)
 
+# The most parts, as many as a label picture may have labels: more are the grain of a photograph.
 MAX_PARTS = 4096
-"""The most parts, as many as a label picture may have labels: more are the grain of a photograph."""
+# The least size of a part, in pixels and as a share of the picture: smaller ones are slips of the brush.
 FEW_PIXELS, FEW_SHARE = 9, 1e-5
-"""The least size of a part, in pixels and as a share of the picture: smaller ones are slips of the brush."""
-MAX_SLIPS = 3
-"""The most small parts whose places a warning has."""
+MAX_SLIPS = 3  # the most small parts whose places a warning has
 
 
 @lru_cache(maxsize=1)

@@ -86,8 +86,8 @@ def with_notes(notes: Iterable[Note], why: str) -> str:
     return "; ".join([why, *(note.text for note in notes)])
 
 
+# The value of a product that is not made yet; None is the value of a skipped one.
 NOT_MADE: Final = object()
-"""The value of a product that is not made yet; None is the value of a skipped one."""
 
 
 @dataclass

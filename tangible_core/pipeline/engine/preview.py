@@ -26,16 +26,14 @@ from .stages.touch import fit_to_device
 from .working_grid import WorkingGrid, parts_on_grid, relief_of_layers
 
 S = TypeVar("S", bound=BaseModel)
-MAX_CELLS = 500_000
-"""Maximum number of cells of a surface that changes under the hand."""
+MAX_CELLS = 500_000  # maximum number of cells of a surface that changes under the hand
 
 
 class TriedSurface(NamedTuple):
     """What is made of heights that are tried."""
 
     surface: HapticSurface
-    felt: HapticSurface
-    """The surface within the limits of the device."""
+    felt: HapticSurface  # the surface within the limits of the device
     touch: Touch
 
 

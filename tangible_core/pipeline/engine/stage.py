@@ -23,8 +23,7 @@ from . import working_grid
 from .cache import Cache
 from .working_grid import WorkingGrid
 
-Inputs = Mapping[str, Any]
-"""Products by name; None for a product that was skipped."""
+Inputs = Mapping[str, Any]  # products by name; None for a product that was skipped
 
 
 class StageEvent(NamedTuple):

@@ -13,12 +13,11 @@ from ..config.model import PipelineConfig
 from .engine import Engine
 
 MAX_PX = 768
+# Segments of the made-up map: enough for every material that a rule may choose.
 STRIPES = 6
-"""Segments of the made-up map: enough for every material that a rule may choose."""
-FELT = "felt"
-"""The name of the simulated session, the last step of the warm-up."""
+FELT = "felt"  # the name of the simulated session, the last step of the warm-up
+# The length of the simulated session, s: some ticks are enough to compile its loop.
 SECONDS = 0.02
-"""The length of the simulated session, s: some ticks are enough to compile its loop."""
 
 
 def warm_up(engine: Engine, want: str) -> BackgroundCompiler:

@@ -13,8 +13,8 @@ from ...files.writing import write_text
 from ...runtime.system.files import folder_lock
 from .run_folder import make_writable
 
+# The list of exported files; the name of no exporter's file begins with a dot.
 LISTED = ".exports.json"
-"""The list of exported files; the name of no exporter's file begins with a dot."""
 
 
 @dataclass(frozen=True)

@@ -30,8 +30,7 @@ class Export:
     """The files of all exporters and their folder, shown as a table in a terminal and in a notebook."""
 
     folder: Path
-    exports: tuple[Exported, ...]
-    """The exporters in the order of the request."""
+    exports: tuple[Exported, ...]  # the exporters in the order of the request
 
     @property
     def files(self) -> dict[str, tuple[Path, ...]]:

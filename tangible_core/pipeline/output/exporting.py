@@ -52,10 +52,10 @@ from .run_folder import default_name, relative_source
 log: logging.Logger = logging.getLogger(__name__)
 
 PREFIX = "export: "
+# The most bytes of a file's name before its ending: systems take 255, and endings are added.
 MAX_STEM_BYTES = 120
-"""The most bytes of a file's name before its ending: systems take 255, and endings are added."""
+# The errors of a disk, for which the exporter is not to blame.
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
-"""The errors of a disk, for which the exporter is not to blame."""
 
 
 def chosen_exporters(

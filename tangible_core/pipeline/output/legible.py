@@ -20,10 +20,9 @@ from ..engine.hooked import judge_function
 from ..engine.working_grid import WorkingGrid
 
 WIDTH = "workspace.width_m"
-ROUNDING = 1e-9
-"""A share above the rounding error of a product of floating-point numbers."""
+ROUNDING = 1e-9  # a share above the rounding error of a product of floating-point numbers
+# The most kinds of fills on a page: neighbours differ, and others may be alike.
 MAX_FILLS = 5
-"""The most kinds of fills on a page: neighbours differ, and others may be alike."""
 JUDGED: Mapping[Medium, tuple[str, ...]] = {"print": ("relief",), "force": ("relief", "materials")}
 """Products that the rules of a medium judge next to the parts."""
 

@@ -21,8 +21,7 @@ MANIFEST = "manifest.json"
 CONFIG, NO_CONFIG, OUTCOMES = "config.yaml", "config.txt", "outcomes.json"
 CLAIMS = (CONFIG, NO_CONFIG, OUTCOMES)
 RECORDING, SHEET = "recording.npz", "sheet"
-GUESSED = "parts-guessed.yaml"
-"""The pipeline file with guessed heights of parts, to correct."""
+GUESSED = "parts-guessed.yaml"  # the pipeline file with guessed heights of parts, to correct
 SHEETS = tuple(f"{SHEET}.{drawn_as}" for drawn_as in ("png", "svg", "pdf"))
 NAMES = (*CLAIMS, *(f"{product}.npz" for product in PRODUCTS), RECORDING, GUESSED, *SHEETS)
 

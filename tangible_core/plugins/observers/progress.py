@@ -12,13 +12,11 @@ from ..hooks import hookimpl
 if TYPE_CHECKING:
     from ...data import Outcome, ServoReport
 
-EXPORT = "export: "
-"""The product in the outcome of an exporter, before the exporter's name."""
+EXPORT = "export: "  # the product in the outcome of an exporter, before the exporter's name
+# The logger of the time that compiling still takes; its own module would import numba.
 COMPILING = "tangible_core.compiled.compiling.progress"
-"""The logger of the time that compiling still takes; its own module would import numba."""
 BAR_CELLS = 20
-_shown: list[Any] = []
-"""The one spinner on the screen, if any."""
+_shown: list[Any] = []  # the one spinner on the screen, if any
 
 
 class _CompilingBar(logging.Handler):

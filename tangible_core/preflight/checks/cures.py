@@ -13,10 +13,9 @@ from ..bumps import reduce_relief
 from ..flight import Flight
 from ..verdict import Change, Cure, over, under
 
-CELLS = 512
-"""Cells along a side on which smoothing is tried: few, for speed."""
+CELLS = 512  # cells along a side on which smoothing is tried: few, for speed
+# Smallest stiffness of a cure: an exploring hand of 1 N sinks in by 20 mm, as deep as most reliefs are high.
 SOFTEST_N_PER_M = 50.0
-"""Smallest stiffness of a cure: an exploring hand of 1 N sinks in by 20 mm, as deep as most reliefs are high."""
 FIT = Change("materials.fit", "device", "is")
 COUPLE = Change("safety.coupling", "auto", "is")
 

@@ -61,8 +61,7 @@ def workspace(flight: Flight) -> Iterator[Verdict]:
 
 
 OVERRUNS = 0.001
-HALF = 0.5
-"""Share of a period for the force law; the device needs the rest."""
+HALF = 0.5  # share of a period for the force law; the device needs the rest
 LATE = "this machine keeps time badly just now"
 CALMER = "stop other work on this machine"
 

@@ -9,12 +9,11 @@ from ..verdict import Verdict, check_bound, over
 from .cures import heighten
 
 BUMPS = "Louw, Kappers & Koenderink 2000 (bare hand)"
-NOTHING_M = 1e-7
-"""Height below which a feature may be a rounding error of heights."""
+NOTHING_M = 1e-7  # height below which a feature may be a rounding error of heights
+# Ratio to the leakage of wider features above which a response counts as a feature of its width.
 OWN = 1.2
-"""Ratio to the leakage of wider features above which a response counts as a feature of its width."""
+# Samples a wave: below the first number it is not felt, from the second on it feels right (10 are better).
 SEEN, FEELS_RIGHT = 2, 5
-"""Samples a wave: below the first number it is not felt, from the second on it feels right (10 are better)."""
 WAVES = "Campion & Hayward 2005: over 2 v T, from 5 v T to feel right"
 
 

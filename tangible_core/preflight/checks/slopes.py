@@ -11,18 +11,15 @@ from ..verdict import FEW, Change, Cure, Verdict, check_bound, under
 from .cures import COUPLE, FIT, SOFTEST_N_PER_M, flatten, gentler, join_cures, round_off, slopes, soften
 from .stiffness import TOO_STIFF
 
-MEASURED = 1.01
-"""Ratio of a measured stiffness to the true one that is allowed as an error."""
+MEASURED = 1.01  # ratio of a measured stiffness to the true one that is allowed as an error
+# Share of a stroke up to which the walls that hold a hand up count as outlines.
 WALLS = 0.125
-"""Share of a stroke up to which the walls that hold a hand up count as outlines."""
+# Smallest slope limit of a cure: under less, a step of 1 mm is a ramp that fingers do not feel as a step.
 GENTLEST = 0.4
-"""Smallest slope limit of a cure: under less, a step of 1 mm is a ramp that fingers do not feel as a step."""
-PROXY = "proxy"
-"""Name of the force law whose stiffness is that of level ground everywhere."""
-LEVEL = 1.1
-"""Ratio to the stiffness on level ground up to which slopes are not at fault."""
+PROXY = "proxy"  # name of the force law whose stiffness is that of level ground everywhere
+LEVEL = 1.1  # ratio to the stiffness on level ground up to which slopes are not at fault
+# Share of the surface that may be too stiff: the passivity controller brakes there.
 RARE = 0.001
-"""Share of the surface that may be too stiff: the passivity controller brakes there."""
 
 
 def slope_stiffness(flight: Flight) -> Iterator[Verdict]:

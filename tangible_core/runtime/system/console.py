@@ -7,10 +7,9 @@ import threading
 from collections.abc import Callable
 from typing import IO, Any
 
+# Longest time, s, for what is done before the process ends: Windows ends it five seconds after the message.
 CLOSING_S = 4.5
-"""Longest time, s, for what is done before the process ends: Windows ends it five seconds after the message."""
-CTRL_C, CTRL_BREAK, CLOSED, LOGGED_OFF, SHUT_DOWN = 0, 1, 2, 5, 6
-"""Messages of a console of Windows."""
+CTRL_C, CTRL_BREAK, CLOSED, LOGGED_OFF, SHUT_DOWN = 0, 1, 2, 5, 6  # messages of a console of Windows
 
 if sys.platform == "win32":
     import ctypes

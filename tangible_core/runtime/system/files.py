@@ -7,10 +7,8 @@ from contextlib import contextmanager, suppress
 from io import FileIO
 from pathlib import Path
 
-_IN_USE = {32, 33}
-"""ERROR_SHARING_VIOLATION and ERROR_LOCK_VIOLATION of Windows."""
-_DENIED = 5
-"""ERROR_ACCESS_DENIED, with which Windows also refuses to replace a file that is open."""
+_IN_USE = {32, 33}  # ERROR_SHARING_VIOLATION and ERROR_LOCK_VIOLATION of Windows
+_DENIED = 5  # ERROR_ACCESS_DENIED, with which Windows also refuses to replace a file that is open
 
 
 def is_in_use(error: OSError, path: Path) -> bool:

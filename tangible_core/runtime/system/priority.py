@@ -9,18 +9,17 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from typing import Any
 
+# Priority of SCHED_FIFO, 1 to 99: above everything that is not real time, below the kernel's own threads.
 PRIORITY = 50
-"""Priority of SCHED_FIFO, 1 to 99: above everything that is not real time, below the kernel's own threads."""
+# MCL_CURRENT | MCL_FUTURE of mlockall, and PR_SET_TIMERSLACK of prctl; Linux.
 CURRENT_AND_FUTURE, SET_TIMER_SLACK = 3, 29
-"""MCL_CURRENT | MCL_FUTURE of mlockall, and PR_SET_TIMERSLACK of prctl; Linux."""
+# The shortest time slice that may be requested (Linux 6.12): threads with shorter slices are scheduled sooner.
 SLICE_NS = 100_000
-"""The shortest time slice that may be requested (Linux 6.12): threads with shorter slices are scheduled sooner."""
+# Number of the system call sched_setattr in a 64-bit process, by machine; most C libraries have no function for it.
 SET_ATTRIBUTES = {"x86_64": 314, "aarch64": 274, "riscv64": 274}
-"""Number of the system call sched_setattr in a 64-bit process, by machine; most C libraries have no function for it."""
+# HIGH_PRIORITY_CLASS, THREAD_PRIORITY_TIME_CRITICAL and THREAD_PRIORITY_NORMAL; Windows.
 HIGH, TIME_CRITICAL, NORMAL = 0x80, 15, 0
-"""HIGH_PRIORITY_CLASS, THREAD_PRIORITY_TIME_CRITICAL and THREAD_PRIORITY_NORMAL; Windows."""
-CONSTRAINT_POLICY, STANDARD_POLICY = 2, 1
-"""THREAD_TIME_CONSTRAINT_POLICY and THREAD_STANDARD_POLICY of macOS."""
+CONSTRAINT_POLICY, STANDARD_POLICY = 2, 1  # THREAD_TIME_CONSTRAINT_POLICY and THREAD_STANDARD_POLICY of macOS
 PERIOD_NS, WORK_NS, WITHIN_NS = 1_000_000, 300_000, 600_000
 """The promise to macOS: a period; work in each; and the time within which the work is done."""
 

@@ -14,15 +14,13 @@ import numpy as np
 from ...files.reading import check_size
 from ...runtime.opencv import plain_opencv, silent_opencv
 
+# The pixels of a band, about: what is in memory next to the file and the reduced picture.
 BAND_PIXELS = 4_000_000
-"""The pixels of a band, about: what is in memory next to the file and the reduced picture."""
-_AVERAGED = ("uint8", "uint16", "float32")
-"""Types of numbers that OpenCV averages without another copy."""
+_AVERAGED = ("uint8", "uint16", "float32")  # types of numbers that OpenCV averages without another copy
 PNG = b"\x89PNG\r\n\x1a\n"
 _ORIENTATION = 0x0112  # tag of EXIF
 _GREY, _RGB, _RGBA = 0, 2, 6
-_CHANNELS = {_GREY: 1, _RGB: 3, 3: 1, 4: 2, _RGBA: 4}
-"""Channels by the kind of colour."""
+_CHANNELS = {_GREY: 1, _RGB: 3, 3: 1, 4: 2, _RGBA: 4}  # channels by the kind of colour
 _STAND_IN = {1: (8, _GREY), 2: (16, _GREY), 3: (8, _RGB), 4: (8, _RGBA), 6: (16, _RGB), 8: (16, _RGBA)}
 """Bits and kind of colour of a picture with this many bytes a pixel, whose filters are the same."""
 

@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 log: logging.Logger = logging.getLogger(__name__)
 
 T = TypeVar("T")
+# Libraries whose errors name lines of their source and no fault that people know.
 TERSE = ("cv2", "imagecodecs")
-"""Libraries whose errors name lines of their source and no fault that people know."""
 
+# The use of a file's numbers: brightness up to white, numbers as they are stored, or numbers that name segments.
 Purpose = Literal["picture", "map", "labels"]
-"""The use of a file's numbers: brightness up to white, numbers as they are stored, or numbers that name segments."""
 
+# Formats that Pillow may read. Others that it knows run programs (EPS) or cannot be told from noise (TGA).
 FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "WEBP", "PPM", "JPEG2000", "AVIF")
-"""Formats that Pillow may read. Others that it knows run programs (EPS) or cannot be told from noise (TGA)."""
 
 
 ORIENTATION = 0x0112  # tag of EXIF

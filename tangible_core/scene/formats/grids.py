@@ -14,8 +14,7 @@ from ...files.reading import MAX_TEXT_BYTES, check_size, read_bytes
 from .map_numbers import is_nodata
 from .tiff import UnreadableError
 
-GRIDS = frozenset((".hgt", ".bil", ".flt"))
-"""Suffixes of grids whose first bytes do not tell what they are."""
+GRIDS = frozenset((".hgt", ".bil", ".flt"))  # suffixes of grids whose first bytes do not tell what they are
 _LINE = re.compile(rb"[ \t]*([a-zA-Z_]\w{0,30})[ \t]+(\S{1,60})[ \t]*(?:\r\n|\n|\r)")
 _ESRI_NODATA, _SRTM_VOID = -9999.0, -32768.0
 _PIXELS: Mapping[str, str] = {"SIGNEDINT": "i", "UNSIGNEDINT": "u", "FLOAT": "f"}

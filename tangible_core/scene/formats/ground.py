@@ -15,10 +15,9 @@ from .height_maps import MeasuredSize
 from .kinds import ASC
 from .tiff import TIFF, open_tiff
 
-EARTH_M = 6371008.8
-"""Mean radius of the Earth (IUGG)."""
+EARTH_M = 6371008.8  # mean radius of the Earth (IUGG)
+# Metres of the linear units of EPSG: the metre, the foot and the US survey foot.
 UNITS_M: Mapping[int, float] = {9001: 1.0, 9002: 0.3048, 9003: 1200 / 3937}
-"""Metres of the linear units of EPSG: the metre, the foot and the US survey foot."""
 PIXEL_SCALE, TIE_POINT, TRANSFORMATION, GEO_KEYS = 33550, 33922, 34264, 34735
 MODEL_TYPE, GEOGRAPHIC, GEOGRAPHIC_TYPE, PROJECTED_TYPE, HORIZONTAL_UNIT, VERTICAL_UNIT = (
     1024,
@@ -30,10 +29,9 @@ MODEL_TYPE, GEOGRAPHIC, GEOGRAPHIC_TYPE, PROJECTED_TYPE, HORIZONTAL_UNIT, VERTIC
 )
 WEB_MERCATOR, MERCATOR_M = 3857, 6378137.0
 """The projection of web maps, whose metres are those of the equator, and its radius."""
-HEAD_BYTES = 4096
-"""Bytes in which the head of an ESRI grid stands."""
+HEAD_BYTES = 4096  # bytes in which the head of an ESRI grid stands
+# Cells of a grid without a stated unit that are smaller than this, at a place that the Earth has, are in degrees.
 DEGREES = 0.02
-"""Cells of a grid without a stated unit that are smaller than this, at a place that the Earth has, are in degrees."""
 
 
 class Ground(NamedTuple):

@@ -20,8 +20,7 @@ from .tiff import tiff_description
 
 FORMATS = "tangible heights "
 FORMAT = "tangible heights 1"
-LEVELS = 0xFFFF
-"""Number of the highest place in a picture of 16 bits."""
+LEVELS = 0xFFFF  # number of the highest place in a picture of 16 bits
 BYTE = 0xFF
 MM = 1000.0
 """Millimetres in a metre."""

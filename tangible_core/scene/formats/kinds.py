@@ -24,19 +24,16 @@ MAPS = frozenset((".npy", ".npz", ".pfm", ".asc", ".hgt", ".bil", ".flt"))
 """Suffixes of maps of heights; a TIFF of signed numbers, of floating point or of a place on earth is one as well."""
 
 PNG, JPEG = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
-NPY, ZIP = b"\x93NUMPY", b"PK\x03\x04"
-"""The first bytes of a PNG, a JPEG, and of .npy and .npz."""
+NPY, ZIP = b"\x93NUMPY", b"PK\x03\x04"  # the first bytes of a PNG, a JPEG, and of .npy and .npz
+# The first bytes of a JPEG 2000, with and without its boxes.
 JPEG_2000 = (b"\0\0\0\x0cjP  ", b"\xff\x4f\xff\x51")
-"""The first bytes of a JPEG 2000, with and without its boxes."""
-ASC = re.compile(rb"\s*ncols\s+\d", re.IGNORECASE)
-"""The start of an ESRI ASCII grid."""
+ASC = re.compile(rb"\s*ncols\s+\d", re.IGNORECASE)  # the start of an ESRI ASCII grid
 _HEAD = 64
 _PICTURES = (
     PNG, JPEG, b"GIF8", b"BM", *JPEG_2000, b"P1", b"P4", *NETPBM
 )  # fmt: skip
 _VIDEOS = (b"\x1aE\xdf\xa3", b"\0\0\x01\xba", b"\0\0\x01\xb3", b"OggS", b"0&\xb2u")
-_STILL = (b"avif", b"avis", *HEIC)
-"""Brands of ISO's media files that are pictures."""
+_STILL = (b"avif", b"avis", *HEIC)  # brands of ISO's media files that are pictures
 
 
 def file_kind(path: Path) -> FileKind | None:

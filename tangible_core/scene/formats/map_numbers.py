@@ -5,20 +5,19 @@ import re
 import numpy as np
 from jaxtyping import Float, Float32
 
+# Numbers that no one measures: -9999, 99999.9, the least of 16 bits, -10000.
 NINES = re.compile(r"-?9{3,}(\.9+)?|-32768|-32767|-10{4,}")
-"""Numbers that no one measures: -9999, 99999.9, the least of 16 bits, -10000."""
+# The largest whole numbers of 16 bits, which a map that is stretched to all of them reaches as well.
 LIMITS = (32767, 65535)
-"""The largest whole numbers of 16 bits, which a map that is stretched to all of them reaches as well."""
+# Numbers are marks beyond this magnitude where they are this many times those of the other heights, such as 1e20.
 HUGE, TIMES = 1e9, 1e3
-"""Numbers are marks beyond this magnitude where they are this many times those of the other heights, such as 1e20."""
-SPANS = 0.1
-"""Least gap between such a number and the other heights, of the range of these."""
+SPANS = 0.1  # least gap between such a number and the other heights, of the range of these
+# This gap for a number of LIMITS, and for any other one: a lone summit or a tower stands on slopes or on its own.
 LIMIT_SPANS, ANY_SPANS = 5.0, 20.0
-"""This gap for a number of LIMITS, and for any other one: a lone summit or a tower stands on slopes or on its own."""
+# Magnitude of numbers, in their range, from which 32 bits leave fewer than 16 bits to their differences.
 RESOLVED = 1 << 8
-"""Magnitude of numbers, in their range, from which 32 bits leave fewer than 16 bits to their differences."""
+# The fewest other heights, so that a map of labels has none, and the fewest cells of a number that looks like any.
 FEWEST_LEVELS, FEWEST_CELLS = 16, 2
-"""The fewest other heights, so that a map of labels has none, and the fewest cells of a number that looks like any."""
 
 
 def undeclared_nodata(heights: Float[np.ndarray, "h w"]) -> list[np.floating]:

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any, cast
 if TYPE_CHECKING:
     from PIL.Image import Image
 
+# A callback that takes remarks on a file, such as that it holds further pictures.
 Notify = Callable[[str], None]
-"""A callback that takes remarks on a file, such as that it holds further pictures."""
 
-MAX_PICTURES = 100
-"""Largest number of pictures of a Multi-Picture file that are counted."""
+MAX_PICTURES = 100  # largest number of pictures of a Multi-Picture file that are counted
 _MP_ENTRIES = 0xB002  # tag of the Multi-Picture Format
 _MP_HEAD = re.compile(rb"MPF\0(?:II\*\0|MM\0\*)")
 _AUXILIARY = re.compile(rb"hdr-gain-map|:iso:ts:21496:|AuxiliaryImageType")  # in gain maps, and a phone's depth

@@ -10,8 +10,8 @@ import numpy as np
 
 from ...files.reading import check_size
 
+# The first bytes of these files; Pillow reads P1 and P4, which are black and white.
 NETPBM = (b"P2", b"P3", b"P5", b"P6", b"Pf", b"PF")
-"""The first bytes of these files; Pillow reads P1 and P4, which are black and white."""
 _GAP = rb"(?:\s|#[^\n\r]*[\n\r])+"
 _HEAD = re.compile(rb"P([2356Ff])" + _GAP + _GAP.join([rb"(\d{1,9})"] * 2) + _GAP + rb"([-+.\deE]{1,40})\s")
 

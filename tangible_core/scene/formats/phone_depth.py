@@ -34,8 +34,8 @@ _GUID = 32
 _DATA = re.compile(rb'GDepth:Data\s{0,9}(?:=\s{0,9}(")|(>))')
 _RANGE = re.compile(rb'GDepth:(Format|Near|Far)\s{0,9}(?:=\s{0,9}"|>)\s{0,9}([\w.+-]{1,30})')
 _ITEM = re.compile(rb"<Container:Item\b[^>]{0,600}>")
+# Bytes of metadata in which a list of container items is searched: this bounds the time on any file.
 _ITEMS = 1 << 20
-"""Bytes of metadata in which a list of container items is searched: this bounds the time on any file."""
 _SEMANTIC = re.compile(rb'Item:Semantic\s*=\s*"([^"]*)"')
 _LENGTHS = re.compile(rb'Item:(?:Length|Padding)\s*=\s*"(\d{1,10})"')
 _AUXILIARY = re.compile(rb'AuxiliaryImageType\s*(?:=\s*"|>)\s*(disparity|depth)\b')

@@ -23,8 +23,8 @@ from .reducing import decode_reduced
 TruthScale = Annotated[float, Field(gt=0, allow_inf_nan=False)] | Literal["sintel"]
 NonFinite = Literal["error", "mask"]
 
+# Share of a JPEG's pixels that most colours have less of where compression made them.
 FEW_PIXELS = 1e-3
-"""Share of a JPEG's pixels that most colours have less of where compression made them."""
 MAX_LABELS = 4096
 """Largest number of labels in a label picture; a picture with more colours is taken for a photo."""
 
@@ -171,10 +171,10 @@ MAX_IN_PALETTE = 256
 """Largest number of colours in the palette of a PNG."""
 SPARE = 24
 """Number of unused colours in the palette, for new parts in a paint program that keeps to the palette."""
+# Levels of red, green and blue among which colours are chosen: more colours than a label picture may have labels.
 STEPS = 21
-"""Levels of red, green and blue among which colours are chosen: more colours than a label picture may have labels."""
+# Bounds of the colours in CIELAB: black and white are a paint program's defaults, and strong colours glare.
 DARKEST, LIGHTEST, MAX_CHROMA = 30.0, 92.0, 85.0
-"""Bounds of the colours in CIELAB: black and white are a paint program's defaults, and strong colours glare."""
 
 
 @cache

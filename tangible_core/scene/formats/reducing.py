@@ -12,8 +12,8 @@ from .kinds import JPEG, PNG
 from .multi_picture import Notify, ignore
 from .tiff import TIFF, tiff_picture, tiff_size
 
+# The most pixels of a picture that is reduced while it is decoded: more would take minutes.
 MAX_REDUCED = 10 * MAX_PIXELS
-"""The most pixels of a picture that is reduced while it is decoded: more would take minutes."""
 
 
 def decode_reduced(path: Path, data: bytes, notify: Notify = ignore) -> np.ndarray | None:

@@ -28,8 +28,8 @@ LENSES: Mapping[str, Distortion] = {
     **dict[str, Distortion].fromkeys(("equidistant", "equi", "fisheye"), "equidistant"),
 }
 """Lens models of Kalibr and ROS."""
+# Words in the names of two files that belong together: the first is named, the other one lies next to it.
 PARTNERS = {"left": "right", "intrinsics": "extrinsics", "intrinsic": "extrinsic"}
-"""Words in the names of two files that belong together: the first is named, the other one lies next to it."""
 NAMES = (
     *("rig.yaml", "rig.yml", "calib.txt", "calib_cam_to_cam.txt", "camchain.yaml", "stereo.yaml", "stereo.yml"),
     *("stereo.xml", "calibration.yaml", "calibration.yml", "calibration.xml", "intrinsics.yml", "left.yaml"),

@@ -21,10 +21,8 @@ from ...files.reading import MAX_PIXELS, check_size
 if TYPE_CHECKING:
     from tifffile import TiffFile, TiffPage
 
-TIFF = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
-"""The first bytes of a TIFF."""
-MAX_PAGES = 100
-"""Largest number of pages that are looked at."""
+TIFF = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")  # the first bytes of a TIFF
+MAX_PAGES = 100  # largest number of pages that are looked at
 _REDUCED, _MASK = 1, 4  # bits of NewSubfileType
 _WHITE_IS_ZERO, _BLACK_IS_ZERO, _RGB, _PALETTE, _TRANSPARENCY, _YCBCR = 0, 1, 2, 3, 4, 6  # photometric interpretations
 _JPEG = (6, 7, 34892)  # compressions
@@ -41,29 +39,21 @@ class TiffRaster(NamedTuple):
     """The numbers of a picture, (h, w) or (h, w, channels), as they are stored."""
 
     values: np.ndarray
-    known: Bool[np.ndarray, "h w"] | None = None
-    """False where a mask hides a pixel; None if there is no mask."""
-    alpha: np.ndarray | None = None
-    """Opacity, (h, w), in the numbers of the colours; None if there is none."""
-    palette: np.ndarray | None = None
-    """Colours of the numbers, (n, 3) of 16 bits; None without a palette."""
-    white: int | None = None
-    """The number of full brightness; None for signed numbers and floating point."""
+    known: Bool[np.ndarray, "h w"] | None = None  # false where a mask hides a pixel; None if there is no mask
+    alpha: np.ndarray | None = None  # opacity, (h, w), in the numbers of the colours; None if there is none
+    palette: np.ndarray | None = None  # colours of the numbers, (n, 3) of 16 bits; None without a palette
+    white: int | None = None  # the number of full brightness; None for signed numbers and floating point
     zero_is_white: bool = False
-    dropped: int = 0
-    """Number of channels that are neither colours nor transparency, such as infrared."""
+    dropped: int = 0  # number of channels that are neither colours nor transparency, such as infrared
 
 
 class TiffPicture(NamedTuple):
     """A picture of a TIFF: its bands of rows from top to bottom, and what its tags say."""
 
     bands: Iterator[TiffRaster]
-    orientation: int
-    """Orientation of the camera by EXIF, 1 to 8."""
-    nodata: float | None
-    """GDAL's value for no data."""
-    pages: int
-    """Number of pictures in the file."""
+    orientation: int  # orientation of the camera by EXIF, 1 to 8
+    nodata: float | None  # GDAL's value for no data
+    pages: int  # number of pictures in the file
 
 
 @contextmanager

@@ -11,8 +11,7 @@ from ...data import PictureText
 from ...drawing import PictureKind
 
 Box = tuple[float, float, float, float]
-SIDE_PX = 2000
-"""The longer side of a page as a picture, px: a tenth of a millimetre on A4."""
+SIDE_PX = 2000  # the longer side of a page as a picture, px: a tenth of a millimetre on A4
 
 
 class VectorPage(NamedTuple):

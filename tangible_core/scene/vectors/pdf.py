@@ -15,8 +15,7 @@ from ...errors import PictureError
 from ..formats.multi_picture import Notify, ignore
 from .page import SIDE_PX, VectorPage, title_among, turn_box
 
-_turn = Lock()
-"""Lock around the library, which keeps its state in global variables."""
+_turn = Lock()  # lock around the library, which keeps its state in global variables
 
 
 def read_pdf(path: Path, data: bytes, page: int | None = None, notify: Notify = ignore) -> VectorPage:

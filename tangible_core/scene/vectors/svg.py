@@ -29,23 +29,19 @@ from .tree import HIDE, Item, cut_off, find_items, find_label, local, walk, word
 
 MAX_BYTES = 20_000_000
 """The most bytes of an SVG: what is larger is a scan, or a map of a whole country."""
-MAX_SHAPES = 4096
-"""The most shapes that are parts: more are a texture."""
+MAX_SHAPES = 4096  # the most shapes that are parts: more are a texture
+# The least piece of a shape that shows; what is smaller is a gap between two others.
 MIN_PIECE_PX = 25
-"""The least piece of a shape that shows; what is smaller is a gap between two others."""
+# The side of the least square that shows as a shape without a name, by the longer side: a speck, or a letter.
 LEAST = 1 / 60
-"""The side of the least square that shows as a shape without a name, by the longer side: a speck, or a letter."""
-STROKE = 1 / 55
-"""The width from which a stroke is an area, as a share of the longer side."""
-MAX_SECONDS, MAX_MEMORY = 60, 4 << 30
-"""The limits of drawing, s and bytes."""
+STROKE = 1 / 55  # the width from which a stroke is an area, as a share of the longer side
+MAX_SECONDS, MAX_MEMORY = 60, 4 << 30  # the limits of drawing, s and bytes
 CHILD = """import base64, json, {0} as resvg
 from tangible_core.runtime.system.processes import limit_memory
 limit_memory({1})
 print(json.dumps([base64.b64encode(resvg.svg_to_bytes(**call)).decode() for call in json.load(sys.stdin)]))"""
 """The program that renders."""
-LARGER = 1.5
-"""The least ratio of the height of a text that names a part to those of others in it."""
+LARGER = 1.5  # the least ratio of the height of a text that names a part to those of others in it
 PLAIN = "*{opacity:1!important;fill-opacity:1!important;stroke-opacity:1!important;filter:none!important;" \
     "mask:none!important;mix-blend-mode:normal!important;marker:none!important;marker-start:none!important;" \
     "marker-mid:none!important;marker-end:none!important;shape-rendering:crispEdges!important}"  # fmt: skip

@@ -10,26 +10,24 @@ SHAPES = frozenset(("path", "rect", "circle", "ellipse", "polygon", "polyline", 
 """Elements that are painted."""
 CLOSED = frozenset(("rect", "circle", "ellipse", "polygon"))
 UNSEEN = ("none", "transparent")
-DROPPED = frozenset(("script", "foreignObject"))
-"""Elements that are programs, or documents of another kind."""
+DROPPED = frozenset(("script", "foreignObject"))  # elements that are programs, or documents of another kind
+# Elements whose content shapes others, and is not painted by itself.
 ASIDE = frozenset(("clipPath", "mask", "pattern", "marker", "linearGradient", "radialGradient", "filter"))
-"""Elements whose content shapes others, and is not painted by itself."""
-MAX_DEPTH = 200
-"""The most elements inside one another."""
+MAX_DEPTH = 200  # the most elements inside one another
 PICTURES = re.compile(r"data:image/(png|jpe?g|gif|webp)\b", re.IGNORECASE)
 """The start of a picture inside of the file."""
+# An id that a program gave, such as `path123`.
 GIVEN = re.compile(
     r"(?:(?:path|rect|g|group|circle|ellipse|line|line2d|poly(?:gon|line)|use|image|layer|svg|shape|text|tspan|object|vector|"
     r"cell|node|xmlid|svgid|patch|axes|figure|[xy]tick|legend|collection|ebene|calque|canvas|frame|union|subtract)s?)?"
     r"[-_. ]?(?:x?\d[-_.\da-f]*)?",
     re.IGNORECASE,
 )
-"""An id that a program gave, such as `path123`."""
 RULE = re.compile(r"([^{}]+)\{([^{}]*)\}")
 SELECTOR = re.compile(r"([\w-]*|\*)(?:\.([\w-]+)|#([\w-]+))?")
 """A selector of one element: a tag, a class, an id, or a tag with a class."""
+# The marks of our own pages for swell paper that do not belong to the picture (`data-mark`).
 OWN_MARKS = ("braille", "fill", "corner")
-"""The marks of our own pages for swell paper that do not belong to the picture (`data-mark`)."""
 
 
 class Item(NamedTuple):

@@ -15,12 +15,11 @@ from .capture import USUAL_FPS, Capture, OpenCamera, VideoFrame, VideoFrames, Vi
 FIRST_S = 15.0
 NEXT_S = 5.0
 AGAIN_S = 0.5
+# Longest single wait, seconds: some systems deliver a signal only between two waits.
 SLICE_S = 0.2
-"""Longest single wait, seconds: some systems deliver a signal only between two waits."""
-MAX_DAMAGED = 30
-"""Number of damaged pictures in a row after which a camera counts as lost."""
+MAX_DAMAGED = 30  # number of damaged pictures in a row after which a camera counts as lost
+# Time that `close` waits for the thread, seconds; if the camera's driver hangs, the thread ends when it returns.
 ENDED_S = 0.8
-"""Time that `close` waits for the thread, seconds; if the camera's driver hangs, the thread ends when it returns."""
 
 
 class _Shot(NamedTuple):

@@ -20,12 +20,10 @@ from ...runtime.system.processes import processors
 from ...runtime.threads import thread_limit
 from ..formats.decoding import absent
 
-USUAL_FPS = 30.0
-"""Frames a second of a folder, and of a source that states no plausible rate."""
+USUAL_FPS = 30.0  # frames a second of a folder, and of a source that states no plausible rate
+# Bounds of a plausible rate; some sources state 0, or the ticks of their clock.
 MIN_FPS, MAX_FPS = 0.1, 480.0
-"""Bounds of a plausible rate; some sources state 0, or the ticks of their clock."""
-MAX_THREADS = 4
-"""Largest number of threads of a decoder, as each holds frames of its own."""
+MAX_THREADS = 4  # largest number of threads of a decoder, as each holds frames of its own
 
 
 if TYPE_CHECKING:
@@ -33,8 +31,8 @@ if TYPE_CHECKING:
 else:
     Capture = Any  # what has its methods
 
+# A function that opens a camera by its number, with frames a second or None; it may fail to open.
 OpenCamera = Callable[[int, float | None], Capture]
-"""A function that opens a camera by its number, with frames a second or None; it may fail to open."""
 
 
 def open_file(path: Path) -> Capture:
@@ -138,17 +136,14 @@ def _check_is_file(path: Path) -> None:
         raise PictureError(f"{path}: cannot be read: Permission denied; check its permissions")
 
 
-ViewsOf = Callable[[np.ndarray], Views]
-"""A function from a stored picture to its views."""
+ViewsOf = Callable[[np.ndarray], Views]  # a function from a stored picture to its views
 
 
 class VideoFrame(NamedTuple):
     """A frame of a video."""
 
-    number: int
-    """Number of the frame, from 0; it goes on counting when the video starts again."""
-    time_s: float
-    """Time at which the frame is due, seconds after the first."""
+    number: int  # number of the frame, from 0; it goes on counting when the video starts again
+    time_s: float  # time at which the frame is due, seconds after the first
     views: Views
 
 

@@ -29,15 +29,15 @@ from .capture import (
     stated_fps,
 )
 
+# Longest time between two frames of a file, seconds; a larger step of the time stamps is taken for an error.
 LONGEST_S = 60.0
-"""Longest time between two frames of a file, seconds; a larger step of the time stamps is taken for an error."""
 EARLY_S = 1e-6
+# Largest error of a time stamp at an even rate, as a share of the frame time: stamps are whole milliseconds.
 UNEVEN = 0.25
-"""Largest error of a time stamp at an even rate, as a share of the frame time: stamps are whole milliseconds."""
+# Longest time to skip frames in one call, seconds. A file that decodes too slowly then plays more slowly.
 CATCH_UP_S = 0.1
-"""Longest time to skip frames in one call, seconds. A file that decodes too slowly then plays more slowly."""
+# Share of frames that may be missing before a file counts as cut short: the stated count is often an estimate.
 SHORT = 0.1
-"""Share of frames that may be missing before a file counts as cut short: the stated count is often an estimate."""
 
 
 @final

@@ -14,8 +14,8 @@ from ...compiled.compiling import KERNEL, inner, njit
 from . import layout as at
 from .vectors import clip, zero_or_nan
 
+# Greatest speed of a hand. A device that jumps farther, such as a released pointer, does not drag the tool along.
 FASTEST_M_PER_S = 10.0
-"""Greatest speed of a hand. A device that jumps farther, such as a released pointer, does not drag the tool along."""
 READ, WRITTEN = types.Array(float64, 1, "C", readonly=True), types.Array(float64, 1, "C")
 
 

@@ -20,14 +20,12 @@ from .vectors import clip, zero_or_nan
 TOUCHING, FORCE_LIMITED, SLEW_LIMITED, STIFFNESS_LIMITED, RAMPING, NOT_FINITE, DAMPED, STALE = map(
     int, [*TickFlag][: at.FLAGS]
 )
+# Shortest period that is used; a shorter one counts as this, as the clock stood still or went back.
 SHORTEST_S = 1e-5
-"""Shortest period that is used; a shorter one counts as this, as the clock stood still or went back."""
-REMEMBERED = 128
-"""Number of ticks over which the period is averaged."""
+REMEMBERED = 128  # number of ticks over which the period is averaged
+# Times in which the gain falls from 1 to 0 and rises back: a spring that stiffens under the hand does work on it.
 SOFTER_IN_S, HARDER_IN_S = 0.05, 1.0
-"""Times in which the gain falls from 1 to 0 and rises back: a spring that stiffens under the hand does work on it."""
-ENOUGH = 1.1
-"""Hysteresis of the gain: it rises only if at least 10 % more is allowed."""
+ENOUGH = 1.1  # hysteresis of the gain: it rises only if at least 10 % more is allowed
 
 NEWTONS_AND_FLAGS = types.Tuple((float64, float64, float64, int64))
 

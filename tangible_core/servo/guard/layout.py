@@ -1,7 +1,6 @@
 """The layout of a guard's two arrays: indices of its settings and of its memory."""
 
-MAX_DELAY = 8
-"""Greatest delay of a force, ticks; the memory holds one force for each."""
+MAX_DELAY = 8  # greatest delay of a force, ticks; the memory holds one force for each
 
 (
     MAX_FORCE_N,
@@ -30,24 +29,18 @@ force law behind it. SURFACE_W, MAX_SURFACE_J: limits of the work of a moving su
 at once.
 """
 
-FORCE = 0
-"""Memory: the force sent at the last tick; x, y, z from this index on."""
-PLACE = 3
-"""Memory: the last fresh position; x is NaN if there is none."""
+FORCE = 0  # memory: the force sent at the last tick; x, y, z from this index on
+PLACE = 3  # memory: the last fresh position; x is NaN if there is none
 RAMP, GAIN, MEAN_S, MEAN_S2, ENERGY_J, AGE_S, SLOT = range(6, 13)
 """Memory: factors 0..1 of fading in and of the stiffness limit; running means of the period and of its square; energy
 that the loop received and may return; time without a fresh position; slot in HELD of the oldest delayed force."""
-HELD = 13
-"""Memory: the forces that are delayed on their way to the hand, or act on it."""
+HELD = 13  # memory: the forces that are delayed on their way to the hand, or act on it
+# Memory: the tool of the coupling: position, with x NaN if it has none, velocity, and the law's force on it.
 TOOL = HELD + 3 * (MAX_DELAY + 1)
-"""Memory: the tool of the coupling: position, with x NaN if it has none, velocity, and the law's force on it."""
-COUNTS = TOOL + 9
-"""Memory: ticks with each flag of the guard, by the flag's bit."""
+COUNTS = TOOL + 9  # memory: ticks with each flag of the guard, by the flag's bit
 FLAGS = 8
-PULL = COUNTS + FLAGS
-"""Memory: the beacon's force along x and y, which is added to the law's."""
-PULL_STIFFNESS = PULL + 2
-"""Memory: the beacon's stiffness, which is added to the law's."""
+PULL = COUNTS + FLAGS  # memory: the beacon's force along x and y, which is added to the law's
+PULL_STIFFNESS = PULL + 2  # memory: the beacon's stiffness, which is added to the law's
 RISE_M, LAST_RISE_M, SURFACE_FORCE_N, GIVEN_J, MAY_GIVE_J = range(PULL_STIFFNESS + 1, PULL_STIFFNESS + 6)
 """Memory of a moving surface: its rise under the proxy in this tick, which the caller of the law writes before the
 guard, and in the tick before; the law's force along z as it was sent; the work that the surface did in this contact and

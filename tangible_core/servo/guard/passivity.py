@@ -10,8 +10,8 @@ from ...compiled.compiling import inner
 from . import layout as at
 from .vectors import clip
 
+# Range of a hand's speed: a faster step is a fault of the sensor and not counted as work, a slower one its noise.
 FASTEST_M_PER_S, SLOWEST_M_PER_S = 10.0, 1e-5
-"""Range of a hand's speed: a faster step is a fault of the sensor and not counted as work, a slower one its noise."""
 
 
 @inner(forceinline=True)

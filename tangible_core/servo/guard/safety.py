@@ -14,8 +14,8 @@ from . import layout as at
 BRAKE_TIMES = 5
 """Greatest damping of the passivity controller, in units of the device's damping: above it, noise of the velocity can
 be felt, and a sampled damper of 30 times the device's is itself unstable."""
+# The period for which a device's greatest stiffness is stated, and which is assumed before one was measured.
 NOMINAL_S = 0.001
-"""The period for which a device's greatest stiffness is stated, and which is assumed before one was measured."""
 DEBT_M = 0.001
 """Greatest debt of a loop, as the way over which the greatest force does that work: a force law that gives energy by
 design is not damped for ever."""

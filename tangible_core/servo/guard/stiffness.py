@@ -12,18 +12,16 @@ from ...errors import BrokenMethod
 from ...plugins.interfaces import Touch
 
 log: logging.Logger = logging.getLogger(__name__)
-PLACES = 64
-"""Number of places at which a force law is probed, from the middle of the picture outwards."""
+PLACES = 64  # number of places at which a force law is probed, from the middle of the picture outwards
+# Depths of the probes under the surface; deeper ones are left out once the force exceeds the device's.
 DEPTHS_M = (5e-5, 5e-4, 2e-3)
-"""Depths of the probes under the surface; deeper ones are left out once the force exceeds the device's."""
-STEP_M = 2e-5
-"""Step of a hand for a slope, made twice: less than a hand moves in a tick."""
+STEP_M = 2e-5  # step of a hand for a slope, made twice: less than a hand moves in a tick
 LAYERS = 24
 """Number of heights at which the surface is searched, from the top of the workspace to just under its floor."""
+# Number of bisections between two of these heights, until the surface is known within some micrometres.
 HALVINGS = 10
-"""Number of bisections between two of these heights, until the surface is known within some micrometres."""
+# Longest time of a measurement; what was measured by then counts. Most force laws take a twentieth of it.
 MAX_S = 3.0
-"""Longest time of a measurement; what was measured by then counts. Most force laws take a twentieth of it."""
 GOLDEN = (0.7548776662466927, 0.5698402909980532)
 """1 / g and 1 / g^2 with g^3 = g + 1: their multiples fill a square evenly, in step with no grid of cells.
 
@@ -35,8 +33,7 @@ class Stiffness(NamedTuple):
     """The stiffness of a force law."""
 
     n_per_m: float
-    how: str
-    """A sentence about the measurement; empty if the law states its stiffness."""
+    how: str  # a sentence about the measurement; empty if the law states its stiffness
 
 
 def find_stiffness(touch: Touch, spec: DeviceSpec) -> Stiffness:

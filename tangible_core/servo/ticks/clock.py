@@ -10,16 +10,14 @@ from numba import int32, int64, types, uint32, uint64, uintp
 from ...compiled.compiling import KERNEL, njit
 from ...runtime.system import timers
 
-MONOTONIC, ABSOLUTE = 1, 1
-"""CLOCK_MONOTONIC and TIMER_ABSTIME of Linux."""
-SLEEPS = timers.KIND != ""
-"""True if compiled code can sleep on this system."""
+MONOTONIC, ABSOLUTE = 1, 1  # CLOCK_MONOTONIC and TIMER_ABSTIME of Linux
+SLEEPS = timers.KIND != ""  # true if compiled code can sleep on this system
 SECOND_NS = 1_000_000_000
 NUMBER, BASE, TIMER = 2, 3, 4
 """Words of a clock, after two for what a function writes: steps become nanoseconds by NUMBER / BASE; a timer's handle.
 """
+# The longest single wait for a timer of Windows, ms; a loop with a longer period waits again.
 LONGEST_MS = 1000
-"""The longest single wait for a timer of Windows, ms; a loop with a longer period waits again."""
 
 
 @final

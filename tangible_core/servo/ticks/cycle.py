@@ -36,15 +36,13 @@ from . import schedule
 from .clock import SECOND_NS, wait_ns
 
 FLAGS = TICK_COLUMNS.index("flags")
-STATE = 7
-"""Length of a device's state, as in `LinkKernels`."""
+STATE = 7  # length of a device's state, as in `LinkKernels`
 OVERRUN = int(TickFlag.OVERRUN)
 begin_tick: Any = njit(**KERNEL)(schedule.begin_tick)
 going: Any = njit(**KERNEL)(schedule.going)
+# Indices in `now` of the generators below: when a tick began, and how late it was, nanoseconds.
 AT, LATE = 0, 1
-"""Indices in `now` of the generators below: when a tick began, and how late it was, nanoseconds."""
-NO_MORE = -1
-"""Value of `now[AT]` that ends a generator."""
+NO_MORE = -1  # value of `now[AT]` that ends a generator
 
 
 @intrinsic

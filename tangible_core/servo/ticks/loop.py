@@ -27,14 +27,12 @@ from .python_tick import guard_touch, hold_force
 from .schedule import begin_tick, going
 
 SECOND_NS = 1_000_000_000
+# The sections of a ring that kernels write to: header, sums, late, period, contact, stamps, ticks.
 Sections = tuple[np.ndarray, ...]
-"""The sections of a ring that kernels write to: header, sums, late, period, contact, stamps, ticks."""
 Limits = tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]
 """Settings and memory of a guard, and the arrays of a `BeaconMemory`."""
-Timed = Callable[[int, int], None]
-"""(at_ns, late_ns): does one tick, which began at at_ns, late_ns late."""
-FAR = HapticState((0.0, 0.0, 1.0))
-"""A place in free air, above any surface."""
+Timed = Callable[[int, int], None]  # (at_ns, late_ns): does one tick, which began at at_ns, late_ns late
+FAR = HapticState((0.0, 0.0, 1.0))  # a place in free air, above any surface
 
 
 class Loop(NamedTuple):

@@ -10,10 +10,10 @@ from ...data import Force, HapticState
 from ...plugins.interfaces import Touch
 from ..guard import layout
 
+# (state, seconds since the state before) -> the allowed force, and the sum of its `TickFlag`s.
 GuardedForce = Callable[[HapticState, float], tuple[Force, int]]
-"""(state, seconds since the state before) -> the allowed force, and the sum of its `TickFlag`s."""
+# (seconds since the tick before) -> the force of a tick without a fresh state, and its flags.
 HeldForce = Callable[[float], tuple[Force, int]]
-"""(seconds since the tick before) -> the force of a tick without a fresh state, and its flags."""
 
 
 def guard_touch(

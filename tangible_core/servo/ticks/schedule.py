@@ -4,8 +4,8 @@ import numpy as np
 
 from ..ring import COUNT, LAST, LEAD_NS, NEXT_NS, OVERRUNS, PERIOD_NS, SPINS, STOP, SWAP
 
+# Longest time for which a loop spins before a tick: 15 % of a period of 1 ms.
 MAX_LEAD_NS = 150_000
-"""Longest time for which a loop spins before a tick: 15 % of a period of 1 ms."""
 
 
 def going(header: np.ndarray) -> bool:

@@ -19,13 +19,12 @@ from ...scene.video.capture import VideoFrame, VideoFrames
 from .reliefs import FrameRelief, Reliefs
 
 log: logging.Logger = logging.getLogger(__name__)
+# Time to wait for a player to end; if it still computes then, it is abandoned.
 STOPPING_S = 0.5
-"""Time to wait for a player to end; if it still computes then, it is abandoned."""
 OPEN_AGAIN_S = 1.0
+# Niceness of the thread, so that the force loop's process goes first; on systems with a niceness per thread.
 NICENESS = 5
-"""Niceness of the thread, so that the force loop's process goes first; on systems with a niceness per thread."""
-MAX_WAIT_S = 0.01
-"""Longest time between two checks for a frame."""
+MAX_WAIT_S = 0.01  # longest time between two checks for a frame
 AGES = 1000
 
 

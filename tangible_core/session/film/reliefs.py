@@ -15,10 +15,10 @@ from ...scene.geometry import ValueRange
 from ...scene.video.capture import VideoFrame, VideoFrames
 from .steady import Steady
 
+# Interval, in frames, of measuring the scale; and step, in pixels, of the thinned map for it.
 LOOK_EVERY, LOOK_PIXELS = 8, 4
-"""Interval, in frames, of measuring the scale; and step, in pixels, of the thinned map for it."""
+# Time constant with which the range follows the frames: a relief of 10 mm then moves by 1 mm/s at most.
 ADAPTS_S = 10.0
-"""Time constant with which the range follows the frames: a relief of 10 mm then moves by 1 mm/s at most."""
 
 
 class FrameMaker(ABC):

@@ -7,14 +7,14 @@ from jaxtyping import Float32
 
 from ...data import DisparityMap
 
+# Weight of a new value in the average, where it differs little: after five frames, two thirds are new.
 AVERAGED = 0.2
-"""Weight of a new value in the average, where it differs little: after five frames, two thirds are new."""
+# Threshold between noise and change: pixels of the pictures, or a share of the range of a relative map.
 GATE_PX, GATE_SHARE = 1.0, 0.03
-"""Threshold between noise and change: pixels of the pictures, or a share of the range of a relative map."""
+# Greatest number of frames for which a value is kept while other values, or none, are seen in its place.
 MAX_DOUBTS, MAX_MISSING = 2, 5
-"""Greatest number of frames for which a value is kept while other values, or none, are seen in its place."""
+# Share of the known pixels above which a simultaneous change is a cut to another scene.
 CUT_SHARE = 0.5
-"""Share of the known pixels above which a simultaneous change is a cut to another scene."""
 
 
 class FilteredMap(NamedTuple):

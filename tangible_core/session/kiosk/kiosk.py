@@ -25,10 +25,9 @@ from ..recording import INTERRUPTED, STOPPED
 from ..recording.tick_file import ARRAYS
 from .rotation import Rotation, Slot
 
-ALIVE = "WATCHDOG=1"
-"""The message to systemd by which a program says that it does not hang."""
+ALIVE = "WATCHDOG=1"  # the message to systemd by which a program says that it does not hang
+# First and longest pause between two searches for a device; each is twice as long, as a search starts a process.
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 8.0
-"""First and longest pause between two searches for a device; each is twice as long, as a search starts a process."""
 
 
 @final
@@ -60,8 +59,7 @@ class DeviceWait:
         return reason
 
 
-PERIOD_S = 0.001
-"""Period of a loop, after which the last tick of a lost device is recorded."""
+PERIOD_S = 0.001  # period of a loop, after which the last tick of a lost device is recorded
 
 
 @final
@@ -114,8 +112,7 @@ class SessionTotals:
             self._row = None
 
 
-SHORTEST_S = 0.1
-"""Shortest remaining time for which a device is opened."""
+SHORTEST_S = 0.1  # shortest remaining time for which a device is opened
 
 
 def run_kiosk(

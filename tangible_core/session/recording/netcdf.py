@@ -10,14 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 Attributes = Mapping[str, str | np.ndarray]
-COUNT_AT = 4
-"""Offset of the number of records in the file, bytes."""
-MAX_RECORDS = 2**31 - 1
-"""Greatest number of records of the format."""
-DIMENSION, VARIABLE, ATTRIBUTE = 10, 11, 12
-"""Tags of the lists in a header."""
-CHAR, TYPES = 2, {">i4": 4, ">f4": 5, ">f8": 6}
-"""Tags of the types: of text, and of numbers by their dtype."""
+COUNT_AT = 4  # offset of the number of records in the file, bytes
+MAX_RECORDS = 2**31 - 1  # greatest number of records of the format
+DIMENSION, VARIABLE, ATTRIBUTE = 10, 11, 12  # tags of the lists in a header
+CHAR, TYPES = 2, {">i4": 4, ">f4": 5, ">f8": 6}  # tags of the types: of text, and of numbers by their dtype
 
 
 class Variable(NamedTuple):

@@ -80,10 +80,10 @@ def compare_replay(before: Recording, after: Recording) -> dict[str, float]:
     }
 
 
+# Greatest distance of two places that count as one: no hand finds a place again more exactly.
 NEAR_M = 1e-3
-"""Greatest distance of two places that count as one: no hand finds a place again more exactly."""
+# Greatest number of ticks that are compared; a longer recording is thinned evenly.
 MAX_COMPARED = 100_000
-"""Greatest number of ticks that are compared; a longer recording is thinned evenly."""
 SHOWN = ("ticks", "seconds", "contact_share", "median_contact_force_n", "peak_force_n", "work_j")
 
 

@@ -20,12 +20,11 @@ from ...files.writing import open_alone
 from . import netcdf
 from .netcdf import Variable
 
+# Frame of a surface at rest, in the file: the fill value, which netCDF's readers take for missing.
 STILL = -1
-"""Frame of a surface at rest, in the file: the fill value, which netCDF's readers take for missing."""
+# Reason of the end in a file that is not closed.
 CUT_OFF = "cut off: the recorder was ended before it could close the file"
-"""Reason of the end in a file that is not closed."""
-STOPPED_BYTES = 240
-"""Bytes that are reserved in the header for the reason of the end, which is written last."""
+STOPPED_BYTES = 240  # bytes that are reserved in the header for the reason of the end, which is written last
 FRAME = "metres; x right, y away from the user, z up; the origin is the centre of the picture on the base plane"
 """Description of the coordinates, an attribute of the file."""
 
@@ -140,8 +139,8 @@ ARRAYS: dict[str, int | slice] = {
     "frame": 16,
 }
 """Columns in a row of `TICK_COLUMNS` of each property of a recording and array of an .npz."""
+# Arrays that every recording has; the others may be unknown.
 NEEDED = ("time_s", "position_m", "velocity_m_per_s", "force_n")
-"""Arrays that every recording has; the others may be unknown."""
 UNKNOWN = {
     "late_s": 0.0,
     "proxy_x_m": np.nan,

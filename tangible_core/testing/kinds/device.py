@@ -145,5 +145,4 @@ def states_make_sense(method: HapticDevice) -> None:
 
 
 CHECKS: tuple[Check, ...] = checks_in(__name__)
-WITH_MOTORS = CHECKS[3:]
-"""The checks that open the device, most of them to push."""
+WITH_MOTORS = CHECKS[3:]  # the checks that open the device, most of them to push

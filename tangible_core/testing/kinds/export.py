@@ -24,8 +24,7 @@ from ..checks import Check, CheckFailure, checks_in, coarse_variants, demand, ex
 from .exporter_inputs import plain_work, works
 
 STEM = "still-life"
-ASPECTS = (1e-3, 0.7, 1.0, 4 / 3, 1e3)
-"""Widths over lengths of pictures that exporters must accept."""
+ASPECTS = (1e-3, 0.7, 1.0, 4 / 3, 1e3)  # widths over lengths of pictures that exporters must accept
 WIDTHS_M = (1e-6, 10.0)
 A_DAY_S = 86_400.0
 

@@ -13,10 +13,8 @@ from ...plugins.interfaces import Exporter
 ROWS, COLUMNS = 48, 64
 NAMES = ("wall", "table", "")
 HEIGHTS_M = (0.0, 0.004, 0.002)
-WIDE_M = 0.16
-"""Width of the picture if the exporter sets none, in metres."""
-FINE = 4
-"""Cells of the simplified parts per cell of the parts, along each axis."""
+WIDE_M = 0.16  # width of the picture if the exporter sets none, in metres
+FINE = 4  # cells of the simplified parts per cell of the parts, along each axis
 FELT = Material("felt", 300.0, 1.5, 0.5, 0.4, source="a guess")
 UNUSUAL = {
     "a title in other scripts": "Grüße — 東京 ♞ العربية",

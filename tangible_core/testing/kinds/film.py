@@ -16,8 +16,7 @@ from ..checks import Check, checks_in, demand, refuses
 PERIOD_S, FRAME_S, TICKS = 0.001, 1 / 30, 33
 WIDTH_M, MIDDLE_M = 0.08, 0.008
 STEP_N = 0.08
-HAND_M = (0.0031, -0.0052, 0.006)
-"""Position of a hand about two millimetres under the surfaces."""
+HAND_M = (0.0031, -0.0052, 0.006)  # position of a hand about two millimetres under the surfaces
 
 
 def film_begins_as_a_touch(method: ForceRenderer) -> None:

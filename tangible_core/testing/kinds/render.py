@@ -10,8 +10,8 @@ from ...plugins.interfaces import ForceRenderer
 from ..checks import Check, checks_in, demand
 from ..synthetic.scenes import KnownSurface, plane, ramp, sphere_cap
 
+# Points well inside the surfaces, on no line of symmetry but the first.
 PLACES_M = ((0.0, 0.0), (0.011, 0.007), (-0.017, 0.012), (0.006, -0.021), (-0.013, -0.009))
-"""Points well inside the surfaces, on no line of symmetry but the first."""
 DEPTHS_M = (0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005)
 
 

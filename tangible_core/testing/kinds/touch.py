@@ -13,10 +13,9 @@ from ..checks import Check, checks_in, demand
 from ..synthetic.scenes import KnownSurface, plane, sphere_cap
 
 PERIOD_S = 0.001
-ROUNDING_N_PER_M = 0.1
-"""Error of a stiffness that is measured by differences of forces."""
+ROUNDING_N_PER_M = 0.1  # error of a stiffness that is measured by differences of forces
+# A device like the Novint Falcon, in whose workspace the stiffness is measured.
 DEVICE = DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.1, 0.1), 1e-6, simulated=True)
-"""A device like the Novint Falcon, in whose workspace the stiffness is measured."""
 HOSTILE = (0.0, -0.0, 1e-310, 0.01, -0.03, 5.0, 1e30, -1e300, 1.7e308, np.inf, -np.inf, np.nan)
 
 

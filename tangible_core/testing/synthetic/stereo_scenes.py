@@ -11,8 +11,7 @@ from ...data import Record, Views
 
 SHORTEST_PX, LONGEST_PX, WAVES = 3.0, 48.0, 24
 GREY, CONTRAST = 127.5, 36.0
-ROUNDING_PX = 1e-9
-"""Difference of disparities below which a point is on the same surface."""
+ROUNDING_PX = 1e-9  # difference of disparities below which a point is on the same surface
 
 Points = Float64[np.ndarray, "..."]
 Region = Callable[[Points, Points], Bool[np.ndarray, "..."]]
@@ -26,10 +25,8 @@ class Surface:
 
     seed: int
     region: Region
-    disparity_px: OfPoints
-    """(x, y) -> d, larger is nearer."""
-    seen_at: OfPoints
-    """(x_r, y) -> the x with x - d(x, y) = x_r."""
+    disparity_px: OfPoints  # (x, y) -> d, larger is nearer
+    seen_at: OfPoints  # (x_r, y) -> the x with x - d(x, y) = x_r
 
 
 def slanted_plane(seed: int, region: Region, base_px: float, across: float = 0.0, down: float = 0.0) -> Surface:

@@ -21,10 +21,9 @@ Shape = tuple[int, int]
 Values = Float64[np.ndarray, "h w"]
 Family = Callable[[Shape, np.random.Generator], Values]
 
-GREY, CONTRAST = 128.0, 40.0
-"""Mean and standard deviation of every texture, in grey levels of 255."""
+GREY, CONTRAST = 128.0, 40.0  # mean and standard deviation of every texture, in grey levels of 255
+# Standard deviation of the Gaussian in which the local mean and contrast are measured.
 WINDOW_PX = 24.0
-"""Standard deviation of the Gaussian in which the local mean and contrast are measured."""
 
 
 def without_grey(texture: np.ndarray) -> Values:
@@ -165,12 +164,11 @@ def _distances(shape: Shape, random: np.random.Generator, pitch_px: float) -> tu
     return distances[:, 0].reshape(shape), distances[:, 1].reshape(shape)
 
 
-PHOTOGRAPHS = ("brick", "grass", "gravel")
-"""Pictures of scikit-image that are textures."""
+PHOTOGRAPHS = ("brick", "grass", "gravel")  # pictures of scikit-image that are textures
+# Amplitude and wavelength of the warp of borders, as shares of the root of the picture's area.
 WARP, WARP_SIGMA = 18 / 512, 28 / 512
-"""Amplitude and wavelength of the warp of borders, as shares of the root of the picture's area."""
+# Random candidates for each scattered point: more spread the points more evenly.
 CANDIDATES = 40
-"""Random candidates for each scattered point: more spread the points more evenly."""
 ENDINGS = frozenset((".png", ".jpg", ".jpeg", ".tif", ".tiff"))
 
 

@@ -17,8 +17,8 @@ from ..results import files, set_tables
 from ..results.regressions import Regression, Verdict
 from ..results.table import FRONT, Results, Table, tables
 
+# Headings of the columns that hold text; all others hold numbers.
 WORDS = {"method", "where", "what", "why", FRONT}
-"""Headings of the columns that hold text; all others hold numbers."""
 
 
 def as_document(outcome: ComparisonOutcome) -> dict[str, Any]:

@@ -16,12 +16,10 @@ from ..comparing import Step
 from ..measuring.plan import Measurement
 from ..measuring.run import Outlook
 
+# The number of calls in the processes of `measured.json`: a warm-up and three timed calls.
 CALLS = 4
-"""The number of calls in the processes of `measured.json`: a warm-up and three timed calls."""
-START_S = 1.5
-"""The time in which a process starts and imports, seconds."""
-UNKNOWN_S = 5.0
-"""The forecast for a process if nothing is known of its kind of method, seconds."""
+START_S = 1.5  # the time in which a process starts and imports, seconds
+UNKNOWN_S = 5.0  # the forecast for a process if nothing is known of its kind of method, seconds
 
 
 @dataclass(frozen=True)
@@ -29,8 +27,7 @@ class Forecast:
     """The expected times of several measurements, in order."""
 
     expected_s: tuple[float, ...]
-    has_times: bool = True
-    """False if errors alone are measured; for these no forecast is known."""
+    has_times: bool = True  # false if errors alone are measured; for these no forecast is known
 
     @property
     def whole_s(self) -> float:

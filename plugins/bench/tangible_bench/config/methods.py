@@ -22,8 +22,7 @@ class Entry:
 
     label: str
     choice: NamedMethod[Method]
-    fact_names: tuple[str, ...] = ()
-    """Options that are set for each scene, from known facts of the scene."""
+    fact_names: tuple[str, ...] = ()  # options that are set for each scene, from known facts of the scene
 
     def method_for(self, facts: Mapping[str, Any]) -> Method:
         """Return the method with the options that the facts of a scene give. Raises: ConfigError for a bad value."""

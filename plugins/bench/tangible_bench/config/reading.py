@@ -29,8 +29,7 @@ calls: 1
 """
 
 """The comparison file of a standard set for which the user has none."""
-NONE = "none"
-"""The name of the perturbation that leaves scenes as they are."""
+NONE = "none"  # the name of the perturbation that leaves scenes as they are
 UNCOMPARED = {
     "device": "devices are not compared; `tangible devices stress NAME` measures how fast one is",
     "export": "exporters are not compared, as there is no truth that files could be compared with",

@@ -14,8 +14,7 @@ class Cameras(NamedTuple):
     """The calibration of a pair and its disparity range, as far as they are known."""
 
     calibration: Calibration | None = None
-    most_px: float | None = None
-    """The largest disparity that methods are given, in pixels of the pictures."""
+    most_px: float | None = None  # the largest disparity that methods are given, in pixels of the pictures
 
 
 ReadCameras = Callable[[], Cameras]

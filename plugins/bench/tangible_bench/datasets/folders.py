@@ -10,18 +10,17 @@ from typing import NamedTuple
 from tangible_core.errors import ConfigError, PictureError, quoted
 from tangible_core.files import as_path
 
+# The number of levels of folders that are searched; no kit has more than six.
 MAX_DEPTH = 10
-"""The number of levels of folders that are searched; no kit has more than six."""
+# The number of names at which a search is refused, after some seconds; the largest kit has 60,000.
 MAX_ENTRIES = 500_000
-"""The number of names at which a search is refused, after some seconds; the largest kit has 60,000."""
 
 
 class Folder(NamedTuple):
     """A folder with the names of its files."""
 
     path: Path
-    within: tuple[str, ...]
-    """The names of the folders from the first one to this one."""
+    within: tuple[str, ...]  # the names of the folders from the first one to this one
     files: frozenset[str]
 
     def has(self, *names: str) -> bool:

@@ -101,8 +101,7 @@ def _grey_level_pairs(
 
 
 KITTI_SCALE = 256.0
-KITTI_END = "_10.png"
-"""The end of the name of a sequence's picture that has a truth."""
+KITTI_END = "_10.png"  # the end of the name of a sequence's picture that has a truth
 
 
 class _Layout(NamedTuple):

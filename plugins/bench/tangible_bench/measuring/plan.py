@@ -30,8 +30,7 @@ class Measurement:
 
     job: Job
     row: Row
-    place: Place
-    """The place of the method's class: the process must import it from the same place."""
+    place: Place  # the place of the method's class: the process must import it from the same place
 
 
 def measurements(comparison: Comparison) -> list[Measurement]:
@@ -53,8 +52,8 @@ def measurements(comparison: Comparison) -> list[Measurement]:
     return plan
 
 
+# The digest of a scene, and facts that methods may be given: option of a method -> value for this scene.
 KnownScene = tuple[str, Mapping[str, Any]]
-"""The digest of a scene, and facts that methods may be given: option of a method -> value for this scene."""
 
 
 def _known_scenes(comparison: Comparison) -> dict[str, KnownScene]:

@@ -25,16 +25,14 @@ from .worker import answer
 Report = Callable[[int, Row], None]
 """A callback with the number of a measurement, from 0, and its row: before it without a result, after it with one."""
 
-POLL_S = 0.1
-"""The interval at which a wait for a measurement checks for a stop, seconds."""
+POLL_S = 0.1  # the interval at which a wait for a measurement checks for a stop, seconds
 
 
 @dataclass(frozen=True)
 class Outlook:
     """The known rows of a comparison, and the measurements to do."""
 
-    current: dict[str, Row]
-    """The rows that need not be measured again, by key."""
+    current: dict[str, Row]  # the rows that need not be measured again, by key
     waiting: tuple[Measurement, ...]
 
 

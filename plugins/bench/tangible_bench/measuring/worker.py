@@ -29,25 +29,21 @@ class Job:
     use: str
     options: Mapping[str, Any]
     scene: Mapping[str, Any]
-    perturb: str
-    """The name of a perturbation, or `none`."""
+    perturb: str  # the name of a perturbation, or `none`
     value: float
     finishes: tuple[str, ...]
     warmups: int
-    calls: int
-    """The number of timed calls; 0 to measure errors alone."""
+    calls: int  # the number of timed calls; 0 to measure errors alone
 
 
 @dataclass(frozen=True)
 class Result:
     """The fields of a row that the process measures."""
 
-    seconds: float | None
-    """The time of one piece of work; None if nothing was timed."""
+    seconds: float | None  # the time of one piece of work; None if nothing was timed
     first_seconds: float | None
     peak_memory_bytes: int | None
-    measures: dict[str, float | None]
-    """The measures; None for a value that is not finite, as JSON has no NaN."""
+    measures: dict[str, float | None]  # the measures; None for a value that is not finite, as JSON has no NaN
 
 
 def measure(job: Job) -> Result:
@@ -78,8 +74,7 @@ def _errors(task: Task, job: Job, scene: Any, result: Any) -> dict[str, float | 
 
 class _Timing(NamedTuple):
     piece_s: float
-    whole_s: float
-    """The time of preparation and work together."""
+    whole_s: float  # the time of preparation and work together
     result: Any
 
 

@@ -12,8 +12,7 @@ from tangible_core.data import Force, HapticState
 
 Law = Callable[[HapticState], Force]
 RANGE_N_PER_M = (1.0, 1e6)
-CLOSE = 1e-3
-"""The relative accuracy of a limit."""
+CLOSE = 1e-3  # the relative accuracy of a limit
 TICKS = 4000
 DEPTH_M, PUSHED_M = 1e-3, 1e-4
 """The depth at which the handle rests, and its distance from there at the start, m."""
@@ -91,8 +90,7 @@ def _comes_to_rest(law: Law, height_m: float, delay_ticks: int, handle: Handle) 
     return swing[3] < swing[1]
 
 
-Vectors = Float64[np.ndarray, "n 3"]
-"""A vector at each tick."""
+Vectors = Float64[np.ndarray, "n 3"]  # a vector at each tick
 
 
 def force_steps(force_n: Vectors) -> dict[str, float]:

@@ -7,12 +7,11 @@ from jaxtyping import Bool, Float
 
 from tangible_core.metrics import absolute_error
 
-QUANTILES = (50, 90, 95, 99)
-"""The percentiles of the error in Middlebury's tables."""
+QUANTILES = (50, 90, 95, 99)  # the percentiles of the error in Middlebury's tables
+# KITTI's thresholds of an outlier, whose error is over both, in px and as a share of the true disparity.
 KITTI_PX, KITTI_SHARE = 3.0, 0.05
-"""KITTI's thresholds of an outlier, whose error is over both, in px and as a share of the true disparity."""
+# The step in disparity over which a surface hides another one: a smaller step is a slope.
 HIDING_STEP_PX = 1.0
-"""The step in disparity over which a surface hides another one: a smaller step is a slope."""
 
 
 def benchmark_errors(
@@ -72,8 +71,7 @@ def _percent(flags: np.ndarray) -> float:
     return 100 * float(flags.mean()) if flags.size else float("nan")
 
 
-WRONG_PX = 2.0
-"""The error above which a pixel is wrong, as for `bad2`."""
+WRONG_PX = 2.0  # the error above which a pixel is wrong, as for `bad2`
 LEFT = {removed: f"left_{removed}" for removed in range(0, 100, 5)}
 """The names of the figures by the per cent of a map that are removed."""
 LEFT_BY_ORACLE = {removed: f"{name}_by_oracle" for removed, name in LEFT.items()}

@@ -18,12 +18,11 @@ if TYPE_CHECKING:
     from ..tasks.task import Curve
     from .summary import Line
 
+# Marker shapes. Eight shapes times eight colours tell 64 methods apart, even in grey print.
 MARKERS = "osD^vPX*"
-"""Marker shapes. Eight shapes times eight colours tell 64 methods apart, even in grey print."""
 EDGE: dict[str, Any] = {"markeredgecolor": "#222222", "markeredgewidth": 0.5}
 """The outline of markers, without which pale colours are lost on white."""
-PANEL_IN = (6.4, 4.8)
-"""Width and height of a panel, inches."""
+PANEL_IN = (6.4, 4.8)  # width and height of a panel, inches
 DPI = 150
 
 

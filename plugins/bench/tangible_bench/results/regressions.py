@@ -10,12 +10,11 @@ from ..measuring.rows import Row
 from ..tasks.task import Measure, load_task
 from .summary import Cell, cells, median, spread
 
+# The number of standard deviations by which medians may differ and still count as the same.
 SPREADS = 3.0
-"""The number of standard deviations by which medians may differ and still count as the same."""
+# The shares by which time and memory may differ in any case, even where the repeats have no noise.
 TIME_FLOOR, MEMORY_FLOOR = 0.1, 0.05
-"""The shares by which time and memory may differ in any case, even where the repeats have no noise."""
-MEMORY_FLOOR_BYTES = 2**20
-"""The difference of memory that always counts as the same, bytes."""
+MEMORY_FLOOR_BYTES = 2**20  # the difference of memory that always counts as the same, bytes
 
 
 @dataclass(frozen=True)
@@ -28,8 +27,7 @@ class Regression:
     what: str
     before: float
     after: float
-    allowed: float
-    """The largest difference that would have counted as the same."""
+    allowed: float  # the largest difference that would have counted as the same
     why: str = ""
 
 

@@ -21,8 +21,7 @@ class Column(NamedTuple):
     heading: str
     measure: str
     digits: int = 2
-    weight: str = ""
-    """The measure by which a pair is weighted, a number of pixels; empty for equal weights."""
+    weight: str = ""  # the measure by which a pair is weighted, a number of pixels; empty for equal weights
 
 
 _FULL = (
@@ -43,6 +42,7 @@ _2012 = (
     Column("Avg-Noc", "average_px_noc"), Column("Avg-All", "average_px"), Column("Density", "density"),
 )  # fmt: skip
 
+# Name of a set -> its columns; methods are ranked by the first, unless RANKED names another.
 COLUMNS: Mapping[str, Sequence[Column]] = {
     **dict.fromkeys(("middlebury-2005", "middlebury-2006"), _FULL),
     **dict.fromkeys(("middlebury-2014", "middlebury-2021", "middlebury-eval3", "booster"), _FULL),
@@ -50,9 +50,8 @@ COLUMNS: Mapping[str, Sequence[Column]] = {
     "kitti-2012": _2012,
     "kitti-2015": (*_2015, Column("Density", "density", weight="pixels")),
 }
-"""Name of a set -> its columns; methods are ranked by the first, unless RANKED names another."""
+# Measures that rank methods on the benchmark's own page, where these are not bad 2 noc.
 RANKED = {"kitti-2015": "d1", "kitti-2012": "bad3_noc", "eth3d": "bad1_noc"}
-"""Measures that rank methods on the benchmark's own page, where these are not bad 2 noc."""
 
 
 @dataclass(frozen=True)

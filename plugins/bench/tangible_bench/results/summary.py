@@ -47,17 +47,12 @@ class Line:
 
     method: str
     perturb: str
-    seconds: float
-    """The mean of the scenes' medians."""
+    seconds: float  # the mean of the scenes' medians
     first_seconds: float
-    ratio: float
-    """The geometric mean of the scenes' median ratios, so that large scenes do not count for more."""
-    memory_bytes: float
-    """The largest memory of any scene."""
-    measures: Mapping[str, float]
-    """The means over the scenes, with equal weights."""
-    done: int
-    """The number of scenes with a result."""
+    ratio: float  # the geometric mean of the scenes' median ratios, so that large scenes do not count for more
+    memory_bytes: float  # the largest memory of any scene
+    measures: Mapping[str, float]  # the means over the scenes, with equal weights
+    done: int  # the number of scenes with a result
     scenes: int
 
 

@@ -9,8 +9,8 @@ from ..config.reading import NONE
 from ..tasks.task import Task
 from .summary import Cell, Line, lines
 
+# The mark of a Pareto-optimal method: no other method beats it in time and error at once.
 FRONT = "*"
-"""The mark of a Pareto-optimal method: no other method beats it in time and error at once."""
 
 
 def front(points: Sequence[tuple[float, ...]]) -> list[int]:

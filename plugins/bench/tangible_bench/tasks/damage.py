@@ -79,8 +79,7 @@ def round_levels(values: np.ndarray) -> Bytes:
     return np.rint(np.clip(values, 0, 255)).astype(np.uint8)
 
 
-Places = Float64[np.ndarray, "2 h w"]
-"""The (row, column) in the scene of each new pixel."""
+Places = Float64[np.ndarray, "2 h w"]  # the (row, column) in the scene of each new pixel
 
 
 def quarter(scene: KnownSegments, turns: float) -> KnownSegments:

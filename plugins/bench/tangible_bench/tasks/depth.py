@@ -21,8 +21,8 @@ from .task import Curve, Measure, Perturbation, Task
 
 NOC, FULL = "_noc", "_full"
 STEP_PX = 16
+# The range for a pair without known truth and range: the largest disparity in KITTI's files, pixels.
 UNKNOWN_RANGE_PX = 256
-"""The range for a pair without known truth and range: the largest disparity in KITTI's files, pixels."""
 Pair = KnownPair | MarkedPair
 QUANTILES = (50, 90, 95, 99)
 IN_PIXELS = (

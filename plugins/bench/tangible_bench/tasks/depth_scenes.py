@@ -158,8 +158,7 @@ def _known_pair(scene: Scene, name: str, zero_is_unknown: bool) -> KnownPair:
     return KnownPair(scene.views, truth_px, visible_pixels(truth_px))
 
 
-_OF_SETS = ("resolution", "split", "variant")
-"""Options that only standard sets have."""
+_OF_SETS = ("resolution", "split", "variant")  # options that only standard sets have
 
 
 def _match(folder: Path, globs: PairGlobs) -> dict[str, StandardPair]:

@@ -102,10 +102,9 @@ def _read_path(file: Path) -> tuple[Float64[np.ndarray, "n 3"], float]:
 
 
 STIFFNESS = "stiffness_n_per_m"
-STIFFNESS_N_PER_M = 800.0
-"""The stiffness of the true spring for force laws without such an option."""
+STIFFNESS_N_PER_M = 800.0  # the stiffness of the true spring for force laws without such an option
+# The delays of a simulated device, in ticks, for which stiffness limits are measured.
 DELAYS = (0, 1, 2)
-"""The delays of a simulated device, in ticks, for which stiffness limits are measured."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,19 +10,15 @@ from tangible_core.data import DisparityMap
 
 from .span import UNKNOWN
 
+# Largest difference, in sixteenths of a pixel, at which a final value still counts as its match.
 AGREEMENT = 16
-"""Largest difference, in sixteenths of a pixel, at which a final value still counts as its match."""
-FLAT_REACH = 2
-"""Radius, in pixels, of the window of `flat_pixels`: that of a census code."""
+FLAT_REACH = 2  # radius, in pixels, of the window of `flat_pixels`: that of a census code
 MIN_MATCHED = 0.2
-FILLED = 0.1
-"""Highest confidence of a value that comes from neighbours."""
-STEP_REACH = 3
-"""Radius, in pixels, of the window in which a depth step lowers the confidence."""
+FILLED = 0.1  # highest confidence of a value that comes from neighbours
+STEP_REACH = 3  # radius, in pixels, of the window in which a depth step lowers the confidence
+# Radius, in pixels, of the window in which pixels without a match lower the confidence.
 GAP_REACH = 5
-"""Radius, in pixels, of the window in which pixels without a match lower the confidence."""
-SHARE_LOST = 0.6
-"""Share of the confidence lost where no pixel of the window was matched."""
+SHARE_LOST = 0.6  # share of the confidence lost where no pixel of the window was matched
 
 Table = tuple[tuple[float, ...], tuple[float, ...]]
 OF_FILLED: Table = (

@@ -14,17 +14,14 @@ MEDIAN_REACH = 2
 NEARBY = 1
 VOTERS = 4
 STRIDE = 2
-JUMP = 24
-"""Smallest depth step of an edge, in sixteenths of a pixel."""
-GREY_REACH = 24
-"""Grey difference, in levels, at which a vote has no weight left."""
+JUMP = 24  # smallest depth step of an edge, in sixteenths of a pixel
+GREY_REACH = 24  # grey difference, in levels, at which a vote has no weight left
+# SIMD lanes for a row of the voting window, at least as many as it has pixels.
 LANES = 16
-"""SIMD lanes for a row of the voting window, at least as many as it has pixels."""
 VOTING = np.array([k <= 2 * VOTERS and k % STRIDE == 0 for k in range(LANES)], np.uint16)
-ZERO_RANK = np.uint16(32768)
-"""Offset that makes disparities unsigned and keeps their order."""
+ZERO_RANK = np.uint16(32768)  # offset that makes disparities unsigned and keeps their order
+# Grey level of pixels beyond the picture: too far from any real one to have a vote.
 NO_GREY = 1000
-"""Grey level of pixels beyond the picture: too far from any real one to have a vote."""
 
 
 def median(disparity: Int16[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:

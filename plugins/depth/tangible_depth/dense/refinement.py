@@ -15,8 +15,7 @@ from .filling.gaps import Effort, fill_gaps
 from .span import UNKNOWN
 from .speckles import Specks, remove_specks, slices_with_margin
 
-APART = 16
-"""Largest difference, in sixteenths of a pixel, of disparities that agree."""
+APART = 16  # largest difference, in sixteenths of a pixel, of disparities that agree
 
 
 def reconcile(matches: Int16[np.ndarray, "h w"], from_right: Int16[np.ndarray, "h w"]) -> Int16[np.ndarray, "h w"]:

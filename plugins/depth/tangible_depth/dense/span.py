@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+# Value of an unknown disparity in int16 maps of sixteenths of a pixel: the lowest there is, below any real one.
 UNKNOWN = np.int16(-32768)
-"""Value of an unknown disparity in int16 maps of sixteenths of a pixel: the lowest there is, below any real one."""
 
 
 class Span(NamedTuple):

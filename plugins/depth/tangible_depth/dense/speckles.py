@@ -19,10 +19,9 @@ def slices_with_margin(y0: int, y1: int, rows: int) -> tuple[slice, slice]:
 
 
 ISLAND_PX = 60
-REACH = 20
-"""Radius, in pixels, of the window in which the share of matched pixels is counted."""
+REACH = 20  # radius, in pixels, of the window in which the share of matched pixels is counted
+# Shares of matched pixels in the window below which few, and hardly any, count as matched.
 FEW, HARDLY_ANY = 0.5, 0.2
-"""Shares of matched pixels in the window below which few, and hardly any, count as matched."""
 
 
 class Specks(NamedTuple):

@@ -21,29 +21,24 @@ from ..sgm.strips import WARM_ROWS, StripMatches, sweep, unknown_matches
 
 log: logging.Logger = logging.getLogger(__name__)
 NOISE = 0.20
+# Loss of matches by order and levels from which the order alone loses more than NOISE too: it is not tried.
 FAR_TOO_NOISY = 0.40
-"""Loss of matches by order and levels from which the order alone loses more than NOISE too: it is not tried."""
+# Loss, and share of differing bits and levels, from which levels mislead: other exposure, or noise.
 LEVELS_LOSS, LEVELS_DIFFERING = 0.06, 0.265
-"""Loss, and share of differing bits and levels, from which levels mislead: other exposure, or noise."""
 LEVELS_APART = 0.6
 """Share of matches whose levels differ by the most that counts from which the views were exposed differently."""
 EVERY_ROW = 16
-MAX_ROW_OFFSET_PX = 1.0
-"""Largest row offset, in pixels, that the trial measures and corrects."""
-PROBE_ROWS = 64
-"""Rows of a strip that a trial matches."""
-Rows = Sequence[tuple[int, int]]
-"""First and last + 1 row of strips."""
+MAX_ROW_OFFSET_PX = 1.0  # largest row offset, in pixels, that the trial measures and corrects
+PROBE_ROWS = 64  # rows of a strip that a trial matches
+Rows = Sequence[tuple[int, int]]  # first and last + 1 row of strips
 
 
 class _Spending(NamedTuple):
     """The thresholds of an effort for noise, and the rows that it spends on seams."""
 
-    speckle_threshold: float
-    """Loss from which `sharp` gives way to a cost for noise."""
+    speckle_threshold: float  # loss from which `sharp` gives way to a cost for noise
     differing_threshold: float
-    warm_rows: int
-    """Rows by which the paths of a strip begin early: the more, the less a seam is seen."""
+    warm_rows: int  # rows by which the paths of a strip begin early: the more, the less a seam is seen
 
 
 SPENDING: dict[Effort, _Spending] = {
@@ -55,8 +50,7 @@ SPENDING: dict[Effort, _Spending] = {
 class Fixed(NamedTuple):
     """What the options fix; a trial finds the rest."""
 
-    cost: Cost | None
-    """Cost of the matching; None for the one that a trial chooses."""
+    cost: Cost | None  # cost of the matching; None for the one that a trial chooses
     check_tolerance: float
     realign_rows: bool
     effort: Effort

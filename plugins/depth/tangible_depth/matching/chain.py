@@ -26,22 +26,19 @@ log: logging.Logger = logging.getLogger(__name__)
 Matcher = Callable[[Pair, Span], DenseMatches]
 """A method that matches a pair along its rows over a range of disparities."""
 Rectify = Literal["auto", "never"]
-LOW_CONFIDENCE = 0.15
-"""Confidence below which a pixel was filled, not matched."""
+LOW_CONFIDENCE = 0.15  # confidence below which a pixel was filled, not matched
+# Share of pixels of low confidence above which the pair is tried again with rectification.
 MAX_LOW_CONFIDENCE = 0.5
-"""Share of pixels of low confidence above which the pair is tried again with rectification."""
 
 
 class Search(NamedTuple):
     """The options of all dense matchers, and the steps that a matcher takes itself."""
 
     least: int | Auto
-    most: int | Auto
-    """Upper end of the search range, exclusive, pixels."""
+    most: int | Auto  # upper end of the search range, exclusive, pixels
     rectify: Rectify
     fill: bool
-    most_row_offset_px: float = 0.0
-    """Largest constant row offset that the matcher corrects itself, pixels."""
+    most_row_offset_px: float = 0.0  # largest constant row offset that the matcher corrects itself, pixels
     skip_identical: bool = False
 
 
@@ -112,10 +109,10 @@ def match_in_order(pair: Pair, span: Span, fill: bool, match: Matcher) -> Dispar
     return DisparityMap(-disparity.disparity_px[:, ::-1], disparity.confidence[:, ::-1])
 
 
+# Frames after which the search range is estimated again, so that it follows objects that come nearer.
 SEARCH_EVERY = 30
-"""Frames after which the search range is estimated again, so that it follows objects that come nearer."""
+# Latest estimates of the range that count together, so that the range of a bad frame is dropped later.
 SEARCHES = 8
-"""Latest estimates of the range that count together, so that the range of a bad frame is dropped later."""
 
 
 @final

@@ -20,10 +20,10 @@ from .adaptive import Fixed, match
 log: logging.Logger = logging.getLogger(__name__)
 CHECK_TOLERANCE = {"soft": 1.08, "strict": 1.0}
 """Factor on the best cost of the right pixel that a match may have, by the option `check`."""
+# Cost of a preview: at half the size noise is averaged away, and surfaces end within fewer pixels.
 HALVED = SHARP._replace(penalties=Penalties(np.uint8(8), np.uint8(8), p2_by_grey_step(40, 10, 2.0)))
-"""Cost of a preview: at half the size noise is averaged away, and surfaces end within fewer pixels."""
+# Largest number of disparities that `resolution: auto` matches at full size; wider ranges hardly need it.
 MAX_AT_FULL_SIZE = 256
-"""Largest number of disparities that `resolution: auto` matches at full size; wider ranges hardly need it."""
 
 
 class Scaling(NamedTuple):

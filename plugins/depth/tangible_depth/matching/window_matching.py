@@ -16,8 +16,7 @@ from ..simd.lanes import Lanes
 from ..windows.correlation import correlate_strip
 
 MIN_VARIANCE = 1.0
-SSD_SCALE = 400.0
-"""Mean squared difference of grey levels at which the confidence has fallen to 1/e."""
+SSD_SCALE = 400.0  # mean squared difference of grey levels at which the confidence has fallen to 1/e
 
 Trust = Callable[[Float32[np.ndarray, "rows w"]], Float32[np.ndarray, "rows w"]]
 

@@ -14,14 +14,11 @@ from ..sparse.matches import Matches
 from .projective import Plane, homogeneous, product, transform
 
 Degeneracy = Literal["not finite", "too few", "duplicate", "collinear", "homography", "outliers"]
+# An estimator of F: matches, a weight for each match's equation -> F, as `eight_point`.
 Fit = Callable[[Matches, np.ndarray | None], Float64[np.ndarray, "3 3"]]
-"""An estimator of F: matches, a weight for each match's equation -> F, as `eight_point`."""
-CHANCE_SCENES = 1000
-"""Scenes of which chance may produce a parallax in one."""
-CELL_PX = 6
-"""Side of the cells, in pixels, in which matches off a plane count once."""
-MAX_SAMPLED = 100
-"""Largest number of matches off a plane whose pairs are tried for an epipole."""
+CHANCE_SCENES = 1000  # scenes of which chance may produce a parallax in one
+CELL_PX = 6  # side of the cells, in pixels, in which matches off a plane count once
+MAX_SAMPLED = 100  # largest number of matches off a plane whose pairs are tried for an epipole
 FEWEST = 8
 
 

@@ -5,16 +5,12 @@ from collections.abc import Callable
 import numpy as np
 from jaxtyping import Float64
 
-NOISE_PX = 0.3
-"""Standard deviation of a coordinate of a match, in pixels."""
+NOISE_PX = 0.3  # standard deviation of a coordinate of a match, in pixels
 _LOG_2 = 0.6931471805599453
-_ROUNDS, _TRIES = 80, 15
-"""Maximum number of steps of a fit, and of damping factors tried for a step."""
+_ROUNDS, _TRIES = 80, 15  # maximum number of steps of a fit, and of damping factors tried for a step
 _STEP = 1e-5
-_STILL = 1e-5
-"""Step at which the fit has converged, in units of each parameter's scale."""
-_MIN_GAIN = 0.05
-"""Lowest share of its expected gain with which a step is accepted."""
+_STILL = 1e-5  # step at which the fit has converged, in units of each parameter's scale
+_MIN_GAIN = 0.05  # lowest share of its expected gain with which a step is accepted
 
 
 def robust_pull(offset_px: Float64[np.ndarray, "n"]) -> Float64[np.ndarray, "n"]:

@@ -11,8 +11,8 @@ from .least_squares import least_squares, robust_pull
 
 FOCAL_SPREAD, ZOOM_SPREAD, TURN_SPREAD = 0.35, 0.2, 0.5
 """Standard deviations of the log focal length in longer sides, of the log zoom, and of each angle in radians."""
+# Degrees of freedom of a homography beyond those of a rotating, zooming camera of unknown focal length: 8 - 5.
 FREE_NUMBERS = 3
-"""Degrees of freedom of a homography beyond those of a rotating, zooming camera of unknown focal length: 8 - 5."""
 
 
 def homogeneous(points_px: np.ndarray) -> Float64[np.ndarray, "n 3"]:

@@ -18,20 +18,19 @@ from .rectifying_rotation import MIN_TRUSTED, RectificationError, find_rotation,
 
 logger: logging.Logger = logging.getLogger(__name__)
 
+# Fewest matches that decide about a pair; with fewer, it is taken as rectified.
 FEWEST_TO_TELL = 20
-"""Fewest matches that decide about a pair; with fewer, it is taken as rectified."""
+# Smallest gain in median row offset, in pixels, above the noise of the matches; for less, warping would only blur.
 MIN_GAIN_PX = 0.2
-"""Smallest gain in median row offset, in pixels, above the noise of the matches; for less, warping would only blur."""
+# Share of the matches on one plane from which more matches off the plane are searched.
 MOSTLY = 0.8
-"""Share of the matches on one plane from which more matches off the plane are searched."""
+# Nearest matches of a match, and how many must have a similar disparity for it to widen the range.
 NEIGHBOURS, MIN_LIKE = 8, 4
-"""Nearest matches of a match, and how many must have a similar disparity for it to widen the range."""
-STRAY = 0.5
-"""Percentage of similar matches at either end that is dropped as stray."""
+STRAY = 0.5  # percentage of similar matches at either end that is dropped as stray
 LIKE_PX, LIKE_SLOPE = 8.0, 0.1
 """Largest difference of similar disparities, in pixels, and its growth per pixel between the matches."""
+# Disparity, in pixels, below which 95 % of the matches of exchanged views lie: parallel cameras give none below 0.
 EXCHANGED_PX = -2.0
-"""Disparity, in pixels, below which 95 % of the matches of exchanged views lie: parallel cameras give none below 0."""
 _VERGED_OR_EXCHANGED = (
     "every disparity is negative: the cameras look towards each other, or the views are exchanged (left is right); "
     "if near objects come out far, exchange them"

@@ -13,31 +13,27 @@ from .fundamental import DegenerateMatches, Fit, Fundamental, best_plane, robust
 from .least_squares import least_squares, robust_pull
 from .projective import Plane, product, transform, undistort
 
+# Fewest inliers of a trusted geometry: a few wrong matches agree on one by chance.
 MIN_TRUSTED = 30
-"""Fewest inliers of a trusted geometry: a few wrong matches agree on one by chance."""
 PARTS = 4
-MIN_PARTS = 5
-"""Fewest of the PARTS x PARTS parts that must contain inliers."""
+MIN_PARTS = 5  # fewest of the PARTS x PARTS parts that must contain inliers
+# Lowest share of held-out matches that a geometry must explain, relative to its own matches.
 MIN_KEPT = 0.5
-"""Lowest share of held-out matches that a geometry must explain, relative to its own matches."""
-MIN_MORE = 0.05
-"""Smallest gain in held-out matches on their rows with which lens distortion is accepted."""
+MIN_MORE = 0.05  # smallest gain in held-out matches on their rows with which lens distortion is accepted
+# Distortion coefficients to start from, as a fit from 0 misses strong ones. The first three detect distortion.
 RADIALS = (0.0, -0.02, 0.02, -0.04, 0.04, -0.08, 0.08, -0.14, 0.14, -0.22)
-"""Distortion coefficients to start from, as a fit from 0 misses strong ones. The first three detect distortion."""
-FINE = 0.5
-"""Share of the threshold used to compare distortions."""
+FINE = 0.5  # share of the threshold used to compare distortions
 MAX_RADIAL = 0.3
+# Largest number of matches that lenses are fitted to; more do not improve the fit.
 MAX_FITTED = 800
-"""Largest number of matches that lenses are fitted to; more do not improve the fit."""
+# Standard deviations of left roll and tilt; right roll, tilts along x and y, log scale and shift, about the start.
 _PRIOR = np.array([0.5, 0.2, 0.5, 0.2, 0.2, 0.5, 0.5])
-"""Standard deviations of left roll and tilt; right roll, tilts along x and y, log scale and shift, about the start."""
 _RADIAL_PRIOR = np.array([0.1, 0.1])
+# Step to which the start's roll is rounded, in radians, as linear algebra varies in its last bits by processor.
 _START = 2.0**-10
-"""Step to which the start's roll is rounded, in radians, as linear algebra varies in its last bits by processor."""
-_FOUND = 2.0**-20
-"""Step to which the parameters are rounded, under a thousandth of a pixel."""
+_FOUND = 2.0**-20  # step to which the parameters are rounded, under a thousandth of a pixel
+# Step to which sines and the like are rounded, as the C library varies in their last bits by processor.
 _SINE = 2.0**-32
-"""Step to which sines and the like are rounded, as the C library varies in their last bits by processor."""
 _STILL_PRIOR = np.array([1e-9, 1e-9, 0.5, 0.2, 0.2, 0.5, 0.5])
 
 

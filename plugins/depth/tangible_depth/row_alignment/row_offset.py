@@ -9,20 +9,15 @@ from ..dense.span import UNKNOWN
 from ..search.pairs import Pair
 from ..windows.correlation import parabola
 
-CELL_PX = 12
-"""Width of a cell, in columns; the strongest edge of a cell has a vote."""
-NEAR_PX = 1
-"""Rows above and below a given row in which its edges are sought."""
-MAX_POINTS = 250
-"""Largest number of edges that vote, for speed."""
+CELL_PX = 12  # width of a cell, in columns; the strongest edge of a cell has a vote
+NEAR_PX = 1  # rows above and below a given row in which its edges are sought
+MAX_POINTS = 250  # largest number of edges that vote, for speed
 MIN_VOTES = 20
 MIN_ROW_OFFSET_PX = 0.3
-MIN_EDGE = 40
-"""Smallest Sobel response across rows, in grey levels, of a pixel that determines its row."""
-RADIUS, REACH = 3, 2
-"""Radius of the correlation window, and rows tried up and down, in pixels."""
+MIN_EDGE = 40  # smallest Sobel response across rows, in grey levels, of a pixel that determines its row
+RADIUS, REACH = 3, 2  # radius of the correlation window, and rows tried up and down, in pixels
+# Lowest correlation of a match, and smallest curvature of its peak, which a vote needs.
 MIN_CORRELATION, MIN_BEND = 0.7, 0.02
-"""Lowest correlation of a match, and smallest curvature of its peak, which a vote needs."""
 
 
 def row_votes(

@@ -16,16 +16,14 @@ from .sparse_sweep import sweep_columns
 
 COUNT = 16
 FINE_WIDTH = 1280
+# Largest number of disparities tried in a band: of more, columns are averaged.
 MAX_DISPARITIES = 256
-"""Largest number of disparities tried in a band: of more, columns are averaged."""
-HIGH_PX = 3
-"""Rows of the picture averaged into one row of a band."""
-TALL = 2 * RADIUS + 1
-"""Rows of a band: the window of a census code."""
+HIGH_PX = 3  # rows of the picture averaged into one row of a band
+TALL = 2 * RADIUS + 1  # rows of a band: the window of a census code
 STRIDE = 3
 MIN_STRIDDEN = 200
+# Largest speckle, in pixels of the bands: thin near objects have hardly more in so few rows.
 LARGEST_SPECK = 8
-"""Largest speckle, in pixels of the bands: thin near objects have hardly more in so few rows."""
 
 
 class Bands(NamedTuple):

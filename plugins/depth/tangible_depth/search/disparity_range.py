@@ -14,16 +14,15 @@ from .bands import FINE_WIDTH, Bands, match_bands
 from .pairs import Pair
 
 FIRST_WIDTH = 80
+# Largest disparity of either sign, as a share of the picture's width, unless something stands still nearer.
 REACH = 0.36
-"""Largest disparity of either sign, as a share of the picture's width, unless something stands still nearer."""
+# The same for still nearer things, and the smallest share of matches beyond REACH that shows such a thing.
 FAR_REACH, MIN_REVEALED = 0.8, 0.015
-"""The same for still nearer things, and the smallest share of matches beyond REACH that shows such a thing."""
+# Smallest range of the second copy, as a share of the width: it shows objects too thin for the first one.
 THIN_REACH = 1 / 8
-"""Smallest range of the second copy, as a share of the width: it shows objects too thin for the first one."""
-FRINGE = 0.0005
-"""Share of the matches dropped at either end as errors."""
+FRINGE = 0.0005  # share of the matches dropped at either end as errors
+# Loss (share of speckles) from which the first copy, which averages noise away, counts as well.
 NOISY = 0.6
-"""Loss (share of speckles) from which the first copy, which averages noise away, counts as well."""
 FIRST_MARGIN, MARGIN = 1, 2
 """Margins added to the range of the first and second copy at either end, in pixels of the copy."""
 
@@ -89,11 +88,11 @@ def _range_of_bands(pair: Pair, span: Span, width: int, margin: int) -> RangeEst
 
 log: logging.Logger = logging.getLogger(__name__)
 Auto = Literal["auto"]
+# Lowest share of the bands' matches in a step beyond verified ones that extends the range by that step.
 MIN_BEYOND = 0.01
-"""Lowest share of the bands' matches in a step beyond verified ones that extends the range by that step."""
 MIN_STEP_PX = 8
+# Disparities up to which the range of a rectified pair is extended to all lanes: a larger one shrinks the pictures.
 MAX_FILLED = 256
-"""Disparities up to which the range of a rectified pair is extended to all lanes: a larger one shrinks the pictures."""
 
 ALL_NEGATIVE = "every disparity is negative, as of exchanged views (left is right) and of pictures that were shifted"
 
@@ -103,8 +102,7 @@ class SearchRange(NamedTuple):
 
     span: Span
     bands: Bands | None
-    notes: tuple[tuple[str, int], ...] = ()
-    """Messages about the estimate, each with its log level."""
+    notes: tuple[tuple[str, int], ...] = ()  # messages about the estimate, each with its log level
 
     def log_notes(self) -> None:
         """Log the notes. Call it for the pair that is matched, not for one that turns out to need rectification."""

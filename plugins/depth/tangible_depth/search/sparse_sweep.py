@@ -13,8 +13,8 @@ from ..sgm.strips import WORST, begin_path, equiangular, shift_codes
 from ..simd.lane_reductions import first_equal, first_lane, lowest
 from ..simd.lanes import Lanes, load, minimum, saturating_add, shift_down, splat, store, width
 
+# Fewest lanes; more are a power of two, so that few kernels are compiled, and larger disparities fill them.
 FEWEST_LANES = 64
-"""Fewest lanes; more are a power of two, so that few kernels are compiled, and larger disparities fill them."""
 
 
 def sweep_columns(

@@ -14,8 +14,8 @@ from ..dense.speckles import Specks
 RADIUS = 2
 PLANES = 3
 BITS = 8 * PLANES
+# Columns of a block: rows are padded to whole blocks, so that vector code needs no remainder loop.
 BLOCK = 64
-"""Columns of a block: rows are padded to whole blocks, so that vector code needs no remainder loop."""
 OFFSETS = np.array([(dy, dx) for dy in range(5) for dx in range(5) if (dy, dx) != (RADIUS, RADIUS)])
 
 
@@ -99,15 +99,15 @@ def p2_by_grey_step(flat: int, edge: int, slope: float) -> UInt8[np.ndarray, "25
     return np.clip(flat - slope * np.arange(256), edge, flat).astype(np.uint8)
 
 
+# Census of the original picture: the most precise on clean pictures.
 SHARP = Cost(
     "sharp",
     BITS,
     census,
     Penalties(np.uint8(10), np.uint8(8), p2_by_grey_step(50, 12, 1.5)),
 )
-"""Census of the original picture: the most precise on clean pictures."""
-MAX_LEVEL = 4
-"""Largest value that the difference of two halved grey levels counts, in bits."""
+MAX_LEVEL = 4  # largest value that the difference of two halved grey levels counts, in bits
+# Census and grey levels: more precise still, if both views have the same exposure.
 LEVELS = Cost(
     "levels",
     BITS + MAX_LEVEL,
@@ -115,7 +115,6 @@ LEVELS = Cost(
     Penalties(np.uint8(10), np.uint8(9), p2_by_grey_step(40, 12, 2.0)),
     MAX_LEVEL,
 )
-"""Census and grey levels: more precise still, if both views have the same exposure."""
 NOISY = Specks(among_many_px=30, alone_px=200)
 LIGHT = Cost(
     "light",

@@ -30,8 +30,7 @@ class Limits(NamedTuple):
     most: np.ndarray
     least: np.ndarray
     unused: np.ndarray
-    free: tuple[int, int]
-    """Columns first..last - 1, at which only unused lanes have a limit."""
+    free: tuple[int, int]  # columns first..last - 1, at which only unused lanes have a limit
 
 
 def row_limits(n: int, w: int, span: Span, neutral: np.uint8) -> Limits:

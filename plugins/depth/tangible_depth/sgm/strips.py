@@ -15,8 +15,7 @@ from ..simd.lanes import Lanes, load, minimum, saturating_add, shift_down, splat
 from .costs import Penalties
 from .paths import add_horizontal_paths, jump_penalties, jump_penalties_along, row_limits, step_vertical_path
 
-WORST = np.uint8(255)
-"""Sum of a disparity that is never accepted."""
+WORST = np.uint8(255)  # sum of a disparity that is never accepted
 
 
 def scratch(rows: int, w: int, n: int, planes: int) -> tuple[np.ndarray, ...]:
@@ -159,14 +158,12 @@ def sweep_strip(
 
 
 ROWS = 128
+# Rows before a strip at which its paths start: rows farther away hardly affect it.
 WARM_ROWS = 16
-"""Rows before a strip at which its paths start: rows farther away hardly affect it."""
-VOLUME_BYTES = 256 << 20
-"""Largest memory for the cost volumes of all threads together, bytes."""
+VOLUME_BYTES = 256 << 20  # largest memory for the cost volumes of all threads together, bytes
+# Fewest strips in memory at once; more run in parallel only if they are small.
 AT_ONCE = 4
-"""Fewest strips in memory at once; more run in parallel only if they are small."""
-MAX_LANES = 512
-"""Largest number of SIMD lanes, so of disparities at full size."""
+MAX_LANES = 512  # largest number of SIMD lanes, so of disparities at full size
 
 
 class StripMatches(NamedTuple):

@@ -7,8 +7,8 @@ from llvmlite import ir
 from numba import types
 from numba.extending import NativeValue, intrinsic, models, register_model, typeof_impl, unbox
 
+# Decorator of an intrinsic; callers omit its first parameter, the typing context, which type checkers cannot know.
 operation: Any = intrinsic
-"""Decorator of an intrinsic; callers omit its first parameter, the typing context, which type checkers cannot know."""
 INDEX: Any = ir.IntType(32)
 WORD: Any = ir.IntType(64)
 
@@ -147,15 +147,15 @@ def _from_intrinsic(name: str) -> Any:
     return _pairwise(lambda b, vec, x, y: emit_call(b, f"llvm.{name}.{vec.mangled}", vec.llvm, [x, y]))
 
 
+# Sum that saturates, 250 + 10 = 255, so that high costs stay high.
 saturating_add: Any = _from_intrinsic("uadd.sat")
-"""Sum that saturates, 250 + 10 = 255, so that high costs stay high."""
 minimum: Any = _from_intrinsic("umin")
 maximum: Any = _from_intrinsic("umax")
 add: Any = _pairwise(lambda b, vec, x, y: b.fadd(x, y) if vec.real else b.add(x, y))
 subtract: Any = _pairwise(lambda b, vec, x, y: b.fsub(x, y) if vec.real else b.sub(x, y))
 multiply: Any = _pairwise(lambda b, vec, x, y: b.fmul(x, y) if vec.real else b.mul(x, y))
+# Maximum of floats without NaN, lane by lane.
 larger: Any = _pairwise(lambda b, vec, x, y: b.select(b.fcmp_ordered(">", x, y), x, y))
-"""Maximum of floats without NaN, lane by lane."""
 
 
 def shuffle(b: Any, vector: Any, other: Any, lanes: Sequence[int]) -> Any:

@@ -7,8 +7,8 @@ from jaxtyping import Float32
 from tangible_core.data import DisparityMap, to_rgb8
 from tangible_core.runtime import plain_opencv
 
+# Distance of a match from its neighbours' mean, in pixels, above which it is dropped.
 STRAY_PX = 2.0
-"""Distance of a match from its neighbours' mean, in pixels, above which it is dropped."""
 
 
 def assemble(

@@ -13,14 +13,13 @@ from .harris import corners, harris_response, least_response
 MAX_PIXELS = 2_000_000
 """Largest picture for SIFT, in pixels; larger ones are reduced, as it needs about 300 bytes a pixel."""
 FLOW_PIXELS = 60_000
+# Smallest norm of a window minus its mean, white being 1: a smaller one is rounding error.
 FLAT = 1e-4
-"""Smallest norm of a window minus its mean, white being 1: a smaller one is rounding error."""
+# Steps per unit to which normalised windows are rounded before they are correlated all against all.
 STEPS = 2.0**24
-"""Steps per unit to which normalised windows are rounded before they are correlated all against all."""
 WINDOW_PX = 7
 MAX_CORNERS = 1000
-MIN_ALIKE = 0.7
-"""Lowest correlation of windows at the same place that lie on the plane."""
+MIN_ALIKE = 0.7  # lowest correlation of windows at the same place that lie on the plane
 MIN_SCORE = 0.85
 SMALLEST_SIDE = 16
 

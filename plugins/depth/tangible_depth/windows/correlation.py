@@ -11,8 +11,7 @@ from ..dense.span import UNKNOWN
 from ..simd.lane_reductions import first_equal, first_lane, highest
 from ..simd.lanes import add, larger, load, multiply, shift_down, splat, store, subtract, to_float, widen, width
 
-OUT = np.float32(-1e30)
-"""Score of a window beyond the picture or without texture."""
+OUT = np.float32(-1e30)  # score of a window beyond the picture or without texture
 
 
 class Sliding(NamedTuple):

@@ -13,12 +13,11 @@ from torch.nn.functional import pad
 
 from tangible_core.runtime import TorchDevice, pick_device
 
+# Smallest variance of a window, white being 1: a smaller one is rounding error of float32.
 FLAT_VARIANCE = 1e-7
-"""Smallest variance of a window, white being 1: a smaller one is rounding error of float32."""
+# Score if the right window's centre is outside the picture, or a window is flat: never the best.
 OUTSIDE = -1.0
-"""Score if the right window's centre is outside the picture, or a window is flat: never the best."""
-SAME_SCORE = 1e-5
-"""Largest difference of equal scores, the rounding of float32."""
+SAME_SCORE = 1e-5  # largest difference of equal scores, the rounding of float32
 
 
 class BestMatches(NamedTuple):
@@ -109,8 +108,8 @@ def match(left: Tensor, right: Tensor, low: int, high: int, window_px: int, memo
     return BestMatches(*(torch.cat(parts, dim=-2) for parts in zip(*results, strict=True)))
 
 
+# First and last row to read, number of context rows before the wanted ones, number of wanted rows.
 Strip = tuple[int, int, int, int]
-"""First and last row to read, number of context rows before the wanted ones, number of wanted rows."""
 
 
 def _on_all_cores(work: Callable[[int, int, int, int], BestMatches], strips: list[Strip]) -> list[BestMatches]:

@@ -15,12 +15,11 @@ from ..device_calibrations import load_calibration
 Axis = Literal["x", "-x", "y", "-y", "z", "-z"]
 Angle = Annotated[float, Field(ge=-90, le=90)]
 Gain = Annotated[float, Field(ge=0.1, le=10)]
-CENTRE_M = 0.125
-"""The workspace's origin on the device's axis: the middle of its reach."""
+CENTRE_M = 0.125  # the workspace's origin on the device's axis: the middle of its reach
 LEVER_M = 0.0672
 """Torque of the busiest motor, N m, for a force of 1 N in the least favourable direction, at the centre."""
+# The greatest torque that is sent; the greatest force, as in CHAI3D's table of devices.
 MAX_COUNTS, MAX_N = 4095, 8.0
-"""The greatest torque that is sent; the greatest force, as in CHAI3D's table of devices."""
 
 
 class Calibration(BaseModel):

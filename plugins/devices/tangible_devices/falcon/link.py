@@ -19,29 +19,23 @@ from .usb.firmware import NULL
 from .usb.port import READ_BYTES, REPLUG, Port
 
 log: logging.Logger = logging.getLogger(__name__)
+# Shortest time between two packets: USB carries one a millisecond, and more would only queue.
 FRAME_S = 0.0009
-"""Shortest time between two packets: USB carries one a millisecond, and more would only queue."""
 QUIET, SILENCES = 20, 5
 """Reads without an answer, of a millisecond each, after which the packets in flight count as lost; and the number of
 such losses in a row after which the device has failed."""
-PATIENCE = 50
-"""Exchanges without a reliable position after which the device has failed."""
-GOODBYES = 3
-"""Null packets at the end: more than one, as one may be lost."""
+PATIENCE = 50  # exchanges without a reliable position after which the device has failed
+GOODBYES = 3  # null packets at the end: more than one, as one may be lost
 
 
 class Health(NamedTuple):
     """Counts of the exchange since the device was opened."""
 
-    rate_hz: float
-    """Answers a second, by the device's clock."""
+    rate_hz: float  # answers a second, by the device's clock
     answers: int
-    lost: int
-    """Packets without an answer."""
-    dropped_bytes: int
-    """Bytes outside of answers."""
-    refused: int
-    """Answers that were not accepted as a position: leaps, and angles that no tip has."""
+    lost: int  # packets without an answer
+    dropped_bytes: int  # bytes outside of answers
+    refused: int  # answers that were not accepted as a position: leaps, and angles that no tip has
 
 
 @final

@@ -13,15 +13,13 @@ from .kernels import kinematics
 
 Ask = Callable[[str], str]
 DIRECTIONS = ("to the right", "away from you", "up")
-MIN_M = 0.010
-"""Shortest move that identifies an axis."""
+MIN_M = 0.010  # shortest move that identifies an axis
+# Reads that are skipped after a question to the user, during which no packets were sent.
 SETTLING = 20
-"""Reads that are skipped after a question to the user, during which no packets were sent."""
+# Stiffness of the virtual spring that carries the weight, which gives 4 mm for 100 g; and the time it is held.
 HOLD_N_PER_M, HOLD_TICKS = 250.0, 2000
-"""Stiffness of the virtual spring that carries the weight, which gives 4 mm for 100 g; and the time it is held."""
 STANDARD_GRAVITY = 9.80665
-RAW = ("x", "y", "z")
-"""The axes of an uncalibrated device: its own."""
+RAW = ("x", "y", "z")  # the axes of an uncalibrated device: its own
 
 
 def measure_axes(link: Link, ask: Ask) -> tuple[Axis, Axis, Axis]:

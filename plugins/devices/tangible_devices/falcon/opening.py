@@ -16,8 +16,7 @@ from .usb.port import open_port
 
 log: logging.Logger = logging.getLogger(__name__)
 GUIDE = "pull its grip all the way out, then push it all the way in; its light turns from red to green"
-AT_ONCE_S = 0.1
-"""Time before the user is asked to home the device: it may be homed already."""
+AT_ONCE_S = 0.1  # time before the user is asked to home the device: it may be homed already
 
 
 def open_falcon(settings: Settings, image: bytes | None, backend: Any, clock: Callable[[], float]) -> FalconLink:

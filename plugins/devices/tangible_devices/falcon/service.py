@@ -17,10 +17,8 @@ from .usb.firmware import firmware_answers
 from .usb.image import WHENCE, read_image
 from .usb.port import INTERFACE, Port, choose_device, connected_devices, device_place, read_serial, run_time
 
-ENOUGH_HZ = 900.0
-"""Lowest rate that is reported as fine."""
-PACKETS = 500
-"""Packets exchanged, without force, to measure the rate."""
+ENOUGH_HZ = 900.0  # lowest rate that is reported as fine
+PACKETS = 500  # packets exchanged, without force, to measure the rate
 FASTER = (
     "plug it into a USB port of the machine itself, with no hub between; keep option in_flight at 2; a rate of about "
     "60 is the USB chip's latency timer of 16 ms, which it did not change to 1 ms: unplug it and plug it in again"

@@ -30,8 +30,8 @@ INSTALL = (
     "forcedimension-core with Python 3.12 or older; FDSDK in the environment may name the SDK's folder"
 )
 REPLUG = "check its plug and its power, then open it again"
+# The devices that this program has open; the library itself would open the same one twice.
 OPENED: set[int] = set()
-"""The devices that this program has open; the library itself would open the same one twice."""
 _taking = Lock()
 
 

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 INSTALL = "pip install websockets"
 START = "start Haply Hub or the Haply Inverse Service, or give its address with option uri"
 MAX_BYTES = 1 << 22
+# Problems by the status flags that the service reports as false; a missing flag is not a problem.
 PROBLEMS = {
     "ready": "is not ready",
     "power_supply": "has no power; plug in its power supply",
     "calibrated": "is not calibrated; follow what its light asks for, or Haply Hub",
 }
-"""Problems by the status flags that the service reports as false; a missing flag is not a problem."""
 Metres = Annotated[float, Field(ge=-1, le=1)]
 
 

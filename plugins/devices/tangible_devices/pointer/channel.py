@@ -38,14 +38,13 @@ from tangible_core.runtime.system import is_mine, take_lock
 
 MAGIC, DEVICE_OPEN, CLIENT_OPEN = 0, 1, 2
 SAMPLE, SAMPLE_WORDS = 16, 8
-FORCE, FORCE_WORDS = 32, 4
-"""First word of each block, and its length in words without the checksum."""
+FORCE, FORCE_WORDS = 32, 4  # first word of each block, and its length in words without the checksum
 MARK = b"TANGPTR1"
 FILE_BYTES = 4096
 START, FACTOR, MASK = 0xCBF29CE484222325, 0x9E3779B97F4A7C15, (1 << 64) - 1
 """Start value and factor of the checksum, and the mask of its 64 bits."""
+# Reads of a block before it counts as torn; writing one takes well under a microsecond.
 TRIES = 8
-"""Reads of a block before it counts as torn; writing one takes well under a microsecond."""
 
 
 @final

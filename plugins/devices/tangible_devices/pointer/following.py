@@ -17,10 +17,8 @@ from ..paths import DRAWN, walk
 from .client import PointerClient
 
 PERIOD_S = 0.005
-SHOWN_EVERY = 20
-"""Sends per printed line: ten lines a second."""
-MAX_BUTTONS = 1 << 31
-"""Exclusive upper bound of a sum of the bits of 31 buttons."""
+SHOWN_EVERY = 20  # sends per printed line: ten lines a second
+MAX_BUTTONS = 1 << 31  # exclusive upper bound of a sum of the bits of 31 buttons
 Step = tuple[Vector, int]
 
 

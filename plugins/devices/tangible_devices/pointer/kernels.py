@@ -8,15 +8,14 @@ from tangible_core.compiled import KERNEL, njit
 from .channel import CLIENT_OPEN, FACTOR, FORCE, FORCE_WORDS, SAMPLE, SAMPLE_WORDS, START, TRIES
 
 WORDS, NUMBERS = uint64[::1], float64[::1]
+# Words of a link's state after the copied block: number of the newest sample, reads since it came, and their limit.
 LAST, AGE, OLDEST = SAMPLE_WORDS + 1, SAMPLE_WORDS + 2, SAMPLE_WORDS + 3
-"""Words of a link's state after the copied block: number of the newest sample, reads since it came, and their limit."""
 SHARE, TIP = SAMPLE_WORDS + 4, SAMPLE_WORDS + 5
 """Further words: the share of the remaining way that the tip moves in a read, 1 without a filter; and the tip's
 position and velocity."""
 KEPT_WORDS = TIP + 6
 NOBODY, BROKEN, WHOLE = 0, 1, 2
-HIGH_M = 1.0
-"""Height of the tip without a client: above every surface."""
+HIGH_M = 1.0  # height of the tip without a client: above every surface
 _START, _FACTOR, _HALF = np.uint64(START), np.uint64(FACTOR), np.uint64(32)
 
 

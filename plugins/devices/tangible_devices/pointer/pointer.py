@@ -17,10 +17,8 @@ from tangible_core.servo import POINTER_SILENCE_S
 from ..simulated import LIKE_A_FALCON
 from .channel import DEVICE_OPEN, FORCE, FORCE_WORDS, MAGIC, MARK, SAMPLE, SAMPLE_WORDS, Channel, client_is_there
 
-HIGH_M = (0.0, 0.0, 1.0)
-"""Position of the tip without a client: above every surface."""
-PACE_S = 0.0005
-"""Shortest time between two reads from Python."""
+HIGH_M = (0.0, 0.0, 1.0)  # position of the tip without a client: above every surface
+PACE_S = 0.0005  # shortest time between two reads from Python
 PERIOD_S = 0.001
 
 

@@ -17,12 +17,12 @@ CONTRACTED = {"en": "en-ueb-g2.ctb", "de": "de-g2.ctb", "fr": "fr-bfu-g2.ctb"}
 VERSION = 20
 _PROBE = "abc"
 _PROBED: Cells = (1, 3, 9)
+# Modes `dotsIO`, `ucBrl` and `noUndefined` of liblouis: return cells, and nothing for a character not in the table.
 _DOTS, _UNICODE, _KNOWN_ALONE = 4, 64, 128
-"""Modes `dotsIO`, `ucBrl` and `noUndefined` of liblouis: return cells, and nothing for a character not in the table."""
 _SILENT = 60_000
 
+# Lock around each call: liblouis keeps its tables and buffers in global variables.
 _turn = Lock()
-"""Lock around each call: liblouis keeps its tables and buffers in global variables."""
 
 
 class Louis(NamedTuple):

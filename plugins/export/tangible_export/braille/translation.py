@@ -16,19 +16,18 @@ from .louis import CONTRACTED, TABLES, louis, missing_character
 
 log: logging.Logger = logging.getLogger(__name__)
 
+# A typographic apostrophe between letters: it is not a closing quotation mark.
 _APOSTROPHE = re.compile("(?<=\\w)\u2019(?=\\w)")
-"""A typographic apostrophe between letters: it is not a closing quotation mark."""
+# Straight quotation marks that open: the English code tells opening from closing ones.
 _OPENING = re.compile(r'(?<![^\s(\[])"(?=\S)')
-"""Straight quotation marks that open: the English code tells opening from closing ones."""
+# German quotation marks, made straight: the mark that closes in German opens in English.
 _GERMAN_QUOTES = re.compile("[„\u201c\u201d]")
-"""German quotation marks, made straight: the mark that closes in German opens in English."""
-_FRENCH_SPACE = re.compile("(«) +| +([:;!?»])")
-"""Spaces that print has and braille has not."""
+_FRENCH_SPACE = re.compile("(«) +| +([:;!?»])")  # spaces that print has and braille has not
 _HYPHEN = "-"
+# The end of a language tag, for private use as BCP 47 allows it, by which texts are contracted.
 _GRADE_2 = "-x-grade2"
-"""The end of a language tag, for private use as BCP 47 allows it, by which texts are contracted."""
+# The characters of a text that is never contracted: the letters of a key stand for themselves.
 _SHORT = 2
-"""The characters of a text that is never contracted: the letters of a key stand for themselves."""
 _BREAK = re.compile("[^\\S\u00a0\u202f]+(?!%)")
 
 

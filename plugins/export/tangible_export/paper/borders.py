@@ -11,8 +11,8 @@ from tangible_core.errors import BrokenMethod, GeometryError
 from tangible_core.parts import find_parts
 
 Sides = Int64[np.ndarray, "n"]
+# Steps from one corner of a pixel to the next, by direction: 0 right, 1 down, 2 left, 3 up.
 DOWN, RIGHT = np.array([0, 1, 0, -1]), np.array([1, 0, -1, 0])
-"""Steps from one corner of a pixel to the next, by direction: 0 right, 1 down, 2 left, 3 up."""
 BELOW, BEHIND = np.array([0, 1, 1, 0]), np.array([1, 1, 0, 0])
 """Offset from the upper left pixel at a corner to the pixel ahead on the left, by direction."""
 

@@ -23,8 +23,7 @@ class Lines:
     angle_deg: float
     wave_mm: float = 0
     length_mm: float = 10
-    least_mm: float = 5
-    """Shortest piece: a shorter one would be felt as a dot, or as a straight line."""
+    least_mm: float = 5  # shortest piece: a shorter one would be felt as a dot, or as a straight line
 
 
 @dataclass(frozen=True)
@@ -107,6 +106,7 @@ def _clear_strokes(strokes: Any, kind: Lines) -> list[Any]:
     return list(clear.values())
 
 
+# Fills by name: five, as many as a finger tells apart (tactile-graphics wiki).
 KINDS: dict[str, Callable[[Any], Fill]] = {
     "blank": lambda _: Fill(),
     "dots": _dots,
@@ -114,7 +114,6 @@ KINDS: dict[str, Callable[[Any], Fill]] = {
     "steep lines": lambda inner: _lines(inner, Lines(1.6, 6.0, -50)),
     "waves": lambda inner: _lines(inner, Lines(0.8, 6.2, 90, wave_mm=1.5, least_mm=11)),
 }
-"""Fills by name: five, as many as a finger tells apart (tactile-graphics wiki)."""
 BLANK = next(iter(KINDS))
 
 

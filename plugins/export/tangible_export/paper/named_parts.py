@@ -13,8 +13,8 @@ from tangible_legibility.words.languages import part_label
 MAX_LISTED = 6
 LETTERS = ascii_lowercase[1:] + ascii_lowercase[0]
 """Letters in the order of their use. The last, `a`, is a single dot, which a finger takes for a stray one."""
+# Largest number of names on a page: their key has nine pages, and nobody remembers more. A convention of ours.
 MAX_NAMES = 100
-"""Largest number of names on a page: their key has nine pages, and nobody remembers more. A convention of ours."""
 
 
 def find_label(number: int, work: Work) -> str:

@@ -9,18 +9,16 @@ from ..braille import height_m
 
 Page = Literal["a4", "letter", "a3"]
 SIZES_MM: dict[Page, tuple[float, float]] = {"a4": (210, 297), "letter": (215.9, 279.4), "a3": (297, 420)}
-MARGIN_MM = 10.0
-"""Margin on all sides, which printers leave white, and where a hand holds the sheet."""
-LINE_MM = 1.0
-"""Width of outlines. A convention of ours, within the 0.5 to 1.5 mm that tactile graphics use."""
+MARGIN_MM = 10.0  # margin on all sides, which printers leave white, and where a hand holds the sheet
+LINE_MM = 1.0  # width of outlines. A convention of ours, within the 0.5 to 1.5 mm that tactile graphics use.
 HEAVY_MM = 1.5  # the most that tactile graphics use, for the figure
 GAP_MM = 3.2  # between marks that a finger tells apart. Source: tactilegraphics.org
 CLEAR_MM = GAP_MM + 0.2  # GAP_MM and two pixels of the measurement
 CORNER_MM = 8.0  # legs of the triangle that marks the upper right corner
+# Limit to moving a picture down where there is room: a hand that comes from the title still finds it.
 LOWERED_MM = 10.0
-"""Limit to moving a picture down where there is room: a hand that comes from the title still finds it."""
+# Shorter side of a picture. Source for the least size of a shape that is recognised: APH, 1997.
 MIN_MM = 12.7
-"""Shorter side of a picture. Source for the least size of a shape that is recognised: APH, 1997."""
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,10 @@ from tangible_core.data import PartMap
 
 from .borders import shared_borders
 
+# Standard deviation of the Gaussian along an outline: a finger feels corners of this size, and no stairs below it.
 SMOOTH_MM = 1.0
-"""Standard deviation of the Gaussian along an outline: a finger feels corners of this size, and no stairs below it."""
+# Least standard deviation, in pixels of the map, so that the stairs of a coarse map go as well.
 SMOOTH_PX = 2.0
-"""Least standard deviation, in pixels of the map, so that the stairs of a coarse map go as well."""
 NEAR_MM = 0.02  # of points left out: less than a printer draws
 
 

@@ -14,10 +14,9 @@ from .sheet import LINE_MM, Sheet
 from .smoothing import NEAR_MM, blur
 
 SPUR_MM = 3.0  # a shorter stroke with a free end is a spur of the thinning. A convention of ours
-SMOOTH_PX = 2.0
-"""Standard deviation of the Gaussian along a stroke, which takes the stairs of pixels out."""
+SMOOTH_PX = 2.0  # standard deviation of the Gaussian along a stroke, which takes the stairs of pixels out
+# Distance and length over which a stroke that runs along an outline is left out, as the outline stands for it.
 ALONG_MM, LONG_MM = 2.0, 6.0
-"""Distance and length over which a stroke that runs along an outline is left out, as the outline stands for it."""
 
 
 def strokes_on(picture: np.ndarray, sheet: Sheet, outlines: Any = None) -> tuple[tuple[Any, ...], int]:

@@ -16,11 +16,11 @@ COARSE_M = 2e-4  # less than a pixel
 MAX_NODES = 300
 WIDTH_PX = 640
 MARGIN_PX = 8
+# Angle between the view and the plumb line: walls are seen, and nothing hides much behind them.
 TILT = np.radians(35)
-"""Angle between the view and the plumb line: walls are seen, and nothing hides much behind them."""
 LIGHT = np.array([-0.5, 0.35, 0.8]) / np.linalg.norm([-0.5, 0.35, 0.8])
+# Brightness of what lies lowest, as a share of what lies highest: steps between level faces are seen.
 LOWEST = 0.72
-"""Brightness of what lies lowest, as a share of what lies highest: steps between level faces are seen."""
 DARKEST, LIGHTEST = 70, 250
 
 

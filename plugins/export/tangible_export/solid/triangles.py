@@ -15,8 +15,8 @@ from tangible_core.runtime import plain_opencv
 log: logging.Logger = logging.getLogger(__name__)
 
 MIN_NODES = 2
+# Rounding error of a coordinate in a file: half a step of `closed`, and half a step of STL's floating point.
 ROUNDING_M = 2.5e-8
-"""Rounding error of a coordinate in a file: half a step of `closed`, and half a step of STL's floating point."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,15 +15,15 @@ from .large import large_parts
 
 ROUNDS = 24  # parts that fail after these are reported
 MERGING_ROUND = 12  # from here whole unnamed parts merge, which narrows nothing: rounds end
+# Width of the surroundings that are removed with a narrow place, in gaps: leaves no crumbs of them.
 MARGIN = 1.1
-"""Width of the surroundings that are removed with a narrow place, in gaps: leaves no crumbs of them."""
+# Growth of that width per round from the third on: ends rounds in which two parts exchange a place in turns.
 MARGIN_GROWTH = 0.15
-"""Growth of that width per round from the third on: ends rounds in which two parts exchange a place in turns."""
 MAX_GROWTH = 6  # rounds after which the width no longer grows
+# Share of the surface that is too small or narrow from which on, in the first round, every cell is voted on.
 NOISY = 0.05
-"""Share of the surface that is too small or narrow from which on, in the first round, every cell is voted on."""
+# Standard deviation of the Gaussian of the votes, in surroundings' widths; twice that if every cell is voted on.
 VOTING = 3 / 16
-"""Standard deviation of the Gaussian of the votes, in surroundings' widths; twice that if every cell is voted on."""
 
 
 def too_small(wide: Widths, choice: SimplifyChoice) -> Bool[np.ndarray, "n"]:

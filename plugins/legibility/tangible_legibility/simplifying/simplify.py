@@ -104,8 +104,8 @@ def _find_scale(grid: Grid, choice: SimplifyChoice) -> float:
 
 
 COARSE = 2  # side of a coarse cell, in cells: a quarter of the time
+# Share of a bound below which a width on coarse cells fails for certain, despite their error.
 CLEARLY = 0.8
-"""Share of a bound below which a width on coarse cells fails for certain, despite their error."""
 
 
 def simplify(

@@ -7,14 +7,14 @@ from tangible_core.compiled import inner
 from ..surface.bilinear import cell, over
 from ..surface.spline import height
 
+# Values in a touch's memory: 0-2 the proxy, z NaN without contact; 3-5 the last hand; 6 sliding; 7 the phase.
 REMEMBERED = 8
-"""Values in a touch's memory: 0-2 the proxy, z NaN without contact; 3-5 the last hand; 6 sliding; 7 the phase."""
+# The phases: no valid hand; hand at the side, or entered below the rim; above the surface; in contact from above.
 LOST, BESIDE, FREE, TOUCHING = 0.0, 1.0, 2.0, 3.0
-"""The phases: no valid hand; hand at the side, or entered below the rim; above the surface; in contact from above."""
+# The longest step of a hand in a tick, m: after a longer one its contact starts anew.
 LEAP_M = 0.005
-"""The longest step of a hand in a tick, m: after a longer one its contact starts anew."""
+# The distance, m, at which a proxy is released if the surface above is nearer: no desktop device holds its force.
 STRETCH_M = 0.02
-"""The distance, m, at which a proxy is released if the surface above is nearer: no desktop device holds its force."""
 
 
 @inner()

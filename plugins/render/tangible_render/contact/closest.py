@@ -6,18 +6,18 @@ from tangible_core.compiled import inner
 
 from ..surface.spline import bend
 
+# The most Newton steps in a tick; on a smooth surface at the speed of a hand, one or two are taken.
 STEPS = 8
-"""The most Newton steps in a tick; on a smooth surface at the speed of a hand, one or two are taken."""
 STEP_M = 2.5e-4
 BACK_OFFS = 3
 BACK_OFF = 0.35
+# The length of the last Newton step, in cells: after a shorter one the Taylor series replaces the spline.
 NEAR_CELLS = 1 / 128
-"""The length of the last Newton step, in cells: after a shorter one the Taylor series replaces the spline."""
+# The length of the last Newton step on cells finer than 256 um, m: longer in cells, but short for their detail.
 NEAR_M = 2e-6
-"""The length of the last Newton step on cells finer than 256 um, m: longer in cells, but short for their detail."""
 NEAR_FINE_CELLS = 1 / 8
+# The least determinant of Newton's matrix as a share of the Gauss-Newton one, which is used below it.
 STEEP = 0.1
-"""The least determinant of Newton's matrix as a share of the Gauss-Newton one, which is used below it."""
 
 
 @inner(forceinline=True)

@@ -12,8 +12,8 @@ from .closest import settle
 
 SURFACE = (HEIGHTS, *[float64] * 4, types.Array(float32, 3, "C", readonly=True))
 MATERIALS = types.Array(float64, 2, "C", readonly=True)
+# The numba types of a touch's memory; SURFACE and MATERIALS are those of the other arguments of a kernel.
 MEMORY = float64[::1]
-"""The numba types of a touch's memory; SURFACE and MATERIALS are those of the other arguments of a kernel."""
 
 
 @inner(forceinline=True)

@@ -11,10 +11,10 @@ from tangible_render.haptic_textures.table import COUNT, DRAG, STIFFNESS
 
 Table = Float64[np.ndarray, "n p"]
 TEXTURE_COLUMNS = [COUNT, DRAG, STIFFNESS]
+# The number of columns after those of a texture: k, b, mu_s and mu_d, as in `material_table`.
 LAW_COLUMNS = 4
-"""The number of columns after those of a texture: k, b, mu_s and mu_d, as in `material_table`."""
+# The columns that add to a force law if any of them is not 0; -3 is b, -2 mu_s.
 EFFECT_COLUMNS = [*TEXTURE_COLUMNS, -3, -2]
-"""The columns that add to a force law if any of them is not 0; -3 is b, -2 mu_s."""
 
 
 def effects_table(

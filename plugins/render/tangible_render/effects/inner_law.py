@@ -7,8 +7,8 @@ from tangible_core.errors import TangibleError
 from tangible_core.plugins import ForceRenderer
 
 Law = str | dict[str, Any]
+# A function that returns the reason why a class cannot be the inner force law; empty if it can.
 Refusal = Callable[[type[ForceRenderer]], str]
-"""A function that returns the reason why a class cannot be the inner force law; empty if it can."""
 
 
 def build_law(law: Law, refusal: Refusal) -> tuple[str, ForceRenderer]:

@@ -14,8 +14,8 @@ from ..contact.approach import LEAP_M
 from ..surface.bilinear import bilinear, cell, over
 
 STIFFNESS, DAMPING, STATIC, DYNAMIC = range(HEAD + 4 * WAVES, HEAD + 4 * WAVES + 4)
+# Places in a touch's memory: the law's last hand, x NaN without; way; bristle; 1 sliding, 0 sticking, -1 free.
 WAS_X, WAS_Y, WAS_Z, WAY_X, WAY_Y, BRISTLE_X, BRISTLE_Y, SLIDES = range(STATE, STATE + 8)
-"""Places in a touch's memory: the law's last hand, x NaN without; way; bristle; 1 sliding, 0 sticking, -1 free."""
 REMEMBERED = STATE + 8
 
 

@@ -17,8 +17,8 @@ from .scratch import MARGIN, TAPS, Scratch
 from .slots import DROPPED, SPEED_M_PER_S, STEP_N, Slots
 from .steady import initial_memory
 
+# The bound of heights, m: float32 can take their differences, and no hand reaches them.
 HIGHEST_M = 1e6
-"""The bound of heights, m: float32 can take their differences, and no hand reaches them."""
 
 
 @final

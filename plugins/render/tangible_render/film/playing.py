@@ -12,8 +12,7 @@ from ..contact.approach import TOUCHING
 from ..surface.spline import height
 
 SLOTS = 3
-STATE = 0
-"""The index in `shared` of the played and the published slot, see `state`."""
+STATE = 0  # the index in `shared` of the played and the published slot, see `state`
 TICK = 1
 SHARED = 2
 MOVING_SURFACE = (

@@ -7,11 +7,10 @@ from jaxtyping import Float32, UInt8
 
 from ..surface.coefficients import BORDER
 
+# The reach of the filter in cells: further heights weigh less than (2 - sqrt 3)^11, 5e-7.
 TAPS = 10
-"""The reach of the filter in cells: further heights weigh less than (2 - sqrt 3)^11, 5e-7."""
 MARGIN = BORDER + TAPS
-RING = BORDER + 1
-"""The cells of the mask beyond each border, the outermost of which are 0."""
+RING = BORDER + 1  # the cells of the mask beyond each border, the outermost of which are 0
 
 
 class Scratch(NamedTuple):

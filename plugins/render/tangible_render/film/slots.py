@@ -9,27 +9,23 @@ from ..surface.coefficients import tile_bounds
 from .filter_kernels import fill_slot
 from .playing import SLOTS, publish, slots
 
-SPEED_M_PER_S = 0.1
-"""The greatest speed of any place of a surface, m/s: that of a hand."""
+SPEED_M_PER_S = 0.1  # the greatest speed of any place of a surface, m/s: that of a hand
+# The greatest change of the spring force on a hand at rest in a tick, N: more feels like a knock.
 STEP_N = 0.08
-"""The greatest change of the spring force on a hand at rest in a tick, N: more feels like a knock."""
 DROPPED = 0
+# The first index in `host_state` of a flag for each slot: 1 if it ends short of its frame.
 SHORT = 1
-"""The first index in `host_state` of a flag for each slot: 1 if it ends short of its frame."""
 
 
 class Slots(NamedTuple):
     """The whole state of a film: any process with these arrays can continue it."""
 
-    pairs: Float32[np.ndarray, "3 h4 w4 2"]
-    """The coefficients of the first and the last surface of each slot."""
+    pairs: Float32[np.ndarray, "3 h4 w4 2"]  # the coefficients of the first and the last surface of each slot
     tiles_m: Float32[np.ndarray, "3 r c 2"]
     ends_m: Float32[np.ndarray, "3 r c 2"]
     frames: Float64[np.ndarray, "3"]
-    shared: Int64[np.ndarray, "2"]
-    """The slots that are played and published, see `playing`."""
-    host_state: Int64[np.ndarray, "4"]
-    """The state of the showing process alone, see DROPPED and SHORT."""
+    shared: Int64[np.ndarray, "2"]  # the slots that are played and published, see `playing`
+    host_state: Int64[np.ndarray, "4"]  # the state of the showing process alone, see DROPPED and SHORT
 
     @classmethod
     def still(cls, coefficients: Float32[np.ndarray, "h4 w4"], count: int) -> "Slots":

@@ -12,10 +12,10 @@ from ..contact.approach import LEAP_M
 from .slots import STEP_N
 
 STEADY = float64[::1]
+# Places in the memory: the law's stiffness and damping; the last force, hand and velocity; a flag; its length.
 STIFFNESS, DAMPING, FORCE, HAND, SPEED, LATE, REMEMBERED = 0, 1, 2, 5, 8, 11, 12
-"""Places in the memory: the law's stiffness and damping; the last force, hand and velocity; a flag; its length."""
+# The additional way of the point as a multiple of the hand's: it then slides off a ridge as on a still surface.
 REACH = 8.0
-"""The additional way of the point as a multiple of the hand's: it then slides off a ridge as on a still surface."""
 
 
 @inner(forceinline=True)

@@ -10,8 +10,7 @@ from tangible_core.compiled import KERNEL, inner, njit
 from .heights import COSINE, SINE, TEXTURES, remaining, series, texture_height
 from .table import DRAG, DYNAMIC, PER_M, STIFFNESS, SWING
 
-STATE = 7
-"""Length of a contact's state, which starts as zeros for each contact point."""
+STATE = 7  # length of a contact's state, which starts as zeros for each contact point
 _TURNS = np.arange(1, 5)
 _SHAPE = np.sinc(_TURNS / 5) / _TURNS
 _REACH = float(np.max(np.einsum("n,ni->i", _SHAPE, np.sin(np.outer(_TURNS, np.linspace(0, math.pi, 1000))))))

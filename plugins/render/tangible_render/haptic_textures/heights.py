@@ -14,13 +14,13 @@ from tangible_core.compiled import KERNEL, inner, njit
 
 from .table import COUNT, HEAD, WAVES
 
+# Turns a tick up to which a wave is whole, and from which it is gone: no servo renders over 1/3 of its rate.
 WHOLE, GONE = 1 / 5, 1 / 3
-"""Turns a tick up to which a wave is whole, and from which it is gone: no servo renders over 1/3 of its rate."""
 TEXTURES = types.Array(float64, 2, "C", readonly=True)
 
 SINE = tuple((-1.0) ** n * math.pi ** (2 * n + 1) / math.factorial(2 * n + 1) for n in range(8))
+# Taylor coefficients: sin(pi t) = t series(SINE, t^2), cos(pi t) = series(COSINE, t^2), for |t| <= 1/2.
 COSINE = tuple((-1.0) ** n * math.pi ** (2 * n) / math.factorial(2 * n) for n in range(8))
-"""Taylor coefficients: sin(pi t) = t series(SINE, t^2), cos(pi t) = series(COSINE, t^2), for |t| <= 1/2."""
 
 
 @inner(forceinline=True)
@@ -39,8 +39,8 @@ def series(terms, u):
     return low + u * u * u * u * (terms[4] + u * (terms[5] + u * (terms[6] + u * terms[7])))
 
 
+# `intrinsic`, without a type: its functions are called without their first parameter, the typing context.
 operation: Any = intrinsic
-"""`intrinsic`, without a type: its functions are called without their first parameter, the typing context."""
 
 
 @operation(prefer_literal=True)

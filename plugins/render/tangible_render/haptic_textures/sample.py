@@ -11,8 +11,7 @@ from tangible_core.errors import MaterialError
 
 from .table import STIFFNESS, compile_textures, powers_of_two, waves
 
-FINEST = 3
-"""Fewest pixels a period: a picture would show a finer wave as another one."""
+FINEST = 3  # fewest pixels a period: a picture would show a finer wave as another one
 
 
 def sample_tile(material: Material, width_m: float, pixels: int) -> Float32[np.ndarray, "n n"]:

@@ -9,14 +9,13 @@ from jaxtyping import Float64
 
 from tangible_core.data import Material, Texture
 
-WAVES = 24
-"""Largest number of waves of a material; each costs time in the servo loop."""
+WAVES = 24  # largest number of waves of a material; each costs time in the servo loop
 BESIDE_FRICTION = 8
 STRAY, STRAY_OCTAVES, STRAY_DEG = 7, 0.1, 6.0
 """Number of waves that make a set of lines irregular, and their largest difference from it in length and direction."""
 
+# Binary places of a cosine on its way: also near zero, 53 of them count, and what the sum loses is beyond.
 BITS = 160
-"""Binary places of a cosine on its way: also near zero, 53 of them count, and what the sum loses is beyond."""
 
 
 class Waves(NamedTuple):
@@ -122,12 +121,12 @@ _MAKE: dict[Texture, Callable[[Material, np.random.Generator], Spread]] = {
 }
 
 
+# Columns: waves; drag [N s/m]; the bristle's stiffness [N/m] or 0, dynamic friction, its swing, slips per metre.
 COUNT, DRAG, STIFFNESS, DYNAMIC, SWING, PER_M = range(6)
-"""Columns: waves; drag [N s/m]; the bristle's stiffness [N/m] or 0, dynamic friction, its swing, slips per metre."""
+# Number of columns before the waves: fx, fy, amplitude and phase, WAVES of each (see `waves`).
 HEAD = 8
-"""Number of columns before the waves: fx, fy, amplitude and phase, WAVES of each (see `waves`)."""
+# Largest swing: friction that reached 0 would have to stay there to be passive.
 MAX_SWING = 0.9
-"""Largest swing: friction that reached 0 would have to stay there to be passive."""
 
 
 def compile_textures(materials: Sequence[Material]) -> Float64[np.ndarray, "n p"]:

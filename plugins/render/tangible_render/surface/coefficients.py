@@ -11,14 +11,14 @@ from tangible_core.data import HapticSurface
 from .dequantise import Filter, dequantise
 from .jumps import ease, jumps
 
+# The rows and columns of coefficients beyond the heights on each side, for the outermost half cell.
 BORDER = 2
-"""The rows and columns of coefficients beyond the heights on each side, for the outermost half cell."""
+# The cells added for the recursive filter: the effect of its start has faded by (2 - sqrt 3)^32, 1e-18.
 _RUN_IN = 32
-"""The cells added for the recursive filter: the effect of its start has faded by (2 - sqrt 3)^32, 1e-18."""
+# Pole of the cubic B-spline's filter, sqrt(3) - 2. Source: Unser, Aldroubi & Eden (1993), as below.
 POLE = -0.267949192431122706472553658494127633
-"""Pole of the cubic B-spline's filter, sqrt(3) - 2. Source: Unser, Aldroubi & Eden (1993), as below."""
+# Factor on every value, 6 but for rounding: the filter leaves a constant as it is.
 GAIN = (1 - POLE) * (1 - 1 / POLE)
-"""Factor on every value, 6 but for rounding: the filter leaves a constant as it is."""
 
 
 def spline_coefficients(height_m: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h4 w4"]:
@@ -127,8 +127,7 @@ def _overlap(shift: int, cells: int, half: int) -> tuple[slice, slice]:
 
 
 TILE_CELLS = 16
-MAX_TILES = 256
-"""The largest number of tiles along a side; larger grids have larger tiles."""
+MAX_TILES = 256  # the largest number of tiles along a side; larger grids have larger tiles
 
 
 def tile_bounds(coefficients: Float32[np.ndarray, "h4 w4"]) -> Float32[np.ndarray, "r c 2"]:

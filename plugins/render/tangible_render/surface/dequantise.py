@@ -10,10 +10,9 @@ from tangible_core.runtime import plain_opencv
 
 Filter = Literal["auto", "never"] | Annotated[float, Field(gt=0, le=64)]
 
-FEWEST_STEPS = 16
-"""The least number of steps that are smoothed: fewer are intended terraces."""
+FEWEST_STEPS = 16  # the least number of steps that are smoothed: fewer are intended terraces
+# The largest number of steps that are smoothed, that of 8 bits: more are fine enough.
 MAX_STEPS = 255
-"""The largest number of steps that are smoothed, that of 8 bits: more are fine enough."""
 SIGMA_CELLS = 4.0
 PASSES = 5
 ROUNDS = 8

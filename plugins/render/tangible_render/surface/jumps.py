@@ -5,14 +5,14 @@ from collections.abc import Iterator
 import numpy as np
 from jaxtyping import Bool, Float32, Float64
 
+# Least ratio, at a jump, of the fourth difference to nearby second ones: 3 at a step, 2 at a kink, 0.6 on a wave.
 JUMP = 1.5
-"""Least ratio, at a jump, of the fourth difference to nearby second ones: 3 at a step, 2 at a kink, 0.6 on a wave."""
 BORDER_JUMP, BORDER_CELLS = 0.9, 12
 """The ratio at the border, where a step has 1, and the cells whose second differences it is compared with."""
+# The largest fourth difference due to rounding in float32, as a share of the greatest height.
 ROUNDING = 2.0**-17
-"""The largest fourth difference due to rounding in float32, as a share of the greatest height."""
+# The neighbours of a jump that belong to it, in cells to each side: oblique edges jump a little in each row.
 REACH = 2
-"""The neighbours of a jump that belong to it, in cells to each side: oblique edges jump a little in each row."""
 
 
 def jumps(height_m: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:

@@ -12,8 +12,8 @@ from tangible_core.compiled import KERNEL, inner, inner_by_type, njit
 
 BYTE: Any = ir.IntType(8).as_pointer()
 FLAG: Any = ir.IntType(32)
+# The flags of LLVM's prefetch: for reading, into all levels of the cache, data rather than instructions.
 READ, KEEP, DATA = 0, 3, 1
-"""The flags of LLVM's prefetch: for reading, into all levels of the cache, data rather than instructions."""
 
 
 @njit(**KERNEL)

@@ -13,8 +13,7 @@ from tangible_core.errors import ConfigError
 if TYPE_CHECKING:
     from tangible_core.data import Material, Texture
 
-STROKE_M_PER_S = 0.12
-"""The speed at which the sources measured vibration."""
+STROKE_M_PER_S = 0.12  # the speed at which the sources measured vibration
 MODELS: dict[Texture, str] = {
     "smooth": "no heights",
     "periodic": "lines a grain apart, or two crossed sets of them",

@@ -15,14 +15,12 @@ from tangible_legibility.words.places import NOWHERE
 
 from .describing import FLAT_M, PartFacts, heights_in_words, materials_in_words, people_in_words
 
+# The number of parts that are described, the largest; the others are counted.
 MAX_PARTS = 60
-"""The number of parts that are described, the largest; the others are counted."""
-MIN_SHARE = 0.001
-"""The share of the picture below which a part without a name is left out."""
+MIN_SHARE = 0.001  # the share of the picture below which a part without a name is left out
+# The height below which a part belongs to the ground, so that its height is left out.
 MIN_HIGH_M = 5e-5
-"""The height below which a part belongs to the ground, so that its height is left out."""
-MAX_NEIGHBOURS = 4
-"""The number of neighbours of a part that are named, those with the longest borders."""
+MAX_NEIGHBOURS = 4  # the number of neighbours of a part that are named, those with the longest borders
 SHARES = (0.5, 0.25, 0.08, 0.0)
 """The shares of the picture from which on another word describes the size of a part."""
 
@@ -30,8 +28,7 @@ SHARES = (0.5, 0.25, 0.08, 0.0)
 class ToldPart(NamedTuple):
     """A part in words."""
 
-    label: str
-    """The part's name, or `part 3`."""
+    label: str  # the part's name, or `part 3`
     sentences: tuple[str, ...]
 
 
@@ -40,12 +37,9 @@ class Told(NamedTuple):
 
     title: str
     overview: tuple[str, ...]
-    heading: str
-    """The heading of the list of parts; empty if there are none."""
-    parts: tuple[ToldPart, ...]
-    """The parts from near to far."""
-    left_out: str
-    """A sentence on parts that are not in the list; empty if all are."""
+    heading: str  # the heading of the list of parts; empty if there are none
+    parts: tuple[ToldPart, ...]  # the parts from near to far
+    left_out: str  # a sentence on parts that are not in the list; empty if all are
 
 
 def describe_at_length(

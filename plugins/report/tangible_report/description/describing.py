@@ -14,27 +14,21 @@ from tangible_legibility.cells import resampled
 from tangible_legibility.words.languages import LANGUAGES, Language, Words
 from tangible_legibility.words.places import NOWHERE, place_of, place_of_counts
 
+# The most cells along a side: surfaces are described on a grid of at most this size.
 MAX_CELLS = 512
-"""The most cells along a side: surfaces are described on a grid of at most this size."""
 
 
 class PartFacts(NamedTuple):
     """Facts about one part."""
 
     number: int
-    name: str
-    """The name; empty if the part has none."""
-    place: str
-    """The place of most of the part, as a key of every language's words; `- -` for no side."""
+    name: str  # the name; empty if the part has none
+    place: str  # the place of most of the part, as a key of every language's words; `- -` for no side
     share: float
-    size_m: tuple[float, float]
-    """The extent from left to right, and from far to near."""
-    height_m: float
-    """The median height above the base plane."""
-    material: str
-    """The material's name in the library; empty if none is known."""
-    neighbours: tuple[int, ...]
-    """The numbers of the parts that it borders on, the longest border first."""
+    size_m: tuple[float, float]  # the extent from left to right, and from far to near
+    height_m: float  # the median height above the base plane
+    material: str  # the material's name in the library; empty if none is known
+    neighbours: tuple[int, ...]  # the numbers of the parts that it borders on, the longest border first
 
 
 def facts(
@@ -131,16 +125,12 @@ def _neighbours(dense: Int32[np.ndarray, "h w"], count: int) -> list[list[int]]:
     return neighbours_of
 
 
-ALIKE = 0.1
-"""The share of the relief's height by which the highest places, or the lowest, may differ."""
+ALIKE = 0.1  # the share of the relief's height by which the highest places, or the lowest, may differ
+# The largest slope that counts as level, about one degree: a hand does not feel it.
 LEVEL_SLOPE = 0.02
-"""The largest slope that counts as level, about one degree: a hand does not feel it."""
-MAX_NAMED = 4
-"""The number of materials that are named; the others are counted."""
-MAX_PARTS = 12
-"""The number of parts that are named, the nearest; the others are counted."""
-FLAT_M = 1e-6
-"""The height up to which a relief counts as flat: a hand does not feel it."""
+MAX_NAMED = 4  # the number of materials that are named; the others are counted
+MAX_PARTS = 12  # the number of parts that are named, the nearest; the others are counted
+FLAT_M = 1e-6  # the height up to which a relief counts as flat: a hand does not feel it
 
 
 def describe(

@@ -5,12 +5,10 @@ from itertools import accumulate, pairwise
 from math import log
 from typing import NamedTuple
 
-ROW_IN = 2.5
-"""The preferred height of a row, neither cramped nor wasteful, inches."""
+ROW_IN = 2.5  # the preferred height of a row, neither cramped nor wasteful, inches
+# The widest gap between the panels of a row that does not fill the width, inches.
 WIDEST_GAP_IN = 3.0
-"""The widest gap between the panels of a row that does not fill the width, inches."""
-TALLEST_IN = 4.5
-"""The greatest height of a panel, inches."""
+TALLEST_IN = 4.5  # the greatest height of a panel, inches
 
 
 class Cell(NamedTuple):

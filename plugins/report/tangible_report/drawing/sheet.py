@@ -61,10 +61,8 @@ PANEL_OF: Mapping[type[Record], str] = {
     Recording: "recording",
 }
 """Class of a record that can be drawn -> the product of its panel."""
-MINUS = "\u2212"
-"""The sign before numbers at axes."""
-HEIGHT_IN = 3.5
-"""The height of the axes of a new figure, inches."""
+MINUS = "\u2212"  # the sign before numbers at axes
+HEIGHT_IN = 3.5  # the height of the axes of a new figure, inches
 
 
 def draw_sheet(

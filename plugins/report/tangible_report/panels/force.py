@@ -12,10 +12,9 @@ from tangible_core.session import Recording
 from ..style import FORCES, INK, OKABE_ITO, colour_bar, inches
 from .relief import drawn_size
 
-ARROWS = 150
-"""The most arrows."""
+ARROWS = 150  # the most arrows
+# The length of the arrow of a strong lateral force, as a share of the surface's size (the mean of its sides).
 STRONG = 0.1
-"""The length of the arrow of a strong lateral force, as a share of the surface's size (the mean of its sides)."""
 
 
 def draw_force_map(axes: Axes, relief: Relief, recording: Recording) -> str:
@@ -87,8 +86,8 @@ def round_number(value: float) -> float:
 
 TIP, CONTACT, FORCE = OKABE_ITO[0], OKABE_ITO[1], OKABE_ITO[5]
 GROUND = "#c4c4c4"
+# The number of intervals in which contact is shaded, more than a sheet has dots.
 INSTANTS = 2000
-"""The number of intervals in which contact is shaded, more than a sheet has dots."""
 
 
 def draw_force_time(axes: Axes, recording: Recording, relief: Relief | None = None) -> str:

@@ -14,18 +14,14 @@ from tangible_core.scene import normals, picture_to_workspace, resample
 from ..style import INK, VIRIDIS, bare, colour_bar
 
 LIGHT = LightSource(azdeg=315, altdeg=50)
+# A light so low that a slope of 45 degrees that looks away from it is dark.
 LOW_LIGHT = LightSource(azdeg=315, altdeg=35)
-"""A light so low that a slope of 45 degrees that looks away from it is dark."""
-PIXELS = 700
-"""The number of drawn cells along the longer side of the relief from above."""
-CELLS = 160
-"""The number of cells along the longer side of a block, and for normals."""
-NORMALS = 16
-"""The number of normals along the longer side."""
+PIXELS = 700  # the number of drawn cells along the longer side of the relief from above
+CELLS = 160  # the number of cells along the longer side of a block, and for normals
+NORMALS = 16  # the number of normals along the longer side
+# The length of the arrow of a horizontal normal, as a share of the longer side.
 ARROW = 0.035
-"""The length of the arrow of a horizontal normal, as a share of the longer side."""
-FLAT_M = 1e-6
-"""The height below which a relief is drawn as a plane."""
+FLAT_M = 1e-6  # the height below which a relief is drawn as a plane
 
 
 def drawn_size(relief: Relief, most: int) -> Relief:

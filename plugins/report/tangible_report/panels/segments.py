@@ -21,14 +21,12 @@ from tangible_legibility.cells import largest_disc
 
 from ..style import INK, bare, colours, inches, thin_out
 
-TINT = 0.45
-"""The share of a region's colour; the rest is the picture."""
+TINT = 0.45  # the share of a region's colour; the rest is the picture
+# The longer side of the drawn picture, about; small pictures grow, so that outlines stay thin.
 SIDE_PX = 800
-"""The longer side of the drawn picture, about; small pictures grow, so that outlines stay thin."""
-NAMED = 40
-"""The number of segments, the largest, that may carry their name."""
+NAMED = 40  # the number of segments, the largest, that may carry their name
+# The height of a line of the legend, inches; the legend is as high as the panel.
 LINE_IN = 0.165
-"""The height of a line of the legend, inches; the legend is as high as the panel."""
 SHORT, NUMBERS = 14, 3
 """The most letters of a name, and the most numbers of segments, in an entry of the legend."""
 

@@ -31,8 +31,7 @@ def _camera(views: Views) -> str:
     return f", f {at.focal_px:.4g} px, B {baseline}"
 
 
-CLIP_PX = 4.0
-"""The error at which colours are clipped, pixels."""
+CLIP_PX = 4.0  # the error at which colours are clipped, pixels
 UNITS = {"px": ("Disparity", "disparity [px]"), "relative": ("Relative nearness", "nearness, 0 far to 1 near")}
 """Unit -> headline and label of the colour bar."""
 

@@ -74,10 +74,8 @@ def read_results(folder: Path) -> CountedAnswers:
     return results
 
 
-FEW = 6
-"""Number of participants below which a result says little about other people."""
-MANY = 3
-"""Number of comparisons from which one may seem to differ by chance."""
+FEW = 6  # number of participants below which a result says little about other people
+MANY = 3  # number of comparisons from which one may seem to differ by chance
 
 
 def sentences(result: Result) -> list[str]:

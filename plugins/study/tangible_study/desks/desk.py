@@ -10,8 +10,7 @@ from tangible_core.pipeline import Feeling
 from tangible_core.runtime.system import forget_typed
 from tangible_core.servo import Servo
 
-LEAVE = "q"
-"""Key that leaves the study; it goes on later with --resume."""
+LEAVE = "q"  # key that leaves the study; it goes on later with --resume
 
 
 class ParticipantLeft(Exception):

@@ -35,13 +35,10 @@ from tangible_web.state_frame import OtherLaw, frame_without_loop, newest_frame
 
 from .desk import LEAVE, Desk, ParticipantLeft
 
-LAST_S = 2.0
-"""The longest time for which the end of a session waits for the page, s."""
-SURFACE_S = 5.0
-"""The longest time for which an interval waits for the page to fetch its surface, s."""
+LAST_S = 2.0  # the longest time for which the end of a session waits for the page, s
+SURFACE_S = 5.0  # the longest time for which an interval waits for the page to fetch its surface, s
 NO_SURFACE: Mapping[str, Any] = {"surface": 0}
-BLIND = OtherLaw(blind=True)
-"""The page shows no proxy, which not every force law has."""
+BLIND = OtherLaw(blind=True)  # the page shows no proxy, which not every force law has
 
 
 def new_hand() -> Hand:
@@ -254,8 +251,8 @@ async def stop(page: Page, _: LiveTab) -> None:
     page.halt()
 
 
+# The most cells: the page draws nothing, and needs heights only to hold the hand over the surface.
 MAX_CELLS = 200_000
-"""The most cells: the page draws nothing, and needs heights only to hold the hand over the surface."""
 
 
 def surface_for_page(surface: HapticSurface, number: int) -> dict[str, Any]:

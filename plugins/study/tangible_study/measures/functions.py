@@ -37,14 +37,10 @@ WIDTH = "width"
 class Threshold(NamedTuple):
     """The truth about a participant who is a model."""
 
-    value: float | None
-    """Threshold; None is that of the function."""
-    shift: float
-    """How far above it this participant's is."""
-    width: float
-    """Distance of the levels at which 5 and 95 % of the way are done."""
-    slope: float
-    """Exponent of the function of a distance."""
+    value: float | None  # threshold; None is that of the function
+    shift: float  # how far above it this participant's is
+    width: float  # distance of the levels at which 5 and 95 % of the way are done
+    slope: float  # exponent of the function of a distance
 
 
 class Function(ABC):
@@ -188,10 +184,10 @@ class _Distance(Function):
         yield f"With {condition}, {sentence} ({interval(low, high)})."
 
 
+# How often a level is chosen over the standard: a cumulative Gaussian, whose middle feels equal.
 CHOICE = _Choice()
-"""How often a level is chosen over the standard: a cumulative Gaussian, whose middle feels equal."""
+# How often the odd one of three is found: a Weibull function of the distance from the standard.
 DISTANCE = _Distance()
-"""How often the odd one of three is found: a Weibull function of the distance from the standard."""
 
 
 def equal_level(comparison: Comparison, truth: Threshold) -> float:

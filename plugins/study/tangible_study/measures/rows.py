@@ -11,11 +11,9 @@ from ..statistics.intervals import Estimate
 from ..statistics.psychometric import Blocks, Curve
 from ..trials import Answer
 
-ALL = "all"
-"""Participant of a row about all participants."""
+ALL = "all"  # participant of a row about all participants
 Key = TypeVar("Key", bound=Hashable)
-ByParticipant = Mapping[str, Sequence[Answer]]
-"""Answers of one comparison by participant."""
+ByParticipant = Mapping[str, Sequence[Answer]]  # answers of one comparison by participant
 
 
 class What(NamedTuple):
@@ -23,8 +21,7 @@ class What(NamedTuple):
 
     measure: str
     condition: str
-    other: str = ""
-    """Condition with which it is compared."""
+    other: str = ""  # condition with which it is compared
 
 
 @dataclass(frozen=True)
@@ -36,12 +33,9 @@ class Row:
     estimate: Estimate
     unit: str = ""
     trials: int = 0
-    count: int | None = None
-    """Number of trials that were right, or with the condition chosen."""
-    chance: float = nan
-    """Value by chance alone; NaN if there is none."""
-    p: float = nan
-    """Probability of a value this far from chance by chance alone."""
+    count: int | None = None  # number of trials that were right, or with the condition chosen
+    chance: float = nan  # value by chance alone; NaN if there is none
+    p: float = nan  # probability of a value this far from chance by chance alone
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ from ..questions import load_question
 from .stimuli import Stimuli
 
 TIME, LATE, FLAGS = (TICK_COLUMNS.index(name) for name in ("time_s", "late_s", "flags"))
+# Sentences about the guard's changes of a force; a force that fades in is as requested.
 LIMITED = {
     TickFlag.FORCE_LIMITED: "the force was limited to the greatest that is allowed",
     TickFlag.STIFFNESS_LIMITED: "the force law was softened, as it is too stiff for this device",
@@ -30,7 +31,6 @@ LIMITED = {
     TickFlag.NOT_FINITE: "the force was zero, as it was not a number",
     TickFlag.STALE: "the force was zero, as the device gave no position in time",
 }
-"""Sentences about the guard's changes of a force; a force that fades in is as requested."""
 
 
 @dataclass
@@ -70,8 +70,8 @@ class Rendering:
 assert not any(flag & UNTOUCHED for flag in LIMITED)
 
 
+# Interval at which ticks are taken from the loop, and so the most that a crash can lose of a recording.
 LOOK_EVERY_S = 0.05
-"""Interval at which ticks are taken from the loop, and so the most that a crash can lose of a recording."""
 
 
 @final
@@ -135,8 +135,8 @@ class HeldLoop:
         return self._servo
 
 
+# Period of the force loop; an interval begins at least so long after the last tick of the one before.
 PERIOD_S = 0.001
-"""Period of the force loop; an interval begins at least so long after the last tick of the one before."""
 
 
 @dataclass
@@ -145,8 +145,7 @@ class Presenter:
 
     stimuli: Stimuli
     desk: Desk
-    in_real_time: bool = True
-    """False runs a simulated device by its own clock, without waiting."""
+    in_real_time: bool = True  # false runs a simulated device by its own clock, without waiting
     loop: HeldLoop = field(default_factory=HeldLoop)
 
     def about(self, trial: Trial) -> About:

@@ -11,10 +11,9 @@ from ..design import Stimulus
 from ..questions import load_question
 from ..study_file import Recipe, StudyFile, config_of_recipe
 
-QUICK = Loop(seconds=0.2)
-"""Time for which this machine's lateness is measured for each stimulus."""
+QUICK = Loop(seconds=0.2)  # time for which this machine's lateness is measured for each stimulus
+# Checks of preflight that tell that a device renders something else than requested, even if that is safe.
 NOT_RENDERED = frozenset(("clipping", "contact", "workspace"))
-"""Checks of preflight that tell that a device renders something else than requested, even if that is safe."""
 
 
 class Stimuli:

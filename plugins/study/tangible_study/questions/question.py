@@ -14,10 +14,8 @@ from ..measures.rows import ByParticipant, Result, Row, odds
 class Score(NamedTuple):
     """A response in numbers: None where the question has no such answer."""
 
-    chosen: int | None = None
-    """1 if the comparison was chosen over the other, 0 if not."""
-    correct: int | None = None
-    """1 or 0, where an answer can be right."""
+    chosen: int | None = None  # 1 if the comparison was chosen over the other, 0 if not
+    correct: int | None = None  # 1 or 0, where an answer can be right
 
 
 class Percept(NamedTuple):

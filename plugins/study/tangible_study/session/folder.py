@@ -21,8 +21,7 @@ from ..questions import load_question
 from ..study_file import StudyFile
 from ..trials import MISSING
 
-BIDS = "1.10.0"
-"""Version of the Brain Imaging Data Structure that the folder follows."""
+BIDS = "1.10.0"  # version of the Brain Imaging Data Structure that the folder follows
 
 
 class Participant(NamedTuple):

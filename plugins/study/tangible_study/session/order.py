@@ -13,8 +13,7 @@ from ..procedures.procedure import Course, score
 from ..study_file import StudyFile
 from ..trials import Answer
 
-TRAINING, TEST = 1, 2
-"""Streams of chance for training and for test."""
+TRAINING, TEST = 1, 2  # streams of chance for training and for test
 SHARED = (
     "phase", "comparison", "question", "procedure", "condition", "other", "level", "standard", "position", "target",
 )  # fmt: skip

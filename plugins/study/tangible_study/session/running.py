@@ -23,8 +23,7 @@ from .order import StudyCourse, make_answer, replay
 
 CONSENT = "Do you agree?"
 AGREE = {"y": "yes, I agree", "n": "no, I do not"}
-GO_ON = {"": ""}
-"""Enter alone."""
+GO_ON = {"": ""}  # enter alone
 
 
 @dataclass
@@ -33,8 +32,7 @@ class Session:
 
     stimuli: Stimuli
     place: folder.Place
-    number: int
-    """Number of the participant, from 0."""
+    number: int  # number of the participant, from 0
     desk: Desk
     presenter: Presenter
     wait: Callable[[float], None] = time.sleep
@@ -161,8 +159,8 @@ class Session:
         folder.write_sidecar(self.place, self.stimuli.file, facts)
 
 
+# Keys of a pipeline that may be set for a session: they belong to the place and not to the design.
 CHOOSES_DEVICE = ("device.", "mapping.")
-"""Keys of a pipeline that may be set for a session: they belong to the place and not to the design."""
 
 
 def device_changes(device: str | None, sets: list[str]) -> tuple[str, ...]:

@@ -89,12 +89,12 @@ class Detection(Observer):
         return decide(trial, magnitude, self.base, generator)
 
 
+# Just noticeable difference of force, as a share of it (Pang, Tan & Durlach 1991, Percept. Psychophys. 49:531).
 JND_FORCE = 0.07
-"""Just noticeable difference of force, as a share of it (Pang, Tan & Durlach 1991, Percept. Psychophys. 49:531)."""
 JND_HEIGHT_M = 0.13e-3
 """Height of a bump 10 mm wide that a bare finger notices, metres (Gaussian profiles, VU Amsterdam)."""
+# d' of a just noticeable difference, with 75 % right answers in two intervals: the square root of 2 times 0.6745.
 NOTICED = 0.9538726
-"""d' of a just noticeable difference, with 75 % right answers in two intervals: the square root of 2 times 0.6745."""
 
 
 @final

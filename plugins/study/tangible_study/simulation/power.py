@@ -19,8 +19,8 @@ from ..study_file import StudyFile
 from ..trials import Answer, AnswerFile
 from .observers import Observer
 
+# Median of the simulated response times, seconds; they say nothing about people.
 MEDIAN_S = 1.2
-"""Median of the simulated response times, seconds; they say nothing about people."""
 
 
 def simulate(file: StudyFile, observer: Observer, number: int, seed: int) -> list[Answer]:
@@ -69,16 +69,12 @@ def write_folder(root: Path, file: StudyFile, observer: Observer, participants: 
     return count
 
 
-ALPHA = 0.05
-"""Probability of finding a difference where there is none."""
-MOST = 200
-"""Largest number of participants that is looked for."""
-TRIED = 100
-"""Simulated participants from whom power is estimated."""
-TRIED_CURVES = 24
-"""Simulated participants where a function is fitted to each, which takes 0.3 s of a processor."""
+ALPHA = 0.05  # probability of finding a difference where there is none
+MOST = 200  # largest number of participants that is looked for
+TRIED = 100  # simulated participants from whom power is estimated
+TRIED_CURVES = 24  # simulated participants where a function is fitted to each, which takes 0.3 s of a processor
+# Numbers of repetitions that are tried, as multiples of those in the study file.
 FACTORS = (0.5, 1.0, 2.0, 4.0)
-"""Numbers of repetitions that are tried, as multiples of those in the study file."""
 
 
 class Need(NamedTuple):
@@ -86,14 +82,10 @@ class Need(NamedTuple):
 
     comparison: str
     repetitions: int
-    trials: int
-    """Trials of each participant, without training."""
-    effect: float
-    """Mean difference over participants, of the pair of conditions that is hardest to tell apart."""
-    spread: float
-    """Standard deviation of this difference over participants."""
-    participants: int | None
-    """Participants needed; None if more than 200 are, or there is nothing to find."""
+    trials: int  # trials of each participant, without training
+    effect: float  # mean difference over participants, of the pair of conditions that is hardest to tell apart
+    spread: float  # standard deviation of this difference over participants
+    participants: int | None  # participants needed; None if more than 200 are, or there is nothing to find
 
 
 def plan(
@@ -144,8 +136,7 @@ def participant_effects(result: Result) -> dict[tuple[str, str], list[float]]:
     }
 
 
-PAIRS = {"scale value": "proportion chosen"}
-"""Measures that are not of one participant, and those that are."""
+PAIRS = {"scale value": "proportion chosen"}  # measures that are not of one participant, and those that are
 
 
 def participants_needed(effects: Sequence[float], power: float) -> int | None:

@@ -9,20 +9,16 @@ from scipy.special import stdtrit
 
 from .intervals import LEVEL, Estimate
 
-FEWEST = 5
-"""Fewest participants from whose differences the uncertainty is estimated."""
+FEWEST = 5  # fewest participants from whose differences the uncertainty is estimated
 
 
 class Scale(NamedTuple):
     """Values on a scale on which one is chosen over another with the probability 1 / (1 + exp(other - one))."""
 
-    values: Float64[np.ndarray, "n"]
-    """Values, their mean zero."""
+    values: Float64[np.ndarray, "n"]  # values, their mean zero
     covariance: Float64[np.ndarray, "n n"]
-    degrees: float
-    """Degrees of freedom of the intervals."""
-    was_completed: bool
-    """True if one always won or lost, so that half a win was added to each pair."""
+    degrees: float  # degrees of freedom of the intervals
+    was_completed: bool  # true if one always won or lost, so that half a win was added to each pair
 
     def estimate(self, index: int) -> Estimate:
         """Return a value with its interval."""

@@ -6,8 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-LEVEL = 0.95
-"""Confidence level of all intervals."""
+LEVEL = 0.95  # confidence level of all intervals
 
 
 class Estimate(NamedTuple):

@@ -11,28 +11,24 @@ from jaxtyping import Float64
 from ..extra import need
 from .intervals import LEVEL, Estimate
 
-STEP = 0.01
-"""Width of what counts as a step, as a share of the distance of two levels."""
+STEP = 0.01  # width of what counts as a step, as a share of the distance of two levels
+# Half the distance from 25 to 75 % as a share of the width (5 to 95 %) of a cumulative Gaussian: 0.6745 / 3.2897.
 JND = 0.20503033
-"""Half the distance from 25 to 75 % as a share of the width (5 to 95 %) of a cumulative Gaussian: 0.6745 / 3.2897."""
+# Steps of the grid: intervals of psignifit are exact to half a step (`python -m benchmarks study`).
 STEPS = {"threshold": 60, "width": 60, "lambda": 20}
-"""Steps of the grid: intervals of psignifit are exact to half a step (`python -m benchmarks study`)."""
 
 
-GAUSSIAN = 3.28970725
-"""Width from 5 to 95 % of a cumulative Gaussian, in standard deviations."""
-FARTHEST = 6.0
-"""Factor from the width to the farthest bound that is looked for."""
+GAUSSIAN = 3.28970725  # width from 5 to 95 % of a cumulative Gaussian, in standard deviations
+FARTHEST = 6.0  # factor from the width to the farthest bound that is looked for
+# Most lapses on each side, as a share of the trials, for which the likelihood of a width is looked for.
 MAX_LAPSES = 0.15
-"""Most lapses on each side, as a share of the trials, for which the likelihood of a width is looked for."""
 
 
 class Blocks(NamedTuple):
     """Answers by level, as psignifit takes them."""
 
     levels: Float64[np.ndarray, "n"]
-    counts: Float64[np.ndarray, "n"]
-    """Trials with the comparison chosen, or with a right answer."""
+    counts: Float64[np.ndarray, "n"]  # trials with the comparison chosen, or with a right answer
     trials: Float64[np.ndarray, "n"]
 
 

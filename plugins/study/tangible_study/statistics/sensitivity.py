@@ -12,13 +12,13 @@ from scipy.special import ndtr, ndtri
 
 from .intervals import LEVEL, Estimate
 
+# Largest d' that is looked for; the proportion correct is 1 in double precision long before.
 LARGEST = 12.0
-"""Largest d' that is looked for; the proportion correct is 1 in double precision long before."""
 _NODES, _WEIGHTS = hermegauss(100)
 _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
 _HALF = 4.5 * (1 + leggauss(100)[0])
+# Nodes and weights of a mean over the upper half of a normal distribution, of which 1e-18 is beyond 9.
 _HALF_WEIGHTS = 9 * leggauss(100)[1] * (np.exp(-(_HALF**2) / 2) / sqrt(2 * pi))
-"""Nodes and weights of a mean over the upper half of a normal distribution, of which 1e-18 is beyond 9."""
 _DPRIMES, _CRITERIA = np.linspace(0, 8, 401), np.linspace(0, 10, 401)
 """d' and criteria among which those of two intervals that are the same or different are looked for."""
 

@@ -18,24 +18,21 @@ from .planes import combine_planes
 
 logger: logging.Logger = logging.getLogger(__name__)
 
+# The largest number of textures that is estimated, and the cells of the picture that there must be for each.
 LARGEST_NUMBER, CELLS_EACH = 16, 96
-"""The largest number of textures that is estimated, and the cells of the picture that there must be for each."""
 
 
 class Weights(NamedTuple):
     """The log-odds that a pair of clusters are two textures: a constant, and a weight for each logarithm."""
 
     constant: float
-    distance: float
-    """Of the squared Mahalanobis distance between the two."""
-    size: float
-    """Of their combined size, as a share of the picture."""
-    cells: float
-    """Of the number of cells: with few, discriminants tell apart what is one texture."""
+    distance: float  # of the squared Mahalanobis distance between the two
+    size: float  # of their combined size, as a share of the picture
+    cells: float  # of the number of cells: with few, discriminants tell apart what is one texture
 
 
+# Fitted to mosaics, half of the given and half of built-in textures: `python -m benchmarks.texture_number`.
 TWO_TEXTURES: Weights = Weights(-14.93, 3.33, 2.62, 1.19)
-"""Fitted to mosaics, half of the given and half of built-in textures: `python -m benchmarks.texture_number`."""
 
 
 def largest_number(cells: int) -> int:
@@ -84,8 +81,8 @@ def _softplus(value: float) -> float:
 
 
 PRINCIPAL_AXES = 14
+# The power of its variance that divides a principal axis: half way between none, 0, and full whitening, 0.5.
 HALF_WHITE = 0.25
-"""The power of its variance that divides a principal axis: half way between none, 0, and full whitening, 0.5."""
 FINAL_ROUNDS = 8
 
 
@@ -94,8 +91,7 @@ class Effort(NamedTuple):
 
     per_segment: int
     besides: int
-    last: int
-    """Joinings with recomputed discriminants, before the number of segments is reached."""
+    last: int  # joinings with recomputed discriminants, before the number of segments is reached
 
 
 EFFORTS = {"fast": Effort(2, 2, 2), "balanced": Effort(3, 4, 8)}

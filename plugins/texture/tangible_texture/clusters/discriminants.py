@@ -9,8 +9,7 @@ from tangible_core.compiled import eigen, solve
 
 from .planes import combine_planes, inner_products, scatter_matrix
 
-ROUNDS = 8
-"""The largest number of Lloyd's rounds: joining corrects the rest."""
+ROUNDS = 8  # the largest number of Lloyd's rounds: joining corrects the rest
 
 
 def divide(planes: Float32[np.ndarray, "d n"], most: int) -> Int32[np.ndarray, "n"]:
@@ -58,8 +57,8 @@ def one_hot(labels: np.ndarray, count: int) -> Float32[np.ndarray, "k n"]:
 
 SHRUNK = 0.05
 """The share of the mean variance within classes and of the total scatter added to the scatter within classes."""
+# The number of cells whose share of all cells is the least shrinkage: few cells estimate the scatter poorly.
 CELLS = 200
-"""The number of cells whose share of all cells is the least shrinkage: few cells estimate the scatter poorly."""
 
 
 class Scatters(NamedTuple):

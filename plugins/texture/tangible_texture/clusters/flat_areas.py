@@ -12,17 +12,14 @@ from ..features.cells import channels
 from ..signal.smoothing import gaussian
 
 SMOOTH_PX = 2.0
-WHITE = 1 / (2 * sqrt(pi) * SMOOTH_PX)
-"""Share of the deviation of white noise that this Gaussian leaves."""
-INSIDE_PX = 5
-"""Distance from a change of tone at which a pixel is inside of an area, px."""
+WHITE = 1 / (2 * sqrt(pi) * SMOOTH_PX)  # share of the deviation of white noise that this Gaussian leaves
+INSIDE_PX = 5  # distance from a change of tone at which a pixel is inside of an area, px
 MAX_AREAS = 32
+# Largest deviation of the noise of a sensor, as a share of what the tones differ by: beyond, it is a texture.
 SENSOR = 0.05
-"""Largest deviation of the noise of a sensor, as a share of what the tones differ by: beyond, it is a texture."""
+# Largest change of tone within an area without noise, as a share of the brightest tone.
 ROUNDING = 1.5 / 255
-"""Largest change of tone within an area without noise, as a share of the brightest tone."""
-DEVIATIONS = 6
-"""Largest change of tone within an area, in standard deviations of the noise that is left."""
+DEVIATIONS = 6  # largest change of tone within an area, in standard deviations of the noise that is left
 
 
 def flat_areas(picture: np.ndarray, colour: bool, most: int) -> Int32[np.ndarray, "h w"] | None:

@@ -12,8 +12,7 @@ from .discriminants import evidence, one_hot, scatters
 from .neighbourhood import EVIDENCE, mean_field
 
 NARROW = 0.6
-SURE = 1e-6
-"""The least membership, so that its logarithm stays finite."""
+SURE = 1e-6  # the least membership, so that its logarithm stays finite
 
 
 def fine_memberships(

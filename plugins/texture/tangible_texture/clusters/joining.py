@@ -12,10 +12,10 @@ from .discriminants import discriminant_axes, one_hot, scatters
 from .neighbourhood import INSIDE_CELLS, interior_shares, refit_labels, smooth_memberships
 from .planes import add_planes, inner_products, scatter_matrix_in_kernel
 
+# The ridge added to each pair's scatter, as a share of the mean variance within clusters.
 RIDGE = 0.05
-"""The ridge added to each pair's scatter, as a share of the mean variance within clusters."""
+# What is added to the weight of every cell, so that no cluster weighs nothing.
 MIN_WEIGHT = 1e-3
-"""What is added to the weight of every cell, so that no cluster weighs nothing."""
 
 
 class Pairs(NamedTuple):
@@ -111,8 +111,8 @@ def _fill_distances(means, scatters, ridge, one, count, distances):
 
 
 AXES = 20
+# Exponents of two clusters' sizes in their joining's cost, 1 in Ward's method: the few may differ in size.
 FEW_POWER, MANY_POWER, MANY = 0.4, 0.8, 8
-"""Exponents of two clusters' sizes in their joining's cost, 1 in Ward's method: the few may differ in size."""
 
 
 class Step(NamedTuple):
@@ -120,10 +120,8 @@ class Step(NamedTuple):
 
     labels: Int32[np.ndarray, "n"]
     clusters: int
-    cost: float
-    """The cost by `Pairs.joining_costs`; infinite where there is one cluster only."""
-    distance: float = np.inf
-    """The squared Mahalanobis distance between the two that are joined next."""
+    cost: float  # the cost by `Pairs.joining_costs`; infinite where there is one cluster only
+    distance: float = np.inf  # the squared Mahalanobis distance between the two that are joined next
     size: float = 0.0
 
 

@@ -11,16 +11,14 @@ from tangible_core.runtime import plain_opencv
 
 from .discriminants import evidence, one_hot, scatters
 
-PULL = 4.0
-"""The weight of the neighbours' mean membership against evidence."""
+PULL = 4.0  # the weight of the neighbours' mean membership against evidence
+# The weight of evidence, under 1: windows overlap, so that cells are not independent.
 EVIDENCE = 0.5
-"""The weight of evidence, under 1: windows overlap, so that cells are not independent."""
-BLOCK = 1024
-"""The number of cells processed while they are in the cache."""
+BLOCK = 1024  # the number of cells processed while they are in the cache
+# The least membership besides 0, as a share of the cell's largest: denormal numbers are slow.
 LEAST = 1e-7
-"""The least membership besides 0, as a share of the cell's largest: denormal numbers are slow."""
+# The standard deviation, in cells, of the window in which a cell's class must prevail for its full weight.
 INSIDE_CELLS = 2.0
-"""The standard deviation, in cells, of the window in which a cell's class must prevail for its full weight."""
 
 
 def smooth_memberships(memberships: Float32[np.ndarray, "k n"], shape: tuple[int, int], sigma: float) -> np.ndarray:

@@ -7,14 +7,12 @@ from jaxtyping import Float32, Float64
 
 from tangible_core.compiled import in_turns, njit, thread_count
 
-BLOCK = 1024
-"""The number of columns processed while they are in the cache."""
-SHARED = 4_000_000
-"""The number of multiplications from which threads pay."""
+BLOCK = 1024  # the number of columns processed while they are in the cache
+SHARED = 4_000_000  # the number of multiplications from which threads pay
+# The number of columns summed in single precision; their sums are added in double precision.
 SUMMED = 4096
-"""The number of columns summed in single precision; their sums are added in double precision."""
+# The number of parallel partial sums: a constant, so that the order of sums is the same on every processor.
 LANES = 64
-"""The number of parallel partial sums: a constant, so that the order of sums is the same on every processor."""
 
 
 @njit(cache=True, nogil=True)

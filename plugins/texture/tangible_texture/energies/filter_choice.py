@@ -13,10 +13,9 @@ from ..signal.smoothing import remove_specks
 from .gabor_bank import Gabor
 from .local_energy import fft, mean_energies, picture_spectrum, standardise
 
+# The least relative spread of features of several textures; the spread of noise is ten times as large.
 SAME = 0.03
-"""The least relative spread of features of several textures; the spread of noise is ten times as large."""
-FAINT = 0.05
-"""The least share of the greatest feature that carries information."""
+FAINT = 0.05  # the least share of the greatest feature that carries information
 
 
 def is_flat(grey: Float32[np.ndarray, "h w"]) -> bool:
@@ -42,8 +41,8 @@ def is_one_texture(
 log: logging.Logger = logging.getLogger(__name__)
 
 ENOUGH = 0.95
+# The least share of a picture's variance that matters: the rounding of grey to 8 bits is little less.
 NOTHING = 1e-4
-"""The least share of a picture's variance that matters: the rounding of grey to 8 bits is little less."""
 PAD_PX = 32
 
 

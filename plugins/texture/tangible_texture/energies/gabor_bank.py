@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Complex128
 
+# The wavelength of the highest octave, px: sqrt(2)/4 cycles a pixel; one octave wide, it ends near Nyquist's.
 SHORTEST_PX = 2 * sqrt(2)
-"""The wavelength of the highest octave, px: sqrt(2)/4 cycles a pixel; one octave wide, it ends near Nyquist's."""
 HALF = sqrt(log(2) / 2)
 
 

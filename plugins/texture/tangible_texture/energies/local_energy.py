@@ -108,13 +108,13 @@ def even_responses(grey: Float32[np.ndarray, "h w"], filters: Sequence[Gabor]) -
 
 
 fft: Any = scipy.fft  # its annotations are those of its dispatcher
+# The least standard deviation of smoothing, in wavelengths: single waves must not show in the energy.
 RELATIVE_SIGMA = 0.35
-"""The least standard deviation of smoothing, in wavelengths: single waves must not show in the energy."""
 REACH = 4.0
+# The standard deviations of a filter, in frequency, at which it is cut: an energy below the fifth decimal is lost.
 TAIL = 3.0
-"""The standard deviations of a filter, in frequency, at which it is cut: an energy below the fifth decimal is lost."""
+# The samples per standard deviation of the smoothed energy's spectrum: less than 1 % is aliased.
 FINENESS = 3.4
-"""The samples per standard deviation of the smoothed energy's spectrum: less than 1 % is aliased."""
 
 
 class Spectrum(NamedTuple):

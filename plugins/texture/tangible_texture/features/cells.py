@@ -34,16 +34,13 @@ def _share(values: np.ndarray, white: float) -> Float32[np.ndarray, "h w c"]:
 
 
 CELL_PX = 4
+# The standard deviation of the window in which energies are averaged before windows of cells, px.
 ENERGY_SIGMA_PX = 4.0
-"""The standard deviation of the window in which energies are averaged before windows of cells, px."""
-RARE = 0.985
-"""The quantile of a plane that limits its values: a scratch is not a texture."""
-MIN_RARE = 1.5
-"""The largest value of a plane, as a multiple of its RARE quantile."""
+RARE = 0.985  # the quantile of a plane that limits its values: a scratch is not a texture
+MIN_RARE = 1.5  # the largest value of a plane, as a multiple of its RARE quantile
+# The number of parallel partial sums: a constant, so that the order of sums is the same on every processor.
 LANES = 64
-"""The number of parallel partial sums: a constant, so that the order of sums is the same on every processor."""
-STILL = 1e-6
-"""The least standard deviation of an informative plane, features being of the order of 1."""
+STILL = 1e-6  # the least standard deviation of an informative plane, features being of the order of 1
 
 
 def cap_rare_values(planes: Float32[np.ndarray, "d h w"]) -> Float32[np.ndarray, "d h w"]:

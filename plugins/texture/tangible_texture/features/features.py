@@ -19,14 +19,13 @@ from .patterns import PATTERNS, pattern_frequencies
 
 log: logging.Logger = logging.getLogger(__name__)
 
+# The standard deviations of the windows, px: along borders, for the classes, and for the initial division.
 NARROW_PX, MIDDLE_PX, WIDE_PX = 5.0, 10.0, 18.0
-"""The standard deviations of the windows, px: along borders, for the classes, and for the initial division."""
+# The root of a picture's area, px, below which windows are narrower in proportion, down to half as wide.
 LARGE_PX = 320
-"""The root of a picture's area, px, below which windows are narrower in proportion, down to half as wide."""
+# The least difference of windows in colour, as a share of white, beyond chance and an even change of light.
 COLOURFUL = 0.02
-"""The least difference of windows in colour, as a share of white, beyond chance and an even change of light."""
-COLOUR_WEIGHT = 3.0
-"""The weight of a plane of colour against one of ninety planes of texture."""
+COLOUR_WEIGHT = 3.0  # the weight of a plane of colour against one of ninety planes of texture
 
 
 class Window(NamedTuple):

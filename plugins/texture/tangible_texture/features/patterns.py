@@ -13,11 +13,11 @@ CELL_PX = 4
 CLASSES = 10
 AGREEMENTS = 12
 COUNTERS = CLASSES + AGREEMENTS
+# The distances of the neighbours, px, and the standard deviations of the smoothing before, px.
 RADII = ((1, 0.0), (3, 0.0), (5, 1.5))
-"""The distances of the neighbours, px, and the standard deviations of the smoothing before, px."""
 PATTERNS = len(RADII) * COUNTERS
+# The largest difference of equal greys, as a share of the picture's standard deviation: that of rounding.
 ALIKE = 1e-3
-"""The largest difference of equal greys, as a share of the picture's standard deviation: that of rounding."""
 
 
 def pattern_frequencies(

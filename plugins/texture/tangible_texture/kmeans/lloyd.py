@@ -14,12 +14,11 @@ from tangible_core.plugins import note
 from ..clusters.planes import combine_planes
 from ..regions.merging import number_in_reading_order
 
+# The largest distance of equal rows, as a share of the longest row: the rounding of sums in single precision.
 SAME = 1e-5
-"""The largest distance of equal rows, as a share of the longest row: the rounding of sums in single precision."""
-SIDE_BY_SIDE = 64
-"""The number of rows whose distances are computed together, in vector instructions."""
+SIDE_BY_SIDE = 64  # the number of rows whose distances are computed together, in vector instructions
+# The number of rows summed together: fixed, so that the result does not depend on the number of threads.
 BLOCK = 4096
-"""The number of rows summed together: fixed, so that the result does not depend on the number of threads."""
 
 
 class Clusters(NamedTuple):
@@ -151,8 +150,8 @@ def _squared_distances(columns, centre, away):
             away[i] += step * step
 
 
+# The number of rows in the estimate: the cost of silhouettes grows with its square.
 SAMPLE = 1500
-"""The number of rows in the estimate: the cost of silhouettes grows with its square."""
 APART = 0.25
 """The least mean silhouette that indicates structure (Kaufman & Rousseeuw, Finding groups in data, 1990, sec. 2.2)."""
 

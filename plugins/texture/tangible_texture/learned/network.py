@@ -17,12 +17,12 @@ from ..features.features import Features, Window
 from ..features.patterns import PATTERNS
 
 FILTERS = 24
+# The least side of the narrow grid, in cells: the weights were fitted to pictures of 256 pixels or more.
 MIN_CELLS = 64
-"""The least side of the narrow grid, in cells: the weights were fitted to pictures of 256 pixels or more."""
+# The number of planes that are reduced, or averaged in windows, at once: all of them would take too much memory.
 GROUP = 16
-"""The number of planes that are reduced, or averaged in windows, at once: all of them would take too much memory."""
+# The standard deviations of the further windows, in cells of 8 pixels: with 5 px before, some 5, 10 and 18 px.
 WINDOWS = 0.0, 1.09, 2.16
-"""The standard deviations of the further windows, in cells of 8 pixels: with 5 px before, some 5, 10 and 18 px."""
 
 
 class Weights(NamedTuple):

@@ -42,8 +42,8 @@ def canny_edges(land: Landscape, low: float, high: float, most: float) -> UInt8[
 Ways = tuple[tuple[slice, slice], tuple[slice, slice]]
 """The slices of the first and of the second pixels of all pairs in one direction."""
 
+# The least slope of an edge on a border of two regions, as a share of the slope that starts an edge elsewhere.
 WEAK_EDGE = 2 / 3
-"""The least slope of an edge on a border of two regions, as a share of the slope that starts an edge elsewhere."""
 ACROSS_IT = 0.45
 DOWN: Ways = np.s_[:-1, :], np.s_[1:, :]
 ACROSS: Ways = np.s_[:, :-1], np.s_[:, 1:]

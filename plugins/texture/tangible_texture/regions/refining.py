@@ -8,8 +8,8 @@ from ..signal.smoothing import gaussian, slopes
 from .borders import ACROSS, DOWN
 from .watershed import UNSEEN, watershed
 
+# The standard deviation of the Gaussian before slopes of pixels are measured, in sides of a cell.
 FINE = 0.35
-"""The standard deviation of the Gaussian before slopes of pixels are measured, in sides of a cell."""
 
 
 def refine_regions(

@@ -8,17 +8,17 @@ from jaxtyping import Float32, Int32
 
 from tangible_core.compiled import KERNEL, inner, njit
 
+# The number of levels of height; low ones, where most waters meet, are finer than high ones.
 LEVELS = 1024
-"""The number of levels of height; low ones, where most waters meet, are finer than high ones."""
 TILE_PX = 512
+# The margin flooded around a tile, px: more than the distance between two flat basins.
 AROUND_PX = 32
-"""The margin flooded around a tile, px: more than the distance between two flat basins."""
 UNSEEN = -1
 _OUTSIDE = -2
 _LAST = -1
 _UNQUEUED = -2
+# The columns of the state of a pixel, contiguous because the flood jumps about in memory.
 _LABEL, _LEVEL, _NEXT = range(3)
-"""The columns of the state of a pixel, contiguous because the flood jumps about in memory."""
 
 
 Heights = Float32[np.ndarray, "h w"]
@@ -105,10 +105,10 @@ def _append(pixel, level, cells, first, last):
     last[level] = pixel
 
 
+# The largest number of segments under `auto`, far more than touch can distinguish.
 MAX_SEGMENTS = 64
-"""The largest number of segments under `auto`, far more than touch can distinguish."""
+# The multiples of the flat threshold, tried in turn where nothing is flat enough.
 STEEPER = (1, 4, 16)
-"""The multiples of the flat threshold, tried in turn where nothing is flat enough."""
 _SEVERAL = -2
 
 

@@ -9,8 +9,8 @@ from jaxtyping import Float32
 from tangible_core.compiled import KERNEL, inner, njit
 from tangible_core.runtime import plain_opencv
 
+# Ratio of the sigmas of regions and boundaries: larger, it detects weaker edges and loses narrow regions.
 WIDER = 1.75
-"""Ratio of the sigmas of regions and boundaries: larger, it detects weaker edges and loses narrow regions."""
 
 
 def remove_specks(values: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, "h w c"]:
@@ -58,10 +58,9 @@ def smooth_at_two_scales(
     return near, gaussian(cells, rest**0.5 / step) if rest > 0 else cells, step
 
 
-TILE_PX = 128
-"""The side of the tiles in which noise is measured, px."""
+TILE_PX = 128  # the side of the tiles in which noise is measured, px
+# The share of the pixels of a tile assumed to hold noise and no edge, at least.
 QUIET_SHARE = 0.25
-"""The share of the pixels of a tile assumed to hold noise and no edge, at least."""
 _QUIET_RATIO = np.float32(sqrt(-2 * log(1 - QUIET_SHARE)))
 """The QUIET_SHARE quantile over the parameter of a Rayleigh distribution, that of slopes of Gaussian noise."""
 _HALF = np.float32(0.5)

@@ -12,18 +12,17 @@ from tangible_core.runtime import plain_opencv
 
 from ..signal.smoothing import gaussian
 
+# The most cells of a picture, so that the same picture at another size has the same regions.
 CELLS = 40_000
-"""The most cells of a picture, so that the same picture at another size has the same regions."""
 BINS = 12
+# Lowest and highest bin, as shares of the picture's range; symmetric, so that a negative has the same bins.
 RANGES = {"brightness": (0.0, 1.0), "red": (-0.4, 0.4), "yellow": (-0.5, 0.5)}
-"""Lowest and highest bin, as shares of the picture's range; symmetric, so that a negative has the same bins."""
 ROUGH_BINS, ROUGHEST = 8, 0.8
+# The share of the darkest and of the brightest values that the picture's range does not have to hold.
 RARE = 0.001
-"""The share of the darkest and of the brightest values that the picture's range does not have to hold."""
-WEAK = 0.02
-"""The deviation or slope of brightness that is half way between smooth and rough."""
+WEAK = 0.02  # the deviation or slope of brightness that is half way between smooth and rough
+# The standard deviation of the window whose mean roughness is measured against, in cells.
 AROUND_CELLS = 2.0
-"""The standard deviation of the window whose mean roughness is measured against, in cells."""
 
 Plane = Float32[np.ndarray, "h w"]
 Planes = Float32[np.ndarray, "d h w"]
@@ -83,11 +82,11 @@ def _directions(across: Plane, down: Plane) -> Planes:
 FINE_CELLS = 0.6
 WINDOW_CELLS = 1.5
 LEVELS = 3
+# A share that is added to all: the square root of nearly nothing must not change fast.
 EMPTY = 1e-4
-"""A share that is added to all: the square root of nearly nothing must not change fast."""
 
+# The structure tensor of each cue at each cell: across-across, across-down, down-down.
 Tensors = Float32[np.ndarray, "cues 3 h w"]
-"""The structure tensor of each cue at each cell: across-across, across-down, down-down."""
 
 
 def tensors(brightness: Float32[np.ndarray, "h w"], shares: Mapping[str, Float32[np.ndarray, "_ h w"]]) -> Tensors:

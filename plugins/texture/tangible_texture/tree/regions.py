@@ -12,10 +12,9 @@ from ..regions.refining import inner_cells
 from ..regions.watershed import UNSEEN, watershed
 from ..signal.smoothing import gaussian
 
+# The standard deviation of the window in which strengths are smoothed before their minima are found, in cells.
 CALM_CELLS = 0.7
-"""The standard deviation of the window in which strengths are smoothed before their minima are found, in cells."""
-REACH_CELLS = 3
-"""How far a border's direction is looked for to either side of a pair of cells."""
+REACH_CELLS = 3  # how far a border's direction is looked for to either side of a pair of cells
 
 
 class Regions(NamedTuple):

@@ -8,8 +8,8 @@ from tangible_core.errors import ConfigError
 from tangible_core.files.yaml import json_in_yaml
 from tangible_core.plugins import HapticDevice
 
+# Changes to the document for the page's hand, which is where the mouse is: no clutch, and no other device's limits.
 NOT_FOR_A_PAGE = ("mapping.clutch_button=null", "mapping.limits_m=null")
-"""Changes to the document for the page's hand, which is where the mouse is: no clutch, and no other device's limits."""
 
 
 @dataclass

@@ -14,10 +14,9 @@ from tangible_devices.pointer.pointer import Pointer
 from .feeling import end_loop
 
 NOTHING: Vector = (0.0, 0.0, 0.0)
+# Time constant with which the loop follows the hand, s; the hand arrives every 10 ms, and this law lags by so much.
 FOLLOW_S = 0.008
-"""Time constant with which the loop follows the hand, s; the hand arrives every 10 ms, and this law lags by so much."""
-HIGHEST_M = 0.5
-"""Height above which the hand counts as released, m."""
+HIGHEST_M = 0.5  # height above which the hand counts as released, m
 
 
 @final

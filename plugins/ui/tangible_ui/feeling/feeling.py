@@ -17,8 +17,8 @@ from tangible_web.framing import BUTTON_BITS
 from tangible_web.hand import Hand
 from tangible_web.state_frame import ALONE, OtherLaw, frame_without_loop, newest_frame
 
+# Bits of a device's buttons; and the button by which the page's own hand is pressed down, which ends no beacon.
 BUTTONS, PRESSED = (1 << BUTTON_BITS) - 1, 1
-"""Bits of a device's buttons; and the button by which the page's own hand is pressed down, which ends no beacon."""
 
 
 def end_loop(servo: Servo) -> str:
@@ -37,14 +37,11 @@ class LoopInput(NamedTuple):
     touch: Packed
     law: str
     device_name: str
-    device: HapticDevice
-    """The device, moved by the document's mapping into the picture's frame."""
-    own_hand: bool
-    """True for the page's own pointer."""
+    device: HapticDevice  # the device, moved by the document's mapping into the picture's frame
+    own_hand: bool  # true for the page's own pointer
     mapping: WorkspaceMapping
     safety: Safety
-    materials: str = ""
-    """Names of the materials by label, as recordings store them."""
+    materials: str = ""  # names of the materials by label, as recordings store them
 
     @classmethod
     def of(cls, answer: dict[str, Any], channel: str) -> "LoopInput":
@@ -64,8 +61,7 @@ class LoopEnd(NamedTuple):
     """The end of a loop that nobody stopped."""
 
     why: str
-    is_lost: bool
-    """True if the device was lost; it may come back."""
+    is_lost: bool  # true if the device was lost; it may come back
 
 
 @final

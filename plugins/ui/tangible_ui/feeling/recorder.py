@@ -9,8 +9,8 @@ from tangible_core.errors import TangibleError
 from tangible_core.servo import Servo
 from tangible_core.session import About, RingDrain, Writer
 
+# Seconds between two writes: what a crash of the server can lose of a recording.
 LOOK_EVERY_S = 0.05
-"""Seconds between two writes: what a crash of the server can lose of a recording."""
 BY_HAND = "stopped by hand"
 
 

@@ -16,8 +16,8 @@ from ..state.tabs import Tab
 from .making import make
 from .table import request
 
+# First and longest pause before a device is looked for again, s; each doubles the last, as a look starts a process.
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 8.0
-"""First and longest pause before a device is looked for again, s; each doubles the last, as a look starts a process."""
 KINDS = ("hand", "document", "other")
 
 
@@ -88,8 +88,7 @@ async def limits(session: Session, tab: Tab) -> dict[str, Any] | None:
 
 
 LOOKED_BACK_S = 1.0
-LATE_US = 200
-"""Delay from which a tick counts as late, µs; it can then be felt."""
+LATE_US = 200  # delay from which a tick counts as late, µs; it can then be felt
 LATE_S, BUTTONS = TICK_COLUMNS.index("late_s"), TICK_COLUMNS.index("buttons")
 
 

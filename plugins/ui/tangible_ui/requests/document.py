@@ -15,8 +15,8 @@ from .making import foresee, make
 from .table import request
 
 log: logging.Logger = logging.getLogger(__name__)
+# Endings of pictures that a page shows by itself, before anything was computed.
 SHOWN_BY_BROWSERS = frozenset({".png", ".jpg", ".jpeg", ".webp", ".gif", ".bmp"})
-"""Endings of pictures that a page shows by itself, before anything was computed."""
 
 
 @request()

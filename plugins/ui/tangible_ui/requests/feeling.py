@@ -57,8 +57,8 @@ def _tell(session: Session, part: int | None, name: str) -> dict[str, Any]:
 
 NAMES = ("a", "b")
 NO_OTHER = "there is no other law yet; choose one to compare with"
+# What a study asks of two laws: which of three is not the same as the others, or which of two is more so.
 StudyQuestion = Literal["same", "rougher", "higher"]
-"""What a study asks of two laws: which of three is not the same as the others, or which of two is more so."""
 
 
 @request()

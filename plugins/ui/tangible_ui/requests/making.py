@@ -10,8 +10,8 @@ from ..state.tabs import Tab
 from ..worker.handle import WorkerKilled
 from .table import request
 
+# Time that an outdated job has to end by itself before the worker is killed, s.
 PATIENCE_S = 1.5
-"""Time that an outdated job has to end by itself before the worker is killed, s."""
 
 
 @request()

@@ -14,8 +14,7 @@ from .document import change
 from .making import long_job
 from .table import request
 
-MIN_TICKS = 1000
-"""Minimum number of ticks of a loop whose lateness is judged."""
+MIN_TICKS = 1000  # minimum number of ticks of a loop whose lateness is judged
 
 
 @request()

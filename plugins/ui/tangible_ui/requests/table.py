@@ -3,8 +3,8 @@
 from collections.abc import Awaitable, Callable
 from typing import Any, TypeVar
 
+# A request's function: called with the session, the tab, and the tab's arguments by name; its result is the answer.
 Request = Callable[..., Awaitable[Any]]
-"""A request's function: called with the session, the tab, and the tab's arguments by name; its result is the answer."""
 R = TypeVar("R", bound=Request)
 
 REQUESTS: dict[str, Request] = {}

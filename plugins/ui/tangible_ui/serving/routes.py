@@ -30,12 +30,11 @@ from .translating import in_language, tab_language
 
 FOREVER = "private, max-age=31536000, immutable"
 WRONG_KEY = 4401
-EXPORTS = "export-"
-"""Prefix of the worker's folders of exported files."""
+EXPORTS = "export-"  # prefix of the worker's folders of exported files
 NOT_YOURS = "the key in the address is not this program's; open the address it printed"
 
+# Query of a window: first row and number of rows, first column and number, columns of the file, bytes of an item.
 WINDOW = frozenset({"row", "rows", "column", "columns", "of", "bytes"})
-"""Query of a window: first row and number of rows, first column and number, columns of the file, bytes of an item."""
 MAX_ITEMS = 4_000_000
 
 Answer = Callable[[Request], Awaitable[Response]]

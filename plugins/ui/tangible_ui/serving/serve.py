@@ -29,11 +29,10 @@ from ..state.session import Session
 from .routes import application
 
 log: logging.Logger = logging.getLogger(__name__)
+# Threads for waiting calls: a disk, a pipe, a loop that ends. Such a call must not wait for another one of them.
 THREADS = 32
-"""Threads for waiting calls: a disk, a pipe, a loop that ends. Such a call must not wait for another one of them."""
 
-LATEST_START_S = 2.0
-"""Longest wait for a first scene before the loop starts, s."""
+LATEST_START_S = 2.0  # longest wait for a first scene before the loop starts, s
 
 
 def serve(files: list[Path], sets: list[str], address: Address) -> None:

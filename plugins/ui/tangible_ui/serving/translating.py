@@ -13,10 +13,9 @@ TEXTS = frozenset(
     }
 )  # fmt: skip
 """Keys whose values are texts for people, wherever they stand."""
-SPOKEN = frozenset({"refused", "error", "log"})
-"""Events whose `text` is for people."""
+SPOKEN = frozenset({"refused", "error", "log"})  # events whose `text` is for people
+# Keys of a note and of a complaint, whose `text` is for people too; that of a document is YAML.
 NOTED = frozenset({"kind", "location"})
-"""Keys of a note and of a complaint, whose `text` is for people too; that of a document is YAML."""
 VALUES = frozenset({"said", "values", "changes", "says", "names"})
 """Keys of what stands in a document or is named by its user."""
 KNOWN = frozenset({BY_HAND, "asked", "button", "scene", "ended"})

@@ -18,8 +18,7 @@ from ..user_data import user_folder
 
 log: logging.Logger = logging.getLogger(__name__)
 MAX_STEPS = 100
-MAX_LEFT = 10
-"""Number of drafts that are kept; older ones are removed."""
+MAX_LEFT = 10  # number of drafts that are kept; older ones are removed
 
 
 class Text(NamedTuple):
@@ -89,8 +88,7 @@ class Draft(NamedTuple):
 
     file: Path
     text: Text
-    at_s: float
-    """Time of the last edit, Unix time."""
+    at_s: float  # time of the last edit, Unix time
 
 
 @final

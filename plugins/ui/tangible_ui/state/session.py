@@ -22,8 +22,8 @@ from .document import Document
 from .tabs import Tabs
 from .uploads import UploadStore
 
+# Pause between two drawings while a height is dragged, s: a browser draws once while the hand feels five heights.
 DRAWN_PAUSE_S = 0.4
-"""Pause between two drawings while a height is dragged, s: a browser draws once while the hand feels five heights."""
 
 
 T = TypeVar("T")
@@ -34,11 +34,9 @@ class Laws:
     """The document's law and a second one; without a comparison, the document's alone."""
 
     comparison: ComparisonLoop
-    other: dict[str, Any] | None = None
-    """The second law, as `render:` has it."""
+    other: dict[str, Any] | None = None  # the second law, as `render:` has it
     names: tuple[str, str] = ("", "")
-    acting: int = 0
-    """Index of the law that acts."""
+    acting: int = 0  # index of the law that acts
 
     def alone(self) -> None:
         """End the comparison."""

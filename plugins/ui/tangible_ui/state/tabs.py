@@ -5,12 +5,11 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, Protocol, final, runtime_checkable
 
-MAX_HISTORY, MAX_LOGGED = 500, 200
-"""Numbers of past events and of log lines that a tab opened later gets."""
+MAX_HISTORY, MAX_LOGGED = 500, 200  # numbers of past events and of log lines that a tab opened later gets
+# Events that describe a state: only the latest of each counts, and it is kept however many other events follow.
 LATEST_ONLY = frozenset(
     {"restored", "document", "plan", "materials", "preflight", "legible", "exported", "beacon", "described"}
 ) | {"maker", "maker_gone", "opening", "fetching"}
-"""Events that describe a state: only the latest of each counts, and it is kept however many other events follow."""
 
 
 @runtime_checkable

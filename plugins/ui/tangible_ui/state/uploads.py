@@ -13,13 +13,11 @@ from typing import final
 from tangible_core.errors import ConfigError, quoted
 from tangible_core.files import MAX_BYTES, in_words
 
+# Maximum number of files of one drop: two pictures with their maps, or a pipeline file and its pictures.
 MAX_FILES = 16
-"""Maximum number of files of one drop: two pictures with their maps, or a pipeline file and its pictures."""
 MAX_NAME = 120
-AT_ONCE_BYTES = 1 << 22
-"""Bytes collected before they are written."""
-WRONG = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*]')
-"""Characters that some system does not allow in file names."""
+AT_ONCE_BYTES = 1 << 22  # bytes collected before they are written
+WRONG = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*]')  # characters that some system does not allow in file names
 
 
 @final

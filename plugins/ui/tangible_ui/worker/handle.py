@@ -17,8 +17,8 @@ from tangible_core.servo import receive, send
 from ..prestart import take_worker_process
 from .messages import Event, JobFailure, JobRequest, JobResult
 
+# Failed starts in a row after which the worker is given up until `try_again`.
 MAX_DEATHS = 3
-"""Failed starts in a row after which the worker is given up until `try_again`."""
 
 
 class WorkerKilled(TangibleError):

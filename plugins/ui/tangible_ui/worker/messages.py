@@ -39,5 +39,4 @@ class Late(NamedTuple):
 
     late_s: np.ndarray
     period_s: float
-    real_time: bool
-    """True if the loop has real-time priority."""
+    real_time: bool  # true if the loop has real-time priority

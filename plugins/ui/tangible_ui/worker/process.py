@@ -16,10 +16,10 @@ from tangible_core.servo import receive, send, sendable
 from .messages import Event, JobFailure, JobRequest, JobResult
 
 FULL = {getattr(errno, name, -1) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EROFS")}
+# Niceness after the first long job: pictures can then wait, loop and page cannot. Before it, no loop has input.
 NICENESS = 10
-"""Niceness after the first long job: pictures can then wait, loop and page cannot. Before it, no loop has input."""
+# Time for the main thread to find that the server is gone, s, before a reply that nobody reads ends the process.
 CLEANING_S = 2.0
-"""Time for the main thread to find that the server is gone, s, before a reply that nobody reads ends the process."""
 _keep_precedence: set[int] = set()
 
 

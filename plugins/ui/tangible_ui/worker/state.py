@@ -17,8 +17,7 @@ from tangible_core.scene import SceneFiles
 NEVER = -1
 
 
-Stamp = tuple[tuple[Path, int, int], ...]
-"""Files with the time of their last change, and their size."""
+Stamp = tuple[tuple[Path, int, int], ...]  # files with the time of their last change, and their size
 
 
 def scene_stamp(config: PipelineConfig) -> Stamp:
@@ -33,8 +32,8 @@ def scene_stamp(config: PipelineConfig) -> Stamp:
     return tuple(stamp)
 
 
+# A function that sends an event to all pages: its name, and its fields by name.
 Tell = Callable[..., None]
-"""A function that sends an event to all pages: its name, and its fields by name."""
 
 
 @final

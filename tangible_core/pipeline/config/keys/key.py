@@ -34,8 +34,7 @@ class Forms:
     """JSON Schemas of the models and methods that a key may hold, and the definitions that they refer to."""
 
     registry: Registry
-    distribution: str | None
-    """The distribution whose methods are described; all that are installed when None."""
+    distribution: str | None  # the distribution whose methods are described; all that are installed when None
     definitions: dict[str, Any] = field(default_factory=dict[str, Any])
 
     def of(self, model: type[BaseModel]) -> dict[str, Any]:

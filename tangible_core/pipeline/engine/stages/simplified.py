@@ -10,8 +10,8 @@ from ..hooked import has_figure, legibility_point, simplify_function
 from ..stage import Inputs
 from .parts import OfPartsStage
 
+# The most colours of a flat drawing that stay apart, as many as have letters on a page.
 MAX_COLOURS = 100
-"""The most colours of a flat drawing that stay apart, as many as have letters on a page."""
 
 
 class SimplifiedStage(OfPartsStage):

@@ -10,12 +10,11 @@ from tangible_core.compiled import KERNEL, inner, njit
 
 from ..span import UNKNOWN
 
-PER_PIXEL = 1
-"""Length of a step to a neighbour of equal grey, in grey levels."""
+PER_PIXEL = 1  # length of a step to a neighbour of equal grey, in grey levels
+# Directions of the sweeps: from the last pixel to the first, as known pixels lie to the right, and back.
 SWEEPS = (-1, 1)
-"""Directions of the sweeps: from the last pixel to the first, as known pixels lie to the right, and back."""
+# Length where no path leads to a known pixel, in grey levels: longer than any path.
 NO_WAY = np.int32(1 << 28)
-"""Length where no path leads to a known pixel, in grey levels: longer than any path."""
 
 
 class GeodesicCandidates(NamedTuple):
@@ -64,16 +63,14 @@ def _sweep(grey, first, step, values, lengths):
             lengths[y, x], values[y, x] = length, value
 
 
+# Terms of the score: the farther candidate of the row; a farther surface, no match, no picture in the right view.
 FARTHER_OF_ROW, CONTRADICTED, UNMATCHED_THERE, BEYOND_PICTURE = 0.7, -3.4, -1.4, 0.75
-"""Terms of the score: the farther candidate of the row; a farther surface, no match, no picture in the right view."""
+# Terms per square root of the grey levels crossed, and per 10 px that a candidate is nearer than the farthest.
 PER_ROOT_OF_GREY, PER_10_PX_NEARER = -0.18, -0.3
-"""Terms per square root of the grey levels crossed, and per 10 px that a candidate is nearer than the farthest."""
+# Term of a candidate at the end of a geodesic path, which is less certain than a straight neighbour.
 GEODESIC_SCORE = -1.0
-"""Term of a candidate at the end of a geodesic path, which is less certain than a straight neighbour."""
-SAME_SURFACE = 24
-"""Largest difference, in sixteenths of a pixel, of two disparities of one surface."""
-NEAREST = np.int32(32767)
-"""Disparity nearer than every real one, in sixteenths of a pixel."""
+SAME_SURFACE = 24  # largest difference, in sixteenths of a pixel, of two disparities of one surface
+NEAREST = np.int32(32767)  # disparity nearer than every real one, in sixteenths of a pixel
 
 
 @inner()

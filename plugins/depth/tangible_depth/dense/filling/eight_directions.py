@@ -13,10 +13,9 @@ from .candidates import GEODESIC_SCORE, geodesic_candidates, known_or_nearest, p
 from .four_directions import fill_from_four_directions
 
 DIAGONAL_SCORE = -0.9
+# Directions of one scan: within the row, straight up, and two diagonals; the scan back has the opposite ones.
 HALF = 4
-"""Directions of one scan: within the row, straight up, and two diagonals; the scan back has the opposite ones."""
-LONGEST_PATH = 65535
-"""Longest path told apart, in grey levels: 16 bits."""
+LONGEST_PATH = 65535  # longest path told apart, in grey levels: 16 bits
 
 
 def fill_from_eight_directions(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> np.ndarray:

@@ -17,10 +17,9 @@ from .candidates import (
     score_candidate,
 )
 
-LEFT, RIGHT, ABOVE, BELOW, GEODESIC = range(5)
-"""Indices of the candidates."""
+LEFT, RIGHT, ABOVE, BELOW, GEODESIC = range(5)  # indices of the candidates
+# Widest gap, in columns, that takes the farther end without scoring if both ends are of one surface.
 SHORT = 2
-"""Widest gap, in columns, that takes the farther end without scoring if both ends are of one surface."""
 
 
 def fill_from_four_directions(

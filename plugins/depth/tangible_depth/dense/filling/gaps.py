@@ -12,8 +12,8 @@ from .eight_directions import fill_from_eight_directions
 from .four_directions import fill_from_four_directions
 from .planes import fit_planes
 
+# The option `effort` of `semi-global`; all other methods fill as `balanced`.
 Effort = Literal["balanced", "best"]
-"""The option `effort` of `semi-global`; all other methods fill as `balanced`."""
 
 
 def fill_gaps(

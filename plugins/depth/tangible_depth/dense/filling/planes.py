@@ -11,17 +11,16 @@ from ...simd.lanes import Lanes, add, load, minimum, multiply, splat, subtract
 from ..span import UNKNOWN
 
 EVERY = 4
-COUNT = 12
-"""Samples near a pixel along either axis that are used."""
+COUNT = 12  # samples near a pixel along either axis that are used
+# Columns of the samples, in half samples from their middle; negative ones wrap, as all sums do.
 COLUMNS = np.arange(1 - COUNT, COUNT, 2).astype(np.uint16)
-"""Columns of the samples, in half samples from their middle; negative ones wrap, as all sums do."""
 OF_SURFACE, OF_GREY = 36, 30
 """Largest difference to a known pixel of the same surface, in sixteenths of a pixel and in grey levels."""
+# Ridge added to the variance of the positions, in square half samples; that is 48 where all samples are known.
 RIDGE = 1.0
-"""Ridge added to the variance of the positions, in square half samples; that is 48 where all samples are known."""
 FEWEST = 4
+# Disparity, in sixteenths of a pixel, from which a value is kept: 16 bits could turn it into UNKNOWN.
 FARTHEST_OFF = 32000
-"""Disparity, in sixteenths of a pixel, from which a value is kept: 16 bits could turn it into UNKNOWN."""
 
 
 def fit_planes(

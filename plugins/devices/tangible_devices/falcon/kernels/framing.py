@@ -6,8 +6,7 @@ from tangible_core.compiled import KERNEL, njit
 
 from .packet import BYTES, SIZE, START, is_packet
 
-USB_PACKET, STATUS = 64, 2
-"""Bytes of a full-speed packet, and of the FTDI chip's status at its start."""
+USB_PACKET, STATUS = 64, 2  # bytes of a full-speed packet, and of the FTDI chip's status at its start
 
 FILL, ANSWERS, DROPPED, SEEN, FRESH = range(5)
 COUNTS = 5

@@ -12,20 +12,18 @@ from numba import boolean, float64, types
 
 from tangible_core.compiled import KERNEL, njit
 
+# Stamper's a, b, c and d + e: thigh, shin parallelogram, offset of the tip's hinge, the two ends of the shin.
 THIGH_M, SHIN_M, HINGE_M, ENDS_M = 0.060, 0.1025, 0.01443, 0.01125 + 0.01125
-"""Stamper's a, b, c and d + e: thigh, shin parallelogram, offset of the tip's hinge, the two ends of the shin."""
-SIDEWAYS_M, RADIUS_M, SHIFT_M = -0.025, 0.0400, -0.02309
-"""Stamper's f, r, s: the place of each arm."""
+SIDEWAYS_M, RADIUS_M, SHIFT_M = -0.025, 0.0400, -0.02309  # stamper's f, r, s: the place of each arm
 _TURN = np.radians(np.array([105.0, -15.0, -135.0]))
+# Cosines and sines of the arms' directions: top, right, left, as seen from the front, all turned by 15 degrees.
 COS, SIN = np.cos(_TURN), np.sin(_TURN)
-"""Cosines and sines of the arms' directions: top, right, left, as seen from the front, all turned by 15 degrees."""
-CENTRE_M = 0.125
-"""z in the middle of the workspace."""
+CENTRE_M = 0.125  # z in the middle of the workspace
+# Resolution of an encoder: four edges of 320 slots a turn; a drum of 14.25 mm drives the arm's sector of 110 mm.
 RAD_PER_COUNT = 2 * math.pi / (4 * 320) * 0.01425 / 0.110
-"""Resolution of an encoder: four edges of 320 slots a turn; a drum of 14.25 mm drives the arm's sector of 110 mm."""
 
+# Range of an arm's angle; within 50 mm of the centre the arms stay 27 degrees inside.
 LOW_RAD, HIGH_RAD = math.radians(-60.0), math.radians(135.0)
-"""Range of an arm's angle; within 50 mm of the centre the arms stay 27 degrees inside."""
 STEPS, STEP_M, NEAR_M = 20, 0.010, 1e-6
 """Largest number of Newton steps; longest step; step after which the tip is found, as the remaining error is of the
 order of its square."""

@@ -10,16 +10,13 @@ from numba import boolean, float64, int64, types, uint8, void
 from tangible_core.compiled import KERNEL, njit
 
 SIZE = 16
-START, END, ZERO = 0x3C, 0x3E, 0x41
-"""`<`, `>`, and `A`, which stands for 0."""
-INFO = 13
-"""Index of the byte of lights and homing (out), of buttons and homed arms (in)."""
-HOMING, GREEN, BLUE, RED = 0x01, 0x02, 0x04, 0x08
-"""Bits of that byte, outwards."""
+START, END, ZERO = 0x3C, 0x3E, 0x41  # `<`, `>`, and `A`, which stands for 0
+INFO = 13  # index of the byte of lights and homing (out), of buttons and homed arms (in)
+HOMING, GREEN, BLUE, RED = 0x01, 0x02, 0x04, 0x08  # bits of that byte, outwards
+# Bits of that byte, inwards: four buttons; the arms that found their zero: top, right, left.
 BUTTONS, HOMED = 0x0F, 0x70
-"""Bits of that byte, inwards: four buttons; the arms that found their zero: top, right, left."""
+# Greatest torque that the original driver sends; beyond 32767 the sign would wrap.
 MAX_COUNTS = 4095
-"""Greatest torque that the original driver sends; beyond 32767 the sign would wrap."""
 
 BYTES, FEW = uint8[::1], types.UniTuple(int64, 3)
 

@@ -23,15 +23,14 @@ HELD = 24
 its Jacobian, row by row; the force in the workspace frame; velocity of the encoders, counts a second; time and counts
 of the answer that waits to be confirmed."""
 
-RAMP_S = 0.5
-"""Time over which force fades in after homing, or after a leap."""
+RAMP_S = 0.5  # time over which force fades in after homing, or after a leap
 NEAR_COUNTS, BEND_COUNTS_PER_S2, STRAY_COUNTS = 8.0, 1e7, 24.0
 """Limits of an answer's distance from the extrapolated motion: noise, 340 m/s^2 of the tip, and 0.8 mm in any case. An
 answer farther away waits until the next one confirms it, as there is no checksum."""
+# Limits of the confirming answer's distance: 1.7 m/s of the tip, over at least 1 ms, and a limit in any case.
 FAST_COUNTS_PER_S, SHORT_S, FAR_COUNTS = 5e4, 0.001, 128.0
-"""Limits of the confirming answer's distance: 1.7 m/s of the tip, over at least 1 ms, and a limit in any case."""
+# Largest distance of a sample from the line, as an encoder rounds to whole counts.
 BAND_COUNTS = 1.0
-"""Largest distance of a sample from the line, as an encoder rounds to whole counts."""
 
 
 class Buffers(NamedTuple):

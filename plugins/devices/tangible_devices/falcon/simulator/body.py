@@ -12,13 +12,11 @@ from ..kernels.kinematics import CENTRE_M, force, inverse, jacobian
 
 PERIOD_S, STEPS = 0.001, 8
 OFFSET_RAD, RAD_PER_COUNT = math.radians(35.0), math.radians(360 / 1280 * 0.01425 / 0.110)
+# Angles for homing: an arm has found its zero after it was beyond the first, and then beyond the second.
 OUT_RAD, IN_RAD = math.radians(60.0), math.radians(-8.0)
-"""Angles for homing: an arm has found its zero after it was beyond the first, and then beyond the second."""
-UNHOMED = (1034, -517, 78)
-"""Offsets of the encoders before homing."""
+UNHOMED = (1034, -517, 78)  # offsets of the encoders before homing
 HOMED = (0x10, 0x20, 0x40)
-REACH_M = 0.055
-"""Radius of the ball about the centre to which the mechanics are limited."""
+REACH_M = 0.055  # radius of the ball about the centre to which the mechanics are limited
 
 
 @njit(void(float64[::1], float64[::1], float64[::1], float64[::1], int64, float64), **KERNEL)

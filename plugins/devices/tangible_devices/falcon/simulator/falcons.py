@@ -17,14 +17,13 @@ from .processor import Processor
 
 TIP_KG, VISCOUS_N_S_PER_M, COULOMB_N = 0.2, 1.0, 0.4
 """Mass and friction of the mechanics at the tip, all guessed."""
+# Length in words and destination of each block; together half as long as in a real image.
 IMAGE_BLOCKS = ((1821, 0x3F8002), (120, 0x3F8E3D), (168, 0x93A2), (2, 0x3F8000))
-"""Length in words and destination of each block; together half as long as in a real image."""
 OUT_Z_M, IN_Z_M, AT_Z_M = 0.174, 0.077, 0.002
 """Positions along the device's axis to which the grip is pulled out and pushed in for homing, and their tolerance."""
-SPEED_M_PER_S = 0.3
-"""Speed of the hand during homing and on the way to the path."""
+SPEED_M_PER_S = 0.3  # speed of the hand during homing and on the way to the path
+# Ticks of waiting above the start of the path, so that the force fades in while the tip is in free air.
 PAUSE_TICKS = 1000
-"""Ticks of waiting above the start of the path, so that the force fades in while the tip is in free air."""
 
 
 @final

@@ -15,16 +15,14 @@ from .image import WHENCE
 from .port import READ_BYTES, Port
 
 log: logging.Logger = logging.getLogger(__name__)
-TRIES = 10
-"""Attempts to load; the first one often fails."""
+TRIES = 10  # attempts to load; the first one often fails
 GREETINGS, PROBES = 100, 10
 HELLO, READY, AUTOBAUD = b"\x0aC\x0d", b"\x0aD,\x0d", b"A"
+# Bytes sent at a time: with the chip's 2 status bytes, their echo fills a USB packet, which the chip sends at once.
 CHUNK = 62
-"""Bytes sent at a time: with the chip's 2 status bytes, their echo fills a USB packet, which the chip sends at once."""
+# Reads without a byte after which no more is expected; each lasts as long as the chip's latency timer.
 QUIET = 64
-"""Reads without a byte after which no more is expected; each lasts as long as the chip's latency timer."""
-NULL = b"<AAAAAAAAAAAAAA>"
-"""Packet without torque, light and homing."""
+NULL = b"<AAAAAAAAAAAAAA>"  # packet without torque, light and homing
 
 
 class LoadError(Exception):

@@ -23,22 +23,20 @@ else:
 log: logging.Logger = logging.getLogger(__name__)
 VENDOR, PRODUCT = 0x0403, 0xCB48
 INTERFACE, IN, OUT = 0, 0x81, 0x02
+# Size of a read: whole USB packets, as more data than the size is an overflow.
 READ_BYTES = 512
-"""Size of a read: whole USB packets, as more data than the size is an overflow."""
+# Time-out of a transfer: the chip sends at least its status every 16 ms. A force may stay for as long.
 TIMEOUT_MS = 250
-"""Time-out of a transfer: the chip sends at least its status every 16 ms. A force may stay for as long."""
 
-RESET, MODEM, FLOW, BAUD, LINE, LATENCY, EVENT = 0, 1, 2, 3, 4, 9, 6
-"""Requests to the chip."""
+RESET, MODEM, FLOW, BAUD, LINE, LATENCY, EVENT = 0, 1, 2, 3, 4, 9, 6  # requests to the chip
 PURGE_IN, PURGE_OUT = 1, 2
-BAUD_9600, BAUD_142857, BAUD_1500000 = 0x4138, 0x0015, 0x0002
-"""Divisors of 3 MHz."""
+BAUD_9600, BAUD_142857, BAUD_1500000 = 0x4138, 0x0015, 0x0002  # divisors of 3 MHz
 
 UDEV_FILE = "/etc/udev/rules.d/70-novint-falcon.rules"
+# Rule for Linux: the user at the machine and the group plugdev may use a Falcon.
 UDEV_RULE = (
     'SUBSYSTEM=="usb", ATTR{idVendor}=="0403", ATTR{idProduct}=="cb48", MODE="0660", GROUP="plugdev", TAG+="uaccess"'
 )
-"""Rule for Linux: the user at the machine and the group plugdev may use a Falcon."""
 
 REPLUG = "check its plug and its power supply, then open it again"
 NO_PERMISSION = (
@@ -50,6 +48,7 @@ NO_LIBUSB = (
     "libusb is missing; install it (Debian, Ubuntu: `apt install libusb-1.0-0`; Fedora: `dnf install libusb1`; "
     "macOS: `brew install libusb`; Windows: `pip install libusb-package`)"
 )
+# Causes by the number of the system's error; two errors have other numbers on macOS and on Windows.
 CAUSES = {
     2: f"it was unplugged; {REPLUG}",
     5: f"the transfer failed; {REPLUG}",
@@ -60,7 +59,6 @@ CAUSES = {
     **dict.fromkeys((75, 84, 132), f"it sent more than was requested (overflow); {REPLUG}"),
     **dict.fromkeys((60, 110, 138, 10060), f"it does not answer (time-out); {REPLUG}"),
 }
-"""Causes by the number of the system's error; two errors have other numbers on macOS and on Windows."""
 
 
 @final

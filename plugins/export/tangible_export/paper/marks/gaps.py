@@ -15,8 +15,8 @@ from .reading import Mark, Marks
 from .rendering import black
 
 PIXELS_PER_MM = 10
+# Tolerance of the first search: OpenCV's distances are off by 2 % at most, and each gap is the sum of two.
 _INEXACT = 1.04
-"""Tolerance of the first search: OpenCV's distances are off by 2 % at most, and each gap is the sum of two."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,14 +18,11 @@ _WRITTEN = re.compile(rf"(?:\s*{_STEP.pattern})*\s*")
 class Mark:
     """A black shape: a disc, a line or an area."""
 
-    what: str
-    """Role: outline, fill, braille or corner."""
+    what: str  # role: outline, fill, braille or corner
     label: str
-    group: int
-    """Number of the element that has the mark; the dots of one text have one group."""
+    group: int  # number of the element that has the mark; the dots of one text have one group
     shape: Shape
-    stroke_mm: float
-    """Width of the line; 0 for a filled shape."""
+    stroke_mm: float  # width of the line; 0 for a filled shape
 
     @property
     def place_mm(self) -> tuple[float, float]:

@@ -110,6 +110,7 @@ def _value(key: str, text: str) -> Any:
 
 
 PIPELINES = (".yaml", ".yml")
+# Kind of a file by its ending; an .npz file is read to tell if it is a recording.
 KINDS = {
     **dict.fromkeys(PICTURES, "picture"),
     **dict.fromkeys(VIDEOS, "video"),
@@ -117,9 +118,7 @@ KINDS = {
     **dict.fromkeys(MAPS, "heights"),
     **dict.fromkeys(PIPELINES, "pipeline"),
 }
-"""Kind of a file by its ending; an .npz file is read to tell if it is a recording."""
-MOST = 2000
-"""Maximum number of entries that are listed of a folder."""
+MOST = 2000  # maximum number of entries that are listed of a folder
 
 
 @job(page=True)

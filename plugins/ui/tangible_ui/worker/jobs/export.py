@@ -22,11 +22,9 @@ from .table import job
 
 FOLDER = "export-"
 PREVIEW = "preview-"
-KEPT_PREVIEWS = 16
-"""Pictures of files that are kept: pages may still show them."""
+KEPT_PREVIEWS = 16  # pictures of files that are kept: pages may still show them
 NAMED = re.compile(rf"{FOLDER}[0-9a-f]{{16}}")
-KEPT = 2
-"""Folders that are kept: tabs may still fetch from the one before."""
+KEPT = 2  # folders that are kept: tabs may still fetch from the one before
 
 
 @job()

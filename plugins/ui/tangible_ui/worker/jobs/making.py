@@ -53,8 +53,8 @@ def pack_loop_input(touch: Touch, surface: HapticSurface, config: PipelineConfig
     }
 
 
+# Products that take seconds: they are not made again at every edit, but on request.
 SLOW = ("disparity", "segments")
-"""Products that take seconds: they are not made again at every edit, but on request."""
 
 
 @job(quick=True)

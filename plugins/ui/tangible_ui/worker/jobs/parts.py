@@ -37,8 +37,7 @@ class DrawnPreview:
 
     preview: PartHeightPreview
     pipeline: Pipeline
-    view: SurfaceView | None = None
-    """The last view; `surface` is the current surface if that is a newer one."""
+    view: SurfaceView | None = None  # the last view; `surface` is the current surface if that is a newer one
     surface: HapticSurface | None = None
 
 

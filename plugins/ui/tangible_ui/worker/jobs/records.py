@@ -16,8 +16,8 @@ from ...user_data import RECORDINGS, user_folder
 from ..state import WorkerState
 from .table import job
 
+# Maximum number of rows of a recording for pages, 8 MB; of a longer one every second tick, or third, is shown.
 MAX_ROWS = 120_000
-"""Maximum number of rows of a recording for pages, 8 MB; of a longer one every second tick, or third, is shown."""
 MAX_LISTED = 500
 AT_FLAGS = TICK_COLUMNS.index("flags")
 

@@ -19,19 +19,17 @@ from ..state import WorkerState
 from ..view.files import leave, sweep, write_whole
 
 FOLDER = "parts-"
+# The texture method whose regions are proposed, where the document's own makes no tree.
 TREES = "hierarchy"
-"""The texture method whose regions are proposed, where the document's own makes no tree."""
+# Folders of the editor that are kept: tabs may still fetch from the one before.
 KEPT = 3
-"""Folders of the editor that are kept: tabs may still fetch from the one before."""
-MAX_LOOKED_AT = 400_000
-"""Maximum number of pixels among which a place well inside a part is searched."""
+MAX_LOOKED_AT = 400_000  # maximum number of pixels among which a place well inside a part is searched
 
 
 class Opened(NamedTuple):
     """Input of the editor."""
 
-    pipeline: Pipeline
-    """The last pipeline; the files that it read are not read again."""
+    pipeline: Pipeline  # the last pipeline; the files that it read are not read again
     scene: Scene
     picture: UInt8[np.ndarray, "h w 3"]
     parts: PartMap

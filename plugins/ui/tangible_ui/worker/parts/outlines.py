@@ -4,15 +4,11 @@ import numpy as np
 from jaxtyping import Float32, Float64, Int, UInt8
 
 MAX_PLACES = 1500
-MAX_STEPS = 24
-"""Maximum number of steps to either side of it."""
+MAX_STEPS = 24  # maximum number of steps to either side of it
 MAX_REACH_PX = 400.0
-FAR = 0.15
-"""Cost of a shift by the whole reach; a place without any edge costs 1."""
-BEND = 0.12
-"""Cost of a shift that is one step farther than that of the place before."""
-TURN = 2
-"""Maximum number of steps by which neighbours may differ."""
+FAR = 0.15  # cost of a shift by the whole reach; a place without any edge costs 1
+BEND = 0.12  # cost of a shift that is one step farther than that of the place before
+TURN = 2  # maximum number of steps by which neighbours may differ
 
 
 def snap(

@@ -11,19 +11,17 @@ from tangible_core.errors import ConfigError
 
 Kind = Literal["regions", "grabcut", "watershed"]
 MAX_POINTS = 2000
+# Maximum number of cells of the reduced window: GrabCut takes a tenth of a second for these.
 MAX_CELLS = 16_000
-"""Maximum number of cells of the reduced window: GrabCut takes a tenth of a second for these."""
-AROUND = 0.4
-"""Reach of the window beyond the stroke, as a share of the stroke's length."""
+AROUND = 0.4  # reach of the window beyond the stroke, as a share of the stroke's length
 NEAR = 2.0
 """Distance from the stroke within which a pixel is first taken for the part's, in widths of the stroke."""
 ROUNDS = 3
+# Side of the blocks that are refined at the picture's own size, in cells; only those that the border crosses.
 BLOCK = 12
-"""Side of the blocks that are refined at the picture's own size, in cells; only those that the border crosses."""
-SMALL_HOLE = 0.01
-"""Greatest hole that is filled, as a share of the part's area."""
+SMALL_HOLE = 0.01  # greatest hole that is filled, as a share of the part's area
+# Least pixels of a stroke in a region that counts, as a share of those in the region that holds the most.
 MIN_UNDER = 0.3
-"""Least pixels of a stroke in a region that counts, as a share of those in the region that holds the most."""
 RIM = 2
 OUTSIDE, PART = 2, 1
 

@@ -25,11 +25,9 @@ from tangible_core.scene.formats import MAX_LABELS
 from .opening import Opened
 
 NAME = "parts.png"
-GZIP = 31
-"""Window bits with which zlib takes gzip files alone."""
+GZIP = 31  # window bits with which zlib takes gzip files alone
 PNG = b"\x89PNG\r\n\x1a\n"
-AFTER_SIZE = len(PNG) + 4 + 4 + 13 + 4
-"""Offset of a PNG's second chunk; the first one holds its size."""
+AFTER_SIZE = len(PNG) + 4 + 4 + 13 + 4  # offset of a PNG's second chunk; the first one holds its size
 _TEXT, _PIXELS = b"tEXt", b"IDAT"
 
 
@@ -91,8 +89,8 @@ def _chunk(kind: bytes, data: bytes) -> bytes:
 
 
 log: logging.Logger = logging.getLogger(__name__)
+# Maximum number of keys that are changed one by one, each in its place; beyond it the whole block is rewritten.
 MAX_EDITED = 200
-"""Maximum number of keys that are changed one by one, each in its place; beyond it the whole block is rewritten."""
 SAID = ("name", "height_m", "material")
 
 

@@ -20,18 +20,14 @@ from tangible_web.materials import distinct_materials, surface_facts
 
 from .surface_view import Layer, SurfaceView
 
-KEPT = 3
-"""Folders that are kept: tabs may still fetch from the one before."""
+KEPT = 3  # folders that are kept: tabs may still fetch from the one before
 ABOUT = "about.json"
-MAX_PREVIEW = 1_000_000
-"""Maximum number of pixels of the picture that is drawn first."""
-MAX_FINE_SIDE = 16_384
-"""Greatest side of a picture that browsers decode, pixels."""
+MAX_PREVIEW = 1_000_000  # maximum number of pixels of the picture that is drawn first
+MAX_FINE_SIDE = 16_384  # greatest side of a picture that browsers decode, pixels
 
+# Size limit of the coarsest level, cells: software draws it in a fraction of a second; 640 x 480 is drawn as it is.
 MAX_CELLS = 350_000
-"""Size limit of the coarsest level, cells: software draws it in a fraction of a second; 640 x 480 is drawn as it is."""
-MAX_SIDE = 4096
-"""Greatest side of a level: every WebGL 2 has textures of this size."""
+MAX_SIDE = 4096  # greatest side of a level: every WebGL 2 has textures of this size
 
 
 def show(view: SurfaceView, folder: Path) -> dict[str, Any]:

@@ -27,8 +27,7 @@ from tangible_core.pipeline.engine import fit_to_device, is_at_hand, parts_on_gr
 from tangible_core.scene import RANGE_PERCENT, flat_relief, reduced_map, reduced_segments, reduced_shape
 
 Shows = Literal["surface", "relief", "segments"]
-MAX_LAYER_CELLS = 1_000_000
-"""Maximum number of cells of layers, which are only looked at."""
+MAX_LAYER_CELLS = 1_000_000  # maximum number of cells of layers, which are only looked at
 
 
 class Layer(NamedTuple):

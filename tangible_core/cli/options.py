@@ -21,10 +21,7 @@ DONE, FAILED, MISTAKE, INTERRUPTED = 0, 1, 2, 130
 Config = Annotated[
     Path,
     typer.Argument(
-        metavar="FILE",
-        help="Pipeline file (YAML), or a picture.",
-        show_default=False,
-        autocompletion=completing.scenes,
+        metavar="FILE", help="Pipeline file (YAML), or a picture.", show_default=False, autocompletion=completing.scenes
     ),
 ]
 ConfigOrPictures = Annotated[

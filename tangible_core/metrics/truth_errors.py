@@ -24,11 +24,7 @@ def disparity_errors(disparity_px: Float[np.ndarray, "h w"], truth_px: Float[np.
     error_px = absolute_error(disparity_px, truth_px)[np.isfinite(truth_px)]
     known_px = error_px[np.isfinite(error_px)]
     bad = {f"bad{limit_px:g}": _percent(~(error_px <= limit_px)) for limit_px in BOUNDS_PX}
-    return bad | {
-        "average_px": _mean(known_px),
-        "rms_px": _rms(known_px),
-        "density": _percent(np.isfinite(error_px)),
-    }
+    return bad | {"average_px": _mean(known_px), "rms_px": _rms(known_px), "density": _percent(np.isfinite(error_px))}
 
 
 def absolute_error(

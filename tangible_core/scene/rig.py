@@ -14,10 +14,7 @@ from ..errors import GeometryError, PictureError, quoted
 from ..runtime.opencv import plain_opencv
 
 Distortion = Literal["radial-tangential", "equidistant"]
-COEFFICIENTS: dict[Distortion, tuple[int, ...]] = {
-    "radial-tangential": (0, 4, 5, 8, 12, 14),
-    "equidistant": (0, 4),
-}
+COEFFICIENTS: dict[Distortion, tuple[int, ...]] = {"radial-tangential": (0, 4, 5, 8, 12, 14), "equidistant": (0, 4)}
 """Numbers of distortion coefficients that each lens model may have."""
 # Largest deviation from a rotation that is taken for rounding, as of a matrix that is printed with 4 decimals.
 NEARLY = 1e-3

@@ -142,10 +142,7 @@ SURFACES: Mapping[str, Analytic] = {
     "ridge": Analytic(lambda shape: ridge(0.5, 0.03, shape), lambda hands: on_ridge(hands, 0.5, 0.03)),
     # along the ground, against the wall and back, and once down over its edge: no hand goes through a wall
     "step": Analytic(
-        lambda shape: cliff(0.004, shape),
-        lambda hands: on_step(hands, 0.004),
-        (-0.03, 0.0015),
-        lambda x, y: 0.0,
+        lambda shape: cliff(0.004, shape), lambda hands: on_step(hands, 0.004), (-0.03, 0.0015), lambda x, y: 0.0
     ),
 }
 

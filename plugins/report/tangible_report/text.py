@@ -58,10 +58,7 @@ class Text(Exporter):
         figure: Figure | None = work.extras.get("figure")
         content = surface, work.title, language, parts, kind, 0 if figure is None else figure.people
         lines = describe_at_length(*content)
-        texts = {
-            ".txt": "".join(f"{line}\n" for line in lines),
-            ".html": page_of(*content, named_in=work.language),
-        }
+        texts = {".txt": "".join(f"{line}\n" for line in lines), ".html": page_of(*content, named_in=work.language)}
         if self.braille:
             in_braille = in_grade(language, BrailleChoice.in_force(self.braille).grade)
             note(log, f"braille by {written_by(in_braille)}")

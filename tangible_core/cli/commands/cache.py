@@ -34,10 +34,7 @@ def cache(context: typer.Context, as_json: Json = False) -> None:
 
 
 @app.command()
-def clear(
-    yes: Annotated[bool, typer.Option("--yes", "-y", help="Do not ask.")] = False,
-    as_json: Json = False,
-) -> None:
+def clear(yes: Annotated[bool, typer.Option("--yes", "-y", help="Do not ask.")] = False, as_json: Json = False) -> None:
     """Delete all cached results.
 
     On a terminal it asks first; without one, --yes is needed.

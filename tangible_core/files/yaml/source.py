@@ -159,14 +159,7 @@ def read_text(path: Path) -> str:
         raise ConfigError(f"{path}: cannot be read as text: {getattr(error, 'strerror', None) or error}") from error
 
 
-def parse_source(
-    text: str,
-    path: Path,
-    what: str,
-    overrides: Iterable[str] = (),
-    *,
-    empty: bool = False,
-) -> Source:
+def parse_source(text: str, path: Path, what: str, overrides: Iterable[str] = (), *, empty: bool = False) -> Source:
     """Parse a YAML text into a source that is ready to be checked."""
     try:
         tree = parse_value(text)

@@ -26,16 +26,7 @@ from ...scene.scene_files import SceneFiles
 from ...scene.scene_source import scene_name
 from ...scene.workspace import FeltSize, ReliefKind, Workspace, kind_of
 from ...servo.guard.safety import Safety
-from .keys import (
-    NULL_IS_DEFAULT,
-    Block,
-    MethodBlock,
-    MethodList,
-    PartsBlock,
-    SceneBlock,
-    Unchecked,
-    Word,
-)
+from .keys import NULL_IS_DEFAULT, Block, MethodBlock, MethodList, PartsBlock, SceneBlock, Unchecked, Word
 from .keys.key import find_keys
 from .material_choice import MaterialChoice, check_material_names
 from .methods import NamedMethod

@@ -115,10 +115,7 @@ def wrong_of_scale(config: PipelineConfig) -> Iterator[Wrong]:
     if kind_of(scene) != "heights":
         yield place, "is for a map of heights, and the scene is not one; leave it out, or name the map with `height:`"
     elif isinstance(files, SceneFiles) and files.invert and keys != ["scale"]:
-        yield (
-            ("workspace", keys[-1]),
-            "is a height of the file, and `invert` turns these over; leave one of them out",
-        )
+        yield (("workspace", keys[-1]), "is a height of the file, and `invert` turns these over; leave one of them out")
     elif workspace.times is None:
         return
     elif config.measured is None:

@@ -92,13 +92,7 @@ class Run:
         }
 
 
-def make_run(
-    engine: Engine,
-    out: Path,
-    want: str,
-    seconds: float,
-    sheet: Sheet = "png",
-) -> Run:
+def make_run(engine: Engine, out: Path, want: str, seconds: float, sheet: Sheet = "png") -> Run:
     """Make the wanted product, and write the results and their report into a folder in place of an earlier run's."""
     if sheet not in (kinds := get_args(Sheet)):
         raise wrong_argument("sheet", sheet, f"one of {', '.join(kinds)}{did_you_mean(str(sheet), kinds)}")

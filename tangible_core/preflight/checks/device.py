@@ -21,11 +21,7 @@ def damping(flight: Flight) -> Iterator[Verdict]:
     says = "" if sure else "how well the device damps is a guess"
     source = "simulated" if flight.spec.simulated else "the device's specification"
     yield Verdict(
-        *("device", "damping", "ok" if sure else "warn", limit, "N s/m"),
-        source=source,
-        note=note,
-        cure=cure,
-        says=says,
+        *("device", "damping", "ok" if sure else "warn", limit, "N s/m"), source=source, note=note, cure=cure, says=says
     )
 
 

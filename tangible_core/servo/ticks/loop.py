@@ -10,19 +10,7 @@ from ...compiled.touch import FRAME, CompiledLink, CompiledTouch, motion_array
 from ...data import TICK_COLUMNS, HapticState, TickFlag
 from ...plugins.interfaces import Link, Touch
 from ...runtime.system.timers import now_ns
-from ..ring import (
-    COUNT,
-    LEAD_NS,
-    MARKS,
-    NEXT_NS,
-    PERIOD_NS,
-    PREVIOUS_NS,
-    SPINS,
-    START_NS,
-    STOP,
-    SWAP,
-    Ring,
-)
+from ..ring import COUNT, LEAD_NS, MARKS, NEXT_NS, PERIOD_NS, PREVIOUS_NS, SPINS, START_NS, STOP, SWAP, Ring
 from .python_tick import guard_touch, hold_force
 from .schedule import begin_tick, going
 
@@ -110,12 +98,7 @@ def _kernels(link: CompiledLink, touch: CompiledTouch) -> tuple[Any, Any]:
     from ...compiled.kernels import Address
 
     read, write, of_link = link.kernels()
-    return (of_link, Address(read), Address(write)), (
-        touch.fixed,
-        touch.address(),
-        touch.memory,
-        touch.moving,
-    )
+    return (of_link, Address(read), Address(write)), (touch.fixed, touch.address(), touch.memory, touch.moving)
 
 
 def _stopped_sections(arrays: Sections) -> Sections:
@@ -132,13 +115,7 @@ def _start_generator(generator: Callable[..., Iterator[bool]], *arguments: Any) 
     return kernel
 
 
-def _plain_tick(
-    link: Link,
-    touch: Touch,
-    limits: Limits,
-    arrays: Sections,
-    row: np.ndarray,
-) -> tuple[Timed, Kernel]:
+def _plain_tick(link: Link, touch: Touch, limits: Limits, arrays: Sections, row: np.ndarray) -> tuple[Timed, Kernel]:
     """Return a tick for a device or a force law that is not a kernel."""
     from . import cycle
 

@@ -35,8 +35,7 @@ def parts(
     ] = 5.0,
     sets: Sets = None,
     renumber: Annotated[
-        bool,
-        typer.Option("--renumber", help="Correct the numbers of parts in the pipeline file."),
+        bool, typer.Option("--renumber", help="Correct the numbers of parts in the pipeline file.")
     ] = False,
     force: Annotated[bool, typer.Option("--force", help="Overwrite existing files.")] = False,
     as_json: Json = False,

@@ -41,10 +41,7 @@ class _Spending(NamedTuple):
     warm_rows: int  # rows by which the paths of a strip begin early: the more, the less a seam is seen
 
 
-SPENDING: dict[Effort, _Spending] = {
-    "balanced": _Spending(0.06, 0.28, WARM_ROWS),
-    "best": _Spending(0.11, 0.315, 24),
-}
+SPENDING: dict[Effort, _Spending] = {"balanced": _Spending(0.06, 0.28, WARM_ROWS), "best": _Spending(0.11, 0.315, 24)}
 
 
 class Fixed(NamedTuple):

@@ -49,11 +49,7 @@ def estimate_rectified(views: Views, estimate: Callable[[Views], DisparityMap]) 
 
 
 def rectify(
-    views: Views,
-    tolerance_px: float = 0.35,
-    matches: Matches | None = None,
-    fit: Fit = eight_point,
-    quick: bool = True,
+    views: Views, tolerance_px: float = 0.35, matches: Matches | None = None, fit: Fit = eight_point, quick: bool = True
 ) -> RectifiedPair:
     """Rectify a pair of unknown cameras, so that its rows correspond. Raises: PictureError, RectificationError."""
     if views.right is None:

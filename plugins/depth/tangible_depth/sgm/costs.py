@@ -100,12 +100,7 @@ def p2_by_grey_step(flat: int, edge: int, slope: float) -> UInt8[np.ndarray, "25
 
 
 # Census of the original picture: the most precise on clean pictures.
-SHARP = Cost(
-    "sharp",
-    BITS,
-    census,
-    Penalties(np.uint8(10), np.uint8(8), p2_by_grey_step(50, 12, 1.5)),
-)
+SHARP = Cost("sharp", BITS, census, Penalties(np.uint8(10), np.uint8(8), p2_by_grey_step(50, 12, 1.5)))
 MAX_LEVEL = 4  # largest value that the difference of two halved grey levels counts, in bits
 # Census and grey levels: more precise still, if both views have the same exposure.
 LEVELS = Cost(

@@ -6,18 +6,7 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 
-from .lanes import (
-    INDEX,
-    WORD,
-    LanesType,
-    Vec,
-    emit_call,
-    emit_splat,
-    join,
-    operation,
-    shuffle,
-    split,
-)
+from .lanes import INDEX, WORD, LanesType, Vec, emit_call, emit_splat, join, operation, shuffle, split
 
 
 def _in_words(b: Any, vec: Vec, value: Any) -> list[tuple[int, Any]]:

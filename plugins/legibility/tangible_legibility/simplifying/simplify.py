@@ -39,12 +39,7 @@ def find_failures(parts: PartMap, wide: Widths, choice: SimplifyChoice, names: S
 
 
 def note_outcome(
-    whole: PartMap,
-    simplified: Grid,
-    wide: Widths,
-    width_m: float,
-    choice: SimplifyChoice,
-    names: Sequence[str],
+    whole: PartMap, simplified: Grid, wide: Widths, width_m: float, choice: SimplifyChoice, names: Sequence[str]
 ) -> None:
     """Note which named parts vanished, which parts are in several pieces, and whether the simplified parts pass."""
     count = whole.count

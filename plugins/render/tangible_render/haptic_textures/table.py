@@ -47,9 +47,7 @@ def powers_of_two(exponents: Float64[np.ndarray, " n"]) -> Float64[np.ndarray, "
     return np.array([2.0**exponent for exponent in exponents.tolist()])
 
 
-def directions(
-    angles_rad: Float64[np.ndarray, " n"],
-) -> tuple[Float64[np.ndarray, " n"], Float64[np.ndarray, " n"]]:
+def directions(angles_rad: Float64[np.ndarray, " n"]) -> tuple[Float64[np.ndarray, " n"], Float64[np.ndarray, " n"]]:
     """Return cosines and sines, correctly rounded: those of C libraries differ from system to system in last bits."""
     angles = angles_rad.tolist()
     return np.array([_circular(angle, 0) for angle in angles]), np.array([_circular(angle, 1) for angle in angles])

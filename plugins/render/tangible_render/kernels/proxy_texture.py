@@ -9,10 +9,7 @@ from ..effects.kernels import effects, texture
 from ..surface.bilinear import LABELS, NEWTONS
 
 
-@njit(
-    NEWTONS(*SURFACE, LABELS, MATERIALS, MEMORY, MATERIALS, MEMORY, *[float64] * 6),
-    **KERNEL,
-)
+@njit(NEWTONS(*SURFACE, LABELS, MATERIALS, MEMORY, MATERIALS, MEMORY, *[float64] * 6), **KERNEL)
 def textured_tick(
     coefficients, width_m, length_m, across_per_m, down_per_m, tiles_m, labels, table, memory, textures, contact,
     x, y, z, vx, vy, vz,

@@ -134,11 +134,7 @@ FLAT_M = 1e-6  # the height up to which a relief counts as flat: a hand does not
 
 
 def describe(
-    surface: HapticSurface,
-    scene_name: str,
-    language: Language = "en",
-    kind: SceneKind | None = None,
-    people: int = 0,
+    surface: HapticSurface, scene_name: str, language: Language = "en", kind: SceneKind | None = None, people: int = 0
 ) -> str:
     """Return one to three sentences on a surface and its scene, always the same for the same surface.
 

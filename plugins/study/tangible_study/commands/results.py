@@ -40,8 +40,7 @@ def simulate(
         str, typer.Option("--observer", help="Observer model: psychometric, detection, or hand.")
     ] = "detection",
     sets: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Set one option of the observer; repeatable."),
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Set one option of the observer; repeatable.")
     ] = None,
     participants: Annotated[int, typer.Option(min=1, max=999, help="Number of simulated participants.")] = 12,
     out: Annotated[

@@ -56,11 +56,7 @@ class Page(Desk):
     """A server of the page as a context manager, and the program of its tabs: all of them move the hand."""
 
     def __init__(
-        self,
-        language: str,
-        translate: Callable[[str], str],
-        hand: Hand | None = None,
-        sounds: Sequence[str] = (),
+        self, language: str, translate: Callable[[str], str], hand: Hand | None = None, sounds: Sequence[str] = ()
     ) -> None:
         """Build the page, which is served on entry. hand: moves the device from the page; None if another is felt."""
         self._language, self._text_of = language, translate

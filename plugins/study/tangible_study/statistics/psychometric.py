@@ -128,11 +128,7 @@ def _fit(blocks: Blocks, **options: Any) -> Any:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # about adaptive data, for which the range of levels is given
         return psignifit.psignifit(
-            np.column_stack(blocks),
-            verbose=False,
-            fixed_parameters={"eta": 0.0},
-            grid_steps=STEPS,
-            **options,
+            np.column_stack(blocks), verbose=False, fixed_parameters={"eta": 0.0}, grid_steps=STEPS, **options
         )
 
 

@@ -95,10 +95,7 @@ def _planes(
     numbers = tuple(np.flatnonzero(means >= least_energy * means.sum()).tolist())
     filters_used = [filters[number] for number in numbers]
     if len(filters_used) < len(filters):
-        note(
-            log,
-            f"{len(filters) - len(filters_used)} of {len(filters)} filters left out: they hold hardly any energy",
-        )
+        note(log, f"{len(filters) - len(filters_used)} of {len(filters)} filters left out: they hold hardly any energy")
     colours = _colour_planes(picture, colour)
     rows, columns = (-(-side // CELL_PX) for side in grey.shape)
     # One array: for a large picture it has hundreds of megabytes, and so would each copy.

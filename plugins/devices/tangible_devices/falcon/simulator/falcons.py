@@ -31,12 +31,7 @@ class ScriptedHand:
     """A hand that follows the stroke once the device is homed, and presses with limited strength."""
 
     def __init__(
-        self,
-        stroke: Stroke,
-        lift_m: float,
-        frame: Float64[np.ndarray, "3 4"],
-        reach_down_m: float,
-        buttons: int = 0,
+        self, stroke: Stroke, lift_m: float, frame: Float64[np.ndarray, "3 4"], reach_down_m: float, buttons: int = 0
     ) -> None:
         self.buttons = buttons
         self._stroke = stroke

@@ -5,14 +5,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 Step = Literal["look", "open", "configure", "driver", "claim", "control", "write", "read"]
-ERRORS = {
-    "unplugged": 19,
-    "access-denied": 13,
-    "busy": 16,
-    "timeout": 110,
-    "stall": 32,
-    "overflow": 75,
-}
+ERRORS = {"unplugged": 19, "access-denied": 13, "busy": 16, "timeout": 110, "stall": 32, "overflow": 75}
 
 
 class Fault(BaseModel):

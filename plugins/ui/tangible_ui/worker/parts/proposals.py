@@ -203,11 +203,7 @@ def _refine_border(whole: np.ndarray, mask: Bool[np.ndarray, "r c"]) -> Bool[np.
 
 
 def _refine_block(
-    whole: np.ndarray,
-    state: np.ndarray,
-    fine: np.ndarray,
-    ends: tuple[np.ndarray, np.ndarray],
-    block: tuple[int, int],
+    whole: np.ndarray, state: np.ndarray, fine: np.ndarray, ends: tuple[np.ndarray, np.ndarray], block: tuple[int, int]
 ) -> None:
     """Refine one block, with a rim of cells around it so that blocks fit together."""
     import cv2

@@ -31,8 +31,8 @@ from tangible_core.preflight.bumps import feature_m
 from tangible_core.scene.geometry import make_relief, normals, resample, slopes, smooth
 from tangible_core.scene.scaling import enlarged_segments, on_grid, reduce_views, to_picture_pixels
 from tangible_core.scene.scene import Scene
+from tangible_depth.rectify.projective import warp_pair
 from tangible_depth.rectify.rectification import rectify
-from tangible_depth.rectify.rectified_pair import warp_pair
 from tangible_depth.rectify.rectifying_rotation import aligning_lenses
 from tangible_depth.sparse.harris import harris_response
 from tangible_depth.sparse.matches import flow_matches, inverse_lengths, sift_matches

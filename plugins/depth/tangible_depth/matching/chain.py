@@ -13,8 +13,8 @@ from tangible_core.plugins import note
 from ..dense.confidence import zero_disparity
 from ..dense.refinement import DenseMatches, to_disparity_map
 from ..dense.span import Span
+from ..rectify.projective import RectifiedPair
 from ..rectify.rectification import rectify
-from ..rectify.rectified_pair import RectifiedPair
 from ..rectify.rectifying_rotation import RectificationError
 from ..row_alignment.common_rows import align_rows, common_row_offset, rows_correspond, shift_rows
 from ..search.bands import match_bands

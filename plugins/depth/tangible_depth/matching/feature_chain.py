@@ -13,8 +13,8 @@ from tangible_core.errors import PictureError
 
 from ..dense.span import Span
 from ..rectify.fundamental import Fit
+from ..rectify.projective import RectifiedPair
 from ..rectify.rectification import rectify
-from ..rectify.rectified_pair import RectifiedPair
 from ..sparse.assembling import assemble
 from ..sparse.corner_range import MAX_CORNERS, MaxDisparity, range_of_shifts
 from ..sparse.harris import corners, least_response, row_edges

@@ -12,8 +12,16 @@ from tangible_core.plugins import note
 
 from ..sparse.matches import NO_MATCHES, Matches, flow_matches, match_off_plane, sift_matches
 from .fundamental import Fit, best_plane, eight_point
-from .projective import homogeneous, inverse, is_pure_rotation, product, transform
-from .rectified_pair import RectifiedPair, unchanged_pair, warp_pair
+from .projective import (
+    RectifiedPair,
+    homogeneous,
+    inverse,
+    is_pure_rotation,
+    product,
+    transform,
+    unchanged_pair,
+    warp_pair,
+)
 from .rectifying_rotation import MIN_TRUSTED, RectificationError, find_rotation, threshold_px
 
 logger: logging.Logger = logging.getLogger(__name__)

@@ -10,8 +10,8 @@ from tangible_core.errors import GeometryError
 
 from ..sparse.matches import Matches
 from .fundamental import DegenerateMatches, Fit, Fundamental, best_plane, robust_fundamental
-from .least_squares import least_squares, robust_pull
-from .projective import Plane, product, transform, undistort
+from .least_squares import least_squares
+from .projective import Plane, product, robust_pull, transform, undistort
 
 # Fewest inliers of a trusted geometry: a few wrong matches agree on one by chance.
 MIN_TRUSTED = 30

@@ -15,7 +15,7 @@ from tangible_depth.matching.adaptive import Fixed, Matched, MatchedView
 from tangible_depth.matching.chain import Search, low_confidence_share, match_in_order
 from tangible_depth.matching.scaling import Scaling
 from tangible_depth.matching.window_matching import match_by_correlation, match_by_difference
-from tangible_depth.rectify.rectified_pair import warp_pair
+from tangible_depth.rectify.projective import warp_pair
 from tangible_depth.row_alignment.common_rows import shift_rows
 from tangible_depth.search.pairs import Pair
 from tangible_depth.sgm.costs import LEVELS, SHARP

@@ -9,7 +9,7 @@ import pytest
 from tangible_core.data import Calibration, DisparityMap, Views
 from tangible_core.plugins.notes import collected
 from tangible_depth.rectify import rectification, rectifying_rotation
-from tangible_depth.rectify.projective import distort, transform, undistort
+from tangible_depth.rectify.projective import distort, transform, unchanged_pair, undistort, warp_pair
 from tangible_depth.rectify.rectification import (
     RectificationError,
     check_homographies,
@@ -17,7 +17,6 @@ from tangible_depth.rectify.rectification import (
     unique_matches,
     verified_range,
 )
-from tangible_depth.rectify.rectified_pair import unchanged_pair, warp_pair
 from tangible_depth.rectify.rectifying_rotation import aligning_homographies, threshold_px
 from tangible_depth.sparse.matches import Matches
 from two_cameras import HEIGHT, WIDTH, Scene, roll_and_tilt, seen_points, some_wrong

@@ -18,12 +18,11 @@ Product = Literal["disparity", "figure", "relief", "segments", "parts", "simplif
 class ProductRow(NamedTuple):
     """The facts about a product that do not depend on a scene; `pipeline/engine/stages/` has how it is made."""
 
+    # The record's class; None for a product that is not a record, and is neither cached nor exported.
     record: type[Record] | None
-    """The record's class; None for a product that is not a record, and is neither cached nor exported."""
+    # The product of the sheet's panel that draws such a record; "" for a record without a picture of its own.
     panel: str = ""
-    """The product of the sheet's panel that draws such a record; "" for a record without a picture of its own."""
-    in_report: bool = False
-    """True if a run that needs the product keeps it and shows it on its sheet."""
+    in_report: bool = False  # true if a run that needs the product keeps it and shows it on its sheet
 
 
 PRODUCTS: Mapping[Product, ProductRow] = {

@@ -28,12 +28,10 @@ PAPER_SHARE = 0.3  # the least share of the picture's rim that paper takes
 class Areas(NamedTuple):
     """The areas of a drawing by colour."""
 
+    # The colour of each pixel, by number; strokes count as the area next to them.
     labels: Int32[np.ndarray, "h w"]
-    """The colour of each pixel, by number; strokes count as the area next to them."""
-    colours: Float32[np.ndarray, "n 3"]
-    """The palette, 0 to 255."""
-    paper: int | None
-    """The colour that most of the rim has; None if none has much of it."""
+    colours: Float32[np.ndarray, "n 3"]  # the palette, 0 to 255
+    paper: int | None  # the colour that most of the rim has; None if none has much of it
 
 
 def find_areas(picture: np.ndarray) -> Areas:

@@ -19,14 +19,14 @@ class Measured:
     day: str
     machine: Mapping[str, str | int]
     versions: Mapping[str, str]
+    # The names of the figures, with units: time, memory, and the measures of the kind, the most important first.
     columns: tuple[str, ...]
-    """The names of the figures, with units: time, memory, and the measures of the kind, the most important first."""
+    # The figures of each method by its name, in the order of the columns; None for a missing one.
     methods: Mapping[str, tuple[float | None, ...]]
-    """The figures of each method by its name, in the order of the columns; None for a missing one."""
+    # The time of each method's process for a warm-up and three calls, with start, scene and measures, by its name.
     process_s: Mapping[str, float]
-    """The time of each method's process for a warm-up and three calls, with start, scene and measures, by its name."""
+    # The reason why a method has no figures, by its name.
     failed: Annotated[Mapping[str, str], Field(default_factory=dict)]
-    """The reason why a method has no figures, by its name."""
 
 
 Kinds: TypeAdapter[dict[str, Measured]] = TypeAdapter(dict[str, Measured])

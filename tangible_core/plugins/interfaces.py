@@ -59,8 +59,8 @@ class Verb(NamedTuple):
     kind: str
     name: str
     returns: type
+    # The conversion of each argument; None for a verb without arguments or with arbitrary ones.
     take: Convert | None = None
-    """The conversion of each argument; None for a verb without arguments or with arbitrary ones."""
 
 
 def guard_verb(cls: type, verb: Verb) -> None:

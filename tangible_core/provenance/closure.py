@@ -126,11 +126,10 @@ def _closure(start: tuple[Place, ...], alone: tuple[str, ...]) -> Closure:
 class _Walk:
     """A walk from module to module along the imports."""
 
-    own: set[str]
-    """The top packages that are read wherever they lie."""
+    own: set[str]  # the top packages that are read wherever they lie
     visited: set[Place] = field(default_factory=set[Place])
+    # The packages that only re-export names: their text counts, and not their imports of other names.
     packages: set[Place] = field(default_factory=set[Place])
-    """The packages that only re-export names: their text counts, and not their imports of other names."""
     libraries: set[str] = field(default_factory=set[str])
 
     def through(self, start: Iterable[Place]) -> None:

@@ -22,12 +22,11 @@ Coordinate = TypeVar("Coordinate", float, np.ndarray)
 class Rise(NamedTuple):
     """What becomes of the heights of a map: 0 and the top of a relief, or a scale."""
 
+    # Metres of the relief in a metre of the map; None where the map's whole range becomes the relief's height.
     m_per_m: float | None = None
-    """Metres of the relief in a metre of the map; None where the map's whole range becomes the relief's height."""
+    # The height that becomes 0, below which all is 0; None for the lowest of the map.
     low_m: float | None = None
-    """The height that becomes 0, below which all is 0; None for the lowest of the map."""
-    high_m: float | None = None
-    """The height above which all is as high; None for the highest of the map."""
+    high_m: float | None = None  # the height above which all is as high; None for the highest of the map
 
 
 class ValueRange(NamedTuple):

@@ -71,13 +71,13 @@ class SceneSource:
     """The parts of a scene before any of them is read."""
 
     name: str
+    # Files of the parts, relative to `folder`; for an array, words that stand for it in messages.
     files: SceneFiles
-    """Files of the parts, relative to `folder`; for an array, words that stand for it in messages."""
     folder: Path = Path()
     arrays: Mapping[str, Any] | None = None
     rig: StereoRig | None = None
+    # The builtin name or the files that identify the scene; None if a part is an array.
     origin: str | SceneFiles | None = None
-    """The builtin name or the files that identify the scene; None if a part is an array."""
 
     def load(self) -> dict[str, Any]:
         """Read the parts and return the fields of their `Scene`. Raises: PictureError."""

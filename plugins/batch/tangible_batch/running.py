@@ -34,15 +34,12 @@ MAX_IN_NAME = 60
 class BatchOptions:
     """Options for all scenes of a batch."""
 
-    retry: bool = False
-    """Repeat scenes that failed before."""
+    retry: bool = False  # repeat scenes that failed before
     sheets: bool = False
-    cache: Path | None = None
-    """Folder for results that scenes have in common; None for none."""
-    chunk: int = 4
-    """The most scenes that are sent to a worker together."""
+    cache: Path | None = None  # folder for results that scenes have in common; None for none
+    chunk: int = 4  # the most scenes that are sent to a worker together
+    # Time limit of a scene, seconds; a scene that takes longer is ended, and fails.
     timeout_s: float = LONGEST_S
-    """Time limit of a scene, seconds; a scene that takes longer is ended, and fails."""
 
 
 class JobMaker:

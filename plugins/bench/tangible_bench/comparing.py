@@ -38,10 +38,9 @@ class ComparisonOutcome:
     """The results of a comparison, and their files."""
 
     results: Results
+    # The rows, the tables for other programs, and the plot if there is something to plot.
     files: tuple[Path, ...]
-    """The rows, the tables for other programs, and the plot if there is something to plot."""
-    verdict: Verdict | None = None
-    """The figures that got worse than in earlier results, if there are any."""
+    verdict: Verdict | None = None  # the figures that got worse than in earlier results, if there are any
 
 
 def compare(

@@ -124,13 +124,11 @@ class KnownStroke(Record):
 class Analytic:
     """A surface given by a formula, its nearest point to any hand inside it, and the range of the hand's path."""
 
+    # (rows, columns) -> the surface of these cells, 80 mm wide.
     surface: Callable[[tuple[int, int]], KnownSurface]
-    """(rows, columns) -> the surface of these cells, 80 mm wide."""
     nearest: Callable[[Points], Points]
-    across_m: tuple[float, float] = (-0.03, 0.03)
-    """Range of x of the hand."""
-    ride_m: Callable[[float, float], float] | None = None
-    """Height that the hand follows, if not the surface's."""
+    across_m: tuple[float, float] = (-0.03, 0.03)  # range of x of the hand
+    ride_m: Callable[[float, float], float] | None = None  # height that the hand follows, if not the surface's
 
 
 SURFACES: Mapping[str, Analytic] = {

@@ -22,16 +22,13 @@ MAX_CYCLES = 10_000_000  # greatest number of cycles, as all of their times are 
 class InstalledDevice:
     """A device that is installed, with its connected units."""
 
-    name: str
-    """The name for `device: {use: ...}`."""
+    name: str  # the name for `device: {use: ...}`
     origin: str
     summary: str
+    # True for a simulated device; None where this is unknown because of the `problem`.
     simulated: bool | None = None
-    """True for a simulated device; None where this is unknown because of the `problem`."""
-    units: tuple[Unit, ...] = ()
-    """The units that are connected now, each with the problem that it has, if any."""
-    problem: str = ""
-    """The reason why it cannot be looked for; empty if it can."""
+    units: tuple[Unit, ...] = ()  # the units that are connected now, each with the problem that it has, if any
+    problem: str = ""  # the reason why it cannot be looked for; empty if it can
 
     @property
     def usable(self) -> bool:

@@ -69,8 +69,8 @@ class PinDisplay(NamedTuple):
     """Parts as pins show them."""
 
     parts: tuple[tuple[int, int, tuple[int, int]], ...]  # number, pins, a cell on the grid of the parts
+    # Share of the length of all borders that lies within a pin of a border that is shown; 1 without a border.
     kept: float
-    """Share of the length of all borders that lies within a pin of a border that is shown; 1 without a border."""
 
 
 def show_on_pins(parts: PartMap, pitch_m: float) -> PinDisplay:

@@ -19,10 +19,10 @@ Lanes = Float64[np.ndarray, "2 n"]
 class Borders(NamedTuple):
     """The lines between labels, as points with up to two neighbours."""
 
+    # The points (column, row) in cells, the first cell's centre at (0, 0); one for each side between two labels.
     at: Points
-    """The points (column, row) in cells, the first cell's centre at (0, 0); one for each side between two labels."""
+    # The points before and after each; the point itself where a line ends: at the rim, or where three labels meet.
     neighbours: Int64[np.ndarray, "n 2"]
-    """The points before and after each; the point itself where a line ends: at the rim, or where three labels meet."""
 
 
 def border_lines(labels: Int32[np.ndarray, "h w"]) -> Borders:

@@ -149,18 +149,13 @@ class Trial:
     comparison: str
     question: str
     procedure: str
-    intervals: tuple[Stimulus, ...]
-    """The stimulus of each interval, in their order."""
-    choices: tuple[str, ...]
-    """Possible responses; of an adjustment, the levels that can be set, as text."""
-    condition: str
-    """Name of the condition under test."""
-    other: str | None = None
-    """Name of the condition with which it is compared."""
+    intervals: tuple[Stimulus, ...]  # the stimulus of each interval, in their order
+    choices: tuple[str, ...]  # possible responses; of an adjustment, the levels that can be set, as text
+    condition: str  # name of the condition under test
+    other: str | None = None  # name of the condition with which it is compared
     level: float | None = None
     standard: float | None = None
-    position: int | None = None
-    """Interval, from 1, of the comparison or of the odd one."""
+    position: int | None = None  # interval, from 1, of the comparison or of the odd one
+    # Right answer, where it is not the number of an interval: the name of a part, or `same` or `different`.
     target: str | None = None
-    """Right answer, where it is not the number of an interval: the name of a part, or `same` or `different`."""
     phase: str = "test"

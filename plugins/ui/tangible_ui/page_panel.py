@@ -16,14 +16,12 @@ GROUP = "tangible.page"
 class PagePanel:
     """A panel of the page, the last of its task, closed at first."""
 
-    module: Path
-    """The panel's ES module; the page may fetch the files of its folder, and no others."""
-    title: Mapping[str, str]
-    """Heading by language, "en" at least."""
+    module: Path  # the panel's ES module; the page may fetch the files of its folder, and no others
+    title: Mapping[str, str]  # heading by language, "en" at least
+    # Functions of the panel's requests: called with the document's pipeline, and JSON arguments by name.
     requests: Mapping[str, Callable[..., Any]] = field(default_factory=dict[str, Callable[..., Any]])
-    """Functions of the panel's requests: called with the document's pipeline, and JSON arguments by name."""
+    # The task of the page that the panel serves; "advanced" puts it among the settings.
     task: Literal["picture", "parts", "feel", "hand-on", "advanced"] = "advanced"
-    """The task of the page that the panel serves; "advanced" puts it among the settings."""
 
 
 @cache

@@ -18,10 +18,9 @@ UNKNOWN: Vector = (math.nan, math.nan, math.nan)
 class OtherLaw(NamedTuple):
     """The second force law, as frames show it."""
 
-    force_n: Vector = NOBODY
-    """Force of that law on the same hand."""
+    force_n: Vector = NOBODY  # force of that law on the same hand
+    # True if the page must not reveal which law acts: the proxy is then hidden too, as not every law has one.
     blind: bool = False
-    """True if the page must not reveal which law acts: the proxy is then hidden too, as not every law has one."""
 
 
 ALONE = OtherLaw()

@@ -37,8 +37,8 @@ class _Block:
 @dataclass
 class _Count:
     open: list[_Block] = field(default_factory=list[_Block])
+    # The number of nodes that an alias to each closed anchor stands for.
     nodes_of: dict[str, int] = field(default_factory=dict[str, int])
-    """The number of nodes that an alias to each closed anchor stands for."""
 
 
 def check_events(events: Iterable[Any]) -> None:

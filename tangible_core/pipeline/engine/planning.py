@@ -19,8 +19,8 @@ class Outlook(NamedTuple):
 
     stages: Mapping[str, Stage]
     scene_products: Mapping[str, Record]
+    # The function that returns where a given product comes from, with its notes.
     describe_source: Callable[[str], tuple[str, tuple[Note, ...]]]
-    """The function that returns where a given product comes from, with its notes."""
     cache_for: Callable[[Stage], Cache | None]
     key: Callable[[str], str]
 
@@ -94,13 +94,9 @@ NOT_MADE: Final = object()
 class ProductEntry:
     """A product of a stage at the steps of its making, each made once and on request."""
 
-    key: str | None = None
-    """The text that identifies its content before it is made."""
-    value: Any = NOT_MADE
-    """The product as the stage or the cache returned it, on the working grid."""
-    result: Any = NOT_MADE
-    """The product checked, and with names."""
-    full_size: Any = NOT_MADE
-    """The finished product for every pixel of the pictures."""
+    key: str | None = None  # the text that identifies its content before it is made
+    value: Any = NOT_MADE  # the product as the stage or the cache returned it, on the working grid
+    result: Any = NOT_MADE  # the product checked, and with names
+    full_size: Any = NOT_MADE  # the finished product for every pixel of the pictures
+    # The notes from when it was made, in this process or before; None while unknown.
     notes: tuple[Note, ...] | None = None
-    """The notes from when it was made, in this process or before; None while unknown."""

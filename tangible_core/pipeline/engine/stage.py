@@ -50,10 +50,9 @@ class Context:
 
     config: PipelineConfig
     scene: Scene
+    # Products that need no stage, as the scene provides them.
     scene_products: Mapping[str, Record] = field(default_factory=dict[str, Record])
-    """Products that need no stage, as the scene provides them."""
-    registry: Registry = field(default_factory=default_registry)
-    """The installed methods and hooks."""
+    registry: Registry = field(default_factory=default_registry)  # the installed methods and hooks
 
     @cached_property
     def grid(self) -> WorkingGrid:

@@ -21,8 +21,8 @@ LISTED = ".exports.json"
 class Listed:
     """An exported file."""
 
+    # The pipeline file, relative to the folder if possible; empty for a pipeline that was made in Python.
     source: str
-    """The pipeline file, relative to the folder if possible; empty for a pipeline that was made in Python."""
     exporter: str
     digest: str
 

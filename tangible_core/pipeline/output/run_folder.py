@@ -30,12 +30,10 @@ NAMES = (*CLAIMS, *(f"{product}.npz" for product in PRODUCTS), RECORDING, GUESSE
 class Manifest:
     """The list of the files that a run wrote into a folder."""
 
+    # The pipeline file, relative to the folder if possible; empty for a pipeline that was made in Python.
     source: str = ""
-    """The pipeline file, relative to the folder if possible; empty for a pipeline that was made in Python."""
-    files: Mapping[str, str] = field(default_factory=dict[str, str])
-    """Digests of the contents by name."""
-    complete: bool = True
-    """False while a run writes, and for ever after a run that was killed."""
+    files: Mapping[str, str] = field(default_factory=dict[str, str])  # digests of the contents by name
+    complete: bool = True  # false while a run writes, and for ever after a run that was killed
 
     def write(self, folder: Path) -> None:
         """Write the manifest into its folder. Raises: OutputError."""

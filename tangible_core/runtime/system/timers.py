@@ -14,14 +14,11 @@ Kind = Literal["posix", "mach", "windows", ""]
 class Timer(NamedTuple):
     """What compiled code needs to read the clock and to sleep: `servo.ticks.clock` calls these functions."""
 
+    # For the kernels: two numbers by which the clock's steps become nanoseconds, and the handle of a timer.
     numbers: tuple[int, int, int]
-    """For the kernels: two numbers by which the clock's steps become nanoseconds, and the handle of a timer."""
-    read: int
-    """Address of the function that reads the clock."""
-    sleep: int
-    """Address of the function that sleeps."""
-    wait: int = 0
-    """Address of the function that waits for the timer; Windows."""
+    read: int  # address of the function that reads the clock
+    sleep: int  # address of the function that sleeps
+    wait: int = 0  # address of the function that waits for the timer; Windows
 
 
 def _address(library: Any, name: str) -> int:

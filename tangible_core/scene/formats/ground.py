@@ -37,12 +37,10 @@ DEGREES = 0.02
 class Ground(NamedTuple):
     """The cells of a map on the ground."""
 
+    # Width and length of a cell, metres; those in the middle row of a map in degrees.
     cell_m: tuple[float, float]
-    """Width and length of a cell, metres; those in the middle row of a map in degrees."""
-    shape: tuple[int, int]
-    """Rows and columns."""
-    unit_m: float = 1.0
-    """Metres that one number of the heights is."""
+    shape: tuple[int, int]  # rows and columns
+    unit_m: float = 1.0  # metres that one number of the heights is
 
     @property
     def size(self) -> MeasuredSize:

@@ -68,10 +68,9 @@ class MeasuredSize(NamedTuple):
 
     width_m: float
     length_m: float
+    # Height of the highest place above the base; None for a map of the ground, which is felt smaller than it is.
     high_m: float | None
-    """Height of the highest place above the base; None for a map of the ground, which is felt smaller than it is."""
-    unit_m: float = 1.0
-    """Metres that one number of the heights is."""
+    unit_m: float = 1.0  # metres that one number of the heights is
 
 
 def levels(relief: Relief) -> tuple[UInt16[np.ndarray, "h w"], float, float]:

@@ -44,13 +44,11 @@ _AUXILIARY = re.compile(rb'AuxiliaryImageType\s*(?:=\s*"|>)\s*(disparity|depth)\
 class PhoneDepth(NamedTuple):
     """A depth map inside a photo."""
 
-    picture: bytes
-    """A grey picture as a file of its own."""
+    picture: bytes  # a grey picture as a file of its own
     near_is_light: bool
-    kind: str
-    """Name of the format."""
+    kind: str  # name of the format
+    # The depths of black and white, where the picture is linear in depth; None where it is in one over the depth.
     linear: tuple[float, float] | None = None
-    """The depths of black and white, where the picture is linear in depth; None where it is in one over the depth."""
 
 
 def read_phone_depth(path: Path, shape: tuple[int, int], notify: Notify = ignore) -> Float32[np.ndarray, "h w"] | None:

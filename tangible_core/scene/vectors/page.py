@@ -17,16 +17,13 @@ SIDE_PX = 2000  # the longer side of a page as a picture, px: a tenth of a milli
 class VectorPage(NamedTuple):
     """A picture in vectors, and its shapes, names and texts."""
 
-    picture: UInt8[np.ndarray, "h w 3"]
-    """The page on white, without its texts."""
+    picture: UInt8[np.ndarray, "h w 3"]  # the page on white, without its texts
+    # The shape of each pixel, 0 for the ground; None where they are not known.
     labels: Int32[np.ndarray, "h w"] | None = None
-    """The shape of each pixel, 0 for the ground; None where they are not known."""
-    names: tuple[str, ...] = ()
-    """The name of each shape by its label, "" without one."""
+    names: tuple[str, ...] = ()  # the name of each shape by its label, "" without one
     texts: tuple[PictureText, ...] = ()
     title: str = ""
-    kind: PictureKind | None = None
-    """The kind of the picture; None to measure it."""
+    kind: PictureKind | None = None  # the kind of the picture; None to measure it
 
 
 def title_among(texts: Sequence[PictureText]) -> str:

@@ -34,14 +34,11 @@ class Item(NamedTuple):
     """A shape or a text of the tree."""
 
     element: Element
+    # What its title, its `aria-label` or its layer's label says, or those of the nearest group that has one.
     label: str
-    """What its title, its `aria-label` or its layer's label says, or those of the nearest group that has one."""
-    name: str
-    """The id of it or of the nearest group, if a person chose it."""
-    filled: bool = True
-    """True where it covers an area."""
-    outline: bool = False
-    """True where it has no fill, and its closed stroke is the outline of an area."""
+    name: str  # the id of it or of the nearest group, if a person chose it
+    filled: bool = True  # true where it covers an area
+    outline: bool = False  # true where it has no fill, and its closed stroke is the outline of an area
     stroked: bool = False
 
 

@@ -26,20 +26,16 @@ from .readers import FileFrames, FolderFrames
 class Video:
     """A sequence of pictures, each a photo or a pair. `Scene.video` and `Scene.read` make it."""
 
-    source: Path | int
-    """A file, a folder of pictures, or the number of a camera."""
+    source: Path | int  # a file, a folder of pictures, or the number of a camera
     layout: VideoLayout
     fps: float
     name: str
     repeat: bool = True
-    timed: bool = True
-    """Show the frames of a file by its time stamps, not at a requested even rate."""
-    count: int | None = None
-    """Number of frames that the file states; None if unknown."""
-    size: tuple[int, int] | None = None
-    """Shape (h, w) of each stored frame; None for that of the first one."""
+    timed: bool = True  # show the frames of a file by its time stamps, not at a requested even rate
+    count: int | None = None  # number of frames that the file states; None if unknown
+    size: tuple[int, int] | None = None  # shape (h, w) of each stored frame; None for that of the first one
+    # Options that crop and rotate each frame, and the calibration of the cameras.
     files: SceneFiles = field(default_factory=lambda: SceneFiles(video=0))
-    """Options that crop and rotate each frame, and the calibration of the cameras."""
     rig: StereoRig | None = None
 
     def open(self) -> VideoFrames:

@@ -73,10 +73,9 @@ class Comparison:
     scenes: Mapping[str, SceneSpec]
     damages: tuple[Damage, ...]
     protocol: Protocol
+    # Finishing step -> labels of the methods whose results it is applied to.
     finishes: Mapping[str, frozenset[str]]
-    """Finishing step -> labels of the methods whose results it is applied to."""
-    baseline: str | None
-    """The label of the method that times are compared with."""
+    baseline: str | None  # the label of the method that times are compared with
     out: Path
 
 

@@ -18,12 +18,10 @@ class StandardSet:
     title: str
     archive: str
     page: str
-    contents: str
-    """The files in its folder once it is unpacked."""
-    read: Mapping[str, Read]
-    """Variant -> reader; the first variant is the default."""
+    contents: str  # the files in its folder once it is unpacked
+    read: Mapping[str, Read]  # variant -> reader; the first variant is the default
+    # The sizes of its pairs, the largest first; smaller ones that are not in the folder are made from larger ones.
     sizes: tuple[Resolution, ...] = ()
-    """The sizes of its pairs, the largest first; smaller ones that are not in the folder are made from larger ones."""
 
     @property
     def fetch(self) -> str:

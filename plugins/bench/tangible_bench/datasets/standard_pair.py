@@ -94,21 +94,16 @@ class StandardPair:
     name: str
     left: Path
     right: Path
-    truth: Path | None = None
-    """The true disparity; None if the benchmark keeps it."""
+    truth: Path | None = None  # the true disparity; None if the benchmark keeps it
     truth_scale: TruthScale | None = None
-    noc: Mask | None = None
-    """The mask of pixels that both views show; None to derive it from a dense truth."""
+    noc: Mask | None = None  # the mask of pixels that both views show; None to derive it from a dense truth
     foreground: Mask | None = None
+    # True if the truth has gaps, such as a laser's, so that occlusion does not follow from it.
     sparse: bool = False
-    """True if the truth has gaps, such as a laser's, so that occlusion does not follow from it."""
     cameras: ReadCameras = Cameras
-    resolution: Resolution | None = None
-    """The size of the opened pair; None for a set in one size."""
-    shrink: int = 1
-    """The factor by which the files are larger than the opened pair."""
-    test: bool = False
-    """True if the pair is in the benchmark's test part, for which results are submitted."""
+    resolution: Resolution | None = None  # the size of the opened pair; None for a set in one size
+    shrink: int = 1  # the factor by which the files are larger than the opened pair
+    test: bool = False  # true if the pair is in the benchmark's test part, for which results are submitted
 
     def files(self) -> SceneFiles:
         """Return the files for a pipeline. Raises: ConfigError for a pair smaller than its files; PictureError."""

@@ -18,8 +18,7 @@ class Row:
 
     __pydantic_config__: ClassVar = ConfigDict(extra="forbid", strict=True)  # for rows that are read from files
 
-    key: str
-    """The hash of all that the result depends on: a measurement with the same key need not be repeated."""
+    key: str  # the hash of all that the result depends on: a measurement with the same key need not be repeated
     compare: str
     method: str
     use: str
@@ -32,12 +31,10 @@ class Row:
     repeat: int
     versions: Mapping[str, str]
     machine: Mapping[str, str | int]
-    baseline: str | None = None
-    """The label of the method that times are compared with; not part of the key."""
+    baseline: str | None = None  # the label of the method that times are compared with; not part of the key
+    # The median of the timed calls; if a call does several pieces of work, the time of one. None after an error.
     seconds: float | None = None
-    """The median of the timed calls; if a call does several pieces of work, the time of one. None after an error."""
-    first_seconds: float | None = None
-    """The time of the very first call, with imports and compilation."""
+    first_seconds: float | None = None  # the time of the very first call, with imports and compilation
     peak_memory_bytes: int | None = None
     measures: Mapping[str, float | None] = field(default_factory=dict[str, float | None])
     error: str | None = None

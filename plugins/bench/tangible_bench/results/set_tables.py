@@ -58,12 +58,11 @@ RANKED = {"kitti-2015": "d1", "kitti-2012": "bad3_noc", "eth3d": "bad1_noc"}
 class SetTable:
     """A benchmark's table: its methods from the best to the worst."""
 
-    label: str
-    """The set with its size, as in names of scenes."""
+    label: str  # the set with its size, as in names of scenes
     scenes: int
     columns: tuple[Column, ...]
+    # Method -> a value for each column; NaN where it lacks a pair that another one has.
     rows: Mapping[str, tuple[float, ...]]
-    """Method -> a value for each column; NaN where it lacks a pair that another one has."""
 
     @property
     def title(self) -> str:

@@ -23,11 +23,11 @@ class Cell:
     scene_digest: str = ""
     seconds: Sequence[float] = ()
     first_seconds: Sequence[float] = ()
+    # Times divided by the baseline's time in the same round; empty without a baseline.
     ratios: Sequence[float] = ()
-    """Times divided by the baseline's time in the same round; empty without a baseline."""
     memory_bytes: Sequence[float] = ()
+    # Medians over the repeats. (Methods are deterministic, so each repeat has the same value.)
     measures: Mapping[str, float] = field(default_factory=dict[str, float])
-    """Medians over the repeats. (Methods are deterministic, so each repeat has the same value.)"""
     error: str | None = None
 
     @property

@@ -65,16 +65,14 @@ def pick_pairs(all_pairs: dict[str, Item], only: tuple[str | int, ...], folder: 
 class Measure:
     """A figure that is measured of each result."""
 
-    title: str
-    """The column heading, with the unit."""
+    title: str  # the column heading, with the unit
     digits: int = 2
     best: Literal["low", "high"] = "low"
-    tolerance: float = 0.005
-    """The largest difference between two files that counts as the same."""
+    tolerance: float = 0.005  # the largest difference between two files that counts as the same
+    # True if the measure counts pixels: its heading then names their size, unless that is the full one.
     at_size: bool = False
-    """True if the measure counts pixels: its heading then names their size, unless that is the full one."""
+    # True if only scenes of standard sets have the measure; tables of other scenes leave it out.
     of_sets: bool = False
-    """True if only scenes of standard sets have the measure; tables of other scenes leave it out."""
 
 
 @dataclass(frozen=True)
@@ -83,8 +81,8 @@ class Clock:
 
     unit: str = "ms"
     per_second: float = 1e3
+    # (scene) -> number of pieces of work in a call; times are those of one piece.
     pieces: Callable[[Any], int] = lambda scene: 1
-    """(scene) -> number of pieces of work in a call; times are those of one piece."""
 
 
 @dataclass(frozen=True)
@@ -100,14 +98,11 @@ class Perturbation:
 class Curve:
     """A curve that is drawn of each method, next to its ideal one."""
 
-    title: str
-    """The label of the vertical axis, with the unit."""
-    over: str
-    """The label of the horizontal axis, with the unit."""
+    title: str  # the label of the vertical axis, with the unit
+    over: str  # the label of the horizontal axis, with the unit
+    # Horizontal position -> name of a value of `Task.measure`; no table shows these values.
     points: Mapping[int, str]
-    """Horizontal position -> name of a value of `Task.measure`; no table shows these values."""
-    ideal: Mapping[int, str]
-    """Horizontal position -> name of the value for the ideal curve."""
+    ideal: Mapping[int, str]  # horizontal position -> name of the value for the ideal curve
 
 
 @dataclass(frozen=True)

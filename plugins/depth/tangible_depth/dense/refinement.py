@@ -61,8 +61,8 @@ class DenseMatches(NamedTuple):
 class Cleaning(NamedTuple):
     """Options of `complete`."""
 
+    # Switch for the sharpening of depth edges; a map to be enlarged is sharpened by `enlarge` instead.
     sharpen: bool = True
-    """Switch for the sharpening of depth edges; a map to be enlarged is sharpened by `enlarge` instead."""
     specks: Specks = Specks()
     factor: int = 1
     effort: Effort = "balanced"

@@ -64,8 +64,8 @@ class Matched(NamedTuple):
     """The matches of a pair."""
 
     left: MatchedView
+    # With `effort: best`, the right view, mirrored, its rows where they were: the left one of the exchanged pair.
     mirrored_right: MatchedView | None
-    """With `effort: best`, the right view, mirrored, its rows where they were: the left one of the exchanged pair."""
     cost: Cost
 
 

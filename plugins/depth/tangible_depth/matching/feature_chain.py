@@ -31,8 +31,8 @@ class Parts(NamedTuple):
 
     response: Callable[[Grey], Grey]
     fit: Fit
+    # Search left, right, points (column, row), lowest and highest disparity -> disparity (NaN unknown), score 0..1.
     match_rows: Callable[[Grey, Grey, Int64[np.ndarray, "n 2"], int, int], tuple[Row, Row]]
-    """Search left, right, points (column, row), lowest and highest disparity -> disparity (NaN unknown), score 0..1."""
 
 
 def disparity_by_features(

@@ -50,8 +50,8 @@ class Rotation(NamedTuple):
     homographies: tuple[np.ndarray, np.ndarray]
     radials: tuple[float, float]
     inliers: Bool[np.ndarray, "n"]
+    # The dominant plane that explains the matches without parallax, so that the cameras' poses stay ambiguous.
     plane: Plane | None = None
-    """The dominant plane that explains the matches without parallax, so that the cameras' poses stay ambiguous."""
 
     def shifts(self, matches: Matches, shape: tuple[int, int]) -> Float64[np.ndarray, "n 2"]:
         """Return left minus right place (x, y) of matches in rectified pictures (h, w): disparity and row offset."""

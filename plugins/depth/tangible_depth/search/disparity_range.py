@@ -32,8 +32,8 @@ class RangeEstimate(NamedTuple):
 
     span: Span
     bands: Bands
+    # True if every disparity is negative, which parallel cameras in the right order cannot produce.
     is_swapped: bool
-    """True if every disparity is negative, which parallel cameras in the right order cannot produce."""
 
 
 def reach_px(width: int) -> int:

@@ -76,10 +76,9 @@ class Penalties(NamedTuple):
     """The penalties of a path, in differing bits."""
 
     p1: np.uint8
-    neutral: np.uint8
-    """Cost of a disparity that leads out of the right view, where nothing can be compared."""
+    neutral: np.uint8  # cost of a disparity that leads out of the right view, where nothing can be compared
+    # Penalty of any other change, by the grey step there: depth edges coincide with edges of the picture.
     p2_by_step: UInt8[np.ndarray, "256"]
-    """Penalty of any other change, by the grey step there: depth edges coincide with edges of the picture."""
 
 
 class Cost(NamedTuple):
@@ -89,8 +88,8 @@ class Cost(NamedTuple):
     bits: int
     codes: Callable[[UInt8[np.ndarray, "h w"]], Any]
     penalties: Penalties
+    # Largest value that the difference of two grey levels counts; 0 for codes without levels.
     most_level: int = 0
-    """Largest value that the difference of two grey levels counts; 0 for codes without levels."""
     specks: Specks = Specks()
 
 

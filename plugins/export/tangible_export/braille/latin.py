@@ -35,24 +35,22 @@ class Code:
     title: str
     signs: Mapping[str, Cells]
     quotes: tuple[Cells, Cells]
-    quoting: str
-    """Characters that open or close a quotation according to their place."""
+    quoting: str  # characters that open or close a quotation according to their place
     number: Cells
     digits: Cells
     within_number: str
+    # Characters before a digit that belong to the number: the number sign stands before them.
     before_number: str
-    """Characters before a digit that belong to the number: the number sign stands before them."""
     after_number: Cells = ()
     read_as_digit: str = ""
     thousands: Cells = (0,)
     capital: Cells = ()
     capital_word: Cells = ()
     capital_end: Cells = ()
-    capital_passage: Cells = ()
-    """Sign before three words or more in capitals; `capital_end` stands after them."""
+    capital_passage: Cells = ()  # sign before three words or more in capitals; `capital_end` stands after them
     no_space_before: str = ""
+    # Accents, as combining characters; their cells stand before the letter's.
     marks: Mapping[str, Cells] = field(default_factory=dict[str, Cells])
-    """Accents, as combining characters; their cells stand before the letter's."""
 
 
 _TEXTS = frozenset({"title", "quoting", "within_number", "before_number", "read_as_digit", "no_space_before"})

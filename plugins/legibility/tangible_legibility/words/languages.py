@@ -19,13 +19,12 @@ LANGUAGES: tuple[Language, ...] = get_args(Language)
 class Table(NamedTuple):
     """The words of one language."""
 
+    # Texts by key, with placeholders; the key of a place is its third from the top and its third from the left.
     words: Mapping[str, str]
-    """Texts by key, with placeholders; the key of a place is its third from the top and its third from the left."""
     materials: Mapping[str, str]
+    # Names of the materials in the form that follows `feels like`, where that is another one.
     after_like: Mapping[str, str] = {}
-    """Names of the materials in the form that follows `feels like`, where that is another one."""
-    no_break_before: str = ""
-    """Marks before which a space does not break."""
+    no_break_before: str = ""  # marks before which a space does not break
 
 
 TABLES: Mapping[Language, Table] = {

@@ -21,11 +21,10 @@ class CountedAnswers:
     """The answers of a study that count, and how many others there are."""
 
     study: Study
+    # Answers of test trials that the device rendered, by participant.
     by_participant: Mapping[str, list[Answer]]
-    """Answers of test trials that the device rendered, by participant."""
     training: int
-    not_rendered: int
-    """Number of test trials in which the device did not render what was requested."""
+    not_rendered: int  # number of test trials in which the device did not render what was requested
 
     @property
     def trials(self) -> int:

@@ -46,13 +46,11 @@ class Result:
     question: str
     participants: Sequence[str]
     rows: Sequence[Row]
-    main: str
-    """Measure that the question is about."""
+    main: str  # measure that the question is about
+    # Fitted functions by participant and condition, joined by a slash.
     curves: Mapping[str, Curve] = field(default_factory=dict[str, Curve])
-    """Fitted functions by participant and condition, joined by a slash."""
     blocks: Mapping[str, Blocks] = field(default_factory=dict[str, Blocks])
-    notes: Sequence[str] = ()
-    """Remarks for a reader, as sentences."""
+    notes: Sequence[str] = ()  # remarks for a reader, as sentences
 
     def of_all(self, measure: str) -> list[Row]:
         """Return the rows of a measure about all participants; those of the only participant if there is one."""

@@ -41,8 +41,8 @@ class Rendering:
     touching: int = 0
     overruns: int = 0
     flag_counts: dict[TickFlag, int] = field(default_factory=dict[TickFlag, int])
+    # The 99th percentile and the maximum of each part of the ticks.
     late_s: list[float] = field(default_factory=list[float])
-    """The 99th percentile and the maximum of each part of the ticks."""
     last_s: float = 0.0
 
     def add(self, rows: np.ndarray) -> None:

@@ -21,12 +21,10 @@ class Score(NamedTuple):
 class Percept(NamedTuple):
     """What an observer who is a model feels in a trial."""
 
-    strengths: np.ndarray
-    """Each interval, with noise of standard deviation 1."""
+    strengths: np.ndarray  # each interval, with noise of standard deviation 1
+    # How strong a stimulus is without noise, in standard deviations of it.
     magnitude: Callable[[Stimulus], float]
-    """How strong a stimulus is without noise, in standard deviations of it."""
-    base: float
-    """d' between the parts that are named, where the magnitude is 0."""
+    base: float  # d' between the parts that are named, where the magnitude is 0
 
 
 class Question(ABC):

@@ -35,14 +35,11 @@ class Blocks(NamedTuple):
 class Curve(NamedTuple):
     """A fitted function."""
 
-    threshold: Estimate
-    """Level at which the function is halfway up."""
+    threshold: Estimate  # level at which the function is halfway up
+    # Distance from 5 to 95 % of the way up; of a threshold of the difference, in natural logarithms.
     width: Estimate
-    """Distance from 5 to 95 % of the way up; of a threshold of the difference, in natural logarithms."""
-    lapses: float
-    """Share of the trials that were answered without attention."""
-    chance: float
-    """Share of right answers by guessing alone; 0 where each level is chosen or not."""
+    lapses: float  # share of the trials that were answered without attention
+    chance: float  # share of right answers by guessing alone; 0 where each level is chosen or not
 
     def at(self, levels: Float64[np.ndarray, "n"]) -> Float64[np.ndarray, "n"]:
         """Return the share of the trials with the comparison chosen, or with a right answer."""

@@ -25,8 +25,8 @@ class Pairs(NamedTuple):
     means: Float64[np.ndarray, "k a"]
     scatters: Float64[np.ndarray, "k a a"]
     ridge: float
+    # The squared Mahalanobis distances between means, each in the mean scatter of the two clusters.
     distances: Float64[np.ndarray, "k k"]
-    """The squared Mahalanobis distances between means, each in the mean scatter of the two clusters."""
 
     def joining_costs(self, power: float) -> Float64[np.ndarray, "k k"]:
         """Compute D (m k / n)^power of each pair of k clusters, the higher label first; infinite elsewhere; n cells."""

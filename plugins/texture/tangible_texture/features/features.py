@@ -41,8 +41,8 @@ class Features(NamedTuple):
     wide: Window
     middle: Window
     narrow: Window
+    # The numbers of the filters whose energies are the first planes, in the order of `bank`.
     filters: tuple[int, ...] = ()
-    """The numbers of the filters whose energies are the first planes, in the order of `bank`."""
 
 
 def features(

@@ -18,10 +18,10 @@ class Weights(NamedTuple):
     """All weights of one fit."""
 
     cues: Mapping[str, Cue]
+    # The weights of the terms of a border that `joining` measures, in its order.
     border_terms: tuple[float, ...]
-    """The weights of the terms of a border that `joining` measures, in its order."""
+    # The cost of a border whose terms are all 0; at a cost of 0 half of the people keep two regions apart.
     constant: float
-    """The cost of a border whose terms are all 0; at a cost of 0 half of the people keep two regions apart."""
 
     @property
     def at_cells(self) -> Float32[np.ndarray, "cues"]:

@@ -18,10 +18,9 @@ class Choice:
 
     kind: Literal["hand", "document", "other"] = "hand"
     name: str = ""
-    sure: bool = False
-    """True if the person was warned of the motor and agreed."""
+    sure: bool = False  # true if the person was warned of the motor and agreed
+    # The device that the person agreed to: a document may come to name another one.
     agreed_device: type[HapticDevice] | None = None
-    """The device that the person agreed to: a document may come to name another one."""
 
     def sets(self, own_device: Mapping[str, Any]) -> list[str]:
         """Return the changes to the document, as `--set` takes them."""

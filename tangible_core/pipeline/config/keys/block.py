@@ -17,12 +17,11 @@ from .key import Forms, Key, Reading
 class Block(Key):
     """A key with a block of options; the type of its field is the model, or the model or None."""
 
-    word: str = ""
-    """The option that a word alone stands for."""
+    word: str = ""  # the option that a word alone stands for
+    # The option that a map whose keys are numbers stands for; in Python, a word stands for it, too.
     labels: str = ""
-    """The option that a map whose keys are numbers stands for; in Python, a word stands for it, too."""
+    # A check of the whole block in a file, which notes its complaints in the source.
     check: Callable[[Source, Location, Any], None] | None = None
-    """A check of the whole block in a file, which notes its complaints in the source."""
 
     @property
     def model(self) -> type[BaseModel]:

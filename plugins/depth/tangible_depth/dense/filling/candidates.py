@@ -20,8 +20,8 @@ NO_WAY = np.int32(1 << 28)
 class GeodesicCandidates(NamedTuple):
     """Disparity at the end of the shortest path before the first known pixel of a row, and the path's grey levels."""
 
+    # The first known column of each row; 0 without one, as the width of the border is unknown there.
     first: Int64[np.ndarray, " h"]
-    """The first known column of each row; 0 without one, as the width of the border is unknown there."""
     values: Int16[np.ndarray, "h columns"]
     lengths: Int32[np.ndarray, "h columns"]
 

@@ -36,20 +36,14 @@ BAND_COUNTS = 1.0
 class Buffers(NamedTuple):
     """The arrays that read and write share, the incoming answer and the outgoing packet."""
 
-    answer: np.ndarray
-    """uint8 (16,), the newest answer."""
-    packet: np.ndarray
-    """uint8 (16,), the next packet to send."""
-    counts: np.ndarray
-    """int64 (COUNTS,)"""
-    held: np.ndarray
-    """float64 (HELD,)"""
-    history: np.ndarray
-    """float64 (n, 4), seconds and three encoders in counts, a ring."""
+    answer: np.ndarray  # uint8 (16,), the newest answer
+    packet: np.ndarray  # uint8 (16,), the next packet to send
+    counts: np.ndarray  # int64 (COUNTS,)
+    held: np.ndarray  # float64 (HELD,)
+    history: np.ndarray  # float64 (n, 4), seconds and three encoders in counts, a ring
+    # float64 (3, 2): each arm's angle at 0 counts in radians, and counts of torque per newton metre.
     arms: np.ndarray
-    """float64 (3, 2): each arm's angle at 0 counts in radians, and counts of torque per newton metre."""
-    frame: np.ndarray
-    """float64 (3, 4): workspace = frame[:, :3] @ device + frame[:, 3], metres."""
+    frame: np.ndarray  # float64 (3, 4): workspace = frame[:, :3] @ device + frame[:, 3], metres
 
 
 FIXED = (BYTES, BYTES, int64[::1], float64[::1], float64[:, ::1], float64[:, ::1], float64[:, ::1])

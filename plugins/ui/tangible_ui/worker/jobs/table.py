@@ -15,10 +15,9 @@ class Job(NamedTuple):
     """A job of the worker: called with the worker's state, and with the arguments of the server by name."""
 
     do: Callable[..., Any]
+    # True if it runs next to a long job rather than after it; it must then leave `WorkerState.pipeline` alone.
     quick: bool = False
-    """True if it runs next to a long job rather than after it; it must then leave `WorkerState.pipeline` alone."""
-    page: bool = False
-    """True if it is a request of pages too, whose answer is its result."""
+    page: bool = False  # true if it is a request of pages too, whose answer is its result
 
 
 JOBS: dict[str, Job] = {}

@@ -55,16 +55,14 @@ class SurfaceView:
     """A surface to draw, or what there is of one."""
 
     name: str
+    # Heights and materials; heights alone; or segments over whatever heights there are, flat without any.
     shows: Shows
-    """Heights and materials; heights alone; or segments over whatever heights there are, flat without any."""
     relief: Relief
     labels: Int32[np.ndarray, "h w"] | None
-    materials: tuple[Material, ...]
-    """Materials by label, as the device renders them; empty if there are none."""
+    materials: tuple[Material, ...]  # materials by label, as the device renders them; empty if there are none
     picture: np.ndarray | None
     layers: dict[str, Layer]
-    names: tuple[str, ...] | None = None
-    """Names of the parts by label; None if the labels are not parts."""
+    names: tuple[str, ...] | None = None  # names of the parts by label; None if the labels are not parts
 
     @property
     def surface(self) -> HapticSurface:

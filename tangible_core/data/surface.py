@@ -132,6 +132,12 @@ class MaterialMap(Record):
 class HapticSurface(Record):
     """The surface that a force law renders: the relief and, where the scene has them, a material for each label.
 
+    A pipeline makes one as its product `surface`; make one yourself to feel heights of your own.
+
+    >>> import numpy as np
+    >>> HapticSurface(Relief(np.zeros((8, 16), np.float32), (0.08, 0.04))).extent_m
+    (0.08, 0.04)
+
     names: the name of each part, "" for a part without a name; None if the labels are not those of parts.
     Raises: GeometryError if labels and heights differ in size, MaterialError if a label has no material or no name.
     """

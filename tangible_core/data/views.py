@@ -41,7 +41,13 @@ class Calibration(Record):
 @named_fields
 @dataclass(frozen=True, eq=False)
 class Views(Record):
-    """A picture of a scene, or a pair of pictures.
+    """A picture of a scene, or a pair of pictures, as arrays; `Scene` also reads files and is what a pipeline takes.
+
+    (h, w) or (h, w, 3 or 4), of uint8, uint16, bool or float in 0..1. A pair is rectified: matches share their row.
+
+    >>> import numpy as np
+    >>> Views(np.zeros((48, 64), np.uint8)).shape
+    (48, 64)
 
     Raises: PictureError if an array is not a picture, holds NaN or infinity, or the two differ in size.
     """

@@ -77,7 +77,14 @@ Metres = Annotated[float, Field(allow_inf_nan=False)]
 
 
 class Workspace(Section):
-    """The size of the surface under the hand."""
+    """The size of the surface under the hand.
+
+    Lengths are metres, or text with a unit. Options that you leave out depend on the scene: a photograph is felt lower
+    and smoother than a height map. A pin display, a printer or a page has its own width, see the exporters.
+
+    >>> Workspace(width_m="12 cm", relief_m=0.006).width_m
+    0.12
+    """
 
     width_m: Annotated[float, Field(ge=MIN_WIDTH_M, le=MAX_WIDTH_M, allow_inf_nan=False)] = 0.08
     """Width of the surface under the hand."""

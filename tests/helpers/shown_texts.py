@@ -98,7 +98,8 @@ def described() -> Iterator[str]:
     for text in [*_of_schema(json_schema()), *_of_schema(materials_schema()),
                  *(text for name in COMMANDS for text in _of_command(load(name))),
                  *_of_command(typer.main.get_command(app))]:  # fmt: skip
-        yield from filter(None, (" ".join(word.split()) for word in text.split("\n\n")))
+        paragraphs = (" ".join(paragraph.split()) for paragraph in text.split("\n\n"))
+        yield from (paragraph for paragraph in paragraphs if paragraph and not paragraph.startswith(">>>"))
 
 
 def _of_schema(node: Any) -> Iterator[str]:

@@ -15,6 +15,16 @@ if TYPE_CHECKING:
 class SemiGlobal(DepthEstimator, Following):
     """Semi-global matching of census codes along four paths: precise at depth edges, robust to exposure and noise.
 
+    The default for a pair of photographs. `zncc` does not guess where there is no texture, `opencv-sgbm` is a
+    yardstick, and `onnx` runs a network of your own; for a single photograph take `cues`.
+
+    >>> import numpy as np
+    >>> from tangible import SemiGlobal, Views
+    >>> left = np.random.default_rng(0).integers(0, 256, (64, 96), np.uint8)
+    >>> right = np.roll(left, -5, axis=1)  # every point is seen five pixels further to the left
+    >>> float(SemiGlobal().estimate(Views(left, right)).disparity_px[32, 48])
+    5.0
+
     Steps that a pair does not need are skipped, with a note: disparities that do not occur, rows without texture, a
     second view that equals the first. A pair whose views are exchanged is matched as well: its disparities are
     negative, and a warning is logged. A constant vertical offset between the rows is corrected.

@@ -23,6 +23,13 @@ MAX_M = (0.06, 0.04)
 class Mock(HapticDevice, Scripted):
     """A hand that follows a path, in simulated time: every read is one period later.
 
+    For demos, tests and comparisons, which it makes repeatable to the bit; it needs no device and no real time.
+
+    >>> from tangible import Mock
+    >>> with Mock(path="circle").open() as link:
+    ...     link.read().position_m
+    (0.03, 0.0, 0.03)
+
     With a virtual hand (the default) the path is the target of the hand. It lies below the surface, so that the hand
     presses and the force pushes it back. Without one (`hand: null`) the tip is exactly on the path, whatever the force.
     Not exclusive: every `open` gives a new device at the start of its path. Its limits are a Novint Falcon's.

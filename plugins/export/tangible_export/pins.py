@@ -35,6 +35,8 @@ class Raised(NamedTuple):
 class Pins(Exporter, Previewing):
     """Pins that rise along the borders of parts: PNG, JSON, Unicode braille, and an SVG for the IMAGE services.
 
+    For displays such as the Monarch and the Dot Pad: a few large parts are legible, details are not.
+
     On a display whose pins have several heights, the relief fills the areas between the borders, below their height.
     """
 

@@ -21,6 +21,9 @@ _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute
 class Stl(SolidExporter):
     """A closed solid to print, in millimetres, as binary STL: the relief on a plate with its title in braille.
 
+    For any printer and slicer, and for people without swell paper; `3mf` is smaller and knows its unit, `glb` has the
+    picture as its colour. `tangible export photo.jpg --to stl` writes one.
+
     Binary STL has no unit; slicers read its numbers as millimetres, which they are.
     Source: StereoLithography Interface Specification, 3D Systems, 1988.
     """

@@ -27,6 +27,8 @@ PREVIEW_PER_MM = 3  # enough for dots of braille
 class Swell(Exporter, Previewing):
     """A page for swell paper and its key: outlines, fills and braille in black shapes alone, as SVG and as PDF.
 
+    For fingers that read braille: print it on swell paper and heat it. Heights are lost: take `stl` to keep them.
+
     Sources: Guidelines and Standards for Tactile Graphics, Braille Authority of North America, 2010, for a key of
     letters, outlines that stand clear of fills, and a mark at the upper right corner; sizes have their own sources.
     """

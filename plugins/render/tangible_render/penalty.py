@@ -17,6 +17,14 @@ from .surface.dequantise import Filter
 class Penalty(ForceRenderer):
     """A spring along z: F_z = k d, d = h(x, y) - z the depth under the surface.
 
+    For comparisons, and for devices that push along one axis. It has no friction; `proxy` holds the hand at walls.
+
+    >>> import numpy as np
+    >>> from tangible import HapticState, HapticSurface, Penalty, Relief
+    >>> touch = Penalty(stiffness_n_per_m=500).touch(HapticSurface(Relief(np.zeros((8, 8), np.float32), (0.08, 0.08))))
+    >>> touch.force(HapticState(position_m=(0, 0, -0.002)))
+    Force(x=0.0, y=0.0, z=1.0)
+
     It has no lateral part, so that a slope shows by its height alone and does not push sideways, and it is not
     conservative: entering at a deep place and leaving at a shallow one generates energy. Damping acts along z, in
     contact only, and never pulls. The surface is a C2 spline; it ends at its extent; beyond it is free air.

@@ -33,6 +33,17 @@ class _Law(NamedTuple):
 class Proxy(ForceRenderer, Filming):
     """A spring to a proxy (god-object), which stays on the surface: F = k (p - q).
 
+    The default for a surface that you stroke: walls hold the hand, materials have friction, damping and fine textures.
+    `penalty` is simpler and shows a slope by its height alone; `grey-level` and `tangible-mask` act sideways only.
+
+    >>> import numpy as np
+    >>> from tangible import HapticState, HapticSurface, Proxy, Relief
+    >>> touch = Proxy(stiffness_n_per_m=500).touch(HapticSurface(Relief(np.zeros((8, 8), np.float32), (0.08, 0.08))))
+    >>> touch.force(HapticState(position_m=(0, 0, 0.001)))  # the hand is above the surface
+    Force(x=0.0, y=0.0, z=0.0)
+    >>> touch.force(HapticState(position_m=(0, 0, -0.001)))  # a millimetre below: 500 N/m x 0.001 m
+    Force(x=0.0, y=0.0, z=0.5)
+
     The proxy p starts where the hand q passes through the surface, a C2 spline, and then minimises |p - q| downhill
     from its last place, so that a wall holds it back: unlike a penalty force it does not push the hand out at the far
     side. With friction the proxy rests while the force is within the static cone, and slides on the dynamic one: stick

@@ -21,6 +21,9 @@ def _odd(count: int) -> int:
 class TangibleMask(ForceRenderer):
     """A lateral pull to the darker, lower side: F = s sum (255 - I) (u, v) over the mask around the tip's cell.
 
+    The method that the report hopes to improve on: for comparisons, and for devices that push sideways only. Heights
+    are felt as pulls, so that walls do not hold the hand: take `proxy` to stroke a surface.
+
     (u, v) is a cell's offset from the middle, along x and y; I is the height in 256 steps, as in `grey-level` (in the
     source, a picture's Y = 0.3 R + 0.59 G + 0.11 B). The force acts on contact and is the same at any depth; it is zero
     where the mask leaves the surface. s makes a slope feel the same at any resolution: on a long straight edge from the

@@ -75,6 +75,15 @@ def _spread_within(levels: GreyLevels, counts: Int64[np.ndarray, "n"]) -> Float6
 class Histogram(Dividing):
     """Grey levels, divided by the optimal thresholds of the histogram; a segment may lie in many places.
 
+    For flat drawings and scenes of a few even tones. It does not see texture or colour: take `gabor` or `hierarchy`.
+
+    >>> import numpy as np
+    >>> from tangible import Histogram
+    >>> picture = np.zeros((32, 32), np.uint8)
+    >>> picture[8:24, 8:24] = 200
+    >>> Histogram(segments=2).segment(picture).labels[[0, 16], 16].tolist()
+    [0, 1]
+
     The picture is reduced to grey and smoothed; the 256 grey levels of its flattest four fifths are divided so that the
     variance within the classes is least (Otsu's criterion for several thresholds, its exact optimum). Edges have levels
     of their own, which are not segments: edges and parts that are too small go to the adjacent segments.

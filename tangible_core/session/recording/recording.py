@@ -33,6 +33,13 @@ STOPPED = "stopped by the program"
 class Recording(Record):
     """A session tick by tick, in the workspace frame: rows of `TICK_COLUMNS`.
 
+    `load` and `save` take .nc, .npz and .csv; `to_pandas` gives a table with a column for each quantity. Each property
+    is one row per tick, in the unit of its name. `device: replay` moves a hand along a recording again.
+
+    >>> import numpy as np
+    >>> Recording(np.zeros((1000, len(TICK_COLUMNS)))).force_n.shape
+    (1000, 3)
+
     Raises: OutputError if the rows are not such a table.
     """
 

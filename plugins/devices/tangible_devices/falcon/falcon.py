@@ -17,6 +17,12 @@ from .usb.image import read_image
 class Falcon(HapticDevice, Serviceable, Adjustable):
     """A Novint Falcon on USB, driven from Python: firmware, homing, exact kinematics, forces that keep their sign.
 
+    `falcon-simulated` is the same device without hardware, for tests, down to its USB packets.
+
+    >>> from tangible import Falcon
+    >>> Falcon().spec().max_force_n, Falcon().spec().axes
+    (6.09, 3)
+
     Opening a Falcon takes as long as you need to home it: pull the grip all the way out and push it all the way in. The
     device gives no force before it is homed, and after it has lost its homing.
     """

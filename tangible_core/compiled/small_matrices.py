@@ -42,6 +42,8 @@ def _tridiagonal(matrix):
     size = len(matrix)
     rest, vectors, off = matrix.astype(np.float64), np.eye(size), np.zeros(size)
     for k in range(size - 2):
+        # Householder: a reflection takes row k to its first off-diagonal element. The sign is the one that does not
+        # cancel.
         mirror = rest[k, k + 1 :].copy()
         length = np.sqrt(_dot(mirror, mirror))
         off[k] = -length if mirror[0] >= 0 else length

@@ -154,6 +154,8 @@ def guard(settings, memory, period_s, x, y, z, vx, vy, vz, fx, fy, fz):
     """
     elapsed_s = memory[at.AGE_S] + period_s
     memory[at.AGE_S] = 0.0
+    # Zero times a number is zero, or NaN if the number is not finite: one test for ten numbers. None of the comparisons
+    # below would stop a NaN.
     if zero_or_nan(x, y, z) + zero_or_nan(vx, vy, vz) + zero_or_nan(fx, fy, fz) + 0.0 * elapsed_s != 0.0:
         return _stop(memory, NOT_FINITE)
     if elapsed_s > settings[at.STALE_S]:
@@ -164,6 +166,8 @@ def guard(settings, memory, period_s, x, y, z, vx, vy, vz, fx, fy, fz):
     if memory[at.PULL] != 0.0 or memory[at.PULL + 1] != 0.0:
         fx, fy, acts = fx + memory[at.PULL], fy + memory[at.PULL + 1], True
     law_n, before = fz, 0.0
+    # The order matters: the coupling replaces the law's force, the limits bound it, passivity judges what is left, and
+    # the fade-in comes last, since it only takes away.
     if settings[at.COUPLING] > 0.0:
         fx, fy, fz = tool_force(settings, memory, x, y, z, vx, vy, vz, fx, fy, fz)
         before = np.sqrt(fx * fx + fy * fy + fz * fz)

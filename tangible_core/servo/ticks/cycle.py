@@ -77,6 +77,8 @@ def publish(header, sums, late, period, contact, stamps, ticks, row, at_ns, late
         period[min(max(since_ns, 0) // 1000, WIDEST_US - 1)] += 1
         sums[LONGEST_S] = max(sums[LONGEST_S], since_ns / SECOND_NS)
     header[PREVIOUS_NS] = at_ns
+    # A reader takes a row only if its stamp is the same before and after: -1 while it is written, and its count once it
+    # is whole. The count of rows comes last, so that no row is announced before it is there.
     _store(stamps, slot, -1)
     for i in range(row.shape[0]):
         ticks[slot, i] = row[i]

@@ -90,6 +90,7 @@ def _average_rows(view, middle, factor, columns, total, means):
             total[x] += line[x]
     for x in range(w, total.size):
         total[x] = total[w - 1]
+    # In place: a sum is written over a pixel that no later sum reads.
     if factor > 1:
         for x in range(columns):
             whole = np.int32(0)

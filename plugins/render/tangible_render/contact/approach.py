@@ -46,6 +46,7 @@ def approach(shape, tiles_m, memory, x, y, z, speed):
         return False
     row, column = cell(tiles_m.shape[0], tiles_m.shape[1], width_m, length_m, x, y)
     memory[7] = FREE
+    # Bounds of a tile spare most ticks the spline: above the upper one is no contact, below the lower one a sure one.
     if z >= tiles_m[row, column, 0]:
         return False
     within = z < tiles_m[row, column, 1]
@@ -53,11 +54,13 @@ def approach(shape, tiles_m, memory, x, y, z, speed):
         return False
     memory[7] = TOUCHING
     leap = (x - was_x) ** 2 + (y - was_y) ** 2 + (z - was_z) ** 2 > LEAP_M * LEAP_M
+    # A hand that was beside the block came in through a side wall: the proxy stays on the wall and slides along it.
     if phase == BESIDE:
         if abs(px) >= 0.5 * width_m:
             py = y
         else:
             px = x
+    # A proxy left far behind starts anew above the hand, but only if the surface above is nearer than the proxy.
     far = phase != FREE and (x - px) ** 2 + (y - py) ** 2 > STRETCH_M * STRETCH_M
     if far:
         depth = height(coefficients, across_per_m, down_per_m, x, y) - z

@@ -73,6 +73,7 @@ def _step(half, px, py, away, expansion, share):
     plain = xx + hy * hy
     nxx, nxy, nyy = xx - hxx * dz, xy - hxy * dz, yy - hyy * dz
     determinant = nxx * nyy - nxy * nxy
+    # Newton's matrix where it is safely positive; else that of Gauss and Newton, which always leads downhill.
     newton = nxx > 0.0 and determinant > STEEP * plain
     if newton:
         xx, xy, yy = nxx, nxy, nyy
@@ -80,6 +81,7 @@ def _step(half, px, py, away, expansion, share):
         determinant = plain
     inverse = 1.0 / determinant
     sx, sy = (yy * gx - xy * gy) * inverse, (xx * gy - xy * gx) * inverse
+    # At a border one coordinate is held, and the other one minimises along the border.
     if abs(px + sx) > half[0]:
         sx = math.copysign(half[0], px + sx) - px
         sy = (gy - xy * sx) / yy

@@ -98,6 +98,7 @@ def _at_border(line, first, rounding):
 def _widen(at, wide, near):
     """Mark each jump and its two neighbours in each direction."""
     rows, columns = at.shape
+    # Along rows first and then across: two passes of 2 REACH + 1 steps instead of their square.
     for row in range(rows):
         for i in range(columns):
             wide[row, i] = at[row, i]

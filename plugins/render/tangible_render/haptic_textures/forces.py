@@ -68,6 +68,8 @@ def texture_force(textures, material, state, x, y, vx, vy, normal_n):
     if row[STIFFNESS] == 0.0:
         state[_OWNER] = 0.0
     else:
+        # A bristle belongs to one material: on another it begins anew where the hand is, unstretched, and so without a
+        # jump.
         if state[_OWNER] != material + 1.0:
             state[_X], state[_Y], state[_LEVEL], state[_OWNER] = x, y, 1.0 + row[SWING], material + 1.0
             state[_BRISTLE_X] = state[_BRISTLE_Y] = state[_PHASE] = 0.0

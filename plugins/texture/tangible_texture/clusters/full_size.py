@@ -59,6 +59,7 @@ def _fill(logs, cell_px, start, stop, labels, confidence):
         above, down = _place(row, cell_px, rows)
         below = min(above + 1, rows - 1)
         best[:], second[:], at[:] = -np.inf, -np.inf, 0
+        # Class by class, so that each inner loop runs along memory; the best two of each pixel are all that is kept.
         for k in range(classes):
             for cell in range(columns):
                 between[cell] = logs[k, above, cell] + down * (logs[k, below, cell] - logs[k, above, cell])

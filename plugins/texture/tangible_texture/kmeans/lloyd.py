@@ -88,6 +88,7 @@ def _start(rows, uniform, is_weighted, least):
             return centres[:k].copy()
         rest, choice = uniform[k] * total, 0
         for i in range(count):
+            # The last candidate stays if rounding leaves a rest: a row is always chosen.
             if away[i] > least:
                 choice = i
                 rest -= away[i] if is_weighted else 1.0
@@ -115,6 +116,8 @@ def _assign(rows, centres, labels, sums, counts):
     upright = np.zeros((rows.shape[1], SIDE_BY_SIDE), np.float32)
     away = np.empty((len(centres), SIDE_BY_SIDE), np.float32)
     for first in range(0, len(rows), SIDE_BY_SIDE):
+        # Rows stand upright in blocks, so that the distances of many rows to a centre are vectorised. Of equally near
+        # centres the first one wins.
         part = rows[first : first + SIDE_BY_SIDE]
         for d in range(part.shape[1]):
             for i in range(len(part)):

@@ -65,6 +65,8 @@ def _pour(height, markers, scale, cells, first, last, labels):
             for step in neighbours:
                 if cells[pixel + step, _LABEL] >= 0 and cells[pixel + step, _NEXT] == _UNQUEUED:
                     _append(pixel + step, np.int64(cells[pixel + step, _LEVEL]), cells, first, last)
+    # A queue for each level, first in, first out. A pixel below the flood joins the queue of the present level, so that
+    # no level is visited twice. A frame that counts as outside spares the tests for the picture's border.
     for level in range(LEVELS):
         pixel = first[level]
         while pixel != _LAST:

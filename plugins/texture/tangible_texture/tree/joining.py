@@ -68,6 +68,9 @@ def _join(
 @inner()
 def _join_borders(one, absorbed, owners, links, first, marks, pairs, strengths, prices):
     """Give the borders of a region to another; of two with the same neighbour the second is added to the first."""
+    # Each border has two halves, h and h + borders, one in the list of either region: `links` chains the halves of a
+    # region from `first`. `marks` is _NONE everywhere before and after; within, it has the border kept for each
+    # neighbour.
     borders = prices.size
     last_half, head = _NONE, _NONE
     for start in (first[one], first[absorbed]):

@@ -55,6 +55,8 @@ def _scan(disparity, grey, step, values_above, steps, values, paths):
         steps_before, steps_now = steps[(i + 1) & 1], steps[i & 1]
         for j in range(w):
             x = j if step > 0 else w - 1 - j
+            # A known neighbour begins a path; an unknown one hands on its own, kept for the row above and the pixel
+            # before.
             for side in range(HALF):
                 v = y if side == 0 else y - step
                 u = x - step if side == 0 else x + side - 2

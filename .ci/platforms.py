@@ -1,4 +1,4 @@
-"""Write the table of docs/platforms.md from the results of `tried.py`: `python platforms.py RESULTS PAGE`."""
+"""Write the table of docs/reference/platforms.md from the results of `tried.py`: `python platforms.py RESULTS PAGE`."""
 
 import json
 import sys

@@ -1,4 +1,4 @@
-"""The four charts of docs/performance.md, drawn from benchmarks/results: `python -m benchmarks.charts`."""
+"""The four charts of docs/explanation/performance.md, drawn from benchmarks/results: `python -m benchmarks.charts`."""
 
 import re
 from pathlib import Path
@@ -6,7 +6,7 @@ from typing import Any
 
 from .results import ROOT, newest, promises
 
-CHARTS = ROOT / "docs" / "performance.svg"
+CHARTS = ROOT / "docs/pictures/performance.svg"
 OURS, OTHERS = "#0b6e4f", "#8a8a8a"
 LOOPS = {
     "no rights: all compiled": "ours, compiled",

@@ -1,6 +1,6 @@
 """Drawings: kinds told apart, areas, lines and texts found, on drawings made by code in styles that chose nothing.
 
-`python -m benchmarks.drawings FOLDER` draws the pictures of docs/drawings.md.
+`python -m benchmarks.drawings FOLDER` draws the pictures of docs/how-to/drawings.md.
 """
 
 import os

@@ -17,8 +17,8 @@ COPIED = (
     "plugins/*/tangible_*",
     "examples/device",
     "pyproject.toml",
-    "docs/export.md",
-    "docs/devices.md",
+    "docs/how-to/export.md",
+    "docs/how-to/devices.md",
 )
 
 
@@ -50,12 +50,12 @@ THINGS: Mapping[str, Mapping[str, Edit]] = {
     "device": {
         "plugins/devices/tangible_devices/handle.py": example("device/acme_handle/handle.py"),
         "pyproject.toml": entry("device", 'handle = "tangible_devices.handle:Handle"'),
-        "docs/devices.md": lambda text: f"{text}\n## Acme's handle\n",
+        "docs/how-to/devices.md": lambda text: f"{text}\n## Acme's handle\n",
     },
     "exporter": {
         "plugins/export/tangible_export/contours.py": example("exporter/acme_contours/contours.py"),
         "pyproject.toml": entry("export", 'contours = "tangible_export.contours:Contours"', "glb | heights"),
-        "docs/export.md": lambda text: f"{text}\n## Contours\n",
+        "docs/how-to/export.md": lambda text: f"{text}\n## Contours\n",
     },
     "option of a force law": {
         "plugins/render/tangible_render/penalty.py": lambda text: swap(

@@ -267,4 +267,4 @@ def draw(target: Path) -> None:
 
 
 if __name__ == "__main__":
-    draw(Path("docs/photographs.jpg"))
+    draw(Path("docs/pictures/photographs.jpg"))

@@ -1,4 +1,4 @@
-"""Reliefs: what of a scene's borders is felt, what a hand meets, how long it takes, and pictures in docs/.
+"""Reliefs: what of a scene's borders is felt, what a hand meets, how long it takes, and pictures of its page.
 
 TANGIBLE_STEREO names a folder of more pairs, whose sub-folders hold left.png, right.png and disparity.npz;
 TANGIBLE_REGIONS one of photographs, *.jpg, each with the regions that people drew in it, in an .npz of the same name.
@@ -51,7 +51,7 @@ BEST, MIN_ORDER_BEST = "`effort: best`", 0.92
 DEVICES = "mock", "falcon-simulated"
 SMALL, LARGE = 461, 741
 """Columns of the pictures in docs/."""
-DOCS = Path(__file__).parents[1] / "docs" / "relief"
+DOCS = Path(__file__).parents[1] / "docs/explanation/relief"
 
 Make = Callable[[DisparityMap, Calibration | None], Relief]
 

@@ -11,7 +11,7 @@ PROTOCOL = (
     "Methods are told the number of segments unless it says otherwise. Times are ratios in the same process, geometric "
     "mean of the mosaics. ARI is the adjusted Rand index, "
     "accuracy the share of right pixels after the best matching of labels, boundary the mean distance of borders both "
-    "ways (docs/compare.md). Every texture has lost its local mean and contrast, and all have one histogram."
+    "ways (docs/how-to/compare.md). Every texture has lost its local mean and contrast, and all have one histogram."
 )
 
 

@@ -96,7 +96,7 @@ print(f"proxy: {recording.peak_force_n:.2f} N at most, grey level: {again.peak_f
 # ## A method of your own
 #
 # A method is its options and one verb. A class that is written here works as any installed one does; a plugin gets an
-# entry point, so that files can name it (see docs/write-a-plugin.md).
+# entry point, so that files can name it (see docs/how-to/write-a-plugin.md).
 
 
 # %%

@@ -14,7 +14,8 @@ from tangible_core.plugins.registry import default_registry
 from tangible_core.plugins.touch import Filming
 
 ROOT = Path(__file__).parents[1]
-PLUGIN_PAGE = ROOT / "docs" / "write-a-plugin.md"
+HOW_TO = ROOT / "docs/how-to"
+PLUGIN_PAGE = HOW_TO / "write-a-plugin.md"
 
 
 EXAMPLES = {
@@ -30,7 +31,7 @@ HOUSES = {path.name: path for path in [ROOT / "tangible_core", *sorted(ROOT.glob
 @pytest.mark.whole
 @pytest.mark.parametrize("house", HOUSES)
 def test_architecture_page_names_every_room(house):
-    page = ROOT.joinpath("docs/architecture.md").read_text(encoding="utf-8")
+    page = ROOT.joinpath("docs/explanation/architecture.md").read_text(encoding="utf-8")
     [part] = re.findall(rf"^### {house}\n(.*?)(?=^##|\Z)", page, re.DOTALL | re.MULTILINE)
     rooms = {path.parent.relative_to(HOUSES[house]).as_posix() for path in HOUSES[house].rglob("*/__init__.py")}
     assert set(re.findall(r"^\| `(.+)/` \| \S", part, re.MULTILINE)) == rooms
@@ -38,7 +39,7 @@ def test_architecture_page_names_every_room(house):
 
 @pytest.mark.whole
 def test_architecture_page_draws_the_floors_as_they_are():
-    page = ROOT.joinpath("docs/architecture.md").read_text(encoding="utf-8")
+    page = ROOT.joinpath("docs/explanation/architecture.md").read_text(encoding="utf-8")
     contracts = tomllib.loads(ROOT.joinpath("pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]["contracts"]
     floors = [contract["layers"] for contract in contracts if contract["type"] == "layers"]
     assert len(floors) == 14
@@ -46,7 +47,7 @@ def test_architecture_page_draws_the_floors_as_they_are():
 
 
 def test_tasks_of_the_accessibility_page_have_the_tests_that_it_names():
-    page = ROOT.joinpath("docs/accessibility.md").read_text(encoding="utf-8")
+    page = HOW_TO.joinpath("accessibility.md").read_text(encoding="utf-8")
     named = re.findall(r"^\| An? .* \| `(tests/\S+\.py)::(test_\w+)` \|$", page, re.MULTILINE)
     assert len(named) >= 10
     assert not [(file, name) for file, name in named if f"def {name}(" not in (ROOT / file).read_text("utf-8")]
@@ -62,7 +63,7 @@ def test_tasks_of_the_accessibility_page_have_the_tests_that_it_names():
     ],
 )
 def test_page_shows_its_examples_as_they_are(page: str, path: Path):
-    shown = ROOT.joinpath("docs", page).read_text(encoding="utf-8")
+    shown = HOW_TO.joinpath(page).read_text(encoding="utf-8")
     assert path.read_text(encoding="utf-8").strip() in shown
 
 
@@ -82,7 +83,7 @@ def test_plugin_page_names_every_hook(moment):
 
 @pytest.mark.parametrize(("page", "number"), [("materials", 6), ("export", 7), ("drawings", 2)])
 def test_files_of_a_page_are_valid(tmp_path: Path, page: str, number: int):
-    blocks = re.findall(r"```yaml\n(.*?)```", ROOT.joinpath(f"docs/{page}.md").read_text("utf-8"), re.DOTALL)
+    blocks = re.findall(r"```yaml\n(.*?)```", HOW_TO.joinpath(f"{page}.md").read_text("utf-8"), re.DOTALL)
     assert len(blocks) == number
     for text in sorted(blocks, key=lambda block: "my-materials.yaml\n" not in block):
         if "# my-materials.yaml\n" in text:
@@ -93,7 +94,7 @@ def test_files_of_a_page_are_valid(tmp_path: Path, page: str, number: int):
 
 
 def test_recordings_page_reads_and_writes_recordings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    blocks = re.findall(r"```python\n(.*?)```", ROOT.joinpath("docs/recordings.md").read_text("utf-8"), re.DOTALL)
+    blocks = re.findall(r"```python\n(.*?)```", HOW_TO.joinpath("recordings.md").read_text("utf-8"), re.DOTALL)
     write, *read = sorted(blocks, key=lambda block: "Writer" not in block)
     monkeypatch.chdir(tmp_path)
     exec(write.replace("mine.nc", "hand.nc").replace("renderer", 'configuration="a: 1", renderer'), {})
@@ -104,12 +105,12 @@ def test_recordings_page_reads_and_writes_recordings(tmp_path: Path, monkeypatch
 
 
 def test_recordings_page_names_every_column():
-    page = ROOT.joinpath("docs/recordings.md").read_text("utf-8")
+    page = HOW_TO.joinpath("recordings.md").read_text("utf-8")
     assert all(f"`{name}`" in page for name in TICK_COLUMNS)
 
 
 def test_force_loop_page_runs_as_shown(capsys: pytest.CaptureFixture[str]):
-    page = ROOT.joinpath("docs/servo.md").read_text("utf-8")
+    page = ROOT.joinpath("docs/explanation/servo.md").read_text("utf-8")
     pulled, shown, felt = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     exec(pulled, {})
     assert capsys.readouterr().out == "BeaconState(part=1, why='')\n"
@@ -121,7 +122,7 @@ def test_force_loop_page_runs_as_shown(capsys: pytest.CaptureFixture[str]):
 
 
 def test_devices_page_shows_valid_files():
-    page = ROOT.joinpath("docs/devices.md").read_text(encoding="utf-8")
+    page = HOW_TO.joinpath("devices.md").read_text(encoding="utf-8")
     [text] = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)
     config = parse_config(text, Path("p.yaml"), default_registry())
     assert config.felt_device is not None and config.device is not None
@@ -141,7 +142,7 @@ def test_video_page_plays_its_examples(tmp_path: Path):
     from tangible_devices import Mock
     from tangible_render import Proxy
 
-    blocks = re.findall(r"```python\n(.*?)```", ROOT.joinpath("docs/video.md").read_text("utf-8"), re.DOTALL)
+    blocks = re.findall(r"```python\n(.*?)```", HOW_TO.joinpath("video.md").read_text("utf-8"), re.DOTALL)
     here = (block.replace('"walk.mp4"', "walk, fps=20").replace("seconds=10", "seconds=0.5") for block in blocks[:3])
     feeling, frames, shown = here
     for number in range(4):

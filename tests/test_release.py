@@ -14,7 +14,7 @@ WITHOUT_DIGEST = {"torch", "kornia", "pandora"}
 """Packages of extras that are not locked: torch, what needs it, and what the benchmark alone uses."""
 WORKFLOWS = sorted((ROOT / ".github/workflows").glob("*.yml"))
 DOCS = ROOT / "docs"
-BUILT = {DOCS / name for name in ("yaml.md", "results.md", "reference/methods.md")}
+BUILT = {DOCS / name for name in ("reference/yaml.md", "reference/results.md", "reference/methods.md")}
 """Pages that docs/_ext/generated.py writes when the site is built."""
 HEADING = re.compile(r"^#+ +(.+?) *#*$", re.MULTILINE)
 LINK = re.compile(r"(?<!\\)\]\(<?([^)\s>]+)>?(?: +\"[^\"]*\")?\)|^\[[^\]]+\]: +(\S+)", re.MULTILINE)

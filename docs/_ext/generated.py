@@ -27,7 +27,7 @@ FAMILIES = {
 PREFACE = """# Methods and their options
 
 Each class is what its entry point names; its fields are its options, in Python as in YAML. The same options as tables,
-with their bounds, are in [the pipeline file](../yaml.md).
+with their bounds, are in [the pipeline file](yaml.md).
 """
 
 
@@ -64,10 +64,10 @@ def limits_table() -> str:
 def write_pages(app: Sphinx) -> None:
     """Write the pages among the others, which git does not know; a page that is as it was keeps its time."""
     pages = {
-        "yaml.md": schema_page(json_schema(distribution=DISTRIBUTION)),
+        "reference/yaml.md": schema_page(json_schema(distribution=DISTRIBUTION)),
         "reference/methods.md": methods_page(),
         "reference/limits.txt": limits_table(),
-        "results.md": results_page(),
+        "reference/results.md": results_page(),
     }
     for name, text in pages.items():
         path = Path(app.srcdir) / name

@@ -1,6 +1,6 @@
 """The time limits of a force loop: how long each of its partners may be silent before there is no force.
 
-The table of docs/safety.md is made of these constants and their docstrings, in this order.
+The table of docs/explanation/safety.md is made of these constants and their docstrings, in this order.
 """
 
 # Stale sample: age of the newest position at which the force is cut to zero; the default of `safety.stale_s`.

@@ -56,7 +56,7 @@ class Auto(DepthEstimator, Following):
         note(
             log,
             "one picture contains no depth, and there is no network: lighter is taken as nearer, so light and shadow "
-            "become relief; draw its parts (`tangible parts`), or install a network (docs/learned-depth.md)",
+            "become relief; draw its parts (`tangible parts`), or install a network (docs/how-to/learned-depth.md)",
             logging.WARNING,
         )
         return Luminance()

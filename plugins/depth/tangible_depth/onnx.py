@@ -60,8 +60,8 @@ class Onnx(DepthEstimator, Skippable):
         """Estimate disparity in pixels, or nearness of one picture. Raises: ModelAbsent, ConfigError, PictureError."""
         if self.model is None:
             raise ModelAbsent(
-                "onnx needs a network from you: depth: {use: onnx, model: FILE.onnx, card: NAME or FILE.yaml}; "
-                "nothing is downloaded in a run; `tangible networks` lists those with a card (docs/learned-depth.md)"
+                "onnx needs a network from you: depth: {use: onnx, model: FILE.onnx, card: NAME or FILE.yaml}; nothing "
+                "is downloaded in a run; `tangible networks` lists those with a card (docs/how-to/learned-depth.md)"
             )
         card = self._card(self.model)
         check_file(self.model, card)
@@ -118,7 +118,7 @@ class Onnx(DepthEstimator, Skippable):
         if file and not self.card and not file.is_file():
             raise ConfigError(
                 f"{model}: has no card, which says what the network takes and gives; write `card: NAME`, one of "
-                f"{', '.join(shipped_cards())}, or describe it in {file.name} (docs/learned-depth.md)"
+                f"{', '.join(shipped_cards())}, or describe it in {file.name} (docs/how-to/learned-depth.md)"
             )
         return read_card(file or self.card)
 

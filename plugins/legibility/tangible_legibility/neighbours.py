@@ -116,7 +116,7 @@ def _borders(labels: np.ndarray) -> np.ndarray:
 
 
 BESIDE_M = 0.001  # from a border, on either side, to where the heights of a step are taken
-# Relative difference of a property that a hand just notices. Sources: see docs/legibility.md.
+# Relative difference of a property that a hand just notices. Sources: see docs/how-to/legibility.md.
 NOTICEABLE = {"stiffness_n_per_m": 0.45, "dynamic_friction": 0.2, "roughness_m": 0.1, "grain_m": 0.1}
 # Value of a property below which all values feel the same.
 LEAST = {"stiffness_n_per_m": 50.0, "dynamic_friction": 0.03, "roughness_m": 5e-6, "grain_m": 1e-4}

@@ -172,7 +172,7 @@ def read_card(card: str | Path) -> Card:
     if not path.is_file():
         raise ConfigError(
             f"card: {card} is neither a file nor one of {', '.join(cards)}{did_you_mean(str(card), cards)}; name "
-            "one of these, or a YAML file that describes the network (docs/learned-depth.md)"
+            "one of these, or a YAML file that describes the network (docs/how-to/learned-depth.md)"
         )
     status = path.stat()
     return _read(path, status.st_mtime_ns, status.st_size)

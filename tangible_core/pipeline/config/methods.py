@@ -25,7 +25,7 @@ class NamedMethod(Generic[M]):
         if not self.origin:
             raise ConfigError(
                 f"{kind}: {self.name} is not an installed plugin, and a file names its methods; install it with an "
-                f"entry point tangible.{kind} (docs/write-a-plugin.md)"
+                f"entry point tangible.{kind} (docs/how-to/write-a-plugin.md)"
             )
         return {"use": self.name, **self.method.model_dump(mode="json")}
 

@@ -87,7 +87,7 @@ class PipelineConfig(BaseModel):
     """The product to make: by default the touch where there is a `render:`, else the surface."""
     parts: Annotated[
         Mapping[int, PartChoice] | None,
-        PartsBlock("A word alone is a name (`{1: wall, 7: helmet}`), or ([more](parts.md)):"),
+        PartsBlock("A word alone is a name (`{1: wall, 7: helmet}`), or ([more](../how-to/parts.md)):"),
     ] = None
     """The names, heights and materials of the connected parts of the segments, by number, from 1, in the
     order of their first pixels, row by row. With it, each part has one material."""
@@ -95,14 +95,14 @@ class PipelineConfig(BaseModel):
     """The relief is made of parts, each of one height, with rounded rims and a little of the picture's brightness, in
     place of depth or brightness alone; `null` switches it off."""
     simplify: Annotated[
-        SimplifyChoice | None, Block("`simplify: {}` takes the usual rules ([more](legibility.md)):")
+        SimplifyChoice | None, Block("`simplify: {}` takes the usual rules ([more](../how-to/legibility.md)):")
     ] = None
     """Parts that are too narrow or too small for fingers are merged into their neighbours, before relief, materials and
     labels are made of the parts; the numbers stay."""
     workspace: Annotated[Workspace, Block()] = Workspace()
     """The size of the surface under the hand."""
     relief: Annotated[
-        ReliefChoice, Block("A word alone is `by` (`relief: depth`), or ([more](relief.md)):", word="by")
+        ReliefChoice, Block("A word alone is `by` (`relief: depth`), or ([more](../explanation/relief.md)):", word="by")
     ] = ReliefChoice()
     """How depth becomes height: which depths get most of it, how steep it may be, and what counts as noise."""
     mapping: Annotated[WorkspaceMapping, Block()] = WorkspaceMapping()
@@ -120,10 +120,10 @@ class PipelineConfig(BaseModel):
     """The force law."""
     device: Annotated[NamedMethod[HapticDevice] | None, MethodBlock()] = None
     """The haptic device."""
-    export: Annotated[tuple[NamedMethod[Exporter], ...], MethodList("[More](export.md).")] = ()
+    export: Annotated[tuple[NamedMethod[Exporter], ...], MethodList("[More](../how-to/export.md).")] = ()
     """The files that `tangible export` writes: a list of names of exporters, `[stl, swell]`, or of blocks with options,
     `[{use: pins, display: monarch}]`."""
-    safety: Annotated[Safety, Block("[Why](safety.md).")] = Safety()
+    safety: Annotated[Safety, Block("[Why](../explanation/safety.md).")] = Safety()
     """The guard between every force law and every device."""
 
     path: Annotated[Path | None, Unchecked()] = None

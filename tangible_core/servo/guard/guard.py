@@ -1,4 +1,4 @@
-"""The guard of every tick between force law and device, compiled; docs/safety.md gives the reasons. Imports numba.
+"""The compiled guard of every tick between force law and device: docs/explanation/safety.md. Imports numba.
 
 A tick is `couple`, then the force law at the place it returns, then `guard`, whose force goes to the device. A tick
 without a fresh position is `wait` instead of all three. The arrays are those of `Safety.arrays`.

@@ -1,4 +1,4 @@
-"""The passivity observer and controller, compiled; docs/safety.md has their bounds. Imports numba.
+"""The passivity observer and controller, compiled; docs/explanation/safety.md has their bounds. Imports numba.
 
 Source: Hannaford & Ryu, Time-domain passivity control of haptic interfaces, IEEE Trans. Robotics and Automation 18(1),
 2002.

@@ -1,4 +1,4 @@
-"""The file of a recording: netCDF, a variable for each of TICK_COLUMNS, a record a tick (docs/recordings.md)."""
+"""The file of a recording: netCDF, a variable for each of TICK_COLUMNS, a record a tick (docs/how-to/recordings.md)."""
 
 import platform
 from collections.abc import Iterator, Mapping

@@ -126,5 +126,5 @@ def _compared(node: ast.Compare | ast.MatchValue | ast.Dict) -> list[ast.expr | 
 
 
 def test_each_kind_has_a_line_in_the_table_of_the_page():
-    table = (ROOT / "docs/study.md").read_text("utf-8").partition("## Which question")[2].partition("\n## ")[0]
+    table = (ROOT / "docs/how-to/study.md").read_text("utf-8").partition("## Which question")[2].partition("\n## ")[0]
     assert [name for name in QUESTIONS if f"`{name}`" not in table] == []

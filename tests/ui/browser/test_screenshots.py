@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.nightly
-DOCS = ROOT / "docs"
+DOCS = ROOT / "docs/pictures"
 MAX_BYTES = 170_000
 MAX_CHANGE = 8
 """Mean difference of small copies, of 255, from which on a picture shows another page."""
@@ -232,7 +232,7 @@ def keep(picture: Image.Image, name: str) -> None:
     with Image.open(DOCS / f"{name}.png") as stored:
         change = np.abs(beside_the_surface(stored) - beside_the_surface(picture)).mean()
     assert change < MAX_CHANGE or picture.width <= PANEL_PX or name == "ui/legible-marks", (
-        f"docs/{name}.png is out of date"
+        f"docs/pictures/{name}.png is out of date"
     )
 
 

@@ -23,7 +23,7 @@ pytestmark = pytest.mark.anyio
 @pytest.fixture
 def installed(tmp_path: Path) -> Path:
     """The folder in which the example is installed."""
-    section = (ROOT / "docs/write-a-plugin.md").read_text("utf-8").partition("## A panel of the page")[2]
+    section = (ROOT / "docs/how-to/write-a-plugin.md").read_text("utf-8").partition("## A panel of the page")[2]
     python, script, toml = (block.partition("\n")[2] for block in section.split("```")[1:6:2])
     folder = tmp_path / "site"
     about = folder / "acme_panel-1.dist-info"

@@ -36,7 +36,7 @@ HEARING = (
 """Default handlers, as the runner of the tests may ignore Ctrl-C, and nohup ignores the end of a terminal."""
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
 AT_ONCE_S = 20.0
-"""Bound on the last force, s, for a machine that may stand still; docs/safety.md has what was measured."""
+"""Bound on the last force, s, for a machine that may stand still; docs/explanation/safety.md has what was measured."""
 DIRS = ("RUNTIME", "CONFIG", "LOG", "DATA", "SHARED", "CACHE")
 FORBIDDEN = ("numba", "cv2", "torch", "scipy")
 

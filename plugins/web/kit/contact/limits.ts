@@ -1,4 +1,4 @@
-/** Limits of the guard by the bits of a state's flags; docs/safety.md explains each. */
+/** Limits of the guard by the bits of a state's flags; docs/explanation/safety.md explains each. */
 import { FLAGS } from "../server/protocol";
 
 export const LIMITS = [

@@ -61,7 +61,7 @@ export class Toolbar {
     });
     this.addsTo.id = "parts-add-to";
     this.proposal = [accept, this.addsTo, keyButton(t("discard"), "Escape", () => drawing.discard()), this.erases];
-    this.options.className = "bar";
+    this.options.className = "bar options";
     this.options.append(...Object.values(this.fields), ...this.proposal);
   }
 
@@ -77,7 +77,6 @@ export class Toolbar {
     this.fields.level.hidden ||= tools.how.kind !== "regions";
     for (const each of this.proposal) each.hidden = !drawing.proposed;
     this.erases.hidden ||= tools.tool !== "brush" && tools.tool !== "lasso";
-    this.options.hidden = [...this.options.children].every((each) => (each as HTMLElement).hidden);
     if (Math.abs(this.shownWidth - tools.width) >= 1) this.width.value = String(Math.log2(tools.width));
     this.width.setAttribute("aria-valuetext", t("pixels", { count: Math.round(tools.width) }));
     this.width.nextElementSibling!.textContent = this.width.getAttribute("aria-valuetext");

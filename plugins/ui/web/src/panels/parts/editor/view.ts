@@ -79,7 +79,7 @@ export class EditorView {
     this.status.className = "told";
     this.status.id = "parts-told";
     const stage = make("div", { className: "stage" });
-    stage.append(this.toolbar.tools, this.toolbar.options, board.element, this.status, keys);
+    stage.append(this.toolbar.tools, board.element, this.status, this.toolbar.options, keys);
     const buttons = make("div", { className: "buttons" });
     const save = button(t("save"), () => ends.save(), { id: "parts-save", className: "primary" });
     buttons.append(save, button(t("close"), () => ends.close()));

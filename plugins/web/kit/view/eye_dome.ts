@@ -1,4 +1,4 @@
-/** Eye-dome shading: dark rims at depth edges, from the depth alone (Boucheny 2009). */
+/** Eye-dome shading: dark rims at depth edges, light ones on a dark ground, from the depth alone (Boucheny 2009). */
 import { AlwaysDepth, GLSL3, Mesh, PlaneGeometry, RawShaderMaterial, type PerspectiveCamera, type Texture } from "three";
 
 const REACH_PX = 1.6;
@@ -38,7 +38,9 @@ void main() {
     float a = float(k) * .785398;
     sum += max(0., here - away(p + reach * vec2(cos(a), sin(a))));
   }
-  colour = vec4(texelFetch(colours, ivec2(p), 0).rgb * exp(-strength * sum / 8.), 1.);
+  vec3 base = texelFetch(colours, ivec2(p), 0).rgb;
+  bool darkGround = texelFetch(depths, ivec2(p), 0).r == 1. && dot(base, vec3(1.)) < 1.5;
+  colour = vec4(mix(vec3(darkGround ? .7 : 0.), base, exp(-strength * sum / 8.)), 1.);
 }`,
     this.uniforms,
   );

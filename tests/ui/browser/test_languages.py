@@ -1,5 +1,6 @@
 """The page in other languages: otherwise a pupil in a German or French class meets English."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -30,6 +31,9 @@ TEXTS = """(roots) => {
 }"""
 
 
+FIELDS = "[...document.querySelectorAll('input:not([type=number], [type=range])')].map(({ value }) => value)"
+
+
 def untranslated(text: str, language: str) -> bool:
     """Whether a text is one of the catalogue's, or a number, and not in the language."""
     own = catalogue(language).find(text)
@@ -55,6 +59,7 @@ def test_the_page_in_german_has_no_english(opened: Callable[..., str], open_page
     texts = page.evaluate(TEXTS, "body")
     assert len(texts) > 500
     assert [text for text in texts if english_of(text) or untranslated(text, "de")] == []
+    assert [text for text in texts + page.evaluate(FIELDS) if re.fullmatch(r"-?\d+\.\d+( [^.]*)?\.?", text)] == []
 
 
 def test_the_main_tasks_in_french_have_no_english(

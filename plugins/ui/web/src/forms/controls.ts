@@ -3,7 +3,7 @@ import { button } from "kit/elements";
 import { t } from "./words";
 import { type Kind, type Option, step } from "./kinds";
 import type { Plain } from "kit/server/messages";
-import { asText, fits, isMap, setInside, same, type FieldChange, typedNumber, typedText, typedYaml } from "./values";
+import { asText, fits, isMap, numberText, setInside, same, type FieldChange, typedNumber, typedText, typedYaml } from "./values";
 
 export interface Control {
   root: HTMLElement;
@@ -38,7 +38,7 @@ export function control(kind: Kind, id: string, tell: Tell, row: Row): Control {
     case "either":
       return either(kind, id, tell, row);
     case "yaml":
-      return text(id, (typed) => tell(typedYaml(typed)), true);
+      return text(id, (typed) => tell(typedYaml(typed)), { isYaml: true });
   }
 }
 
@@ -94,7 +94,7 @@ function number(kind: Kind & { kind: "number" }, id: string, tell: Tell): Contro
   const control = text(id, (typed, input) => {
     if (input.validity.badInput) input.reportValidity();
     else tell(typedNumber(typed, kind, t("none")));
-  });
+  }, { spell: plain ? asText : numberText });
   const input = control.main as HTMLInputElement;
   const { least, most } = kind.bounds;
   if (plain) {
@@ -111,7 +111,7 @@ function number(kind: Kind & { kind: "number" }, id: string, tell: Tell): Contro
 }
 
 /** Return a line of text; reported when left or on Enter, and not overwritten while typing. */
-function text(id: string, typed: (text: string, input: HTMLInputElement) => void, isYaml = false): Control {
+function text(id: string, typed: (text: string, input: HTMLInputElement) => void, { isYaml = false, spell = asText } = {}): Control {
   const input = document.createElement("input");
   input.id = id;
   input.spellcheck = false;
@@ -121,7 +121,7 @@ function text(id: string, typed: (text: string, input: HTMLInputElement) => void
   let shown: Plain | undefined;
   const show = (value: Plain | undefined): void => {
     shown = value;
-    if (!typing) input.value = asText(value, t("none"));
+    if (!typing) input.value = spell(value, t("none"));
   };
   input.addEventListener("input", () => (typing = true));
   input.addEventListener("change", () => {

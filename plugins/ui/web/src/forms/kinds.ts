@@ -1,6 +1,7 @@
 /** Kinds of controls by schema. Values without a control are written in YAML. */
 import { alternatives, type Definitions, type Schema } from "./schema";
 import type { Plain } from "kit/server/messages";
+import { notation } from "kit/words/words";
 
 export interface Bounds {
   least?: number;
@@ -76,6 +77,8 @@ export function kindOf(schema: Schema, defs: Definitions): Kind {
   return words.length || nullable ? { kind: "either", words: [...words, ...nulls], other: alone } : alone;
 }
 
+const number = (value: number): string => notation(String(value));
+
 /** Return bounds and unit in words: "0.001 to 10 m", "over 0 N/m"; empty without bounds. */
 export function formatRange({ least, most, above, below }: Bounds, unit: string, over: string, under: string, to: string): string {
   const behind = unit && ` ${unit}`;
@@ -129,10 +132,6 @@ function bounds(form: Schema): Bounds {
     above: form.exclusiveMinimum !== undefined,
     below: form.exclusiveMaximum !== undefined,
   };
-}
-
-function number(value: number): string {
-  return String(value);
 }
 
 export function sentence(name: string): string {

@@ -4,7 +4,7 @@ import { t } from "./words";
 import { type Row, controlOrYaml } from "./controls";
 import { formatRange, type Kind, type Option } from "./kinds";
 import type { Plain } from "kit/server/messages";
-import { asText } from "./values";
+import { numberText } from "./values";
 
 /** Prefix of the fields' ids; the key follows, as in "field:render.stiffness_n_per_m". */
 export const FIELD = "field:";
@@ -89,7 +89,7 @@ function helpOf(option: Option, id: string): { root: HTMLElement; show(byDefault
     root,
     show: (byDefault, isSet) => {
       const plain = byDefault === undefined || byDefault === null || typeof byDefault === "object";
-      now.textContent = !isSet || plain ? "" : t("default", { value: `${asText(byDefault, t("none"))} ${option.unit}`.trim() });
+      now.textContent = !isSet || plain ? "" : t("default", { value: `${numberText(byDefault, t("none"))} ${option.unit}`.trim() });
     },
   };
 }

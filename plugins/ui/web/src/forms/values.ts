@@ -1,6 +1,7 @@
 /** Values of a pipeline file as people read and type them. */
 import type { Kind } from "./kinds";
 import type { Plain } from "kit/server/messages";
+import { notation } from "kit/words/words";
 
 /** Change of a key by its field: a value, a value written in YAML, or removal, so that the default applies. */
 export type FieldChange = { value: Plain } | { written: string } | { gone: true };
@@ -22,6 +23,11 @@ export function asText(value: Plain | undefined, none: string): string {
   if (value === undefined) return "";
   if (value === null) return none;
   return typeof value === "object" ? JSON.stringify(value) : String(value);
+}
+
+/** Return a number, a word, or a number with its unit in the language's notation; `typedNumber` takes it back. */
+export function numberText(value: Plain | undefined, none: string): string {
+  return asText(value, none).split(" ").map(notation).join(" ");
 }
 
 /** Return the change by a text typed into a number field: a number, an allowed word, or a text such as "6 mm", which the

@@ -7,7 +7,7 @@ import { formatRange, type Kind, kindOf, type Option, step } from "../../src/for
 import { alternatives, type FileSchema, type Schema } from "../../src/forms/schema";
 import type { Plain } from "kit/server/messages";
 import { sections } from "../../src/forms/sections";
-import { asText, edit, fits, setInside, typedNumber, typedText, typedYaml } from "../../src/forms/values";
+import { asText, edit, fits, numberText, setInside, typedNumber, typedText, typedYaml } from "../../src/forms/values";
 import type { Document } from "kit/server/messages";
 
 const LENGTH = { type: "string", examples: ["6 mm"], pattern: "^[-+]?\\d+\\s*(m|cm|mm|um)$" };
@@ -64,7 +64,7 @@ test("a value that is shown and told again is the same", () => {
   const number = kind({ anyOf: [{ type: "number" }, LENGTH, { type: "null" }] });
   assert.ok(number.kind === "number");
   for (const value of [0.001, 1e-9, -3, 1e21, "6 mm", null]) {
-    assert.deepEqual(typedNumber(asText(value, none), number, none), { value });
+    assert.deepEqual(typedNumber(numberText(value, none), number, none), { value });
   }
   for (const value of ["a b", "ü", "#!"]) assert.deepEqual(typedText(asText(value, none), true, none), { value });
   for (const value of [[1, [2]], { a: { b: null } }]) {
@@ -176,7 +176,7 @@ test("every option of every installed method has a control that can say its defa
 
 function roundTrip(at: string, byDefault: Plain | undefined, kind: Kind & { kind: "number" }): void {
   if (byDefault === undefined) return;
-  assert.deepEqual(typedNumber(asText(byDefault, none), kind, none), { value: byDefault }, at);
+  assert.deepEqual(typedNumber(numberText(byDefault, none), kind, none), { value: byDefault }, at);
 }
 
 function bounds(section: string, schema: Schema, file: FileSchema, found: { path: string; option: Option }[]): void {

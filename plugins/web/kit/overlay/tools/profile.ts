@@ -1,4 +1,5 @@
 /** Profile of heights along a ruler, with axes in millimetres. */
+import { notation } from "../../words/words";
 import { t } from "../words";
 import type { Measurement } from "./measurement";
 import { roundDown125 } from "../settings";
@@ -50,7 +51,7 @@ function grid(x1: number, y1: number, x2: number, y2: number): Element {
 
 function words(x: number, y: number, anchor: string, mm: number): Element {
   const text = make("text", { x: x.toFixed(1), y: y.toFixed(1), "text-anchor": anchor });
-  text.textContent = `${mm}`;
+  text.textContent = notation(`${mm}`);
   return text;
 }
 

@@ -57,6 +57,7 @@ class TestExport:
         panel = open_panel(page, "export")
         panel.get_by_label("3D print (STL)").press(" ")
         panel.get_by_label("3D print (3MF)").press(" ")
+        panel.get_by_label("Swell paper").press(" ")  # it is chosen at first
         panel.locator("summary", has_text="3D print (STL)").press("Enter")
         longer = panel.get_by_label("Longer side").first
         longer.fill("5 cm")

@@ -147,7 +147,7 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
     assert parts[int(labels[170, 20]) + 1].name == "table"
 
 
-def test_photograph_becomes_three_named_parts_on_swell_paper_in_fifteen_actions(
+def test_photograph_becomes_three_named_parts_on_swell_paper_in_twelve_actions(
     opened: Callable[..., str], open_page: OpenPage, photo: Path, tmp_path: Path
 ):
     (tmp_path / "before.yaml").write_text(f"scene: {{photo: {photo}}}\ndepth: luminance\n{RELIEF}")
@@ -168,23 +168,29 @@ def test_photograph_becomes_three_named_parts_on_swell_paper_in_fifteen_actions(
     click(page.locator("#parts-edit"))
     until(lambda: "parts are proposed" in page.locator("#parts-told").inner_text(), "parts are proposed")
     assert len(names(page)) == 3, "a ball, a wall and a table"
-    for number, name in enumerate(("ball", "table", "wall")):
-        click(page.locator("#parts-list [role=option]").nth(number))
-        page.keyboard.type(name)
-        done.append(f"type {name}")
+    click(page.locator("#parts-list [role=option]").first)
+    for name in ("ball", "table", "wall"):  # Enter leads from name to name, and back to the list
+        page.keyboard.type(f"{name}\n")
+        done.append(f"type {name}, Enter")
         until(lambda name=name: name in names(page), name)
+    assert focus_id(page) == "parts-list"
     click(page.locator("#parts-save"))
-    until(lambda: "Saved: " in page.locator("#parts-told").inner_text(), "saved, and where")
-    click(page.get_by_role("button", name="Close"))
+    until(lambda: page.locator("#parts-editor").count() == 0, "saved and closed")
     click(page.locator("#tab-hand-on"))
     panel = page.locator("#export")
-    click(panel.get_by_label("Swell paper (SVG, PDF)"))
     until(lambda: panel.locator(".previews img").count() == 1, "the page is seen before it is made")
-    click(panel.get_by_role("button", name="Export", exact=True))
+    title = panel.get_by_label("Title")
+    assert title.input_value() == "", "the picture has none"
+    title.fill("Her ball")
+    done.append("type a title")
+    with page.expect_download() as waited:  # the title is written before
+        click(panel.get_by_role("button", name="Export", exact=True))
+    assert waited.value.suggested_filename.endswith("-swell.pdf")
+    assert "title: Her ball" in page.evaluate("page.document.text")
     until(lambda: "5 files are ready." in panel.inner_text(), "made")
+    assert len(done) <= 12, done
     with page.expect_download() as waited:
-        click(panel.locator("#export-zip"))
-    assert len(done) <= 15, done
+        panel.locator("#export-zip").click()
     with ZipFile(waited.value.path()) as files:
         assert sorted(Path(each).name.rpartition("-swell")[2] for each in files.namelist()) == [
             "-ink.pdf", "-ink.svg", "-key.svg", ".pdf", ".svg",
@@ -205,12 +211,12 @@ def focus_id(page: "Page") -> str:
 
 
 def name_part(page: "Page", name: str) -> None:
-    """Write the name of the part that is selected in the list, and come back to the list."""
+    """Write the name of the part that is selected in the list, and go back to the list."""
     press(page, "Enter")
     page.keyboard.type(name)
     press(page, "Enter")
-    assert focus_id(page) == "parts-list"
     assert name in names(page)
+    page.locator("#parts-list").focus()  # where others have no name, theirs is next
 
 
 def cross(page: "Page", x: int, y: int) -> None:

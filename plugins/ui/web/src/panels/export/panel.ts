@@ -1,5 +1,6 @@
 /** The export panel: choose exporters, run them, stop, and download the files. */
-import { button, hint, make, paragraph } from "kit/elements";
+import { button, field, hint, make, paragraph } from "kit/elements";
+import { recall, remember } from "kit/preferences";
 import { DocumentEditor } from "../../forms/editor";
 import { options } from "../../forms/kinds";
 import { alternatives, type FileSchema } from "../../forms/schema";
@@ -7,6 +8,7 @@ import type { Plain } from "kit/server/messages";
 import { isMap, same } from "../../forms/values";
 import type { Exported } from "kit/server/messages";
 import type { Page } from "kit/page";
+import { language } from "kit/words/words";
 import { t } from "./words";
 import type { Cure } from "../verdicts/verdicts";
 import { Choices, type Exporter } from "./choices";
@@ -28,20 +30,25 @@ export function build(page: Page, root: HTMLElement): Promise<void> {
   const previews = new Previews(page);
   let choices: Choices | null = null;
   let shown: Plain | undefined;
+  /** Exporters that were run last, for a file that lists none. */
+  let lastTime = (): Plain => [];
   const preview = (): void => previews.show(choices?.blocks ?? []);
 
   const said = (): Plain | undefined => (page.document?.said?.export ?? undefined) as Plain | undefined;
+  const names = (): string[] => (choices?.blocks ?? []).map((each) => String(isMap(each) ? each.use : each));
   const follow = (): void => {
     if (!choices || same(said(), shown)) return;
     shown = said();
-    choices.show(shown);
+    choices.show(shown ?? lastTime());
     preview();
   };
   const load = async (): Promise<void> => {
     const schema = await page.net.ask<FileSchema>("schema");
-    choices = new Choices(exportersOf(schema));
+    const exporters = exportersOf(schema);
+    lastTime = () => recall(LAST, FIRST).split(" ").filter((name) => exporters.some((each) => each.name === name));
+    choices = new Choices(exporters);
     shown = said();
-    choices.show(shown);
+    choices.show(shown ?? lastTime());
     choices.onChange = preview;
     list.replaceChildren(choices.root);
     preview();
@@ -50,8 +57,9 @@ export function build(page: Page, root: HTMLElement): Promise<void> {
     if (!exports.length) return tell(t("none"), "warn");
     tell(t("running"));
     try {
+      await title.written;
       const outcome = await page.net.ask<Exported | null>("export", { exports });
-      if (outcome) tell(...summaryOf(outcome));
+      if (outcome) tell(...summaryOf(outcome, download(outcome)));
       else tell(t("stopped"), "warn");
     } catch (error) {
       tell((error as Error).message, "bad");
@@ -65,6 +73,7 @@ export function build(page: Page, root: HTMLElement): Promise<void> {
     const change = exports.length ? { changes: { export: exports } } : { removed: ["export"] };
     if (await editor.submit(change)) tell(t("added"));
   };
+  const title = titleField(page, tell);
   const cure: Cure = (key, value) => {
     const [kind, use, option] = key.split(".");
     if (kind === "export" && use && option && choices?.change(use, option, value)) return void run();
@@ -76,11 +85,10 @@ export function build(page: Page, root: HTMLElement): Promise<void> {
     return run([chosen ?? SENT]);
   });
   send.id = "export-send";
-  const start = button(t("run"), () => run(), { id: "export-run", className: "primary" });
+  const start = button(t("run"), () => (remember(LAST, names().join(" ")), run()), { id: "export-run", className: "primary" });
   const buttons = make("div", { className: "buttons" });
   buttons.append(start, stopButton(page), button(t("add"), add));
-  const names = (): string[] => (choices?.blocks ?? []).map((each) => String(isMap(each) ? each.use : each));
-  root.append(send, hint(t("sendAbout")), hint(t("about")), list, previews.root, buttons, progress(page, names), status, results);
+  root.append(...title.elements, send, hint(t("sendAbout")), hint(t("about")), list, previews.root, buttons, progress(page, names), status, results);
   const loaded = load().catch((error: Error) => void (list.textContent = error.message));
 
   const stale = paragraph(t("stale"), "warn");
@@ -102,6 +110,9 @@ export function build(page: Page, root: HTMLElement): Promise<void> {
   return loaded;
 }
 
+/** Preference of the exporters that were run last, and those of a first time. */
+const LAST = "exports";
+const FIRST = "swell";
 /** The exporter of a page to send. */
 const SENT = "page";
 /** Order of known exporters by frequency of use; others follow. */
@@ -137,12 +148,42 @@ function lookAt(root: HTMLElement, status: HTMLElement): void {
   status.scrollIntoView({ block: "nearest" });
 }
 
-function summaryOf({ exports }: Exported): [string, string] {
+/** Download the only file, or the first PDF of several; return its name, empty without one. */
+function download({ folder, exports }: Exported): string {
+  const files = exports.flatMap((each) => each.files.map(({ name }) => name));
+  const name = files.length === 1 ? files[0]! : (files.find((each) => each.endsWith(".pdf")) ?? "");
+  if (name) make("a", { href: address(folder, name), download: name }).click();
+  return name;
+}
+
+/** Return the field of the title: the document's, which the picture's own is at first. `written`: once it is in the document. */
+function titleField(page: Page, tell: (text: string, className?: string) => void): { elements: HTMLElement[]; written: Promise<unknown> } {
+  const input = make("input", { id: "export-title", type: "text", autocomplete: "off", maxLength: 200 });
+  const about = make("p", { id: "export-title-hint", className: "hint", textContent: t("titleAbout") });
+  input.setAttribute("aria-describedby", about.id);
+  const said = (key: string): string => String(page.document?.said?.[key] ?? "");
+  const show = (): void => {
+    if (document.activeElement !== input) input.value = said("title");
+  };
+  input.onchange = () => {
+    const title = input.value.trim();
+    const changes = { title, ...(said("language") || language === "en" ? {} : { language }) };
+    const edit = title ? { changes } : { removed: ["title"] };
+    made.written = page.net.ask("set", edit).catch((error: Error) => tell(error.message, "bad"));
+  };
+  page.hub.on("document", show);
+  show();
+  const made = { elements: [field(t("title"), input), about], written: Promise.resolve() as Promise<unknown> };
+  return made;
+}
+
+function summaryOf({ exports }: Exported, downloaded: string): [string, string] {
   const count = exports.reduce((sum, { files }) => sum + files.length, 0);
   const wrong = exports.filter(({ outcome }) => outcome === "failed" || outcome === "refused").length;
   if (!count) return [t("nothing"), "bad"];
-  if (wrong) return [t("partly", { count, wrong }), "warn"];
-  return [count === 1 ? t("doneOne") : t("done", { count }), "good"];
+  const also = downloaded && ` ${t("downloaded", { name: downloaded })}`;
+  if (wrong) return [t("partly", { count, wrong }) + also, "warn"];
+  return [(count === 1 ? t("doneOne") : t("done", { count })) + also, "good"];
 }
 
 /** Return a button that downloads all files as a ZIP, if there are several. */

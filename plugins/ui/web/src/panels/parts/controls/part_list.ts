@@ -70,7 +70,7 @@ export class PartList {
     for (const each of [this.height, this.exact]) Object.assign(each, { min: "0", max: top, step: "0.05" });
     this.name.autocomplete = "off";
     this.name.addEventListener("input", () => this.rename());
-    this.name.addEventListener("keydown", (event) => event.key === "Enter" && this.list.focus());
+    this.name.addEventListener("keydown", (event) => event.key === "Enter" && !event.isComposing && this.nameNext());
     this.height.addEventListener("input", () => this.raise(this.height.valueAsNumber / MM, true));
     this.exact.addEventListener("input", () => this.raise(this.exact.valueAsNumber / MM, true));
     for (const each of [this.name, this.height, this.exact]) each.addEventListener("change", () => this.endDrag());
@@ -179,6 +179,15 @@ export class PartList {
     const { parts, selected } = this.drawing;
     const twice = name !== "" && parts.some((each) => each.label !== selected && each.name === name);
     if (this.complain(this.name, twice ? t("nameTwice") : "")) this.set({ name }, "name");
+  }
+
+  /** Go to the name of the next part that has none; to the list if there is none, or if this one got none. */
+  private nameNext(): void {
+    const all = frontToBack(this.drawing.parts);
+    const at = all.findIndex(({ label }) => label === this.drawing.selected);
+    const next = [...all.slice(at + 1), ...all.slice(0, at)].find(({ name }) => !name);
+    if (!next || !all[at]?.name) return this.list.focus();
+    this.onSelect(next.label);
   }
 
   private raise(height_m: number, dragged: boolean): void {

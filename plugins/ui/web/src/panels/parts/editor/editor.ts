@@ -43,7 +43,7 @@ class Editor {
       propose: (stroke, width_px, how) => proposePart(net, stroke, width_px, how),
       snap: (outline, reach_px) => snapOutline(net, outline, reach_px),
     });
-    this.view = new EditorView(this.state, scene.picture, materials, { save: () => this.saving.save(), close: () => this.close() });
+    this.view = new EditorView(this.state, scene.picture, materials, { save: async () => (await this.saving.save()) && this.close(), close: () => this.close() });
     this.saving = new Saving(this.state, net, () => this.view.fields.reportValidity());
     this.view.fields.onShape = () => this.saving.update();
     announce(this.state, (text, options) => page.say(text, options));

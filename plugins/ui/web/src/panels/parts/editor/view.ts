@@ -81,7 +81,7 @@ export class EditorView {
     const stage = make("div", { className: "stage" });
     stage.append(this.toolbar.tools, board.element, this.status, this.toolbar.options, keys);
     const buttons = make("div", { className: "buttons" });
-    const save = button(t("save"), () => ends.save(), { id: "parts-save", className: "primary" });
+    const save = button(t("saveAndClose"), () => ends.save(), { id: "parts-save", className: "primary" });
     buttons.append(save, button(t("close"), () => ends.close()));
     const column = make("div", { className: "side" });
     column.append(buttons, list.list, list.said, ...this.fields.elements, this.keys);

@@ -16,7 +16,7 @@ from .table import request
 
 log: logging.Logger = logging.getLogger(__name__)
 # Endings of pictures that a page shows by itself, before anything was computed.
-SHOWN_BY_BROWSERS = frozenset({".png", ".jpg", ".jpeg", ".webp", ".gif", ".bmp"})
+SHOWN_BY_BROWSERS = frozenset({".png", ".jpg", ".jpeg", ".webp", ".gif", ".bmp", ".svg"})
 
 
 @request()
@@ -25,7 +25,12 @@ async def begin(session: Session, tab: Tab | None, files: list[str], make_it: bo
     picture = as_path(files[0]) if files else Path()
     session.opening = picture if picture.suffix.lower() in SHOWN_BY_BROWSERS else None
     session.tabs.tell("opening", name=picture.name, picture=session.opening is not None)
-    opening = await session.worker.quick("begin", files=[as_path(file) for file in files])
+    opening: dict[str, Any] = {}
+    try:
+        opening = await session.worker.quick("begin", files=[as_path(file) for file in files])
+    finally:
+        if "text" not in opening:
+            session.tabs.tell("opening", name="", picture=False)
     if "text" not in opening:
         return opening
     text, path = opening["text"], opening["path"]

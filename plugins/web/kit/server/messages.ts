@@ -200,7 +200,7 @@ export interface Events {
   restored: Said & { path: string; edited_s: number };
   /** free: true if no tab holds the hand. */
   holding: Said & { holding: boolean; free: boolean };
-  /** A file is opened; picture: it can be fetched and shown before there is a surface. */
+  /** A file is opened; without a name: it was not. picture: it can be fetched and shown before there is a surface. */
   opening: Said & { name: string; picture: boolean };
   maker: Said;
   /** The computing process does not start, and is not tried again. */

@@ -21,7 +21,7 @@ export interface Facts {
   connection: "starting" | "open" | "silent" | "lost" | "dead" | "key" | "version";
   /** Why the computing process is gone for good. */
   workerGone: string;
-  document: "none" | "wrong" | "fine";
+  document: "none" | "opening" | "wrong" | "fine";
   /** The stage that is at work, in words. */
   making: string;
   /** What went wrong last, until something else is begun. */
@@ -80,6 +80,9 @@ export function follow(hub: Hub, changed: (facts: Facts) => void): Facts {
   hub.on("maker_gone", ({ why }) => set({ workerGone: why, making: "" }));
   hub.on("document", ({ complaints, path, text }) => {
     set({ document: complaints.length ? "wrong" : path && text ? "fine" : "none", trouble: "" });
+  });
+  hub.on("opening", ({ name }) => {
+    if (facts.document === (name ? "none" : "opening")) set({ document: name ? "opening" : "none" });
   });
   hub.on("making", () => set({ trouble: "" }));
   hub.on("stage", ({ product, method, done }) => {

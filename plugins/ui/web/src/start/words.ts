@@ -4,9 +4,9 @@ import { words } from "kit/words/words";
 export const t = words({
   title: ["What do you want to feel?", "Was möchten Sie fühlen?", "Que voulez-vous toucher ?"],
   picture: ["A picture of mine", "Ein eigenes Bild", "Une image à moi"],
-  pictureSays: ["A photograph, the left and right picture of a pair, or a height map. You can also drop it here.",
-    "Ein Foto, linkes und rechtes Bild eines Paares oder eine Höhenkarte. Sie können es auch hier ablegen.",
-    "Une photographie, les images gauche et droite d'une paire, ou une carte de hauteurs. Vous pouvez aussi la déposer ici."],
+  pictureSays: ["A photograph or a drawing (SVG and PDF too), the left and right picture of a pair, or a height map. You can also drop it here.",
+    "Ein Foto oder eine Zeichnung (auch SVG und PDF), linkes und rechtes Bild eines Paares oder eine Höhenkarte. Sie können es auch hier ablegen.",
+    "Une photographie ou un dessin (aussi SVG et PDF), les images gauche et droite d'une paire, ou une carte de hauteurs. Vous pouvez aussi la déposer ici."],
   choose: ["Choose a picture", "Bild wählen", "Choisir une image"],
   example: ["An example", "Ein Beispiel", "Un exemple"],
   exampleSays: ["Pictures that come with the program.",

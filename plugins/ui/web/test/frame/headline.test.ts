@@ -24,6 +24,8 @@ describe("head of the page", () => {
     const { after } = head();
     assert.equal(after(), "idle: Starting");
     assert.equal(after(["hello"]), "idle: Open a picture to begin.");
+    assert.equal(after(["opening", { name: "a.svg" }]), "idle: Starting");
+    assert.equal(after(["opening", { name: "" }]), "idle: Open a picture to begin.");
     assert.equal(after(...OPEN), "idle: Starting");
     assert.equal(after(["stage", { ...STAGE, done: {} }]), "busy: Computing Disparity with sgm");
     assert.equal(after(["shown"], ["made", { want: "touch", outcome: "made", why: "" }]), "idle: The surface can be seen, not felt yet.");

@@ -4,9 +4,9 @@ import { words } from "kit/words/words";
 export const t = words({
   title: ["Open", "Öffnen", "Ouvrir"],
   choose: ["Choose files…", "Dateien wählen …", "Choisir des fichiers…"],
-  chooseHelp: ["A photograph, the left and right picture of a pair, a height map, a video (its first frame), a recording, or a pipeline file with its pictures. You can also drop them anywhere on this page.",
-    "Ein Foto, linkes und rechtes Bild eines Paares, eine Höhenkarte, ein Video (das erste Bild), eine Aufzeichnung oder eine Pipeline-Datei mit ihren Bildern. Sie können sie auch irgendwo auf dieser Seite ablegen.",
-    "Une photographie, les images gauche et droite d'une paire, une carte de hauteurs, une vidéo (sa première image), un enregistrement, ou un fichier de pipeline avec ses images. Vous pouvez aussi les déposer n'importe où sur cette page."],
+  chooseHelp: ["A photograph or a drawing (SVG and PDF too), the left and right picture of a pair, a height map, a video (its first frame), a recording, or a pipeline file with its pictures. You can also drop them anywhere on this page.",
+    "Ein Foto oder eine Zeichnung (auch SVG und PDF), linkes und rechtes Bild eines Paares, eine Höhenkarte, ein Video (das erste Bild), eine Aufzeichnung oder eine Pipeline-Datei mit ihren Bildern. Sie können sie auch irgendwo auf dieser Seite ablegen.",
+    "Une photographie ou un dessin (aussi SVG et PDF), les images gauche et droite d'une paire, une carte de hauteurs, une vidéo (sa première image), un enregistrement, ou un fichier de pipeline avec ses images. Vous pouvez aussi les déposer n'importe où sur cette page."],
   sending: ["{name}: {percent} % sent", "{name}: {percent} % gesendet", "{name} : {percent} % envoyés"],
   opened: ["Opened: {names}", "Geöffnet: {names}", "Ouvert : {names}"],
   opening: ["Opening {names}", "{names} wird geöffnet", "Ouverture de {names}"],

@@ -24,7 +24,7 @@ export interface Named {
   label: number;
 }
 
-const TEXT_PX = 13;
+const TEXT_REM = 0.8125;
 /** Size below which a part has no name on the board. */
 const SMALLEST_PX = 12;
 const DARK = "#0b0e13";
@@ -43,6 +43,7 @@ export class Board {
   private names: Named[] = [];
   private ground = DARK;
   private ratio = 1;
+  private textPx = 13;
   private stale: Box = EMPTY;
   private moved = true;
   private anew = true;
@@ -124,6 +125,7 @@ export class Board {
 
   private resize(): void {
     this.ratio = Math.max(1, devicePixelRatio);
+    this.textPx = TEXT_REM * this.ratio * parseFloat(getComputedStyle(document.documentElement).fontSize);
     const [width, height] = [this.element.clientWidth, this.element.clientHeight].map((each) => Math.max(1, Math.round(each * this.ratio)));
     for (const { canvas } of [this.context, this.base, this.lines]) Object.assign(canvas, { width, height });
     this.viewport.resize(width!, height!);
@@ -239,7 +241,7 @@ export class Board {
   /** Draw names that do not overlap; the selected part's comes first. */
   private drawNames(context: CanvasRenderingContext2D): void {
     const { selected } = this.drawing;
-    context.font = `600 ${TEXT_PX * this.ratio}px system-ui, sans-serif`;
+    context.font = `600 ${this.textPx}px system-ui, sans-serif`;
     context.textAlign = "center";
     context.textBaseline = "middle";
     const taken: Box[] = [];
@@ -254,7 +256,7 @@ export class Board {
   private drawName(context: CanvasRenderingContext2D, { text, place }: Named, chosen: boolean, taken: Box[]): void {
     const [x, y] = this.viewport.toBoard(place.at);
     const half = context.measureText(text).width / 2 + 6 * this.ratio;
-    const tall = 0.75 * TEXT_PX * this.ratio;
+    const tall = 0.75 * this.textPx;
     const box = { left: x - half, right: x + half, top: y - tall, bottom: y + tall };
     if (box.right < 0 || box.left > this.viewport.width || box.bottom < 0 || box.top > this.viewport.height) return;
     if (taken.some((each) => each.left < box.right && box.left < each.right && each.top < box.bottom && box.top < each.bottom)) return;

@@ -55,7 +55,8 @@ export async function openParts(net: Server): Promise<Opened> {
     const automatic = height_m === null && heights.by !== "given";
     return { label: number, name, height_m: height_m ?? 0, material, automatic };
   });
-  return { digest, heights, top_m, title, language, divided, file, beside, picture, parts, labels: { columns, rows, data: new Uint16Array(labels) } };
+  const named = file || language !== "en" ? language : ours; // of a new file, names are in the language of the page
+  return { digest, heights, top_m, title, language: named, divided, file, beside, picture, parts, labels: { columns, rows, data: new Uint16Array(labels) } };
 }
 
 /** The parts that the program proposes for a whole picture. */

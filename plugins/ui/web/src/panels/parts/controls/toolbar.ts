@@ -62,7 +62,10 @@ export class Toolbar {
     this.addsTo.id = "parts-add-to";
     this.proposal = [accept, this.addsTo, keyButton(t("discard"), "Escape", () => drawing.discard()), this.erases];
     this.options.className = "bar options";
-    this.options.append(...Object.values(this.fields), ...this.proposal);
+    const { width, snap, method, level } = this.fields;
+    const either = make("div", { className: "either" });
+    either.append(width, snap); // no tool has both
+    this.options.append(either, method, level, ...this.proposal);
   }
 
   show(): void {

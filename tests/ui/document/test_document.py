@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from sessions import TEXT, SmallSession
-from tangible_core.errors import ConfigError
+from tangible_core.errors import ConfigError, PictureError
 
 pytestmark = pytest.mark.anyio
 
@@ -108,3 +108,10 @@ async def test_changes_of_the_command_line_are_in_the_text(small: SmallSession, 
     assert "stiffness_n_per_m: 0.3 N/mm}  # soft" in small.session.document.text
     await ask("set", changes={"render.stiffness_n_per_m": 350})
     assert small.tab.last("document")["values"]["render"]["stiffness_n_per_m"] == 350
+
+
+async def test_file_that_is_not_opened_is_no_longer_shown(small: SmallSession, ask: Any, tmp_path: Path):
+    with pytest.raises(PictureError):
+        await ask("begin", files=[str(tmp_path / "gone.png")])
+    shown = [(event["name"], event["picture"]) for event in small.tab.events if event["event"] == "opening"]
+    assert shown[-2:] == [("gone.png", True), ("", False)]

@@ -109,7 +109,6 @@ def starter(pictures: Sequence[Path], file: Path) -> Starter:
     values = {
         "scene": f"{{{block}}}" if parts else scene.name,
         "name": " and ".join(plain_line(path.name) for path in pictures),
-        "file": plain_line(str(file)),
     }
     if scene.frames is not None:
         values["name"] += ", its first frame"
@@ -122,13 +121,7 @@ def _text(scene: Scene, values: Mapping[str, str]) -> str:
     kind: Kind = "heights" if scene.views is None else "pair" if scene.views.right is not None else "photo"
     template = "measured" if scene.own_size else kind
     text = files("tangible_core.pipeline").joinpath(f"starter_{template}.yaml").read_text(encoding="utf-8")
-    size = _size(scene, kind)
-    whole = Template(text).substitute(values, **size)
-    if kind != "photo" or size["named"] or not _is_drawing(scene):
-        return whole
-    registry = default_registry()
-    names = read_part_names(make_config(scene, registry, **_settings(whole)), registry)
-    return Template(text).substitute(values, **size | {"named": _part_lines(names, READ)})
+    return Template(text).substitute(values, **_size(scene, kind))
 
 
 def _settings(text: str) -> dict[str, Any]:
@@ -141,7 +134,7 @@ def suited_config(pictures: Sequence[Any], registry: Registry, overrides: Sequen
     if len(pictures) in (1, 2) and not all(isinstance(picture, str | PathLike) for picture in pictures):
         of_arrays = Scene.photo if len(pictures) == 1 else Scene.pair
         scene = pictures[0] if isinstance(pictures[0], Scene) else of_arrays(*pictures)
-        text = _text(scene, {"scene": scene.name, "name": "", "file": ""})
+        text = _text(scene, {"scene": scene.name, "name": ""})
         return make_config(scene, registry, **_settings(text))
     files = [as_path(picture, "picture") for picture in pictures]
     file = files[0] if files else Path()
@@ -198,18 +191,23 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
     if kind == "photo":
         size["texture"] = TEXTURES[_is_drawing(scene)]
         size["kind"] = f"   # {kind_sentence(scene.kind)}" if _is_drawing(scene) else ""
-        size["named"] = _names_text(scene)
+        size["named"] = _names_text(scene, f"{size['width_mm']} mm")
         size["relief"] = Template(PHOTOS[_choose_photo_relief(scene)]).substitute(size)
     return size
 
 
-def _names_text(scene: Scene) -> str:
-    """Return the lines with the title and the names of the parts that the picture states; "" without any."""
+def _names_text(scene: Scene, width: str) -> str:
+    """Return the lines with the title and the names of the parts, stated or read in the picture; "" without any."""
     title = f"title: {on_one_line(scene.title)}\n" if scene.title else ""
-    if scene.segments is None or not any(scene.segment_names):
+    if scene.segments is not None and any(scene.segment_names):
+        parts = find_parts(scene.segments).segments
+        names = {label: scene.segment_names[segment] for label, segment in enumerate(parts)}
+        return title + _part_lines(names, "as the drawing names them")
+    if title or not _is_drawing(scene):
         return title
-    names = {label: scene.segment_names[segment] for label, segment in enumerate(find_parts(scene.segments).segments)}
-    return title + _part_lines(names, "as the drawing names them")
+    registry = default_registry()
+    config = make_config(scene, registry, texture="flat", workspace={"width_m": width})
+    return _part_lines(read_part_names(config, registry), READ)
 
 
 def _part_lines(names: Mapping[int, str], comment: str) -> str:

@@ -119,7 +119,7 @@ def parts_starter(
     is_guess = all("guess" in part.why for part in rows_of_parts)
     depth = pipeline.config.depth
     values = {
-        "name": plain_line(Path(scene.name).name), "file": plain_line(str(file)), "columns": columns, "rows": rows,
+        "name": plain_line(Path(scene.name).name), "columns": columns, "rows": rows,
         "count": f"{len(rows_of_parts)} part{'s' * (len(rows_of_parts) != 1)}",
         "labels": labels, "numbered": numbered, "scene": _scene_in_yaml(scene, file.parent, labels),
         "title": on_one_line(title), "heights": GUESSED if is_guess else MEASURED, "parts": _lines(rows_of_parts),

@@ -25,9 +25,9 @@ __all__ = ["REMOVE", "Changes", "edit_text", "read_values", "relocate_text", "wi
 def edit_text(text: str, path: Path, changes: Changes) -> str:
     """Return a pipeline file's text with other values of these keys; comments elsewhere, and the order, stay.
 
-    A number that was written with a unit is written with that unit again. Another `depth.use` clears the options of
-    the method before. A stage that is None is removed, as with `REMOVE`. The key `export.NAME.key` is an option of the
-    exporter of that name, which is listed if it is not yet.
+    A number that was written with a unit is written with that unit again, and a new one with a unit. Another
+    `depth.use` clears the options of the method before. A stage that is None is removed, as with `REMOVE`. The key
+    `export.NAME.key` is an option of the exporter of that name, which is listed if it is not yet.
     path: the name in complaints. Nothing is checked but that it is YAML: see `parse_config`.
     Raises: ConfigError if the text is not YAML, or a key leads into a list; ArgumentError for values that JSON has not.
     """
@@ -45,10 +45,10 @@ def edit_text(text: str, path: Path, changes: Changes) -> str:
 
 def _as_before(name: Location, before: Any, value: Any) -> Any:
     """Return a value, or a block of values, with numbers in the units of the value before."""
-    if isinstance(value, dict) and isinstance(before, dict):
-        block, old = cast("dict[Any, Any]", value), cast("dict[Any, Any]", before)
+    if isinstance(value, dict):
+        block, old = cast("dict[Any, Any]", value), cast("dict[Any, Any]", before if isinstance(before, dict) else {})
         return {key: _as_before((key,), old.get(key), part) for key, part in block.items()}
-    return in_same_unit(str(name[0]), before, cast(Any, value)) if name else cast(Any, value)
+    return in_same_unit(str(name[0]), before, value) if name else value
 
 
 def _at(node: Any, parts: Location) -> Any:

@@ -46,7 +46,7 @@ def test_unsafe_file_is_fixed_and_keeps_the_users_text(folder: Path):
     ), first
     assert others
     text = (folder / "kept/fixed.yaml").read_text()
-    for kept in ("# a photograph of mine", "# beside this file", "# as high as it goes", "width_m: 0.06"):
+    for kept in ("# a photograph of mine", "# beside this file", "# as high as it goes", "width_m: 60 mm"):
         assert kept in text
     fixed = load_pipeline(folder / "kept/fixed.yaml")
     assert fixed.scene.files.photo.resolve() == folder / "mine.png"

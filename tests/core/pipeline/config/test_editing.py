@@ -46,7 +46,7 @@ device: mock
         ({"workspace.relief_m": 0.00705}, "relief_m: 6 mm ", "relief_m: 7.05 mm "),
         ({"workspace.relief_m": "4 mm"}, "relief_m: 6 mm ", "relief_m: 4 mm "),
         ({"workspace.relief_m": "6 mm"}, "", ""),
-        ({"workspace.width_m": 0.1}, "as high as it goes\n", "as high as it goes\n  width_m: 0.1\n"),
+        ({"workspace.width_m": 0.1}, "as high as it goes\n", "as high as it goes\n  width_m: 100 mm\n"),
         ({"workspace.relief_m": REMOVE}, "workspace:\n  relief_m: 6 mm   # as high as it goes\n", ""),
         ({"workspace": REMOVE}, "workspace:\n  relief_m: 6 mm   # as high as it goes\n", ""),
         ({"workspace.smooth_m": REMOVE}, "", ""),
@@ -59,7 +59,7 @@ device: mock
         ({"depth": {"use": "zncc", "window_px": 9}}, "", None),
         ({"render.stiffness_n_per_m": 500}, "800 N/m", "500 N/m"),
         ({"render.stiffness_n_per_m": REMOVE}, ", stiffness_n_per_m: 800 N/m", ""),
-        ({"render.damping_n_s_per_m": 0}, "N/m}", "N/m, damping_n_s_per_m: 0}"),
+        ({"render.damping_n_s_per_m": 0}, "N/m}", "N/m, damping_n_s_per_m: 0 N s/m}"),
         ({"render.use": "penalty"}, "{use: proxy, stiffness_n_per_m: 800 N/m}", "{use: penalty}"),
         ({"device.path": "circle"}, "device: mock", "device: {use: mock, path: circle}"),
         ({"device.hand": None}, "device: mock", "device: {use: mock, hand: null}"),
@@ -91,7 +91,7 @@ def _in_metres(value: Any) -> Any:
     """The value as a change has it: a number without its unit."""
     if isinstance(value, dict):
         return {key: _in_metres(each) for key, each in value.items()}
-    if isinstance(value, str) and (written := re.fullmatch(r"([\d.]+) (mm|N/m)", value)):
+    if isinstance(value, str) and (written := re.fullmatch(r"([\d.]+) (mm|N/m|N s/m)", value)):
         return float(Decimal(written[1]) * Decimal("0.001" if written[2] == "mm" else 1))
     return value
 
@@ -110,7 +110,7 @@ def _at(tree: Any, key: Any) -> Any:
         ("scene: builtin/brick", {"depth": "zncc"}, "scene: builtin/brick\ndepth: zncc\n"),
         ("# mine\nscene: builtin/brick\n", {"scene": REMOVE}, "# mine\n"),
         ("scene: a\n", {"materials": {"0": "ice"}}, "scene: a\nmaterials: {0: ice}\n"),
-        ("scene: a\n", {"export.heights.width_m": 0.1}, "scene: a\nexport: [{use: heights, width_m: 0.1}]\n"),
+        ("scene: a\n", {"export.heights.width_m": 0.1}, "scene: a\nexport: [{use: heights, width_m: 100 mm}]\n"),
         ("a: 1\nm: &m {scale: 2}\n", {"m.scale": 3}, "a: 1\nm: &m {scale: 3}\n"),
         ("depth:\n  use: zncc  # one\n", {"depth": {"use": "auto", "a": 9}}, "depth: {use: auto, a: 9}\n"),
     ],
@@ -125,7 +125,7 @@ LISTED = "scene: builtin/coins  # mine\nexport: [heights, {use: text, language: 
 @pytest.mark.parametrize(
     ("changes", "exporters"),
     [
-        ({"export.heights.width_m": 0.1}, "[{use: heights, width_m: 0.1}, {use: text, language: de}]"),
+        ({"export.heights.width_m": 0.1}, "[{use: heights, width_m: 100 mm}, {use: text, language: de}]"),
         ({"export.text.language": "fr"}, "[heights, {use: text, language: fr}]"),
         ({"export.1.language": "fr"}, "[heights, {use: text, language: fr}]"),
         ({"export.text.language": REMOVE}, "[heights, {use: text}]"),

@@ -34,6 +34,7 @@ from .products import PRODUCTS as PRODUCTS
 from .products import Product as Product
 from .products import Work as Work
 from .quantities import Quantities as Quantities
+from .quantities import with_units as with_units
 from .records import Record as Record
 from .records import digest_of as digest_of
 from .surface import HapticSurface as HapticSurface

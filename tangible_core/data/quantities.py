@@ -141,6 +141,14 @@ def in_same_unit(name: str, text: object, value: object) -> object:
     return f"{(Decimal(repr(value)) / Decimal(worth)).normalize():f} {match[2]}" if match and worth else value
 
 
+def with_units(value: Any, name: str = "", before: Any = None) -> Any:
+    """Return a value, or all values of a block, with numbers as `in_same_unit`. before: the value before."""
+    if isinstance(value, dict):
+        block, old = cast("dict[Any, Any]", value), cast("dict[Any, Any]", before if isinstance(before, dict) else {})
+        return {key: with_units(part, str(key), old.get(key)) for key, part in block.items()}
+    return in_same_unit(name, before, value)
+
+
 def _plain(unit: str) -> str:
     """Return the plain form of a unit: `N s/m`, `N·s/m` and `Ns/m` are one, and so are the two signs for micro."""
     return re.sub(r"[\s*·]", "", unit).translate({0xB5: "u", 0x3BC: "u"})

@@ -8,7 +8,7 @@ from typing import Any, cast
 
 from pydantic import BaseModel
 
-from ...data.quantities import in_same_unit
+from ...data.quantities import with_units
 from ...errors import ConfigError, quoted
 from ...files.paths import as_path
 from ...files.yaml.editing import REMOVE, Changes, change_text
@@ -34,21 +34,16 @@ def edit_text(text: str, path: Path, changes: Changes) -> str:
     changes = {key: REMOVE if value is None and _is_stage(key) else value for key, value in changes.items()}
     tree: Any = plain(parse_source(text, path, EXPECTED, empty=True).tree)
     places = {key: split_key(key) for key in changes}
-    changes = {key: _as_before(places[key][-1:], _at(tree, places[key]), value) for key, value in changes.items()}
+    changes = {
+        key: with_units(value, "".join(map(str, places[key][-1:])), _at(tree, places[key]))
+        for key, value in changes.items()
+    }
     within = {key: value for key, value in changes.items() if _is_within_list(key)}
     text = change_text(text, path, {key: value for key, value in changes.items() if key not in within}, shorthand)
     for key, value in within.items():
         parts = split_key(key)
         text = change_text(text, path, {parts[:1]: _list_with(text, path, parts, value)})
     return text
-
-
-def _as_before(name: Location, before: Any, value: Any) -> Any:
-    """Return a value, or a block of values, with numbers in the units of the value before."""
-    if isinstance(value, dict):
-        block, old = cast("dict[Any, Any]", value), cast("dict[Any, Any]", before if isinstance(before, dict) else {})
-        return {key: _as_before((key,), old.get(key), part) for key, part in block.items()}
-    return in_same_unit(str(name[0]), before, value) if name else value
 
 
 def _at(node: Any, parts: Location) -> Any:

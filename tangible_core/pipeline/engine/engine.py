@@ -83,12 +83,13 @@ class Engine:
 
     @property
     def outcomes(self) -> Outcomes:
-        """The outcome of each product, in the order of making; last the products that nothing needed."""
+        """The outcome of each product, in the order in which a picture becomes a force."""
         idle_stages = (
             stage for product, stage in self.stages.items() if product not in self._outcomes and stage.in_outcomes
         )
         idle = (not_needed(stage, self._entries[stage.product].notes or ()) for stage in idle_stages)
-        return Outcomes([*self._outcomes.values(), *idle])
+        road = ("views", *PRODUCTS)
+        return Outcomes(sorted([*self._outcomes.values(), *idle], key=lambda outcome: road.index(outcome.product)))
 
     @cached_property
     def scene(self) -> Scene:

@@ -5,6 +5,7 @@ from typing import Any
 
 from ...data import DisparityMap, PartMap
 from ...data.part_words import name_part, shown_number
+from ...data.quantities import with_units
 from ...errors import ConfigError, shown
 from ...files.yaml.editing import on_one_line
 from ...files.yaml.parts_block import with_parts
@@ -45,7 +46,7 @@ def to_correct(engine: Engine) -> str:
     head = f"# {SOURCES[config.heights.by]} Correct what is wrong, and give names.\n"
     recipe = config.heights.model_copy(update={"by": "given"}).model_dump(mode="json")
     reasons = {n: f"{name_part(n - 1)}: {shown(why, MAX_REASON)}" for n, why in enumerate(heights.reasons, 1)}
-    parts = with_parts(rest, Path(), _blocks(config, heights), reasons)
+    parts = with_parts(rest, Path(), with_units(_blocks(config, heights)), reasons)
     return f"{head}{parts}heights: {on_one_line(recipe)}\n"
 
 

@@ -377,7 +377,10 @@ class TestWritten:
         assert again.surface.digest() == first.surface.digest()
         np.testing.assert_array_equal(again.surface.height_m, first.surface.height_m)
         line = next(each for each in file.read_text(encoding="utf-8").splitlines() if each.startswith("  4: "))
-        assert line.startswith("  4: {name: Truhe, height_m: 0.00") and "material: glass}   # part 4: guessed, " in line
+        assert (
+            line.startswith("  4: {name: Truhe, height_m: 4.7 mm, ")
+            and "material: glass}   # part 4: guessed, " in line
+        )
         rerun = again.run(folder / "out")
         assert not file.exists() and file not in rerun.files
 

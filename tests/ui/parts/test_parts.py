@@ -135,7 +135,7 @@ class TestText:
         parts = {0: {"name": "wall"}, 2: {"name": "hat", "height_m": 0.0042, "material": "glass"}, 3: {}}
         found = self.said(TEXT, tmp_path / "mine.yaml", parts, by="given")
         assert found == TEXT.replace("photo: mine.png", "photo: mine.png, segments: parts.png") + (
-            "heights: {by: given}\nparts:\n  1: wall\n  3: {name: hat, height_m: 0.0042, material: glass}\n"
+            "heights: {by: given}\nparts:\n  1: wall\n  3: {name: hat, height_m: 4.2 mm, material: glass}\n"
         )
 
     def test_document_keeps_comments_next_to_parts(self, tmp_path: Path) -> None:
@@ -147,7 +147,7 @@ class TestText:
         path = tmp_path / "mine.yaml"
         for name in ("a: b", '"', "\\", "# no comment", "- x", "{}", "null", "007", "é ✂ 𝄞", "a\nb", "\x07", " a "):
             found = self.said(TEXT, path, {0: {"name": name}, 1: {"name": name + "x", "height_m": 0.001}})
-            assert read_values(found, path)["parts"] == {"1": name, "2": {"name": name + "x", "height_m": 0.001}}
+            assert read_values(found, path)["parts"] == {"1": name, "2": {"name": name + "x", "height_m": "1 mm"}}
 
     def test_document_of_a_built_in_scene_names_its_files(self, tmp_path: Path) -> None:
         path = tmp_path / "mine.yaml"

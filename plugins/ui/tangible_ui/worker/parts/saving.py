@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Int32, Shaped, UInt16
 
 from tangible_authoring.label_picture import label_picture
-from tangible_core.data import PartMap, label_of_number, shown_number
+from tangible_core.data import PartMap, label_of_number, shown_number, with_units
 from tangible_core.errors import ConfigError, quoted
 from tangible_core.files import MAX_PIXELS, atomic_write, sole_writer, write_text
 from tangible_core.files.yaml import read_text, with_parts
@@ -173,7 +173,7 @@ def _with_block(text: str, path: Path, parts: Mapping[int, Any]) -> str:
     if not parts:
         return edit_text(text, path, {("parts",): REMOVE})
     try:
-        return with_parts(text, path, parts)
+        return with_parts(text, path, with_units(parts))
     except ConfigError:
         bare = edit_text(text, path, {("parts",): REMOVE})
         return edit_text(bare, path, {("parts", str(number)): value for number, value in parts.items()})

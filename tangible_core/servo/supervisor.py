@@ -33,6 +33,7 @@ class LoopProcess:
         self._child: subprocess.Popen[bytes] | None = None
         self._listener: threading.Thread | None = None
         self._over = threading.Event()
+        self._has_opened = False  # until then the loop has sent no force
         self.timeout_s: float = limits.WATCHDOG_S
         """The longest time without a tick in the current scene, by `watchdog.timeout_s`."""
         self.why: str = ""
@@ -98,7 +99,8 @@ class LoopProcess:
 
     def _kill(self, why: str) -> None:
         if self._child is not None and self._child.poll() is None:
-            log.warning("the force loop's process is killed: %s", why)
+            level = logging.WARNING if self._has_opened else logging.DEBUG
+            log.log(level, "the force loop's process is killed: %s", why)
             self._child.kill()
 
     def _listen(self, ring: Ring, start: Start) -> None:
@@ -144,6 +146,7 @@ class LoopProcess:
             while (message := receive(replies)) is not None:
                 if isinstance(message, End):
                     return End(message.stopped or self.why, message.error)
+                self._has_opened = True
                 self._replies.put(message)
         except Exception as error:  # noqa: BLE001 - the plugin's error may not be readable here
             return End("", sendable(error))
@@ -163,15 +166,17 @@ class LoopProcess:
         if self._device.spec().simulated:
             return
         answer = threading.Event()
-        threading.Thread(target=_open_and_close, args=(self._device, answer), daemon=True).start()
-        if not answer.wait(limits.KILL_S):
+        arguments = (self._device, answer, self._has_opened)
+        threading.Thread(target=_open_and_close, args=arguments, daemon=True).start()
+        if not answer.wait(limits.KILL_S) and self._has_opened:
             log.warning("the device does not answer and may still hold its last force; switch it off")
 
 
-def _open_and_close(device: HapticDevice, answer: threading.Event) -> None:
+def _open_and_close(device: HapticDevice, answer: threading.Event, has_force: bool) -> None:
     try:
         device.open().close()
     except Exception as error:  # noqa: BLE001 - whatever the driver raises, the user has to know
-        log.warning("the device may still hold its last force: %s; switch it off", error)
+        level = logging.WARNING if has_force else logging.DEBUG
+        log.log(level, "the device may still hold its last force: %s; switch it off", error)
     finally:
         answer.set()

@@ -111,12 +111,15 @@ class TestInterruptedStart:
         assert said.rstrip().endswith("KeyboardInterrupt")
         until(lambda: not held_force(record) > 0)
 
-    def test_start_that_takes_too_long_is_abandoned(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_start_that_takes_too_long_is_abandoned(
+        self, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+    ) -> None:
         monkeypatch.setattr(limits, "FIRST_TICK_S", 1.0)
         monkeypatch.setattr(limits, "KILL_S", 0.5)
-        servo = Servo(FaultyTouch(), Failing(opens="late"), AT_ONCE)
+        servo = Servo(FaultyTouch(), Failing(opens="late", simulated=False), AT_ONCE)
         with pytest.raises(DeviceError, match="has not answered for 1 s"):
             servo.__enter__()
+        assert not caplog.messages, "no force was sent"
         with pytest.raises(ProcessLookupError):
             os.kill(servo.process_id, 0)
         assert not servo.running

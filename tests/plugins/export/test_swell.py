@@ -132,6 +132,12 @@ def test_pdf_has_all_pages_in_true_size(exported):
         assert differ.mean() < 0.01
 
 
+def test_parts_without_a_name_have_letters_in_order(tmp_path):
+    picture = ElementTree.parse(Swell().write(labels_work(halves(), ("", "sea")), tmp_path / "map")[0]).getroot()
+    marks = ((area.get("aria-label"), area.find("./*[@data-mark='braille']")) for area in picture)
+    assert {name: mark.get("aria-label") for name, mark in marks if mark is not None} == {"part 1": "b", "sea": "s"}
+
+
 def test_ink_copy_has_names_and_letters_where_the_parts_are_and_a_scale(tmp_path):
     work = labels_work(halves(), ("land", "sea <1> & $x$"), title="Coast", language="de")
     files = Swell().write(work, tmp_path / "map")

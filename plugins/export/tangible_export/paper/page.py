@@ -13,6 +13,7 @@ from tangible_core.data import Figure, PartMap, Work
 from tangible_core.errors import PictureError
 from tangible_core.errors import shown as shown_text
 from tangible_core.plugins import note
+from tangible_legibility.words.languages import part_label
 
 from ..braille import Cells, height_m, title_in_braille, translate, written_by
 from .colouring import choose_fills
@@ -177,7 +178,8 @@ def _neighbours(parts: PartMap, groups: Sequence[NamedParts]) -> list[set[int]]:
 def _choose_symbols(
     groups: Sequence[NamedParts], shapes: Sequence[Any], neighbours: list[set[int]], language: str
 ) -> list[Symbols]:
-    letters = key_letters([group.name for group in groups])
+    unnamed = [group.name == part_label(group.numbers[0], language) for group in groups]  # get letters in order
+    letters = key_letters(["" if is_unnamed else group.name for is_unnamed, group in zip(unnamed, groups, strict=True)])
     plain = [
         Symbols(group, letter, translate(letter, language), BLANK)
         for group, letter in zip(groups, letters, strict=True)

@@ -1,5 +1,6 @@
 """A commented pipeline file for pictures, with values that suit these pictures."""
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from importlib.resources import files
@@ -82,7 +83,7 @@ def not_pictures(paths: Iterable[Path]) -> ConfigError:
     names = ", ".join(map(str, paths))
     return ConfigError(
         f"{names}: name a picture (.png, .jpg, ...), left and right, a video, or a map of heights (.npy); "
-        "save pages and drawings as PNG first"
+        "save other documents as PDF or PNG first"
     )
 
 
@@ -139,7 +140,11 @@ def suited_config(pictures: Sequence[Any], registry: Registry, overrides: Sequen
     files = [as_path(picture, "picture") for picture in pictures]
     file = files[0] if files else Path()
     text, scene = starter(files, file)
-    config = parse_config(text, file, registry, overrides)
+    try:
+        config = parse_config(text, file, registry, overrides)
+    except ConfigError as error:  # the text is not in the picture, which has no lines
+        sentences = re.sub(rf"^{re.escape(str(file))}:\d+:\d+: ", f"{file}: ", str(error), flags=re.MULTILINE)
+        raise ConfigError(*sentences.splitlines(), complaints=error.complaints) from error
     if not any(override.lstrip().startswith("scene") for override in overrides):
         config = config.with_values(scene=scene)  # it need not be read again
     return config

@@ -51,8 +51,14 @@ class Block(Key):
             return None
         if self.word and isinstance(block, str):
             block = {self.word: block}
-        has_numbers = isinstance(block, dict) and any(isinstance(key, int) for key in cast("dict[Any, Any]", block))
-        if self.labels and has_numbers:
+        keys = list(cast("dict[Any, Any]", block)) if isinstance(block, dict) else []
+        numbers = [key for key in keys if isinstance(key, int)]
+        if self.labels and numbers and self.model.model_fields.keys() & set(keys):
+            rule = f"rules: [{{segment: {numbers[0]}, material: {cast(Any, block)[numbers[0]]}}}]"
+            wrong = f"a number does not go with other keys, such as `{self.labels}`; write `{rule}` in its place"
+            reading.source.complain((self.name, numbers[0]), wrong)
+            return None
+        if self.labels and numbers:
             block = cast(Any, {self.labels: block})
         return reading.source.model((self.name,), self.model, block)
 

@@ -95,6 +95,7 @@ RULES = "scene: builtin/brick\nmaterials:\n  rules:\n    - "
         ("{B}materials: {by: {1: sandd}}\n", ("materials", "by", 1), (2, 18), "'sand'?"),
         ("{B}materials: {1: sandd}\n", ("materials", 1), (2, 13), "'sand'?"),
         ("{B}materials: {1: ice, one: sand}\n", ("materials", "by", "one"), (2, 21), "valid integer"),
+        ("{B}materials: {by: rules, 3: ice}\n", ("materials", 3), (2, 24), "`rules: [{segment: 3, material: ice}]`"),
         ("{B}materials: {default: wod}\n", ("materials", "default"), (2, 13), "'wood'?"),
         ("{B}materials: {rules: ice}\n", ("materials", "rules"), (2, 13), ""),
         ("{R}{colour: blue}\n", ("materials", "rules", 0, "material"), (4, 7), "required"),

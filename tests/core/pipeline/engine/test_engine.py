@@ -381,6 +381,7 @@ def test_plan_equals_the_outcomes(folder: Path, parts: dict):
     for again in (pipeline(folder, cached=False, **parts), pipeline(folder, **parts)):
         steps, _ = again.plan().steps, again.make()
         told = {outcome.product: outcome for outcome in again.outcomes}
+        assert list(told) == [outcome.product for outcome in pipe.outcomes], "along the road, from the cache too"
         assert [(step.outcome, step.method) for step in steps] == [
             (told[step.product].outcome, told[step.product].method) for step in steps
         ]

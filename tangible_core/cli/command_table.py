@@ -137,6 +137,8 @@ def load(name: str) -> Any:
     for entry in _all_commands(app):
         entry.callback = entry.callback and standard_output.protect()(entry.callback)
     result = typer.main.get_command(app)
+    for command in getattr(result, "commands", {}).values():  # their first sentences in full, not cut with "..."
+        command.short_help = " ".join((command.help or "").partition("\n\n")[0].split()).removesuffix(".")
     result.epilog = COMMANDS[name].example and f"{localise('Example:')} {COMMANDS[name].example}"
     return result
 

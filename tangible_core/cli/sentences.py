@@ -60,10 +60,15 @@ def export_summary(scene: str, done: Export) -> str:
     if not written:
         return f"Nothing of {scene} was written."
     return (
-        f"{scene} is written as {listing(written)}"
-        f"{f'; parts are simplified in {listing(simple)}' if simple else ''}"
-        f"{f'; {listing(failed)} could not be written' if failed else ''}."
+        f"{scene} is written as {_typed(written)}"
+        f"{f'; parts are simplified in {_typed(simple)}' if simple else ''}"
+        f"{f'; {_typed(failed)} could not be written' if failed else ''}."
     )
+
+
+def _typed(names: Sequence[str]) -> str:
+    """Return the names of exporters as they are typed, in every language."""
+    return ", ".join(f"`{name}`" for name in names)
 
 
 def made_simpler(outcomes: Sequence[Outcome]) -> bool:

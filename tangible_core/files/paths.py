@@ -43,17 +43,19 @@ def what_is_missing(path: Path, names: Iterable[str], what: str = "file") -> str
     return f"there is no such {what}{did_you_mean(path.name, names)}"
 
 
-LEFT = ("left", "l", "im0", "im2", "view0", "view1")  # names that the left views of all pairs have
+# Names that the left views of all pairs have, and those of the right ones next to them.
+LEFT, RIGHT = ("left", "l", "im0", "im2", "view0", "view1"), ("right", "r", "im1", "im6", "view1", "view5")
 
 
 def without_folders(name: str) -> str:
     """Return the name of a scene for people to read: that of the file, without its folders, or that of a pair's folder.
 
-    >>> without_folders("/home/me/photo.jpg"), without_folders("builtin/brick"), without_folders("/data/cones/left.png")
-    ('photo.jpg', 'builtin/brick', 'cones')
+    >>> without_folders("/home/me/photo.jpg"), without_folders("builtin/brick")
+    ('photo.jpg', 'builtin/brick')
     """
     path = Path(name)
-    if path.stem.casefold() in LEFT and path.parent.name:
+    is_left = path.stem.casefold() in LEFT and path.parent.name
+    if is_left and any(other.stem.casefold() in RIGHT for other in path.parent.glob("*")):
         return plain_line(path.parent.name)
     return plain_line(path.name if path.is_absolute() else name)
 

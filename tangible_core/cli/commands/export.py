@@ -45,10 +45,11 @@ def export(
 ) -> None:
     """Write files for others: a printer, swell paper, pins, a reader.
 
-    `--set export.NAME.OPTION=VALUE` sets an option of an exporter, `--lang` the language of a description. `--to csv`
-    writes a recording (.nc, .npz) as text.
+    `--set export.NAME.OPTION=VALUE` sets an option of an exporter, `--lang` the language of a description, and
+    of all words for a picture without a pipeline file. `--to csv` writes a recording (.nc, .npz) as text.
     Exit 2 if an exporter cannot write this, 1 if one failed; the others still write their files.
     """
+    from ...pipeline.starter import are_pictures
     from .. import show
 
     names = [name.strip() for text in to or [] for name in text.split(",") if name.strip()]
@@ -56,6 +57,8 @@ def export(
         _print_recording(_as_csv(config, out or Path("out") / config[0].stem, force), as_json)
         return
     spoken = [f"export.{TEXT}.language={named_language()}"] if named_language() and TEXT in names else []
+    if named_language() and are_pictures(config):  # no file states the language of its words
+        spoken.append(f"language={named_language()}")
     pipeline = open_pipeline(config, [*spoken, *(sets or [])], not no_cache)
     place = out or default_place(config[0], config[1:])
     done = pipeline.export(place, names or None, force=force, cut_out=cut_out)

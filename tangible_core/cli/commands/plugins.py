@@ -69,16 +69,24 @@ def plugins(context: typer.Context, as_json: Json = False) -> None:
         return
     import json
 
+    from rich.markup import escape
+
     from ...plugins.hooks import tell
     from ...plugins.registry import default_registry
     from ...runtime.standard_output import stream
     from ...translation import localise
+    from .. import show
 
     registry = default_registry()
     listings = (*registry.listings, *chain.from_iterable(tell(registry.plugins, "tangible_listings")))
     rows = [{column: getattr(listing, column) for column in (*COLUMNS, "target")} for listing in listings]
     if as_json:
         print(json.dumps(rows, indent=2, ensure_ascii=False), file=stream())
+        return
+    if (own := stream()) is not None and own.isatty():
+        origins = ["" if listing.distribution == OURS else f" ({listing.origin})" for listing in listings]
+        cells = [(row["kind"], row["name"], escape(row["summary"]) + by) for row, by in zip(rows, origins, strict=True)]
+        show.table(("kind", "name", "summary"), cells, named=2)
         return
     lines = [{column: localise(column) for column in COLUMNS}, *rows]
     widths = [max(len(row[column]) for row in lines) for column in COLUMNS[:-1]]

@@ -18,6 +18,7 @@ from tangible_core.cli import completing, sentences
 from tangible_core.cli.app import app
 from tangible_core.cli.command_table import COMMANDS, GROUPS, load
 from tangible_core.data import DisparityMap, Views
+from tangible_core.files.paths import without_folders
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.output import default_name
 from tangible_core.plugins import hooks
@@ -95,6 +96,9 @@ def test_two_views_are_named_by_their_folder(folder: Path):
     assert default_name(Path("cones/left.png"), Path("cones/right.png")) == "cones"
     assert default_name(Path("cones/left.png")) == "left"
     assert default_name(Path("a.png"), Path("b.png")) == "a"
+    for name, title in (("left.png", "left.png"), ("right.png", folder.name)):  # a pair only once both are there
+        write_png(folder / name, np.eye(8, dtype=np.uint8))
+        assert without_folders(str(folder / "left.png")) == title
 
 
 def test_every_command_of_the_program_has_an_example_and_a_place():
@@ -102,11 +106,29 @@ def test_every_command_of_the_program_has_an_example_and_a_place():
     for name, command in COMMANDS.items():
         assert command.example.startswith(f"tangible {name}") and command.group in GROUPS[:-1], name
         assert load(name).epilog == f"Example: {command.example}"
+        for below in getattr(load(name), "commands", {}).values():
+            assert not below.get_short_help_str(20).endswith("..."), below.name
 
 
 def test_description_is_printed_in_the_language_of_the_terminal(folder: Path):
     said = [tangible(*lang, "describe", "p.yaml", cwd=folder).stdout for lang in ((), ("--lang", "de"))]
     assert ["A surface 80 mm wide" in said[0], "Eine Fläche, 80 mm breit" in said[1]] == [True, True]
+
+
+def test_words_in_files_for_a_picture_are_in_the_language_of_the_terminal(folder: Path):
+    tangible("--lang", "de", "export", "dot.png", "--to", "pins", "--out", "out", cwd=folder)
+    assert json.loads((folder / "out/dot-monarch.json").read_text("utf-8"))["language"] == "de"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
+def test_list_of_plugins_fits_a_terminal(tmp_path: Path):
+    import pty
+
+    host, terminal = pty.openpty()
+    subprocess.run([TANGIBLE, "plugins"], stdout=terminal, env={**os.environ, "COLUMNS": "80"}, check=True)
+    os.set_blocking(host, False)
+    lines = os.read(host, 4000).decode("utf-8").splitlines()
+    assert len(lines) > 9 and max(len(re.sub(r"\x1b\[\d*m", "", line)) for line in lines) <= 80
 
 
 def test_command_that_cannot_be_imported_is_told_in_one_line(tmp_path: Path):

@@ -80,7 +80,8 @@ class Progress:
         if count:
             takes = f", which will take {approximately(self._forecast.whole_s)}"
             how = takes if self._forecast.has_times else ", side by side and without times"
-            show.note(f"{count} measurements{how}; finished ones are kept if you interrupt it")
+            what = "1 measurement" if count == 1 else f"{count} measurements"
+            show.note(f"{what}{how}; finished ones are kept if you interrupt it")
 
     def report(self, step: Step) -> None:
         """Report a measurement to all observers of stages, as if it were a stage: so --quiet hides it."""

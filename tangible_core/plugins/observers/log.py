@@ -22,7 +22,7 @@ def tangible_plan_made(plan: Plan) -> None:
 @hookimpl
 def tangible_stage_started(product: str, method: str) -> None:
     """Log the start of a product, for debugging."""
-    log.debug("making %s with %s", product, method)
+    log.debug("computing %s with %s", product, method)
 
 
 @hookimpl

@@ -36,7 +36,7 @@ logging.getLogger(COMPILING).addHandler(_CompilingBar())
 @hookimpl
 def tangible_stage_started(product: str, method: str) -> None:
     """Show a spinner with the name of the product or exporter."""
-    _show(f"writing {method}" if product.startswith(EXPORT) else f"making {product} with {method}")
+    _show(f"writing {method}" if product.startswith(EXPORT) else f"computing {product} with {method}")
 
 
 @hookimpl

@@ -118,7 +118,7 @@ def test_sentence_on_many_parts_lists_the_nearest():
     many = replace(surface(labels / 10.0, labels=labels), names=tuple(f"step {each}" for each in range(30)))
     said = describe(many, "it")
     assert "are step 29 (along the bottom, 2.9 mm high), step 28 (" in said
-    assert said.endswith("step 18 (across the middle, from left to right, 1.8 mm high) and 18 others.")
+    assert said.endswith("step 18 (halfway down, 1.8 mm high) and 18 others.")
     few = labels[:26]
     one_more = replace(surface(few / 10.0, labels=few), names=tuple(f"step {each}" for each in range(13)))
     assert describe(one_more, "it").endswith(" high) and one other.")

@@ -30,44 +30,23 @@ class Command(NamedTuple):
 
 
 GROUPS = ("Begin", "Make", "Feel", "Compare", "The program", "More")
-ROOM = f"{__package__}.commands"
 COMMANDS = {
-    "demo": Command(
-        f"{ROOM}.run:demo", "Run the built-in example from picture to force.",
-        GROUPS[0], "tangible demo -v",
-    ),
-    "run": Command(
-        f"{ROOM}.run:run", "Run a pipeline file, or a picture, and write a report.",
-        GROUPS[1], "tangible run photo.jpg",
-    ),
-    "plan": Command(
-        f"{ROOM}.run:plan", "Show what `run` would do, and why; run nothing.",
-        GROUPS[1], "tangible plan mine.yaml",
-    ),
-    "export": Command(
-        f"{ROOM}.export:export", "Write files for others: a printer, swell paper, pins, a reader.",
-        GROUPS[1], "tangible export photo.jpg --to swell,stl",
-    ),
-    "feel": Command(
-        f"{ROOM}.feel:feel", "Feel the surface on the configured device, in real time.",
-        GROUPS[2], "tangible feel mine.yaml --seconds 30 --record hand.nc",
-    ),
-    "replay": Command(
-        f"{ROOM}.replay:replay", "Re-run a recorded hand path with another force law.",
-        GROUPS[2], "tangible replay hand.nc mine.yaml --set render.use=penalty",
-    ),
-    "plugins": Command(
-        f"{ROOM}.plugins:app", "List the installed methods and devices; show one of them.",
-        GROUPS[4], "tangible plugins show proxy",
-    ),
-    "check": Command(
-        f"{ROOM}.plugins:check", "Test an installed method with the conformance kit.",
-        GROUPS[4], "tangible check zncc",
-    ),
-    "cache": Command(
-        f"{ROOM}.cache:app", "Print the size of the cache of results; clear it.",
-        GROUPS[4], "tangible cache clear",
-    ),
+    name: Command(f"{__package__}.commands.{place}", summary, group, f"tangible {name} {words}")
+    for name, place, summary, group, words in (
+        ("demo", "run:demo", "Run the built-in example from picture to force.", GROUPS[0], "-v"),
+        ("run", "run:run", "Run a pipeline file, or a picture, and write a report.", GROUPS[1], "photo.jpg"),
+        ("plan", "run:plan", "Show what `run` would do, and why; run nothing.", GROUPS[1], "mine.yaml"),
+        ("export", "export:export", "Write files for others: a printer, swell paper, pins, a reader.",
+         GROUPS[1], "photo.jpg --to swell,stl"),
+        ("feel", "feel:feel", "Feel the surface on the configured device, in real time.",
+         GROUPS[2], "mine.yaml --seconds 30 --record hand.nc"),
+        ("replay", "replay:replay", "Re-run a recorded hand path with another force law.",
+         GROUPS[2], "hand.nc mine.yaml --set render.use=penalty"),
+        ("plugins", "plugins:app", "List the installed methods and devices; show one of them.",
+         GROUPS[4], "show proxy"),
+        ("check", "plugins:check", "Test an installed method with the conformance kit.", GROUPS[4], "zncc"),
+        ("cache", "cache:app", "Print the size of the cache of results; clear it.", GROUPS[4], "clear"),
+    )
 }  # fmt: skip
 
 

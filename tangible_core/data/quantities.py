@@ -121,32 +121,27 @@ def _as_number(value: Any, units: Mapping[str, Decimal]) -> Any:
 MAX_WITH_UNIT = 1e9  # above it, a number is a mistake to complain about as it is
 
 
-def in_same_unit(name: str, text: object, value: object) -> object:
-    """Return a number as text in the unit in which an option was written before; anything else as it is.
+def with_units(value: Any, name: str = "", before: Any = None) -> Any:
+    """Return a number as text in the unit in which the option was written before, and so the numbers of a block.
 
     An option that was not written gets millimetres, or its own unit where it is not a length below a metre.
 
-    >>> in_same_unit("relief_m", "6 mm", 0.0045), in_same_unit("relief_m", 0.006, 0.0045)
+    >>> with_units(0.0045, "relief_m", "6 mm"), with_units(0.0045, "relief_m", 0.006)
     ('4.5 mm', 0.0045)
-    >>> in_same_unit("relief_m", None, 0.0061), in_same_unit("segments", None, 6)
-    ('6.1 mm', 6)
+    >>> with_units({"height_m": 0.0061, "segments": 6})
+    {'height_m': '6.1 mm', 'segments': 6}
     """
-    units = option_units(name)
-    if not units or isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
-        return value
-    if text is None and abs(value) < MAX_WITH_UNIT:
-        text = f"1 {'mm' if 'mm' in units and abs(value) < 1 else next(iter(units))}"
-    match = _QUANTITY.fullmatch(text) if isinstance(text, str) else None
-    worth = match and next((factor for unit, factor in units.items() if _plain(unit) == _plain(match[2])), None)
-    return f"{(Decimal(repr(value)) / Decimal(worth)).normalize():f} {match[2]}" if match and worth else value
-
-
-def with_units(value: Any, name: str = "", before: Any = None) -> Any:
-    """Return a value, or all values of a block, with numbers as `in_same_unit`. before: the value before."""
     if isinstance(value, dict):
         block, old = cast("dict[Any, Any]", value), cast("dict[Any, Any]", before if isinstance(before, dict) else {})
         return {key: with_units(part, str(key), old.get(key)) for key, part in block.items()}
-    return in_same_unit(name, before, value)
+    units = option_units(name)
+    if not units or isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+        return value
+    if before is None and abs(value) < MAX_WITH_UNIT:
+        before = f"1 {'mm' if 'mm' in units and abs(value) < 1 else next(iter(units))}"
+    match = _QUANTITY.fullmatch(before) if isinstance(before, str) else None
+    worth = match and next((factor for unit, factor in units.items() if _plain(unit) == _plain(match[2])), None)
+    return f"{(Decimal(repr(value)) / Decimal(worth)).normalize():f} {match[2]}" if match and worth else value
 
 
 def _plain(unit: str) -> str:

@@ -180,9 +180,10 @@ def check(kind: Kind, name: Name = None, as_json: Json = False) -> None:
         show.print_json([result._asdict() for result in results])
     else:
         rows = [
-            (result.name, GRADES[result.passed, bool(result.expected_failure)], escape(_message(result)))
-            for result in results
-        ]
+            (one.name, GRADES[one.passed, bool(why := one.expected_failure)],
+             escape(f"{why} ({one.message})" if why and not one.passed else one.message))
+            for one in results
+        ]  # fmt: skip
         show.sentence(sentences.check_summary(f"{kind} method {name}", results))
         show.table(("check", "result", "message"), rows)
         show.say(f"\n{_count(results)}")
@@ -196,14 +197,6 @@ GRADES = {
     (False, True): "[yellow]fails as declared[/]",
     (True, True): "[red]PASSED, declared to fail[/]",
 }  # by: passed, declared to fail
-
-
-def _message(result: CheckResult) -> str:
-    return (
-        f"{result.expected_failure} ({result.message})"
-        if result.expected_failure and not result.passed
-        else result.message
-    )
 
 
 def _count(results: Sequence[CheckResult]) -> str:

@@ -145,9 +145,7 @@ MAX_HAND_M = 1.0  # from which width on a unit was more likely forgotten than me
 TABLES = (".csv", ".parquet")  # of settings
 
 
-OTHER_FILES = frozenset(
-    (".pdf", ".svg", ".eps", ".ai", ".psd", ".doc", ".docx", ".odt", ".pptx", ".html", ".stl", ".obj")
-)
+OTHER_FILES = frozenset((".eps", ".ai", ".psd", ".doc", ".docx", ".odt", ".pptx", ".html", ".stl", ".obj"))
 """Suffixes of files that people try, and that are neither pictures nor pipeline files."""
 
 

@@ -31,7 +31,8 @@ def edit_text(text: str, path: Path, changes: Changes) -> str:
     path: the name in complaints. Nothing is checked but that it is YAML: see `parse_config`.
     Raises: ConfigError if the text is not YAML, or a key leads into a list; ArgumentError for values that JSON has not.
     """
-    changes = {key: REMOVE if value is None and _is_stage(key) else value for key, value in changes.items()}
+    stages = {key for key in changes if isinstance(KEYS.get(".".join(map(str, split_key(key)))), MethodBlock)}
+    changes = {key: REMOVE if value is None and key in stages else value for key, value in changes.items()}
     tree: Any = plain(parse_source(text, path, EXPECTED, empty=True).tree)
     places = {key: split_key(key) for key in changes}
     changes = {
@@ -81,10 +82,6 @@ def _list_with(text: str, path: Path, parts: Location, value: Any) -> list[Any]:
     else:
         block[keys[-1]] = value
     return methods
-
-
-def _is_stage(key: Any) -> bool:
-    return isinstance(KEYS.get(".".join(map(str, split_key(key)))), MethodBlock)
 
 
 def with_overrides(text: str, path: Path, overrides: Iterable[str]) -> str:

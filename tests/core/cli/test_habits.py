@@ -1,5 +1,6 @@
 """Habits of command lines. Otherwise a mistake could not be mended, or a command would print or delete too much."""
 
+import io
 import json
 import logging
 import os
@@ -14,7 +15,7 @@ import pytest
 
 from command_line import tangible
 from pictures import write_png
-from tangible_core.cli import completing, sentences
+from tangible_core.cli import completing, sentences, show
 from tangible_core.cli.app import app
 from tangible_core.cli.command_table import COMMANDS, GROUPS, load
 from tangible_core.data import DisparityMap, Views
@@ -24,6 +25,7 @@ from tangible_core.pipeline.output import default_name
 from tangible_core.plugins import hooks
 from tangible_core.plugins.notes import note
 from tangible_core.plugins.registry import default_registry
+from tangible_core.runtime import standard_output
 from tangible_depth import Luminance
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
@@ -110,25 +112,22 @@ def test_every_command_of_the_program_has_an_example_and_a_place():
             assert not below.get_short_help_str(20).endswith("..."), below.name
 
 
-def test_description_is_printed_in_the_language_of_the_terminal(folder: Path):
+def test_words_of_a_picture_are_in_the_language_of_the_terminal(folder: Path):
     said = [tangible(*lang, "describe", "p.yaml", cwd=folder).stdout for lang in ((), ("--lang", "de"))]
     assert ["A surface 80 mm wide" in said[0], "Eine Fläche, 80 mm breit" in said[1]] == [True, True]
-
-
-def test_words_in_files_for_a_picture_are_in_the_language_of_the_terminal(folder: Path):
     tangible("--lang", "de", "export", "dot.png", "--to", "pins", "--out", "out", cwd=folder)
     assert json.loads((folder / "out/dot-monarch.json").read_text("utf-8"))["language"] == "de"
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
-def test_list_of_plugins_fits_a_terminal(tmp_path: Path):
-    import pty
-
-    host, terminal = pty.openpty()
-    subprocess.run([TANGIBLE, "plugins"], stdout=terminal, env={**os.environ, "COLUMNS": "80"}, check=True)
-    os.set_blocking(host, False)
-    lines = os.read(host, 4000).decode("utf-8").splitlines()
-    assert len(lines) > 9 and max(len(re.sub(r"\x1b\[\d*m", "", line)) for line in lines) <= 80
+def test_list_of_plugins_fits_a_terminal(monkeypatch: pytest.MonkeyPatch):
+    terminal = io.StringIO()
+    monkeypatch.setattr(terminal, "isatty", lambda: True)
+    for module in (standard_output, show):
+        monkeypatch.setattr(module, "stream", lambda: terminal)
+    monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setenv("TERM", "dumb")  # no colours
+    load("plugins").main([], standalone_mode=False)
+    assert len(lines := terminal.getvalue().splitlines()) > 9 and max(map(len, lines)) <= 80
 
 
 def test_command_that_cannot_be_imported_is_told_in_one_line(tmp_path: Path):

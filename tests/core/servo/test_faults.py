@@ -111,9 +111,7 @@ class TestInterruptedStart:
         assert said.rstrip().endswith("KeyboardInterrupt")
         until(lambda: not held_force(record) > 0)
 
-    def test_start_that_takes_too_long_is_abandoned(
-        self, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-    ) -> None:
+    def test_late_start_is_abandoned(self, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
         monkeypatch.setattr(limits, "FIRST_TICK_S", 1.0)
         monkeypatch.setattr(limits, "KILL_S", 0.5)
         servo = Servo(FaultyTouch(), Failing(opens="late", simulated=False), AT_ONCE)

@@ -16,6 +16,9 @@ NOISY = 4.0  # the darkness that noise alone has beneath a closing, in standard 
 # The darkness of ink that takes all the light of one colour, and hardly any brightness; JPEG makes such at edges.
 COLOUR = 0.6
 HALF = 0.5  # the darkness at the edge of a stroke, as a share of the darkest ink around
+# The least darkness of ink by the ringing of a picture: JPEG darkens beside edges, less than ink does.
+RINGING = 0.023
+EDGE = 30  # the least step between two pixels that is an edge, of 255
 # The light below which a ground counts as this light, of 255: darker, noise would be taken for ink.
 DARKEST = 40
 
@@ -65,13 +68,35 @@ def find_ink(picture: np.ndarray) -> Ink:
         grey = _missing(_brightness(ground), _brightness(calm), NOISY * noise / 2)
         darkness = np.maximum(grey, COLOUR * _missing(ground, calm, NOISY * noise).max(axis=2))
         contrast = np.asarray(cv2.dilate(darkness, disc))
-    return Ink((darkness > HALF * contrast) & (contrast > LEAST), darkness, ground, widest, inverted)
+        mask = (darkness > HALF * contrast) & (contrast > LEAST)
+        if (ringing := _ringing(colours, ground)) >= 1:
+            lost = np.subtract(ground, calm, dtype=np.float32).max(axis=2) / 255
+            pieces = np.asarray(cv2.connectedComponents(mask.astype(np.uint8), connectivity=8)[1], np.int32)
+            beyond = np.maximum(grey, HALF * lost) - RINGING * ringing
+            mask &= (np.bincount(pieces.reshape(-1), beyond.reshape(-1)) >= 0)[pieces]
+    return Ink(mask, darkness, ground, widest, inverted)
 
 
 def _missing(ground: np.ndarray, calm: np.ndarray, noise: float) -> Float32[np.ndarray, "..."]:
     """Return the share of the ground's light that is missing, beyond noise."""
     lost = np.maximum(np.subtract(ground, calm, dtype=np.float32) - np.float32(noise), 0)
     return lost / np.maximum(ground, DARKEST).astype(np.float32)
+
+
+def _ringing(colours: UInt8[np.ndarray, "r c 3"], ground: UInt8[np.ndarray, "r c 3"]) -> float:
+    """Return by how much the range of 3 x 3 pixels beside edges exceeds that away from them, of 255; medians."""
+    # Only JPEG has ripples some pixels away from an edge, up to the end of a block, on areas that are flat elsewhere.
+    import cv2
+
+    def near(mask: np.ndarray, side: int) -> Bool[np.ndarray, "r c"]:
+        return np.asarray(cv2.dilate(mask.astype(np.uint8), np.ones((side, side), np.uint8))) > 0
+
+    def spread(of: np.ndarray) -> UInt8[np.ndarray, "r c"]:
+        return np.asarray(cv2.morphologyEx(of, cv2.MORPH_GRADIENT, np.ones((3, 3), np.uint8)), np.uint8).max(axis=2)
+
+    edge, ripples = spread(ground) > EDGE, spread(colours)
+    beside, away = near(edge, 13) & ~near(edge, 5), ~near(edge, 41)
+    return float(np.median(ripples[beside]) - np.median(ripples[away])) if beside.any() and away.any() else 0.0
 
 
 def _brightness(colours: UInt8[np.ndarray, "r c 3"]) -> UInt8[np.ndarray, "r c"]:

@@ -1,3 +1,4 @@
+import cv2
 import numpy as np
 import pytest
 
@@ -56,6 +57,17 @@ def test_lines_have_their_width_and_no_specks():
     lines = find_lines(ink, np.zeros_like(ink.mask))
     assert not lines.mask[:40, :40].any()
     assert 2.5 <= np.median(lines.width_px[lines.centre]) <= 3.5
+
+
+@pytest.mark.parametrize("quality", [40, 60])
+def test_lines_of_jpeg_are_no_ripples_beside_edges(quality):
+    picture, _ = countries()
+    for target in (picture, drawn := np.zeros(picture.shape[:2], np.uint8)):
+        cv2.line(target, (90, 250), (400, 330), (20, 20, 20), 2)
+    ink = find_ink(scanned(picture, noise=0, shadow=0, quality=quality))
+    centre = find_lines(ink, np.zeros_like(ink.mask)).centre
+    near = cv2.dilate(drawn, np.ones((5, 5))) > 0
+    assert (centre & ~near).sum() < 20 and (centre & near).sum() > 300
 
 
 def test_texts_places_and_nothing_else():

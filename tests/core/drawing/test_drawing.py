@@ -5,6 +5,7 @@ import pytest
 from drawings import COLOURS, countries, house, page, scanned
 from tangible_core import Scene
 from tangible_core.drawing import PictureKind, find_areas, find_ink, find_lines, find_marks, find_texts, picture_kind
+from tangible_core.drawing.text import _neighbours
 
 PICTURES = {"lines": house()[0], "drawing": countries()[0], "text": page()}
 
@@ -75,6 +76,12 @@ def test_texts_places_and_nothing_else():
     assert len(texts.boxes) == 9
     assert all(box.left < 0.06 and box.letters > 10 for box in texts.boxes)
     assert find_texts(find_ink(PICTURES["lines"])).boxes == ()
+
+
+@pytest.mark.parametrize(("high", "pairs"), [(23, 1), (25, 0)])
+def test_letters_of_one_row_are_of_like_height(high, pairs):
+    left, top, wide, highs = np.array([(0, 0, 8, 10), (10, 0, 8, high)]).T
+    assert len(_neighbours(left, top, wide, highs)[0]) == pairs
 
 
 @pytest.mark.parametrize(

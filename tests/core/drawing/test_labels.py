@@ -41,6 +41,15 @@ def test_text_names_the_part_around_it_or_at_the_end_of_its_leader_line(turn_deg
     assert all(abs(text.direction_deg - turn_deg) < 8 for text in texts if text.direction_deg)
 
 
+@pytest.mark.parametrize(("share", "named"), [(0.55, 1), (0.45, None)])
+def test_text_names_a_part_that_has_half_of_it(share, named):
+    parts = np.zeros((100, 100), np.int32)
+    parts[30:70, 10 : 10 + round(80 * share)] = 1
+    parts[30:70, 10 + round(80 * share) : 80] = 2
+    text = PictureText("", (0.1, 0.4, 0.9, 0.6))
+    assert tie_texts(find_marks(np.full((100, 100), 255, np.uint8)), [text], parts) == (named,)
+
+
 def test_leader_line_that_stops_at_an_outline_names_what_is_behind_it():
     picture, parts = cell()
     picture[:, 403:][parts[:, 403:] == PAPER] = 255

@@ -50,8 +50,11 @@ def reduce_to_side(colours: UInt8[np.ndarray, "h w 3"], side: int) -> UInt8[np.n
         return np.asarray(cv2.resize(colours, (columns, rows), interpolation=cv2.INTER_AREA), np.uint8)
 
 
-def find_ink(picture: np.ndarray) -> Ink:
-    """Find strokes: what a closing by a disc of the greatest width fills, by more than noise."""
+def find_ink(picture: np.ndarray, *, ripples: bool = False) -> Ink:
+    """Find strokes: what a closing by a disc of the greatest width fills, by more than noise.
+
+    ripples: True to keep those beside edges, which JPEG leaves and photographs have by themselves.
+    """
     # A closing takes the ground from its lightest neighbours in each channel: shadows and coloured areas are grounds.
     import cv2
 
@@ -69,7 +72,7 @@ def find_ink(picture: np.ndarray) -> Ink:
         darkness = np.maximum(grey, COLOUR * _missing(ground, calm, NOISY * noise).max(axis=2))
         contrast = np.asarray(cv2.dilate(darkness, disc))
         mask = (darkness > HALF * contrast) & (contrast > LEAST)
-        if (ringing := _ringing(colours, ground)) >= 1:
+        if not ripples and (ringing := _ringing(colours, ground)) >= 1:
             lost = np.subtract(ground, calm, dtype=np.float32).max(axis=2) / 255
             pieces = np.asarray(cv2.connectedComponents(mask.astype(np.uint8), connectivity=8)[1], np.int32)
             beyond = np.maximum(grey, HALF * lost) - RINGING * ringing

@@ -5,6 +5,7 @@ import pytest
 from drawings import COLOURS, countries, house, page, scanned
 from tangible_core import Scene
 from tangible_core.drawing import PictureKind, find_areas, find_ink, find_lines, find_marks, find_texts, picture_kind
+from tangible_core.drawing.kind import measure_kind
 from tangible_core.drawing.text import _neighbours
 
 PICTURES = {"lines": house()[0], "drawing": countries()[0], "text": page()}
@@ -69,6 +70,13 @@ def test_lines_of_jpeg_are_no_ripples_beside_edges(quality):
     centre = find_lines(ink, np.zeros_like(ink.mask)).centre
     near = cv2.dilate(drawn, np.ones((5, 5))) > 0
     assert (centre & ~near).sum() < 20 and (centre & near).sum() > 300
+
+
+def test_kind_is_measured_on_all_ink_with_ripples(monkeypatch):
+    picture = scanned(countries()[0], noise=0, shadow=0, quality=50)
+    measures = measure_kind(picture)
+    monkeypatch.setattr("tangible_core.drawing.ink.RINGING", 0)
+    np.testing.assert_array_equal(measures, measure_kind(picture))
 
 
 def test_texts_places_and_nothing_else():

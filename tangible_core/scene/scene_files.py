@@ -172,7 +172,7 @@ class SceneFiles(Quantities):
             raise ValueError(f"rig gives the cameras and rectifies the pictures; leave out {', '.join(idle)}")
         if idle := self.height and [name for name in names if name in _OF_VIEWS]:
             raise ValueError(f"height already gives all heights; leave out {', '.join(idle)}")
-        if self.page and self.photo and self.photo.suffix.lower() != ".pdf":
+        if self.page and self.photo and self.photo.suffix.lower() not in ("", ".pdf"):
             raise ValueError("page is for a PDF; leave it out")
         if self.depth and self.disparity:
             raise ValueError("depth and disparity are two forms of one map; leave one of them out")

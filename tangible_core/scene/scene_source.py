@@ -20,6 +20,7 @@ from ..files.paths import as_path
 from .combining import PHONE_DEPTH, PICTURES, combine_parts
 from .formats.decoding import content_bytes
 from .formats.height_maps import find_picture, in_metres, metadata_beside, read_heights_metadata
+from .formats.kinds import vector_format
 from .formats.multi_picture import Notify
 from .formats.pairs import Layout, Stored, halves, read_pair, read_stored, to_views
 from .formats.phone_depth import read_phone_depth
@@ -102,10 +103,13 @@ class SceneSource:
             parts |= to_views(left, right, files.non_finite, notes.append)._asdict()
         warnings: list[str] = []
         page, photo = None, paths.get("photo", Path())
-        if photo.suffix.lower() == ".svg":
-            page = read_svg(photo, content_bytes(photo), warnings.append)
-        elif photo.suffix.lower() == ".pdf":
-            page = read_pdf(photo, content_bytes(photo), files.page, warnings.append)
+        match vector_format(photo):
+            case "svg":
+                page = read_svg(photo, content_bytes(photo), warnings.append)
+            case "pdf":
+                page = read_pdf(photo, content_bytes(photo), files.page, warnings.append)
+            case None:
+                pass
         if page is not None:
             parts["photo"] = page.picture
             if page.labels is not None and files.segments is None:

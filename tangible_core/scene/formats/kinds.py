@@ -28,9 +28,12 @@ NPY, ZIP = b"\x93NUMPY", b"PK\x03\x04"  # the first bytes of a PNG, a JPEG, and 
 # The first bytes of a JPEG 2000, with and without its boxes.
 JPEG_2000 = (b"\0\0\0\x0cjP  ", b"\xff\x4f\xff\x51")
 ASC = re.compile(rb"\s*ncols\s+\d", re.IGNORECASE)  # the start of an ESRI ASCII grid
-_HEAD = 64
+# The root of an SVG, behind a declaration, a document type and comments.
+SVG = re.compile(rb"(\xef\xbb\xbf)?(\s|<[?!][^>]*>|<!--.*?-->)*<(\w+:)?svg[\s>]", re.DOTALL)
+PDF = b"%PDF-"
+_HEAD = 1024
 _PICTURES = (
-    PNG, JPEG, b"GIF8", b"BM", *JPEG_2000, b"P1", b"P4", *NETPBM
+    PNG, JPEG, b"GIF8", b"BM", *JPEG_2000, b"P1", b"P4", *NETPBM, PDF
 )  # fmt: skip
 _VIDEOS = (b"\x1aE\xdf\xa3", b"\0\0\x01\xba", b"\0\0\x01\xb3", b"OggS", b"0&\xb2u")
 _STILL = (b"avif", b"avis", *HEIC)  # brands of ISO's media files that are pictures
@@ -50,9 +53,18 @@ def file_kind(path: Path) -> FileKind | None:
         return "picture" if head[8:12] == b"WEBP" else "video"
     if head[4:8] == b"ftyp":
         return "picture" if head[8:12] in _STILL else "video"
-    if head.startswith(_PICTURES) and suffix_kind != "video":
+    if (head.startswith(_PICTURES) and suffix_kind != "video") or SVG.match(head):
         return "picture"
     return "video" if head.startswith(_VIDEOS) else suffix_kind
+
+
+def vector_format(path: Path) -> Literal["svg", "pdf"] | None:
+    """Return the format of a drawing in vectors, by its name where the first bytes are of nothing; None for another."""
+    head, suffix = _first_bytes(path), path.suffix.lower()
+    if head.startswith(PDF) or SVG.match(head):
+        return "pdf" if head.startswith(PDF) else "svg"
+    named: dict[str, Literal["svg", "pdf"]] = {".svg": "svg", ".pdf": "pdf"}
+    return None if head.startswith(_PICTURES) else named.get(suffix)
 
 
 def is_binary(path: Path) -> bool:

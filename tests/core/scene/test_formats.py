@@ -153,7 +153,8 @@ class TestKinds:
         [
             (b"\0\0\0\x18ftypmp42", "video"), (b"RIFF\0\0\0\0AVI LIST", "video"), (b"\x1aE\xdf\xa3", "video"),
             (b"RIFF\0\0\0\0WEBPVP8 ", "picture"), (b"Pf\n2 2\n", "heights"), (b"\x93NUMPY", "heights"),
-            (b"scene: {photo: a.png}\n", None), (b"", None),
+            (b"scene: {photo: a.png}\n", None), (b"", None), (b"%PDF-1.4\n", "picture"), (b"<html><svg/>", None),
+            (b'\xef\xbb\xbf<?xml version="1.0"?>\n<!-- <a> -->\n<!DOCTYPE svg "x">\n<s:svg>', "picture"),
         ],
     )  # fmt: skip
     def test_first_bytes_tell_what_a_file_is(self, tmp_path: Path, head: bytes, kind: str | None):

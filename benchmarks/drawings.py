@@ -201,9 +201,9 @@ def _labels() -> Iterator[Figure]:
     for made in made_drawings("told", "drawing", FEW):
         parts = find_parts(SegmentMap(find_areas(made.picture).labels)).labels
         marks = find_marks(made.picture)
-        texts = texts_in(marks)
-        size = np.tile(made.picture.shape[1::-1], 2)
-        for read, part_number in zip(read_texts(made.picture, texts), tie_texts(marks, texts, parts), strict=True):
+        texts, size = texts_in(marks), np.tile(made.picture.shape[1::-1], 2)
+        tied = tie_texts(marks.lines.centre, texts, parts)
+        for read, part_number in zip(read_texts(made.picture, texts), tied, strict=True):
             (column, row), at = read.middle * size[:2], np.array(made.texts).reshape(-1, 4)
             own = np.flatnonzero((at[:, 0] <= column) & (at[:, 2] >= column) & (at[:, 1] <= row) & (at[:, 3] >= row))
             if not own.size:

@@ -7,13 +7,14 @@ from jaxtyping import Bool, Float64, Int32
 
 from ..data import PictureText
 from ..runtime.opencv import plain_opencv
-from .lines import Lines
 from .marks import Marks
 
 STEP_PX, WIDE_DEG = 3.0, 18.0  # the step along a leader line, px, and the greatest turn at a step, degrees
-SHORT, LONG = 1.5, 6.0
+SHORT, LONG = 2.5, 6.0
 """The least length of a leader line, and the greatest distance from its end to its text, by the text's height."""
+BESIDE = 1.0  # the same distance for a text that lies in a part
 AROUND = 0.6  # the space around a text at which a leader line points, by the text's height
+AHEAD = 4  # the steps that a way is on the line by which it is chosen
 ALONG = 5  # the steps from the end of a line that give its direction
 INSIDE = 0.5  # the least share of a text that lies in the part that it names
 PAPER = 0.5  # the least share of the picture's rim that the paper of a drawing has
@@ -24,8 +25,13 @@ def texts_in(marks: Marks) -> tuple[PictureText, ...]:
     return tuple(PictureText("", text[:4], text.direction_deg) for text in marks.texts.boxes)
 
 
-def tie_texts(marks: Marks, texts: Sequence[PictureText], parts: Int32[np.ndarray, "h w"]) -> tuple[int | None, ...]:
-    """Return for each text the number of the part that it names; None for a text on the paper without a leader line."""
+def tie_texts(
+    centre: Bool[np.ndarray, "r c"], texts: Sequence[PictureText], parts: Int32[np.ndarray, "h w"]
+) -> tuple[int | None, ...]:
+    """Return for each text the number of the part that it names; None for a text on the paper without a leader line.
+
+    centre: the centre lines of a drawing, one pixel wide, on any grid.
+    """
     # A leader line ends near the text, points at it, and runs on without a sharp turn across whatever lies between.
     rows, columns = parts.shape
     paper = _paper(parts)
@@ -37,11 +43,12 @@ def tie_texts(marks: Marks, texts: Sequence[PictureText], parts: Int32[np.ndarra
         most = int(counts.argmax())
         names = counts[most] >= INSIDE * inside.size and numbers[most] != paper
         named_parts.append(int(numbers[most]) if names else None)
-    shape = marks.ink.mask.shape
-    on_ink = boxes * np.tile(np.array(shape[::-1]), 2)
-    nearest = np.full(len(boxes), np.inf)
-    for path in _paths(marks.lines):
-        number, distance = _pointed_at(path, on_ink)
+    shape = centre.shape
+    on_lines = boxes * np.tile(np.array(shape[::-1]), 2)
+    nearest = np.array([np.inf if place is None else BESIDE for place in named_parts])
+    for path in _paths(centre):
+        ends = [(*_pointed_at(way, on_lines), way) for way in (path, path[::-1])]
+        number, distance, path = min(ends, key=lambda end: end[1])
         if number is None or distance >= nearest[number]:
             continue
         ahead = path[-1] + 2 * (path[-1] - path[-2])  # an end on an outline touches the part behind it
@@ -87,36 +94,35 @@ def _pointed_at(path: Float64[np.ndarray, "n 2"], boxes: Float64[np.ndarray, "m 
     return best
 
 
-def _paths(lines: Lines) -> Iterator[Float64[np.ndarray, "n 2"]]:
-    """Yield the ways from loose ends of lines on, as long as no turn is sharp, and back; column and row."""
+def _paths(centre: Bool[np.ndarray, "r c"]) -> Iterator[Float64[np.ndarray, "n 2"]]:
+    """Yield the ways from loose ends of lines on, as long as no turn is sharp; column and row."""
     import cv2
 
     with plain_opencv():
-        near = np.asarray(cv2.dilate(lines.centre.astype(np.uint8), np.ones((3, 3), np.uint8))) > 0
-        count = np.asarray(cv2.filter2D(lines.centre.astype(np.uint8), -1, np.ones((3, 3)), borderType=0))
-    for row, column in np.argwhere(lines.centre & (count == 2)):
-        path = _follow(near, lines.centre, np.array([column, row], np.float64))
+        near = np.asarray(cv2.dilate(centre.astype(np.uint8), np.ones((3, 3), np.uint8))) > 0
+        count = np.asarray(cv2.filter2D(centre.astype(np.uint8), -1, np.ones((3, 3)), borderType=0))
+    for row, column in np.argwhere(centre & (count == 2)):
+        path = _follow(near, np.array([column, row], np.float64))
         if len(path) > 1:
-            yield path
-            yield path[::-1]  # its other end may be loose without looking so, a pixel thick
+            yield path  # its other end may be loose without looking so, a pixel thick
 
 
-def _follow(near: Bool[np.ndarray, "r c"], centre: Bool[np.ndarray, "r c"], start: np.ndarray) -> np.ndarray:
+def _follow(near: Bool[np.ndarray, "r c"], start: np.ndarray) -> np.ndarray:
     """Return the places on the way from a loose end, STEP_PX apart."""
     rows, columns = near.shape
     turns = np.radians(np.array(sorted(np.linspace(-WIDE_DEG, WIDE_DEG, 13), key=abs)))
     path, heading, all_round = [start], 0.0, np.linspace(-np.pi, np.pi, 48, endpoint=False)
     while len(path) < rows + columns:
         ways = heading + turns if len(path) > 1 else all_round
-        ends = path[-1] + STEP_PX * np.stack([np.cos(ways), np.sin(ways)], axis=1)
+        steps = STEP_PX * np.stack([np.cos(ways), np.sin(ways)], axis=1)
+        ends = path[-1] + steps[:, None] * np.arange(1, AHEAD + 1)[:, None]
         at = np.rint(ends).astype(np.int64)
-        inside = (at >= 0).all(axis=1) & (at[:, 0] < columns) & (at[:, 1] < rows)
-        at = np.where(inside[:, None], at, 0)
-        on = inside & near[at[:, 1], at[:, 0]]
+        inside = (at >= 0).all(axis=2) & (at[..., 0] < columns) & (at[..., 1] < rows)
+        at = np.where(inside[..., None], at, 0)
+        on = np.asarray(np.cumprod(inside & near[at[..., 1], at[..., 0]], axis=1), np.int64).sum(axis=1)
         if not on.any():
             break
-        best = int(np.argmax(on + (on & centre[at[:, 1], at[:, 0]])))
-        path.append(ends[best])
+        path.append(ends[int(on.argmax()), 0])
         back = path[max(0, len(path) - 1 - ALONG)]
         heading = float(np.arctan2(*(path[-1] - back)[::-1]))
     return np.array(path)

@@ -16,7 +16,7 @@ class Marks:
     """The ink, texts and lines of a picture, each found when it is first asked for."""
 
     def __init__(self, picture: np.ndarray) -> None:
-        self._picture = picture
+        self.picture = picture
         self._digest = digest_of(picture)
 
     def __eq__(self, other: object) -> bool:
@@ -28,7 +28,7 @@ class Marks:
     @cached_property
     def ink(self) -> Ink:
         """The ink of the picture."""
-        return find_ink(self._picture)
+        return find_ink(self.picture)
 
     @cached_property
     def texts(self) -> Texts:

@@ -1,32 +1,81 @@
-"""The names of parts that are read in the picture: their labels, and the labels that point to them."""
+"""The texts of a drawing: the parts that they name, its title, and the rest."""
 
-from ..data import PartMap
-from ..drawing import find_marks
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+
+from ..data import PartMap, PictureText
+from ..drawing import Marks, PictureKind, find_marks
 from ..drawing.labels import texts_in, tie_texts
 from ..plugins.registry import Registry
+from ..scene.scene import Scene
+from ..scene.vectors import title_among
 from .config.model import PipelineConfig
 from .engine.cache import Cache
 from .engine.engine import Engine
 from .engine.hooked import networks_identity, read_function
 
 
-def read_part_names(config: PipelineConfig, registry: Registry) -> dict[int, str]:
-    """Return the names of parts by label, as a network reads them in the picture; none without one.
+def picture_texts(scene: Scene, registry: Registry) -> tuple[PictureText, ...]:
+    """Return the texts of a drawing: those that its file states, and those in its picture, "" where nobody reads them.
+
+    A page of text has none but those that its file states.
+    """
+    if scene.views is None or scene.kind.likely in (PictureKind.photograph, PictureKind.text):
+        return scene.texts
+    identity, marks = networks_identity(registry, "text"), find_marks(scene.views.left)
+    return (*scene.texts, *(_read(read_function(registry), identity, marks) if identity else texts_in(marks)))
+
+
+@lru_cache(maxsize=2)
+def _read(read: Callable[..., tuple[PictureText, ...]], identity: str, marks: Marks) -> tuple[PictureText, ...]:
+    return tuple(read(marks.picture, texts_in(marks)))
+
+
+def _tie(engine: Engine, texts: Sequence[PictureText]) -> tuple[int | None, ...]:
+    """Return the label of the part that each text names, or None."""
+    views, parts = engine.scene.views, engine.make_on_grid("parts")
+    if views is None or not isinstance(parts, PartMap):
+        return (None,) * len(texts)
+    return tie_texts(find_marks(views.left).lines.centre, texts, parts.labels)
+
+
+def _high(text: PictureText) -> float:
+    return text.box[3] - text.box[1]
+
+
+def read_labels(config: PipelineConfig, registry: Registry) -> tuple[str, dict[int, str]]:
+    """Return the title and the names of parts by label, as the texts of the picture say; "" and none without any.
 
     Of several texts that name one part, the highest letters count.
     Raises: TangibleError as `Engine.make`.
     """
-    if not networks_identity(registry, "text"):
-        return {}
     engine = Engine(config, registry, Cache())
-    views = engine.scene.views
-    if views is None:
-        return {}
-    marks = find_marks(views.left)
-    texts = read_function(registry)(views.left, texts_in(marks))
-    parts = engine.make_on_grid("parts") if any(text.content for text in texts) else None
-    if not isinstance(parts, PartMap):
-        return {}
-    named_texts = zip(texts, tie_texts(marks, texts, parts.labels), strict=True)
-    by_height = sorted(named_texts, key=lambda pair: pair[0].box[3] - pair[0].box[1])
-    return dict(sorted({part: text.content for text, part in by_height if part is not None and text.content}.items()))
+    texts = [text for text in picture_texts(engine.scene, registry) if text.content]
+    if not texts:
+        return "", {}
+    tied = sorted(zip(texts, _tie(engine, texts), strict=True), key=lambda pair: _high(pair[0]))
+    names = {part: text.content for text, part in tied if part is not None}
+    return title_among([text for text, part in tied if part is None]), dict(sorted(names.items()))
+
+
+def title_and_rest(engine: Engine) -> tuple[str, tuple[PictureText, ...]]:
+    """Return the title, "" without one, and the texts of the picture that are neither it nor the names of parts.
+
+    Where names are given, the highest text of a part stands for its name, unless the file states which text names it.
+    """
+    config, scene = engine.config, engine.scene
+    texts, title = picture_texts(scene, engine.registry), config.title.strip() or scene.title
+    if not texts or (not config.part_names and title):
+        return title, tuple(text for text in texts if text.content != title)
+    tied = _tie(engine, texts)
+    names = {*config.part_names.values(), *scene.segment_names} if config.part_names else set[str]()
+    highest = {part: text for text, part in sorted(zip(texts, tied, strict=True), key=lambda pair: _high(pair[0]))}
+    stated = any(scene.segment_names)
+    rest = [
+        (text, part)
+        for text, part in zip(texts, tied, strict=True)
+        if not (text.content and text.content in names)
+        and (stated or part not in config.part_names or highest[part] is not text)
+    ]
+    title = title or title_among([text for text, part in rest if part is None])
+    return title, tuple(text for text, _ in rest if not text.content or text.content != title)

@@ -33,7 +33,7 @@ from ..scene.scene_files import SceneFiles
 from .config.model import PipelineConfig
 from .config.parsing import make_config, parse_config
 from .engine.hooked import networks_identity
-from .part_names import read_part_names
+from .part_names import read_labels
 
 SIDE_MM = 80
 """The longer side of the surface, mm: the reach of a small desktop device."""
@@ -203,16 +203,17 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
 
 def _names_text(scene: Scene, width: str) -> str:
     """Return the lines with the title and the names of the parts, stated or read in the picture; "" without any."""
-    title = f"title: {on_one_line(scene.title)}\n" if scene.title else ""
+    title, lines = scene.title, ""
     if scene.segments is not None and any(scene.segment_names):
         parts = find_parts(scene.segments).segments
         names = {label: scene.segment_names[segment] for label, segment in enumerate(parts)}
-        return title + _part_lines(names, "as the drawing names them")
-    if title or not _is_drawing(scene):
-        return title
-    registry = default_registry()
-    config = make_config(scene, registry, texture="flat", workspace={"width_m": width})
-    return _part_lines(read_part_names(config, registry), READ)
+        lines = _part_lines(names, "as the drawing names them")
+    elif not scene.segment_names and _is_drawing(scene):
+        registry = default_registry()
+        config = make_config(scene, registry, texture="flat", workspace={"width_m": width})
+        title_read, names = read_labels(config, registry)
+        title, lines = title or title_read, _part_lines(names, READ)
+    return (f"title: {on_one_line(plain_line(title))}\n" if title else "") + lines
 
 
 def _part_lines(names: Mapping[int, str], comment: str) -> str:

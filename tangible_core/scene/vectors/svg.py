@@ -19,6 +19,7 @@ from jaxtyping import Bool, Int32, UInt8
 from ...data import PictureText
 from ...data.pictures import fill_from_nearest
 from ...drawing import PictureKind, find_marks
+from ...drawing.labels import tie_texts
 from ...errors import PictureError, shown
 from ...files.reading import in_words
 from ...runtime.child_process import python
@@ -77,7 +78,7 @@ def read_svg(path: Path, data: bytes, notify: Notify = ignore) -> VectorPage:
     if labels is None:
         notify(f"{path.name} has more than {MAX_SHAPES} shapes, which is a texture: its parts are found by colour")
     else:
-        labels, names = _name_shapes(labels, shapes, known_texts)
+        labels, names = _name_shapes(labels, shapes, known_texts, _leader_lines(labels, layers[1], shapes))
     loose = [text for text in known_texts if text.content not in names]
     title = find_label(root) or title_among(loose)
     if unused := [text.content for text in loose if text.content != title]:
@@ -243,21 +244,28 @@ def _direction(element: Element) -> float:
 
 
 def _name_shapes(
-    labels: Int32[np.ndarray, "h w"], shapes: list[Item], texts: tuple[PictureText, ...]
+    labels: Int32[np.ndarray, "h w"], shapes: list[Item], texts: tuple[PictureText, ...], lines: np.ndarray
 ) -> tuple[Int32[np.ndarray, "h w"], tuple[str, ...]]:
-    """Return labels from 0, each of them present, and their names."""
+    """Return labels from 0, each of them present, and their names. lines: centre lines by which texts are tied."""
     present, labels = rank_labels(labels)
-    rim = np.bincount(np.concatenate([labels[0], labels[-1], labels[:, 0], labels[:, -1]]), minlength=len(present))
-    inside = defaultdict[int, list[PictureText]](list)
-    for text in texts:
-        across, down = text.middle
-        inside[int(labels[int(down * labels.shape[0]), int(across * labels.shape[1])])].append(text)
-    names = list[str]()
-    for place, number in enumerate(present):
-        shape = shapes[number - 1] if number else Item(Element("g"), "", "")
-        is_ground = number == 0 or 2 * rim[place] > rim.sum()
-        names.append(shape.label or ("" if is_ground else _largest(inside[place])) or shape.name)
+    tied = defaultdict[int | None, list[PictureText]](list)
+    for text, place in zip(texts, tie_texts(lines, texts, labels), strict=True):
+        tied[place].append(text)
+    names = ["" for number in present if number == 0]  # the ground comes first
+    for place in range(len(names), len(present)):
+        shape = shapes[present[place] - 1]
+        names.append(shape.label or _largest(tied[place]) or shape.name)
     return labels, tuple(names)
+
+
+def _leader_lines(
+    labels: Int32[np.ndarray, "h w"], drawn: UInt8[np.ndarray, "h w 4"], shapes: list[Item]
+) -> Bool[np.ndarray, "h w"]:
+    """Return the centre lines of strokes that bound nothing, and are too thin to be areas."""
+    from skimage.morphology import skeletonize  # pyright: ignore[reportMissingTypeStubs, reportUnknownVariableType]
+
+    numbers, is_line = _numbers(drawn, len(shapes)), [False, *(shape.stroked and not shape.filled for shape in shapes)]
+    return np.asarray(skeletonize(np.array(is_line)[numbers] & (labels != numbers)), np.bool_)
 
 
 def _largest(texts: Sequence[PictureText]) -> str:

@@ -36,7 +36,7 @@ def test_text_names_the_part_around_it_or_at_the_end_of_its_leader_line(turn_deg
     picture, parts = cell(turn_deg)
     marks = find_marks(picture)
     texts = texts_in(marks)
-    tied = dict(zip((text.middle for text in texts), tie_texts(marks, texts, parts), strict=True))
+    tied = dict(zip((text.middle for text in texts), tie_texts(marks.lines.centre, texts, parts), strict=True))
     assert [tied[place] for place in sorted(tied, key=lambda place: place[0])] == [CELL, NUCLEUS, None]
     assert all(abs(text.direction_deg - turn_deg) < 8 for text in texts if text.direction_deg)
 
@@ -58,7 +58,7 @@ def test_leader_line_that_stops_at_an_outline_names_what_is_behind_it():
     cv2.putText(picture, "cell", (525, 207), cv2.FONT_HERSHEY_SIMPLEX, 0.7, (20, 20, 20), 2, cv2.LINE_AA)
     marks = find_marks(picture)
     texts = [text for text in texts_in(marks) if text.middle[0] > 0.7]
-    assert tie_texts(marks, texts, parts) == (CELL,)
+    assert tie_texts(marks.lines.centre, texts, parts) == (CELL,)
 
 
 def test_starter_names_parts_as_a_network_reads_them(monkeypatch):

@@ -10,6 +10,7 @@ from ..errors import BrokenMethod
 from .figure import Figure
 from .records import Record
 from .surface import HapticSurface, MaterialMap, Relief
+from .texts import PictureText
 from .views import DisparityMap, PartMap, SegmentMap
 
 Product = Literal["disparity", "figure", "relief", "segments", "parts", "simplified", "materials", "surface", "touch"]
@@ -65,6 +66,8 @@ class Work:
     `recording` of a run, and the `figure` that networks see, where the relief is made of it."""
     kind: str = "photograph"
     """The kind of the picture, as `kind` of a scene: `photograph`, `drawing`, `lines` or `text`."""
+    texts: tuple[PictureText, ...] = ()
+    """The texts of the picture that are neither the title nor names of parts; "" for what nobody has read."""
     film: bool = False
     """True for a film, of which the products show the first frame."""
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float64
 
-from ..data import PartMap
+from ..data import PartMap, PictureText
 from ..runtime.opencv import plain_opencv
 from .ink import eight_bits, find_ink, noise_level, reduce_to_side
 from .text import find_texts
@@ -68,6 +68,8 @@ class DrawnPicture(NamedTuple):
     picture: np.ndarray
     lines: bool  # true where its lines are drawn or raised as lines
     whole: PartMap | None = None  # all its parts, before any was left out
+    lost_texts: tuple[PictureText, ...] = ()  # those that are neither shown nor the title nor names of parts
+    text_count: int = 0
 
 
 def measure_kind(picture: np.ndarray) -> Float64[np.ndarray, "n"]:

@@ -184,6 +184,8 @@ class Exporter(Method):
     """The products that it reads, such as `relief`; only these are made for it."""
     medium: ClassVar[Medium | None] = None
     """The medium by whose rules legibility is checked before writing; None for files that are not touched."""
+    shows_texts: ClassVar[bool] = False
+    """True if it writes what `Work.texts` say, where they have been read."""
     limits_slopes: ClassVar[bool] = True
     """False for what is made of plastic or pins, where no hand is held up by a wall: unless the pipeline file sets
     `relief.slope`, cliffs of the relief stay upright."""

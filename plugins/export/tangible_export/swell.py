@@ -35,6 +35,7 @@ class Swell(Exporter, Previewing):
 
     needs: ClassVar[tuple[str, ...]] = ("simplified",)
     medium: ClassVar[Medium | None] = "swell"
+    shows_texts: ClassVar[bool] = True
 
     page: Page = "a4"
     """Size of the paper; it lies on its side where that makes the picture larger."""
@@ -111,7 +112,7 @@ class Swell(Exporter, Previewing):
         if work.kind == "lines" and not any(work.names) and work.picture is not None:
             sheet = sheet_for(self.page, work.picture.shape[1] / work.picture.shape[0], self.width_m)
             check_readable(self.page, sheet)
-            return [drawn_lines(work, work.picture, sheet)]
+            return drawn_lines(work, work.picture, sheet, self.page)
         if (parts := work.simplified) is None:
             raise PictureError("this scene has no parts to outline; it needs a picture, or its own `parts:`")
         sheet = sheet_for(self.page, _aspect(work, parts), self.width_m)

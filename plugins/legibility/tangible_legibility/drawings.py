@@ -3,8 +3,10 @@
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
+from jaxtyping import Bool
 
 from tangible_core.data import PartMap, border_pixels
 from tangible_core.drawing import DrawnPicture, Lines, PictureKind, find_marks
@@ -15,6 +17,7 @@ from .words.places import describe_part, describe_place, join_texts
 
 MAX_LOST = 0.1  # share of the lines' length that may be lost before the picture is
 MAX_CLOSE = 0.3  # share of the lines' length that may lie too near to another line
+MAX_SILENT = 0.5  # share of the texts that may be lost before the picture is
 # The least shares of the picture of a part that is named when it is lost, and without which the picture is lost.
 NOTICED, IMPORTANT = 0.001, 0.02
 
@@ -30,18 +33,22 @@ def judge_drawing(
             cure="write it in braille, or have it read aloud; `scene: {kind: drawing}` if it is another picture",
         )  # fmt: skip
         return
-    marks = find_marks(drawing.picture)
-    texts = marks.texts
-    yield from _judge_lines(drawing, marks.lines, profile, parts, width_m)
+    yield from _judge_lines(drawing, find_marks(drawing.picture).lines, profile, parts, width_m)
     if drawing.whole is not None and parts is not None:
         yield from _judge_parts(drawing.whole, parts, names)
-    middles = [((box.left + box.right) / 2, (box.top + box.bottom) / 2) for box in texts.boxes]
-    places = list(dict.fromkeys(describe_place(*middle) for middle in middles))
-    yield check_bound(
-        *("texts", "the letters", float(len(middles)), "<=", 0.0, "parts", OURS),
-        says=f"texts are left out ({len(middles)}: {join_texts(places)})" if places else "",
+    lost = drawing.lost_texts
+    places = list(dict.fromkeys(_with_place(text.content, *text.middle) for text in lost))
+    verdict = check_bound(
+        *("texts", "the letters", float(len(lost)), "<=", 0.0, "parts", OURS),
+        says=f"texts are left out ({len(lost)}: {join_texts(places)})" if lost else "",
         cure="write them as names of parts, or in the description",
+        worse="illegible" if len(lost) > MAX_SILENT * drawing.text_count else "warn",
     )  # fmt: skip
+    yield replace(verdict, at=tuple(text.middle for text in lost))
+
+
+def _with_place(name: str, x: float, y: float) -> str:
+    return " ".join(filter(None, (name, describe_place(x, y)))) or "in the middle"
 
 
 def _judge_lines(
@@ -51,14 +58,19 @@ def _judge_lines(
     gap_m = 0.0032 if gap is None else gap.bound
     pitch_m = width_m / lines.centre.shape[1]
     if drawing.lines:
-        close = lines.share_near(gap_m / pitch_m)
+        own = lines
+        if parts is not None:  # outlines stand for the lines along them
+            away = _away(lines.centre.shape, parts, gap_m / pitch_m)
+            own = lines._replace(mask=lines.mask & away, centre=lines.centre & away)
+        close = own.share_near(gap_m / pitch_m) * own.centre.sum() / max(lines.centre.sum(), 1)
         yield check_bound(
             *("close lines", "the lines", close, "<=", MAX_CLOSE, "share", f"{OURS}; for the distance {GRAPHICS}"),
             says="many lines run so close to each other that a finger takes them for one", worse="illegible",
             cure="make the picture larger, or have fewer lines",
         )  # fmt: skip
     elif lines.centre.any():
-        share = 1.0 if parts is None else _share_away(lines, parts, gap_m / pitch_m)
+        away = True if parts is None else _away(lines.centre.shape, parts, gap_m / pitch_m)
+        share = float((lines.centre & away).sum() / lines.centre.sum())
         yield check_bound(
             *("kept lines", "the lines", share, "<=", MAX_LOST, "share", OURS),
             says=f"{100 * share:.0f} % of the length of the drawing's lines is left out", worse="illegible",
@@ -66,17 +78,16 @@ def _judge_lines(
         )  # fmt: skip
 
 
-def _share_away(lines: Lines, parts: PartMap, reach: float) -> float:
-    """Return the share of the lines' length that is farther than this from a border of parts, in cells of the lines."""
+def _away(shape: tuple[int, ...], parts: PartMap, reach: float) -> Bool[np.ndarray, "r c"]:
+    """Return the cells of a grid of this shape that are farther than this from a border of parts, in its cells."""
     from scipy.ndimage import distance_transform_edt
 
-    labels, rows = parts.labels, np.nonzero(lines.centre)
-    at = [n * new // old for n, new, old in zip(rows, labels.shape, lines.centre.shape, strict=True)]
-    border = border_pixels(labels)
+    rows, columns = (np.arange(new) * old // new for new, old in zip(shape, parts.labels.shape, strict=True))
+    border = border_pixels(parts.labels)
     if not border.any():
-        return 1.0
-    away = np.asarray(distance_transform_edt(~border))[at[0], at[1]]
-    return float((away > reach * labels.shape[1] / lines.centre.shape[1]).mean())
+        return np.ones(shape, np.bool_)
+    far = np.asarray(distance_transform_edt(~border)) > reach * parts.labels.shape[1] / shape[1]
+    return far[np.ix_(rows, columns)]
 
 
 def _judge_parts(whole: PartMap, parts: PartMap, names: Sequence[str]) -> Iterator[Verdict]:
@@ -85,9 +96,14 @@ def _judge_parts(whole: PartMap, parts: PartMap, names: Sequence[str]) -> Iterat
     absent = np.flatnonzero((share >= NOTICED) & (after[: whole.count] == 0))
     absent = absent[np.argsort(-share[absent])]
     area = float(share[absent].sum())
-    texts = [describe_part(number, names) for number in absent.tolist()]
-    yield check_bound(
+    spans = [np.argwhere(whole.labels == number).mean(axis=0) / whole.labels.shape for number in absent]
+    middles = [(float(x), float(y)) for y, x in spans]
+    texts = [
+        _with_place(describe_part(number, names), *at) for number, at in zip(absent.tolist(), middles, strict=True)
+    ]
+    verdict = check_bound(
         *("kept parts", "the parts", float(absent.size), "<=", 0.0, "parts", OURS),
         says=f"parts are left out ({join_texts(texts)}; {100 * area:.1f} % of the picture)" if texts else "",
         cure="make the picture larger, or have fewer parts", worse="illegible" if area >= IMPORTANT else "warn",
     )  # fmt: skip
+    yield replace(verdict, at=tuple(middles))

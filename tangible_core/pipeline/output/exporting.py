@@ -16,6 +16,7 @@ import numpy as np
 from ...data import Figure, HapticSurface, Note, Outcome, Outcomes, PartMap, Record, Relief, Work
 from ...data.outcome import OutcomeKind
 from ...data.products import EXPORTABLE
+from ...drawing import PictureKind
 from ...errors import (
     BrokenMethod,
     ConfigError,
@@ -44,6 +45,7 @@ from ..engine.engine import Engine
 from ..engine.hooked import has_figure, networks_identity
 from ..engine.planning import REQUESTED, with_notes
 from ..engine.stage import Progress, StageEvent, ignore_event
+from ..part_names import title_and_rest
 from .export_folder import check_writable, check_written, move
 from .export_result import Export, Exported
 from .legible import drawn_parts, drawn_width_m, judge_products, names_of_parts, with_exporter_cures, with_width
@@ -54,6 +56,7 @@ log: logging.Logger = logging.getLogger(__name__)
 PREFIX = "export: "
 # The most bytes of a file's name before its ending: systems take 255, and endings are added.
 MAX_STEM_BYTES = 120
+LOSSES = ("kept parts", "texts")  # the checks that name what is left out of a drawing
 # The errors of a disk, for which the exporter is not to blame.
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
 
@@ -146,6 +149,7 @@ class _ExportRun:
             with engine.watching(listen):
                 work = work_for(engine, exporter.method, cut=self.cut)
                 legible = legible_for(engine, exporter)
+                dropped = _dropped(engine, exporter, legible)
             check_stopped()
             self.progress(StageEvent(product, exporter.name))
             hooks.tell(self.engine.registry.plugins, "tangible_stage_started", product=product, method=exporter.name)
@@ -154,7 +158,7 @@ class _ExportRun:
                 files = self._write(exporter, work, place / stem)
             seconds = perf_counter() - start
             kind: OutcomeKind = "ran"
-            notes = [*_illegible(exporter.name, legible), *notes]
+            notes = [*_illegible(exporter.name, legible), *dropped, *notes]
             why = with_notes(notes, REQUESTED)
         except Stopped:
             raise
@@ -208,14 +212,16 @@ def work_for(engine: Engine, exporter: Exporter, *, cut: bool = False) -> Work:
     extras = {"views": views, "truth": engine.scene.truth}
     if has_figure(engine.config, engine.registry):
         extras["figure"] = engine.make_on_grid("figure")
+    title, texts = title_and_rest(engine)
     return Work(
-        export_title(engine.config, engine.scene),
+        title or export_title(engine.config, engine.scene),
         engine.config.language,
         products,
         None if views is None else views.left,
         names_of_parts(engine.config, products),
         extras,
         kind=engine.scene.kind.likely,
+        texts=texts,
         film=engine.scene.frames is not None,
     )
 
@@ -227,7 +233,7 @@ def legible_for(engine: Engine, exporter: NamedMethod[Exporter]) -> Legibility |
         return None
     products = set[str]().union(*map(engine.all_inputs, exporter.method.needs))
     return with_exporter_cures(
-        engine, exporter, judge_products(engine, medium, drawn_parts(engine, exporter), products)
+        engine, exporter, judge_products(engine, medium, drawn_parts(engine, exporter), products, exporter)
     )
 
 
@@ -236,6 +242,16 @@ def _illegible(name: str, legible: Legibility | None) -> list[Note]:
         return []
     log.warning("%s: %s", name, legible.sentence)
     return [Note(legible.sentence, "warning")]
+
+
+def _dropped(engine: Engine, exporter: NamedMethod[Exporter], legible: Legibility | None) -> list[Note]:
+    """Return notes on the parts and texts of a drawing that these files lack, unless the verdict says them."""
+    said, felt = "" if legible is None or legible.readable else legible.sentence, engine.config.felt_parts
+    if legible is None and exporter.method.needs and engine.scene.kind.likely != PictureKind.photograph:
+        products = {felt} & set[str]().union(*map(engine.all_inputs, exporter.method.needs))
+        legible = judge_products(engine, "force", felt, products, exporter)
+    verdicts = [verdict for verdict in legible or () if verdict.check in LOSSES and verdict.verdict != "ok"]
+    return [Note(verdict.says, "warning") for verdict in verdicts if verdict.says not in said]
 
 
 def export_title(config: PipelineConfig, scene: Scene) -> str:

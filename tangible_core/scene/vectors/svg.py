@@ -82,7 +82,7 @@ def read_svg(path: Path, data: bytes, notify: Notify = ignore) -> VectorPage:
     loose = [text for text in known_texts if text.content not in names]
     title = find_label(root) or title_among(loose)
     if unused := [text.content for text in loose if text.content != title]:
-        notify(f"texts of {path.name} that name no part are left out: {shown(', '.join(unused))}")
+        notify(f"texts of {path.name} that name no part are left out of the relief: {shown(', '.join(unused))}")
     raster = any(local(element) == "image" and "href" in "".join(element.attrib) for element, _, _ in walk(root))
     kind = PictureKind.drawing if labels is None or labels.any() else PictureKind.lines
     return VectorPage(picture, labels, names, known_texts, title, None if raster else kind)

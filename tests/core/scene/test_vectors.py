@@ -62,14 +62,15 @@ def test_texts_are_known_and_out_of_the_picture(scene: Scene):
     assert [text.direction_deg for text in scene.texts] == [0, 0, 0, 90]
     assert scene.texts[0].box == pytest.approx((0.24, 0.745, 0.39, 0.785), abs=0.01)
     assert not find_texts(find_ink(scene.views.left)).boxes
-    assert scene.warnings == ("texts of cell.svg that name no part are left out: 3, side",)
+    assert scene.warnings == ("texts of cell.svg that name no part are left out of the relief: 3, side",)
 
 
 def test_title_of_a_drawing_without_one_is_the_text_above_it(tmp_path: Path):
     texts = '<text x="34" y="9" font-size="7">Fruit</text><text x="80" y="50" font-size="6">5</text>'
     (tmp_path / "f.png").write_text(f'{HEAD}viewBox="0 0 90 60">{texts}<path d="M9 20H60V50H9Z" fill="red"/></svg>')
     scene = Scene.photo(tmp_path / "f.png")
-    assert (scene.title, scene.warnings) == ("Fruit", ("texts of f.png that name no part are left out: 5",))
+    assert scene.warnings == ("texts of f.png that name no part are left out of the relief: 5",)
+    assert scene.title == "Fruit"
 
 
 def test_crop_and_turn_take_names_and_texts_along(cell: Path):

@@ -1,10 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
 
 from drawings import countries, house, page
 from tangible_core import Pipeline, Scene
-from tangible_core.data import PartMap
+from tangible_core.data import PartMap, PictureText
 from tangible_core.drawing import DrawnPicture, PictureKind
 from tangible_core.pipeline import Feeling
 from tangible_export.paper.marks.reading import read
@@ -69,11 +71,51 @@ def test_lost_parts_and_texts_are_named():
     picture, labels = countries()
     picture[320:345, 20:200] = page()[20:45, 20:200]
     whole, left = (PartMap(each.astype(np.int32), (0, 1, 2, 3)) for each in (labels, np.where(labels == 3, 0, labels)))
-    drawing = DrawnPicture(PictureKind.drawing, picture, lines=True, whole=whole)
+    texts = [PictureText("", (0.1, 0.85, 0.4, 0.95)), PictureText("sea", (0.8, 0.1, 0.9, 0.2))]
+    drawing = DrawnPicture(PictureKind.drawing, picture, True, whole, lost_texts=tuple(texts), text_count=4)
     found = legibility("swell", left, 0.25, names=["", "", "", "lake"], drawing=drawing)
     says = " ".join(each.says for each in found)
-    assert "parts are left out (part 4 (lake); 2.9 % of the picture)" in says, says
-    assert "texts are left out (1: at the lower left)" in says and not found.readable, says
+    assert "parts are left out (part 4 (lake) at the lower right; 2.9 % of the picture)" in says, says
+    assert "texts are left out (2: at the lower left and sea at the upper right)" in says and not found.readable, says
+
+
+LABELLED = replace(
+    Scene.photo(countries()[0], name="map"),
+    texts=(
+        PictureText("Lands", (0.4, 0.01, 0.6, 0.08)),
+        PictureText("north", (0.3, 0.3, 0.4, 0.35)),
+        PictureText("sea", (0.55, 0.91, 0.65, 0.96)),
+        PictureText("harbour", (0.66, 0.7, 0.7, 0.74)),
+        PictureText("", (0.7, 0.3, 0.8, 0.35)),
+    ),
+)
+
+
+def test_texts_are_on_the_page_at_their_place_or_by_a_letter_of_the_key(tmp_path):
+    [done] = Pipeline(LABELLED, texture=Flat(), parts={2: "north"}).export(tmp_path, ["swell"]).exports
+    svg, key = (done.files[number].read_text() for number in (0, 1))
+    assert ">Lands</title>" in svg and "Lands: key" in key
+    assert svg.count('aria-label="sea"') == 1 and 'aria-label="sea"' not in key
+    assert 'aria-label="h harbour"' in svg and 'aria-label="h"' in key and 'aria-label="harbour"' in key
+    [sea] = {mark.group for mark in read(svg).marks if mark.label == "sea"}
+    dots = [mark.place_mm for mark in read(svg).marks if mark.group == sea]
+    sheet = sheet_for("a4", 4 / 3, None).below(6.12)
+    place = np.array([sheet.left_mm, sheet.top_mm]) + np.multiply((0.6, 0.935), sheet.picture_mm)
+    assert np.hypot(*(np.mean(dots, axis=0) - place)) < 12
+    assert [each.says for each in done.legible if each.check == "texts"] == [
+        "texts are left out (1: at the upper right)"
+    ]
+
+
+@pytest.mark.parametrize("name", ["stl", "glb", "3mf", "pins", "heights", "text", "page", "swell"])
+def test_every_exporter_lists_what_it_leaves_out_and_a_refused_one_has_no_verdict(tmp_path, name):
+    scene, names = LABELLED, {2: "north", 4: "lake"}
+    [done] = Pipeline(scene, texture=Flat(), relief="lines", parts=names).export(tmp_path, [name]).exports
+    lost = "1: at the upper right" if name == "swell" else "2: sea at the bottom in the middle and at the upper right"
+    assert done.outcome.outcome == "ran" and lost in " ".join(note.text for note in done.outcome.notes), done.outcome
+    done.files[0].write_text("somebody's own")
+    [refused] = Pipeline(scene, texture=Flat(), relief="lines", parts=names).export(tmp_path, [name]).exports
+    assert (refused.outcome.outcome, refused.legible, refused.files) == ("refused", None, ())
 
 
 def test_page_comes_back_as_the_same_parts(tmp_path):

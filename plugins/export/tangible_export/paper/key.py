@@ -22,6 +22,7 @@ class Entry:
     name: str
     letter: str
     fill: str
+    """The kind of its fill; "" for a text of the picture, which has no sample."""
 
 
 def key_pages(entries: list[Entry], title: str, language: str, page: Page, like: Sheet) -> list[Drawing]:
@@ -67,8 +68,8 @@ def _add_row(page: Drawing, row: _Row, left: float, top: float) -> Drawing:
     box = _box(left + row.sample_mm, middle - SAMPLE_MM[1] / 2)
     texts: list[Braille] = [lines_at(entry.name, row.lines, left + row.name_mm, text_top)]
     texts += [lines_at(entry.letter, [row.letter], left, text_top)] if entry.letter else []
-    area = Area(f"{entry.name}: {entry.fill}", box, fill_shape(box, entry.fill))
-    return replace(page, areas=(*page.areas, area), texts=(*page.texts, *texts))
+    area = (Area(f"{entry.name}: {entry.fill}", box, fill_shape(box, entry.fill)),) if entry.fill else ()
+    return replace(page, areas=(*page.areas, *area), texts=(*page.texts, *texts))
 
 
 def _box(left: float, top: float) -> Any:

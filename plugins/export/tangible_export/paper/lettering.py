@@ -16,6 +16,9 @@ FREE_MM = 5.0
 letter. A convention of ours."""
 
 
+FAR_MM = 12.0  # the farthest from its place that a text of the picture is written. A convention of ours
+
+
 class Words(NamedTuple):
     """The words of a page that are not names, in one language."""
 
@@ -57,16 +60,32 @@ def lines_at(text: str, lines: list[Cells], left_mm: float, top_mm: float) -> Br
 
 def place_letter(cells: Cells, shape: Any, clear_mm: float = CLEAR_MM) -> Float64[np.ndarray, "n 2"] | None:
     """Return the dots of a letter in a shape, in millimetres, each clear of the outline; None without room."""
-    clear = shape.buffer(-(LINE_MM / 2 + clear_mm + BRAILLE_DOT_MM / 2))
     offsets = 1000 * dots(cells)
-    # The places for the first dot: the shrunk shape, moved back by the offset of each dot, intersected.
-    room = shapely.intersection_all([_move(clear, -offset) for offset in offsets])
-    pieces = [piece for piece in shapely.get_parts(room) if piece.geom_type == "Polygon" and piece.area > 0]
+    parts = shapely.get_parts(_room(offsets, shape, clear_mm))
+    pieces = [piece for piece in parts if piece.geom_type == "Polygon" and piece.area > 0]
     if not pieces:
         return None
     radii = [shapely.maximum_inscribed_circle(piece, tolerance=0.1) for piece in pieces]
     best = max(radii, key=lambda circle: circle.length)
     return offsets + np.array(best.coords[0])
+
+
+def place_text(
+    cells: Cells, shape: Any, at_mm: tuple[float, float], far_mm: float = FAR_MM
+) -> Float64[np.ndarray, "n 2"] | None:
+    """Return the dots of a text in a shape with their middle next to a place; None without room up to `far_mm`."""
+    offsets, whole = 1000 * dots(cells), 1000 * dots((0b111111,) * len(cells))  # no line runs through a space
+    middle = whole.mean(axis=0)
+    room = _room(whole - middle, shape, CLEAR_MM)
+    if room.is_empty or room.distance(shapely.Point(at_mm)) > far_mm:
+        return None
+    return offsets - middle + shapely.get_coordinates(shapely.shortest_line(room, shapely.Point(at_mm)))[0]
+
+
+def _room(offsets: Float64[np.ndarray, "n 2"], shape: Any, clear_mm: float) -> Any:
+    """Return the places for the first dot: the shrunk shape, moved back by the offset of each dot, intersected."""
+    clear = shape.buffer(-(LINE_MM / 2 + clear_mm + BRAILLE_DOT_MM / 2))
+    return shapely.intersection_all([_move(clear, -offset) for offset in offsets])
 
 
 def around(dots_mm: Float64[np.ndarray, "n 2"]) -> Any:

@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 from jaxtyping import Float64
 
-from tangible_core.data import Figure, PartMap, Work
+from tangible_core.data import Figure, PartMap, PictureText, Work
 from tangible_core.errors import PictureError
 from tangible_core.errors import shown as shown_text
 from tangible_core.plugins import note
@@ -28,6 +28,7 @@ from .opening import open_at
 from .sheet import CLEAR_MM, GAP_MM, LINE_MM, Page, Sheet
 from .smoothing import smooth_borders
 from .strokes import strokes_on
+from .texts import picture_box, place_texts
 
 log: logging.Logger = logging.getLogger(__name__)
 
@@ -61,29 +62,32 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[Dr
         )
     blank, title = _blank_page(work, sheet)
     drawing = work.picture if work.kind == "drawing" else None
+    texts = [text for text in work.texts if text.content]
     figure: Figure = work.extras.get("figure") or Figure()
-    symbols, picture = _draw_readable(blank, parts, groups, figure.front_parts(parts), drawing)
+    symbols, picture, entries = _draw_readable(blank, parts, groups, figure.front_parts(parts), drawing, texts)
     _note_left_out(symbols, picture)
-    keys = key_pages(_entries(symbols, picture), title, work.language, page, blank.sheet)
+    return [picture, *_keys([*_entries(symbols, picture), *entries], title, work.language, page, blank.sheet)]
+
+
+def _keys(entries: list[Entry], title: str, language: str, page: Page, like: Sheet) -> list[Drawing]:
+    keys = key_pages(entries, title, language, page, like)
     for key in keys:
         if near := too_near(read(svg(key))):
             raise PictureError(f"in the key, {near[0]}, and {GAP_MM} mm must be between them")
-    return [picture, *keys]
+    return keys
 
 
-def drawn_lines(work: Work, picture: np.ndarray, sheet: Sheet) -> Drawing:
-    """Return a drawing's page. Raises: PictureError without lines; BrailleError for its title."""
-    blank, _ = _blank_page(work, sheet)
-    strokes, texts = strokes_on(picture, blank.sheet)
+def drawn_lines(work: Work, picture: np.ndarray, sheet: Sheet, page: Page) -> list[Drawing]:
+    """Return a drawing's page, and its key if it has one. Raises: PictureError without lines; BrailleError."""
+    blank, title = _blank_page(work, sheet)
+    strokes, _ = strokes_on(picture, blank.sheet)
     if not strokes:
         raise PictureError("the drawing has no lines; give `scene: {kind: photograph}` to outline its parts")
-    _note_texts(texts)
-    return replace(blank, description=shown_text(work.title), strokes=strokes)
-
-
-def _note_texts(texts: int) -> None:
-    if texts:
-        note(log, f"letters are left out of the page, at {texts} places; write them as names of parts", logging.WARNING)
+    inked = shapely.union_all(strokes).buffer(LINE_MM / 2)
+    texts = [text for text in work.texts if text.content]
+    marks, entries = place_texts(texts, (), [picture_box(blank.sheet).difference(inked)], blank.sheet, work.language)
+    drawing = replace(blank, description=shown_text(work.title), strokes=strokes, texts=(*blank.texts, *marks))
+    return [drawing, *(_keys(entries, title, work.language, page, blank.sheet) if entries else ())]
 
 
 def _blank_page(work: Work, sheet: Sheet) -> tuple[Drawing, str]:
@@ -104,12 +108,18 @@ def _blank_page(work: Work, sheet: Sheet) -> tuple[Drawing, str]:
 
 
 def _draw_readable(
-    blank: Drawing, parts: PartMap, groups: Sequence[NamedParts], front: Sequence[int], drawn: np.ndarray | None
-) -> tuple[list[Symbols], Drawing]:
+    blank: Drawing,
+    parts: PartMap,
+    groups: Sequence[NamedParts],
+    front: Sequence[int],
+    drawn: np.ndarray | None,
+    texts: Sequence[PictureText],
+) -> tuple[list[Symbols], Drawing, list[Entry]]:
     """Draw the page; open the parts where their outlines run too near to each other, until none do.
 
     front: numbers of the parts of the figure, whose common outline is heavier if that has room. drawn: the picture of a
-    flat drawing, whose lines are drawn as well, and whose paper stays empty; None for another.
+    flat drawing, whose lines are drawn as well, and whose paper stays empty; None for another. texts: of the picture.
+    Returns also the texts that only the key has.
     Raises: PictureError if that does not help.
     """
     near, sheet, original = list[Near](), blank.sheet, parts
@@ -120,7 +130,7 @@ def _draw_readable(
         outlines = [Area(group.name, shapes[number]) for group in groups for number in group.numbers]
         if not (near := narrow_places(read(svg(replace(blank, areas=tuple(outlines), texts=()))))):
             lines = None if drawn is None else shapely.union_all([shape.boundary for shape in shapes])
-            strokes, texts = ((), 0) if drawn is None else strokes_on(drawn, sheet, lines)
+            strokes = () if drawn is None else strokes_on(drawn, sheet, lines)[0]
             symbols = _choose_symbols(groups, shapes, _neighbours(parts, groups), blank.language)
             if drawn is not None:
                 symbols = [
@@ -128,13 +138,17 @@ def _draw_readable(
                     for symbol in symbols
                 ]
             description = "; ".join(f"{symbol.letter} {symbol.group.name}" for symbol in symbols)
-            drawing, near = _draw_clear(replace(blank, description=description), symbols, shapes, strokes)
+            inked = shapely.union_all(strokes).buffer(LINE_MM / 2)
+            free = [shape.difference(inked) for shape in shapes if not shape.is_empty]
+            marks, entries = place_texts(texts, [symbol.letter for symbol in symbols], free, sheet, blank.language)
+            inked = shapely.union_all([inked, *(around(mark.dots_mm) for mark in marks)])
+            page = replace(blank, description=description, texts=(*blank.texts, *marks))
+            drawing, near = _draw_clear(page, symbols, shapes, inked)
             if not near:
-                _note_texts(texts)
-                return symbols, replace(drawing, strokes=strokes)
+                return symbols, replace(drawing, strokes=strokes), entries
         parts = open_at(parts, _on_picture([gap.place_mm for gap in near], sheet), wide_mm / 1000, turn + 1)
     if front:  # a thinner line may have the room
-        return _draw_readable(replace(blank, figure=None), original, groups, (), drawn)
+        return _draw_readable(replace(blank, figure=None), original, groups, (), drawn, texts)
     raise PictureError(f"{near[0]}, and {GAP_MM} mm must be between them; make the picture larger or simpler")
 
 
@@ -206,20 +220,22 @@ def _has_room(symbols: Symbols, shapes: Sequence[Any]) -> bool:
     return bool(_area(symbols, shapes[largest]).fill)
 
 
-def _area(symbols: Symbols, shape: Any, clear_mm: float = CLEAR_MM, strokes: Any = None) -> Area:
-    """Return a part with its symbols, clear of strokes. clear_mm: distance around the letter; infinite for none."""
-    free = shape if strokes is None else shape.difference(strokes)
+def _area(symbols: Symbols, shape: Any, clear_mm: float = CLEAR_MM, inked: Any = None) -> Area:
+    """Return a part with its symbols, clear of ink. clear_mm: distance around the letter; infinite for none."""
+    free = shape if inked is None else shape.difference(inked)
     dots = place_letter(symbols.cells, free, clear_mm) if clear_mm < np.inf else None
     fill = fill_shape(free, symbols.kind, None if dots is None else around(dots))
     return Area(symbols.group.name, shape, fill, None if dots is None else Braille(symbols.letter, dots))
 
 
 def _draw_clear(
-    blank: Drawing, symbols: Sequence[Symbols], shapes: Sequence[Any], strokes: Sequence[Any]
+    blank: Drawing, symbols: Sequence[Symbols], shapes: Sequence[Any], inked: Any
 ) -> tuple[Drawing, list[Near]]:
-    """Move or leave out letters and elements of fills; return the page, and the pairs of marks still too near."""
+    """Move or leave out letters and elements of fills; return the page, and the pairs of marks still too near.
+
+    inked: the places that strokes and texts of the picture take.
+    """
     pieces = [(symbol, shapes[number]) for symbol in symbols for number in symbol.group.numbers]
-    inked = shapely.union_all(strokes).buffer(LINE_MM / 2) if strokes else None
     away, clear_mm = NO_DOTS, [np.inf if symbol.is_paper else CLEAR_MM for symbol, _ in pieces]
     drawing, near = blank, list[Near]()
     for turn in range(ROUNDS):

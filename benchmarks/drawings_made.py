@@ -12,12 +12,9 @@ import numpy as np
 from matplotlib import font_manager
 from PIL import Image, ImageDraw, ImageFont
 
-FINER = 4
-"""The factor by which a picture is drawn larger before it is reduced, which smooths its edges."""
-SEEN = 0.9
-"""The share of a text from which on it is one; of others too much is painted over."""
-SIDES = (640, 1000)
-"""The least and the most pixels of a side."""
+FINER = 4  # the factor by which a picture is drawn larger before it is reduced, which smooths its edges
+SEEN = 0.9  # the share of a text from which on it is one; of others too much is painted over
+SIDES = (640, 1000)  # the least and the most pixels of a side
 WORDS = ["river", "stone", "cloud", "Paris", "leaf", "root", "Nile", "cell", "wall", "Monday", "glass"]
 WORDS += ["12", "40", "map", "north", "bridge", "A", "B", "km", "window", "tree"]
 FONTS = {"chosen": ("DejaVu Sans", "STIXGeneral"), "told": ("DejaVu Serif", "DejaVu Sans Mono", "cmr10")}
@@ -340,10 +337,6 @@ def _shadow(depth: float) -> Callable[..., np.ndarray]:
     return copy
 
 
-def _same(picture: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    return picture
-
-
 def _both(*copies: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
     def copy(picture: np.ndarray, rng: np.random.Generator) -> np.ndarray:
         for each in copies:
@@ -353,17 +346,13 @@ def _both(*copies: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
     return copy
 
 
-def _tint(picture: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    return (picture * np.array([0.86, 0.95, 0.97])).astype(np.uint8)
-
-
-def _blur(picture: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    return cv2.GaussianBlur(picture, (0, 0), 0.8)
-
-
+_BLUR, _TINT = (
+    lambda picture, rng: cv2.GaussianBlur(picture, (0, 0), 0.8),
+    lambda picture, rng: (picture * np.array([0.86, 0.95, 0.97])).astype(np.uint8),
+)
 COPIES = {
-    "chosen": {"clean": _same, "jpeg 75": _jpeg(75), "noise 4": _noise(4), "photo": _both(_shadow(0.45), _noise(3))},
-    "told": {"jpeg 50": _jpeg(50), "noise 7": _noise(7), "tint": _tint, "scan": _both(_blur, _shadow(0.35), _jpeg(80))},
+    "chosen": {"clean": _both(), "jpeg 75": _jpeg(75), "noise 4": _noise(4), "photo": _both(_shadow(0.45), _noise(3))},
+    "told": {"jpeg 50": _jpeg(50), "noise 7": _noise(7), "tint": _TINT, "scan": _both(_BLUR, _shadow(0.35), _jpeg(80))},
 }
 """How a drawing becomes a file, by half."""
 

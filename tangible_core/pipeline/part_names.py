@@ -31,16 +31,12 @@ def _read(read: Callable[..., tuple[PictureText, ...]], identity: str, marks: Ma
     return tuple(read(marks.picture, texts_in(marks)))
 
 
-def _tie(engine: Engine, texts: Sequence[PictureText]) -> tuple[int | None, ...]:
-    """Return the label of the part that each text names, or None."""
-    views, parts = engine.scene.views, engine.make_on_grid("parts")
-    if views is None or not isinstance(parts, PartMap):
-        return (None,) * len(texts)
-    return tie_texts(find_marks(views.left).lines.centre, texts, parts.labels)
-
-
-def _high(text: PictureText) -> float:
-    return text.box[3] - text.box[1]
+def _tie(engine: Engine, texts: Sequence[PictureText]) -> list[tuple[PictureText, int | None]]:
+    """Return the texts, the highest last, with the label of the part that each names, or None."""
+    views, parts, labels = engine.scene.views, engine.make_on_grid("parts"), (None,) * len(texts)
+    if views is not None and isinstance(parts, PartMap):
+        labels = tie_texts(find_marks(views.left).lines.centre, texts, parts.labels)
+    return sorted(zip(texts, labels, strict=True), key=lambda pair: pair[0].box[3] - pair[0].box[1])
 
 
 def read_labels(config: PipelineConfig, registry: Registry) -> tuple[str, dict[int, str]]:
@@ -50,10 +46,9 @@ def read_labels(config: PipelineConfig, registry: Registry) -> tuple[str, dict[i
     Raises: TangibleError as `Engine.make`.
     """
     engine = Engine(config, registry, Cache())
-    texts = [text for text in picture_texts(engine.scene, registry) if text.content]
-    if not texts:
+    if not (texts := [text for text in picture_texts(engine.scene, registry) if text.content]):
         return "", {}
-    tied = sorted(zip(texts, _tie(engine, texts), strict=True), key=lambda pair: _high(pair[0]))
+    tied = _tie(engine, texts)
     names = {part: text.content for text, part in tied if part is not None}
     return title_among([text for text, part in tied if part is None]), dict(sorted(names.items()))
 
@@ -64,18 +59,16 @@ def title_and_rest(engine: Engine) -> tuple[str, tuple[PictureText, ...]]:
     Where names are given, the highest text of a part stands for its name, unless the file states which text names it.
     """
     config, scene = engine.config, engine.scene
-    texts, title = picture_texts(scene, engine.registry), config.title.strip() or scene.title
-    if not texts or (not config.part_names and title):
-        return title, tuple(text for text in texts if text.content != title)
-    tied = _tie(engine, texts)
-    names = {*config.part_names.values(), *scene.segment_names} if config.part_names else set[str]()
-    highest = {part: text for text, part in sorted(zip(texts, tied, strict=True), key=lambda pair: _high(pair[0]))}
-    stated = any(scene.segment_names)
-    rest = [
-        (text, part)
-        for text, part in zip(texts, tied, strict=True)
-        if not (text.content and text.content in names)
-        and (stated or part not in config.part_names or highest[part] is not text)
-    ]
-    title = title or title_among([text for text, part in rest if part is None])
-    return title, tuple(text for text, _ in rest if not text.content or text.content != title)
+    texts, title, named = picture_texts(scene, engine.registry), config.title.strip() or scene.title, config.part_names
+    if texts and (named or not title):
+        tied = _tie(engine, texts)
+        names = {*named.values(), *filter(None, scene.segment_names)} if named else set[str]()
+        highest = dict[int | None, PictureText]((part, text) for text, part in tied if part in named)
+        rest = [
+            pair
+            for pair in tied
+            if pair[0].content not in names and (any(scene.segment_names) or highest.get(pair[1]) is not pair[0])
+        ]
+        title = title or title_among([text for text, part in rest if part is None])
+        texts = tuple(text for text in texts if any(text is other for other, _ in rest))
+    return title, tuple(text for text in texts if not text.content or text.content != title)

@@ -233,7 +233,9 @@ def legible_for(engine: Engine, exporter: NamedMethod[Exporter]) -> Legibility |
         return None
     products = set[str]().union(*map(engine.all_inputs, exporter.method.needs))
     return with_exporter_cures(
-        engine, exporter, judge_products(engine, medium, drawn_parts(engine, exporter), products, exporter)
+        engine,
+        exporter,
+        judge_products(engine, medium, drawn_parts(engine, exporter), products, exporter.method.shows_texts),
     )
 
 
@@ -249,7 +251,7 @@ def _dropped(engine: Engine, exporter: NamedMethod[Exporter], legible: Legibilit
     said, felt = "" if legible is None or legible.readable else legible.sentence, engine.config.felt_parts
     if legible is None and exporter.method.needs and engine.scene.kind.likely != PictureKind.photograph:
         products = {felt} & set[str]().union(*map(engine.all_inputs, exporter.method.needs))
-        legible = judge_products(engine, "force", felt, products, exporter)
+        legible = judge_products(engine, "force", felt, products, exporter.method.shows_texts)
     verdicts = [verdict for verdict in legible or () if verdict.check in LOSSES and verdict.verdict != "ok"]
     return [Note(verdict.says, "warning") for verdict in verdicts if verdict.says not in said]
 

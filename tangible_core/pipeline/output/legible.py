@@ -34,8 +34,8 @@ def legible(engine: Engine, medium: Medium, width_m: float | None = None) -> Leg
         raise ConfigError(f"medium: is {quoted(medium)}{did_you_mean(str(medium), media)}; it is {', '.join(media)}")
     exporter = exporter_for(engine, medium)
     wide_engine = with_width(engine, drawn_width_m(engine, exporter) if width_m is None else width_m)
-    parts = drawn_parts(engine, exporter)
-    verdicts = judge_products(wide_engine, medium, parts, {parts, *JUDGED.get(medium, ())}, exporter)
+    parts, shows = drawn_parts(engine, exporter), exporter is not None and exporter.method.shows_texts
+    verdicts = judge_products(wide_engine, medium, parts, {parts, *JUDGED.get(medium, ())}, shows)
     return verdicts if exporter is None else with_exporter_cures(engine, exporter, verdicts)
 
 
@@ -92,19 +92,13 @@ def _aspect(engine: Engine) -> float:
     return columns / rows if size is None else size.width_m / size.length_m
 
 
-def judge_products(
-    engine: Engine,
-    medium: Medium,
-    parts: str,
-    names_judged: Collection[str],
-    exporter: NamedMethod[Exporter] | None,
-) -> Legibility:
-    """Judge the legibility by these products alone. parts: the product with the parts. Raises: TangibleError."""
-    names = [name for name in (parts, "relief", "materials") if name in names_judged]
+def judge_products(engine: Engine, medium: Medium, parts: str, judged: Collection[str], texts: bool) -> Legibility:
+    """Judge the legibility by these products alone. texts: True where texts that are read are shown."""
+    names = [name for name in (parts, "relief", "materials") if name in judged]
     products: dict[str, Any] = {name: engine.make_on_grid(name) for name in names}
     others = {name: products[name] for name in JUDGED.get(medium, ()) if name in products}
     part_map: PartMap | None = products.get(parts)
-    if (drawing := _drawing(engine, medium, part_map, exporter)) is not None:
+    if (drawing := _drawing(engine, medium, part_map, texts)) is not None:
         others["drawing"] = drawing
         if medium == "swell" and part_map is not None:
             others["textures"] = min(MAX_FILLS, len(set(part_map.segments)))
@@ -113,9 +107,7 @@ def judge_products(
     return judge(medium, part_map, width_m, names=names_of_parts(engine.config, products), **others)
 
 
-def _drawing(
-    engine: Engine, medium: Medium, parts: PartMap | None, exporter: NamedMethod[Exporter] | None
-) -> DrawnPicture | None:
+def _drawing(engine: Engine, medium: Medium, parts: PartMap | None, texts: bool) -> DrawnPicture | None:
     """Return the picture if it is a drawing, and what this medium shows of it; None for a photograph."""
     kind, views, config = engine.scene.kind.likely, engine.scene.views, engine.config
     if kind == PictureKind.photograph or views is None:
@@ -123,8 +115,7 @@ def _drawing(
     on_page = medium == "swell" and (kind == PictureKind.drawing or not config.part_names)
     raised = medium in ("print", "force") and config.relief_kind == "lines"
     whole = None if parts is None else cast("PartMap | None", engine.make_on_grid("parts"))
-    shows_texts = exporter is not None and exporter.method.shows_texts
-    lost = tuple(text for text in title_and_rest(engine)[1] if not (shows_texts and text.content))
+    lost = tuple(text for text in title_and_rest(engine)[1] if not (texts and text.content))
     count = len(picture_texts(engine.scene, engine.registry))
     return DrawnPicture(kind, views.left, on_page or raised, whole, lost, count)
 

@@ -33,32 +33,29 @@ def place_texts(
 
     letters: those that parts have. free: the shapes without their marks, of which a text stays in its own.
     """
-    marks, entries, taken, unwritten = list[Braille](), list[Entry](), shapely.Polygon(), list[str]()
-    others = [text.content for text in texts]
-    own = dict(zip(others, key_letters([*letters, *others])[len(letters) :], strict=True))
-    if len(letters) + len(own) > len(LETTERS):  # pairs, as the parts then need not have
-        own = dict.fromkeys(others, "")
-    for text in texts:
-        name = text.content
-        at_mm = (
-            sheet.left_mm + text.middle[0] * sheet.picture_mm[0],
-            sheet.top_mm + text.middle[1] * sheet.picture_mm[1],
-        )
+    marks, entries, taken, unwritten = list[Braille](), dict[Entry, None](), shapely.Polygon(), list[str]()
+    names = [*letters, *(text.content for text in texts)]
+    own = (
+        dict(zip(names, key_letters(names), strict=True)) if len(names) <= len(LETTERS) else {}
+    )  # pairs are no letters
+    (left, top, *_), size = picture_box(sheet).bounds, sheet.picture_mm
+    for name, (x, y) in [(text.content, text.middle) for text in texts]:
+        at_mm = left + x * size[0], top + y * size[1]
         shape = min(free, key=lambda piece: piece.distance(shapely.Point(at_mm))).difference(taken)
         try:
-            candidates = [(name, translate(name, language)), (own[name], translate(own[name], language))]
+            whole, letter = translate(name, language), translate(own.get(name, ""), language)
         except BrailleError:
             unwritten.append(name)
             continue
-        places = ((says, place_text(cells, shape, at_mm)) for says, cells in candidates if cells)
-        says, dots = next(((says, dots) for says, dots in places if dots is not None), ("", None))
+        dots, says = place_text(whole, shape, at_mm), name
+        if dots is None:
+            dots, says = place_text(letter, shape, at_mm) if letter else None, f"{own.get(name)} {name}"
+            entries[Entry(name, "" if dots is None else own[name], "")] = None
         if dots is not None:
-            marks.append(Braille(name if says == name else f"{says} {name}", dots))
+            marks.append(Braille(says, dots))
             taken = shapely.union_all([taken, around(dots)])
-        if says != name:
-            entries.append(Entry(name, says, ""))
     if unwritten:
         note(log, f"texts without braille are left out: {first_labels(unwritten)}", logging.WARNING)
     if bare := [entry.name for entry in entries if not entry.letter]:
         note(log, f"the key alone has the texts {first_labels(bare)}")
-    return marks, list(dict.fromkeys(entries))
+    return marks, [*entries]

@@ -103,13 +103,10 @@ class SceneSource:
             parts |= to_views(left, right, files.non_finite, notes.append)._asdict()
         warnings: list[str] = []
         page, photo = None, paths.get("photo", Path())
-        match vector_format(photo):
-            case "svg":
-                page = read_svg(photo, content_bytes(photo), warnings.append)
-            case "pdf":
-                page = read_pdf(photo, content_bytes(photo), files.page, warnings.append)
-            case None:
-                pass
+        if (vectors := vector_format(photo)) == "svg":
+            page = read_svg(photo, content_bytes(photo), warnings.append)
+        elif vectors == "pdf":
+            page = read_pdf(photo, content_bytes(photo), files.page, warnings.append)
         if page is not None:
             parts["photo"] = page.picture
             if page.labels is not None and files.segments is None:

@@ -39,7 +39,7 @@ def legibility(
     profile = PROFILES[medium]
     verdicts = list[Verdict]()
     if drawing is not None:
-        if drawing.kind == PictureKind.text or (drawing.kind == PictureKind.lines and drawing.lines):
+        if drawing.kind == PictureKind.text or (drawing.kind == PictureKind.lines and drawing.lines and not any(names)):
             return Legibility.of(judge_drawing(drawing, profile, None, width_m, names))
         verdicts += judge_drawing(drawing, profile, parts, width_m, names)
     if parts is None:

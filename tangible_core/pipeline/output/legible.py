@@ -112,12 +112,11 @@ def _drawing(engine: Engine, medium: Medium, parts: PartMap | None, texts: bool)
     kind, views, config = engine.scene.kind.likely, engine.scene.views, engine.config
     if kind == PictureKind.photograph or views is None:
         return None
-    on_page = medium == "swell" and (kind == PictureKind.drawing or not config.part_names)
     raised = medium in ("print", "force") and config.relief_kind == "lines"
     whole = None if parts is None else cast("PartMap | None", engine.make_on_grid("parts"))
     lost = tuple(text for text in title_and_rest(engine)[1] if not (texts and text.content))
     count = len(picture_texts(engine.scene, engine.registry))
-    return DrawnPicture(kind, views.left, on_page or raised, whole, lost, count)
+    return DrawnPicture(kind, views.left, medium == "swell" or raised, whole, lost, count)
 
 
 def with_width(engine: Engine, width_m: float | None) -> Engine:

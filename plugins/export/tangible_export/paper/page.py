@@ -61,7 +61,7 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[Dr
             "fewer, by a texture method with fewer segments or by one name for several in `parts:`"
         )
     blank, title = _blank_page(work, sheet)
-    drawing = work.picture if work.kind == "drawing" else None
+    drawing = work.picture if work.kind in ("drawing", "lines") else None
     texts = [text for text in work.texts if text.content]
     figure: Figure = work.extras.get("figure") or Figure()
     symbols, picture, entries = _draw_readable(blank, parts, groups, figure.front_parts(parts), drawing, texts)

@@ -7,10 +7,10 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+from schema_page import schema_page
 from sphinx.application import Sphinx
 
 from benchmarks import results
-from tangible_authoring.schema_page import schema_page
 from tangible_core.files.writing import write_text
 from tangible_core.pipeline.config.schema import json_schema
 from tangible_core.servo import limits

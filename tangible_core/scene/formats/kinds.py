@@ -28,8 +28,8 @@ NPY, ZIP = b"\x93NUMPY", b"PK\x03\x04"  # the first bytes of a PNG, a JPEG, and 
 # The first bytes of a JPEG 2000, with and without its boxes.
 JPEG_2000 = (b"\0\0\0\x0cjP  ", b"\xff\x4f\xff\x51")
 ASC = re.compile(rb"\s*ncols\s+\d", re.IGNORECASE)  # the start of an ESRI ASCII grid
-# The root of an SVG, behind a declaration, a document type and comments.
-SVG = re.compile(rb"(\xef\xbb\xbf)?(\s|<[?!][^>]*>|<!--.*?-->)*<(\w+:)?svg[\s>]", re.DOTALL)
+# The root of an SVG behind a declaration, a type and comments, none of which is tried twice: a file may be hostile.
+SVG = re.compile(rb"(\xef\xbb\xbf)?(\s|<!--.*?-->|<[?!](?!--)[^>]*>)*+<(\w+:)?svg[\s>]", re.DOTALL)
 PDF = b"%PDF-"
 _HEAD = 1024
 _PICTURES = (

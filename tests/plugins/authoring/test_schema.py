@@ -13,7 +13,6 @@ from tangible_core.pipeline.config.schema import json_schema, materials_schema
 
 def test_schema_is_printed(tmp_path: Path):
     assert json.loads(tangible("schema", cwd=tmp_path).stdout) == json_schema()
-    assert "## depth" in tangible("schema", "--markdown", cwd=tmp_path).stdout
 
 
 def test_schema_is_written_beside_a_file_which_names_it_once(tmp_path: Path):

@@ -36,10 +36,8 @@ from tangible_core.plugins import hooks
 from tangible_core.plugins.hooks import Panel, hookimpl
 from tangible_core.plugins.registry import Registry
 from tangible_core.session import Recording
-from tangible_render.haptic_textures import peak_wavelength_m
 from tangible_report.drawing.layout import Cell, arrange
-from tangible_report.drawing.sheet import DPI, WIDTH_IN, draw_figure, draw_sheet
-from tangible_report.material_sheet import draw_material, spectra
+from tangible_report.drawing.sheet import WIDTH_IN, draw_figure, draw_sheet
 from tangible_report.panels import PANELS
 from tangible_report.panels.force import heights_under, round_number, spread
 from tangible_report.panels.relief import cell_points
@@ -494,17 +492,3 @@ class TestFiles:
     def test_sheet_with_another_suffix_is_refused(self, tmp_path: Path) -> None:
         with pytest.raises(OutputError, match=r"drawn as \.png, \.svg or \.pdf"):
             draw_sheet(tmp_path / "sheet.jpg", views=Views(np.zeros((4, 4), np.uint8)))
-
-
-class TestMaterial:
-    @pytest.mark.parametrize("name", ["ice", "skin"])
-    def test_material_sheet_is_drawn(self, tmp_path: Path, name: str) -> None:
-        draw_material(tmp_path / "a.png", library()[name])
-        with Image.open(tmp_path / "a.png") as sheet:
-            assert sheet.width == pytest.approx(WIDTH_IN * DPI, abs=1)
-
-    def test_spectra_of_a_material_are_those_with_a_wavelength(self) -> None:
-        shown = {name: [*spectra(library()[name])] for name in ("ice", "water", "sand", "rubber")}
-        assert shown == {"ice": [], "water": [], "sand": ["heights"], "rubber": ["heights", "friction"]}
-        for spectrum in spectra(library()["rubber"]).values():
-            assert peak_wavelength_m(spectrum) == pytest.approx(library()["rubber"].grain_m, rel=0.05)

@@ -13,7 +13,6 @@ def schema(
         Path | None,
         typer.Argument(metavar="FILE", help="A pipeline file, beside which the schema is written.", show_default=False),
     ] = None,
-    markdown: Annotated[bool, typer.Option("--markdown", help="A reference page instead of JSON Schema.")] = False,
     installed: Annotated[bool, typer.Option("--installed", help="Include the methods of other plugins.")] = False,
     materials: Annotated[bool, typer.Option("--materials", help="Schema of material files instead.")] = False,
 ) -> None:
@@ -23,14 +22,9 @@ def schema(
     """
     from tangible_core.cli import plain, print_json
     from tangible_core.pipeline.config import json_schema, materials_schema
-    from tangible_core.runtime import stream
-
-    from ..schema_page import schema_page
 
     schema = materials_schema() if materials else json_schema(distribution=None if installed else "tangible-images")
-    if markdown and not materials:
-        print(schema_page(schema), end="", file=stream())
-    elif file is None:
+    if file is None:
         print_json(schema)
     else:
         plain(f"written: {write_beside(file, schema, 'materials' if materials else 'tangible')}")

@@ -1,9 +1,9 @@
-"""`tangible materials ...`: the library of materials, with units and sources, as tables and as pictures."""
+"""`tangible materials ...`: the library of materials, with units and sources, as tables."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -30,7 +30,7 @@ app = typer.Typer(name="materials", rich_markup_mode=None, add_completion=False)
 
 @app.callback(invoke_without_command=True)
 def materials(context: typer.Context, library: Library = None, as_json: Json = False) -> None:
-    """List the materials; show or draw some."""
+    """List the materials; show some."""
     if context.invoked_subcommand is not None:
         if library or as_json:
             raise ConfigError(f"materials: write the options after {context.invoked_subcommand!r}")
@@ -98,42 +98,6 @@ def show_one(
     show.say(f"\n{material.texture}: {MODELS[material.texture]}.")
     if (hertz := _vibration_hz(material)) is not None:
         show.say(f"A stroke at {STROKE_M_PER_S:g} m/s vibrates with {hertz:.0f} Hz.")
-
-
-@app.command()
-def draw(
-    names: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="NAME...",
-            help="The materials [default: all].",
-            show_default=False,
-            autocompletion=completing.materials,
-        ),
-    ] = None,
-    out: Annotated[Path, typer.Option("--out", help="Folder for the pictures.")] = Path("out/materials"),
-    library: Library = None,
-    as_json: Json = False,
-) -> None:
-    """Draw materials, one picture each.
-
-    The surface, its spectrum, and the force of a stroke.
-    """
-    from tangible_core.cli import show
-    from tangible_core.materials import find, load_library
-
-    from ..material_sheet import draw_material
-
-    materials = load_library(library)
-    choice = [find(name, materials) for name in names or ()] or list(materials.values())
-    files: list[Any] = []
-    for material in choice:
-        draw_material(out / f"{material.name}.png", material)
-        files.append(out / f"{material.name}.png")
-        if not as_json:
-            show.plain(str(files[-1]))
-    if as_json:
-        show.print_json({"files": files})
 
 
 def _vibration_hz(material: Material) -> float | None:

@@ -36,6 +36,21 @@ def points(path: Path) -> Path:
     return path
 
 
+def camera(path: Path, rays: np.ndarray, normals: np.ndarray) -> Path:
+    """image -> `points` (1, h, w, 3): rays times the red of each pixel, a half less away; `normals`, as they are."""
+    nodes = [
+        _node("Conv", ["image", "first"], "red"),
+        _node("Transpose", ["red"], "depth", perm=[0, 2, 3, 1]),
+        _node("Mul", ["depth", "rays"], "true"),
+        _node("Sub", ["true", "half"], "points"),
+        _node("Mul", ["given", "one"], "normals"),
+    ]
+    given = {"first": np.float32([1, 0, 0]).reshape(1, 3, 1, 1), "rays": np.float32(rays)[None]}
+    given |= {"half": np.float32([0, 0, 0.5]), "given": np.float32(normals)[None], "one": np.float32(1)}
+    gives = {name: [1, *rays.shape] for name in ("points", "normals")}
+    return _save(path, nodes, {"image": [1, 3, *rays.shape[:2]]}, gives, given)
+
+
 def stereo(path: Path, disparities: int = 16, size: tuple[int, int] | None = None) -> Path:
     """left, right -> `disparity` (1, 1, h, w): absolute differences in windows of 9 x 9, and the mean of the best."""
     h, w = size or ("h", "w")

@@ -98,10 +98,22 @@ class Onnx(DepthEstimator, Skippable):
         names = (takes.left, takes.right) if len(views) == 2 else (takes.left,)
         inputs = {name: tensor(view, takes, fit) for name, view in zip(names, views, strict=True)}
         inputs |= {name: np.array(number, np.int64) for name, number in takes.constants.items()}
-        output_names = [gives.name, gives.confidence] if gives.confidence else [gives.name]
-        outputs = run(model, card.runtime or self.runtime, inputs, output_names)
+        output_names = [gives.name, *filter(None, (gives.confidence, gives.normals))]
+        arrays = run(model, card.runtime or self.runtime, inputs, output_names)
+        outputs = dict(zip(output_names, arrays, strict=True))
+        if gives.normals:
+            from tangible_networks.normals import join_normals  # imports scipy
+
+            points, normals, sure = outputs[gives.name], outputs.pop(gives.normals), outputs.get(gives.confidence)
+            size = points.shape[-3:-1]
+            if not points.shape == normals.shape == (1, *size, 3) or (sure is not None and sure.size != np.prod(size)):
+                raise ConfigError(
+                    f"model: {model} returns points of {points.shape} and normals of {normals.shape}; both must be "
+                    "(1, height, width, 3), and a confidence as large; name other outputs in the card"
+                )
+            outputs[gives.name] = join_normals(points[0], normals[0], None if sure is None else sure.reshape(size))
         maps: list[Map] = []
-        for name, output in zip(output_names, outputs, strict=True):
+        for name, output in outputs.items():
             values = restore_size(output, fit, shape, gives.channel if name == gives.name else None)
             if values is None:
                 raise ConfigError(

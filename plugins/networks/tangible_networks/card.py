@@ -101,6 +101,9 @@ class NetworkOutput(_Part):
     """The number of its last axis that is taken, for an output (h, w, channels) such as points in space."""
     confidence: str = ""
     """Name of an output with the network's confidence, 0 to 1; empty without one."""
+    normals: str = ""
+    """Name of an output with normals (h, w, 3), whose slopes the depth gets; the output is then points (h, w, 3), both
+    in a camera's coordinates: right, down, away. Empty without one."""
 
 
 class Card(_Part):

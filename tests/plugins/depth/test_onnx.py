@@ -26,6 +26,7 @@ from tangible_core.testing.synthetic.scenes import wall
 from tangible_depth import Auto, Luminance, Onnx, SemiGlobal
 from tangible_depth import onnx as method
 from tangible_networks import runtimes
+from tangible_networks.normals import join_normals
 from tangible_networks.onnx_file import read_inputs
 
 RUNTIMES = ("opencv", "onnxruntime")
@@ -404,3 +405,32 @@ def test_channel_of_points_is_taken_and_a_whole_number_goes_in(card, tmp_path: P
     np.testing.assert_allclose(found.disparity_px, 3 * shown[..., 2], rtol=1e-6)
     with pytest.raises(ConfigError, match=r"points of .*3.*is not a map"):
         card(model, text.replace("CHANNEL", "3")).estimate(Views(shown))
+
+
+def test_depth_has_the_slopes_of_normals_and_keeps_its_steps(card, tmp_path: Path) -> None:
+    """Waves that only normals have, on two walls, seen by a camera that stands farther off than the points say."""
+    at = np.stack(np.meshgrid(np.arange(90) - 44.5, np.arange(70) - 34.5), axis=-1) / 80
+    walls = np.where(at[..., 0] < 0, 0.6, 0.9)
+    true = walls + 0.004 * np.sin(40 * at[..., 0]) * np.sin(50 * at[..., 1])
+    rays = np.dstack([at, np.ones(true.shape)])
+    places = true[..., None] * rays
+    normals = np.cross(np.gradient(places, axis=0), np.gradient(places, axis=1))
+    normals[:, 44:46] = normals[0, 0]
+    model = onnx_models.camera(tmp_path / "camera.onnx", rays, normals / np.linalg.norm(normals, axis=2)[..., None])
+    views = Views(np.repeat(walls[..., None], 3, axis=2).astype(np.float32))
+
+    def off(output: str) -> float:
+        nearness = card(model, f"output: {{{output}, means: depth}}").estimate(views).disparity_px
+        return float(np.abs(nearness - (1 / true - 1 / true.max()) / np.ptp(1 / true)).mean())
+
+    assert off("name: points, normals: normals") < 0.004 < 0.01 < off("name: points, channel: 2")
+    with pytest.raises(ConfigError, match="both must be"):
+        card(onnx_models.mono(tmp_path / "a.onnx", True), "output: {normals: sure, means: depth}").estimate(views)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (6, 1), (0, 4), (6, 8)])
+def test_points_that_no_camera_sees_keep_their_depth(shape: tuple[int, int]) -> None:
+    points = np.stack([*-np.indices(shape)[::-1], np.ones(shape)], axis=-1)
+    points[-1:] = np.nan
+    depth = join_normals(points, np.zeros_like(points), np.ones(shape))
+    np.testing.assert_array_equal(depth, np.nan_to_num(points[..., 2]))

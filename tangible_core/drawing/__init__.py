@@ -4,6 +4,7 @@ from .areas import Areas as Areas
 from .areas import find_areas as find_areas
 from .ink import Ink as Ink
 from .ink import find_ink as find_ink
+from .ink import noise_level as noise_level
 from .kind import DrawnPicture as DrawnPicture
 from .kind import KindFound as KindFound
 from .kind import PictureKind as PictureKind

@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float32, Float64, Int32
 
 from tangible_core.data import DisparityMap, Views, to_rgb
+from tangible_core.drawing import PictureKind, noise_level, picture_kind
 from tangible_core.errors import PictureError
 from tangible_core.plugins import DepthEstimator, note
 from tangible_core.runtime import plain_opencv
@@ -25,8 +26,12 @@ STEEPNESS = 2.6
 # Largest share of the lower rim that a figure may cover: of a portrait no ground is seen.
 MAX_RIM = 0.75
 # Largest share of the picture of about one colour: more is paper, and no ground.
-MAX_PAPER = 0.5
-SHADES = 16  # shades of each colour that count as about one
+GROUND_CELLS = 14_000
+"""Largest number of cells on which a plain ground is looked for."""
+SMOOTH, NOISE = 0.05, 3.0
+"""Largest difference of a colour within 3 x 3 cells of a plain ground, beyond so many standard deviations of noise."""
+MAX_GROUND = 0.45
+"""Largest share of the picture that may be one plain ground, seen at all four rims: more is paper, or a table."""
 
 
 class Cues(DepthEstimator):
@@ -34,7 +39,8 @@ class Cues(DepthEstimator):
 
     A score is the weighted sum of the lowest and the mean row of a pixel's region, of its own row, and of the map of
     the figure where there is a network for it (`tangible networks add figure`). The confidence of a pixel is how surely
-    it is nearer or farther than the others. A picture without a ground is refused: a portrait, or a page of paper.
+    it is nearer or farther than the others. A picture without a ground is refused: a portrait, a drawing, a page, or
+    things from above, which a plain ground surrounds.
 
     Sources: Felzenszwalb & Huttenlocher, Efficient graph-based image segmentation, IJCV 59, 2004 (regions); Hoiem,
     Efros & Hebert, Geometric context from a single image, ICCV 2005 (where regions stand).
@@ -53,10 +59,10 @@ class Cues(DepthEstimator):
         from tangible_networks.seeing import look_for_figure
 
         colours = to_rgb(views.left)
-        if _is_paper(colours):
+        if _has_plain_ground(colours) or picture_kind(views.left).likely != PictureKind.photograph:
             raise PictureError(
-                "most of the picture has one colour, as paper has, so that nothing in it stands on a ground; "
-                "use `relief: edges`, or parts with heights"
+                "the picture is drawn or written, or shows things from above on a plain ground, as coins on a table, "
+                "so that what stands lower in it is no nearer; use `relief: edges`, or parts with heights"
             )
         figure = look_for_figure(colours)
         if figure is not None and float((figure[-1] > 0.5).mean()) > MAX_RIM:
@@ -109,21 +115,30 @@ def _regions(colours: Float32[np.ndarray, "h w 3"]) -> Int32[np.ndarray, "h w"]:
     import cv2
     from skimage.segmentation import felzenszwalb
 
-    rows, columns = colours.shape[:2]
-    scale = min(1.0, (CELLS / (rows * columns)) ** 0.5)
-    size = max(1, round(columns * scale)), max(1, round(rows * scale))
     with plain_opencv():
-        small = cv2.resize(colours, size, interpolation=cv2.INTER_AREA)
+        small = _reduce(colours, CELLS)
         labels = felzenszwalb(small, scale=SCALE, sigma=SIGMA, min_size=MIN_CELLS)
-        return cv2.resize(labels.astype(np.int32), (columns, rows), interpolation=cv2.INTER_NEAREST)
+        return cv2.resize(labels.astype(np.int32), colours.shape[1::-1], interpolation=cv2.INTER_NEAREST)
 
 
-def _is_paper(colours: Float32[np.ndarray, "h w 3"]) -> bool:
-    """Return True if more than MAX_PAPER of the picture has about one colour, without grain."""
+def _has_plain_ground(colours: Float32[np.ndarray, "h w 3"]) -> bool:
+    """Return True if a smooth ground of more than MAX_GROUND reaches all four rims of the picture."""
     import cv2
 
     with plain_opencv():
-        smooth = cv2.erode(colours, np.ones((3, 3))) > cv2.dilate(colours, np.ones((3, 3))) - 1 / SHADES
-    red, green, blue = np.moveaxis(np.minimum((colours * SHADES).astype(np.int64), SHADES - 1), 2, 0)
-    shades = ((red * SHADES + green) * SHADES + blue)[smooth.reshape(colours.shape).all(2)]
-    return float(np.bincount(shades, minlength=1).max()) > MAX_PAPER * colours[..., 0].size
+        small, near = _reduce(colours, GROUND_CELLS), np.ones((3, 3), np.uint8)
+        change = (cv2.dilate(small, near) - cv2.erode(small, near)).reshape(small.shape).max(axis=2)
+        smooth = change < SMOOTH + NOISE / 255 * noise_level((255 * small).astype(np.uint8))
+        _, grounds = cv2.connectedComponents(smooth.astype(np.uint8), connectivity=4)
+    rims = grounds[0], grounds[-1], grounds[:, 0], grounds[:, -1]
+    around = set.intersection(*(set(rim.tolist()) for rim in rims)) - {0}
+    return any((grounds == ground).mean() > MAX_GROUND for ground in around)
+
+
+def _reduce(colours: Float32[np.ndarray, "h w 3"], cells: int) -> Float32[np.ndarray, "r c 3"]:
+    import cv2
+
+    rows, columns = colours.shape[:2]
+    scale = min(1.0, (cells / (rows * columns)) ** 0.5)
+    size = max(1, round(columns * scale)), max(1, round(rows * scale))
+    return np.asarray(cv2.resize(colours, size, interpolation=cv2.INTER_AREA))

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter
 
 from onnx_models import mono
 from tangible_core import Views
@@ -21,7 +22,8 @@ def room() -> np.ndarray:
         picture[row] = 110 + row // 4, 100, 80
     picture[60:180, 40:70] = 240, 240, 235
     picture[60:125, 200:230] = 180, 20, 20
-    return picture
+    grain = gaussian_filter(np.random.default_rng(0).normal(0, 60, (200, 300, 1)), (1, 1, 0))
+    return np.clip(picture + grain, 0, 255).astype(np.uint8)
 
 
 def test_what_stands_lower_is_nearer_from_top_to_bottom() -> None:
@@ -62,8 +64,17 @@ def test_figure_is_nearer_and_a_portrait_is_refused(models: Path) -> None:
         Cues().estimate(Views(portrait))
 
 
-def test_paper_is_refused() -> None:
-    page = np.full((100, 80), 255, np.uint8)
-    page[20:30, 10:70] = 0
-    with pytest.raises(PictureError, match="paper"):
-        Cues().estimate(Views(page))
+ROW, COLUMN = np.mgrid[:150, :200]
+ON_NO_GROUND = {
+    "a page": np.where((ROW % 20 < 5) & (ROW > 20) & (abs(COLUMN - 100) < 80), 60, 250),
+    "coins in slanting light": np.where((ROW % 50 - 25) ** 2 + (COLUMN % 50 - 25) ** 2 < 300, 180, 60 + COLUMN / 3),
+    "a map up to the rim": np.where(COLUMN + ROW / 9 < 90, 200, np.where(ROW < 80 + COLUMN / 9, 120, 60)),
+}
+
+
+@pytest.mark.parametrize("sigma", [0, 8])
+@pytest.mark.parametrize("name", ON_NO_GROUND)
+def test_what_stands_on_no_ground_is_refused_in_noise_as_well(name: str, sigma: float) -> None:
+    noisy = ON_NO_GROUND[name] + np.random.default_rng(0).normal(0, sigma, ROW.shape)
+    with pytest.raises(PictureError, match="drawn"):
+        Cues().estimate(Views(np.clip(noisy, 0, 255).astype(np.uint8)))

@@ -26,6 +26,6 @@ def english_of(text: str) -> list[str]:
         for name in NAMES:
             rest = rest.replace(name, "")
         words = re.findall(r"\w+", QUOTED.sub(" ", rest))
-        if not SMALL.isdisjoint(words):
+        if not SMALL.isdisjoint(words) and not line.startswith(">>>"):
             found.append(line.strip())
     return found

@@ -79,7 +79,7 @@ def test_version_option_prints_the_version(tmp_path: Path):
 )
 def test_mistake_on_the_command_line_is_refused_with_the_cure(words: str, said: str, folder: Path):
     for name in ("leaflet.pdf", "leaflet.odt"):
-        (folder / name).write_bytes(b"%PDF-1.7")
+        (folder / name).write_bytes(b"%PDF-1.7" if name.endswith("pdf") else b"PK\x03\x04")
     (folder / "empty.yaml").touch()
     (folder / "left.yaml").write_text("scene: {left: dot.png}\n")
     done = tangible(*words.split(), cwd=folder)

@@ -10,6 +10,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
+import pytest
 
 from tangible_core.runtime.child_process import python
 
@@ -89,6 +90,7 @@ class TestSlim:
         assert len(entries) == slim.count("==")
         assert set(entries) <= {match[0].strip() for match in self.ENTRY.finditer(locked)}
 
+    @pytest.mark.whole
     def test_surface_of_heights_is_felt_with_the_listed_packages_alone(self, tmp_path: Path):
         y, x = np.mgrid[:48, :64]
         heights_m = np.float32(1e-3 * np.sin(x / 7) * np.cos(y / 9)) + np.float32(1e-3) * (x > 40)

@@ -109,6 +109,7 @@ def test_recordings_page_names_every_column():
     assert all(f"`{name}`" in page for name in TICK_COLUMNS)
 
 
+@pytest.mark.whole
 def test_force_loop_page_runs_as_shown(capsys: pytest.CaptureFixture[str]):
     page = ROOT.joinpath("docs/explanation/servo.md").read_text("utf-8")
     pulled, shown, felt = re.findall(r"```python\n(.*?)```", page, re.DOTALL)

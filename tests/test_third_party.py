@@ -107,6 +107,7 @@ def test_third_party_exporter_exports_a_pipeline(environment, tmp_path):
     assert 'width="80.000mm" height="48.000mm"' in tmp_path.joinpath("out/map.svg").read_text()
 
 
+@pytest.mark.whole
 def test_third_party_method_and_observer_take_part_in_a_pipeline(environment, tmp_path):
     diary = tmp_path / "diary.txt"
     ran = environment.run("run", EXAMPLE / "blocks.yaml", "--out", "out", cwd=tmp_path, ACME_DIARY=str(diary))

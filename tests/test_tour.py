@@ -40,6 +40,7 @@ def run_cell(module: ModuleType, number: int, text: str) -> object:
     return eval(compile(ast.Expression(last.value), name, "eval"), vars(module))
 
 
+@pytest.mark.whole
 def test_notebook_runs_and_shows_its_products(maker: ModuleType, monkeypatch: pytest.MonkeyPatch):
     from matplotlib import pyplot
 

@@ -131,7 +131,9 @@ class TestByRoughness:
         rungs = [LADDER.index(material.name) for material in assigned.materials]
         assert rungs == [0, 1, 1, 2, 3, 4, 4, 5, 6, 7, 7, 8]
 
-    @pytest.mark.parametrize(("shape", "side"), [((40, 90), 3), ((300, 256), 5), ((704, 800), 11)])
+    @pytest.mark.parametrize(
+        ("shape", "side"), [((40, 90), 3), ((300, 256), 5), pytest.param((704, 800), 11, marks=pytest.mark.whole)]
+    )
     def test_roughness_window_is_a_64th_of_the_shorter_side(self, shape: tuple[int, int], side: int):
         """Compare with the plain formula: the median of the deviation in windows of at least three pixels."""
         picture = np.random.default_rng(2).random(shape)

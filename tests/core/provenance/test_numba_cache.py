@@ -85,6 +85,7 @@ def acme(tmp_path: Path) -> Iterator[Acme]:
         yield acme
 
 
+@pytest.mark.whole
 def test_kernel_is_recompiled_after_an_edit_of_its_imports_only(acme: Acme):
     assert (acme.run(), acme.run()) == (["6.0", "1"], ["6.0", "0"])
     acme.edit("neighbour", "GAIN = 5.0")

@@ -111,6 +111,7 @@ def install_acme(folder: Path) -> Path:
 
 
 class TestTheCurrentFolder:
+    @pytest.mark.whole
     def test_feel_runs_nothing_of_the_current_folder(self, folder: Path) -> None:
         marker = folder / "ran.txt"
         for name in ("numba", "numpy", "pickle", "importlib", "tangible_core"):

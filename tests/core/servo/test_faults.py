@@ -210,6 +210,7 @@ class TestStandstill:
             assert servo.report().stopped == "the time is over"
             assert servo.report().overruns < 400
 
+    @pytest.mark.whole
     def test_device_that_cannot_be_reopened_is_logged(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
     ) -> None:

@@ -23,7 +23,8 @@ pytestmark = pytest.mark.usefixtures("own_memory", "patient")
 
 AT_ONCE = Safety(ramp_s=0, stale_s=1.0)  # a late tick takes no force away
 FRAME = TICK_COLUMNS.index("frame")
-DEVICES = [Circling(z_m=0.008), Circling(z_m=0.008, exchanges=True), Failing(fault="none")]
+EXCHANGING = pytest.param(Circling(z_m=0.008, exchanges=True), marks=pytest.mark.whole)
+DEVICES = [Circling(z_m=0.008), EXCHANGING, Failing(fault="none")]
 
 
 @pytest.mark.usefixtures("loop_in_thread")

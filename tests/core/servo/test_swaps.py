@@ -52,7 +52,8 @@ class TestSwaps:
         ("device", "few", "many"),
         [
             (Circling(z_m=0.009), 20, 60),
-            (Circling(z_m=0.009, exchanges=True), 10, 20),  # dear: Python ticks all the while
+            # dear: Python ticks all the while
+            pytest.param(Circling(z_m=0.009, exchanges=True), 10, 20, marks=pytest.mark.whole),
             pytest.param(Circling(z_m=0.009), 200, 5000, marks=pytest.mark.nightly),
             pytest.param(Failing(fault="none"), 200, 500, marks=pytest.mark.whole),
         ],

@@ -34,6 +34,7 @@ def measure_rows(registry: Registry, path: Path, methods: str, more: str = QUICK
     return list(run(outlook, path, wanted.protocol.timeout_s, lambda *_: None, lambda *_: None).values())
 
 
+@pytest.mark.whole
 def test_rows_of_processes_have_every_field_and_leave_out_the_process(registry: Registry, tmp_path: Path):
     methods = "{use: constant, label: c, value_px: 4.5, seconds: 0.1}, hungry, talks"
     begun = time.perf_counter()

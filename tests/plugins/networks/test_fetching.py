@@ -206,6 +206,7 @@ def test_commands(models: Path, tmp_path: Path) -> None:
     assert json.loads(called("remove", "own", "--json")[1]) == ["own"]
 
 
+@pytest.mark.whole
 def test_fetch_for_another_program_reports_ends_and_stops(models: Path) -> None:
     """The page's server fetches so: an error is a sentence, and the end of the input is a stop."""
     models.mkdir()

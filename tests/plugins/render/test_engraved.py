@@ -145,6 +145,7 @@ class TestBase:
         assert np.allclose(deep.height_m - deep.height_m.min(), carved.height_m, atol=1e-8)
 
 
+@pytest.mark.whole
 def test_preflight_judges_the_grooves():
     labels = (np.indices((80, 80))[1] > 40).astype(np.int32)
     scene = Scene.photo(np.full((80, 80, 3), 128, np.uint8), segments=labels)

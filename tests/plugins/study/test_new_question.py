@@ -7,6 +7,8 @@ import sys
 from pathlib import Path
 from shutil import copytree, ignore_patterns
 
+import pytest
+
 import tangible_study
 from studies import write_study
 from tangible_study.points import QUESTIONS
@@ -67,6 +69,7 @@ print(json.loads(next(path.parent.glob("out/*/beh/*.json")).read_text())["questi
 """
 
 
+@pytest.mark.whole
 def test_new_kind_of_question_is_asked_analysed_and_simulated_with_two_files_touched(tmp_path: Path):
     package = tmp_path / "package/tangible_study"
     copytree(STUDY, package, ignore=ignore_patterns("__pycache__"))

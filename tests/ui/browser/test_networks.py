@@ -4,6 +4,8 @@ import hashlib
 import os
 from pathlib import Path
 
+import pytest
+
 from page_files import built_page
 from page_panels import open_panel
 from sessions import small_scene
@@ -14,6 +16,7 @@ DIGEST = hashlib.sha256(CONTENT).hexdigest()
 CARD = f"title: Mine\ntask: figure\nsha256: {DIGEST}\nlicence: ours\noutput: {{means: figure}}\n"
 
 
+@pytest.mark.whole
 def test_network_is_added_from_a_file_checked_and_removed(serve, open_page, tmp_path: Path) -> None:
     built_page()
     models = tmp_path / "models"

@@ -294,6 +294,7 @@ class TestFloods:
             for each in slow:
                 each.close()
 
+    @pytest.mark.whole
     def test_head_of_a_request_has_a_time_limit(self, page: PageServer, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(connection, "HEAD_S", 0.2)
         for said in (b"", b"GET / HT", f"GET / HTTP/1.1\r\nHost: {page.host}\r\n\r\nGET / HT".encode()):

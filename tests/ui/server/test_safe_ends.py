@@ -227,6 +227,7 @@ def test_server_ended_by_a_signal_leaves_no_force_and_no_file(home: Home, name: 
     assert server.lines[-1] == f"{words}; what was finished is kept"
 
 
+@pytest.mark.whole
 def test_server_that_is_killed_leaves_no_force_and_its_draft_is_offered(home: Home) -> None:
     server = home.server("level.yaml")
     press = Press(home, server)

@@ -16,8 +16,8 @@ from PIL import Image
 from .figures import Figure, judged, part
 
 TINY, COUNT, PICTURES = (48, 64), 10_000, 50
+# Scenes after which memory is looked at first, and from which on speed is measured.
 FIRST = 100
-"""Scenes after which memory is looked at first, and from which on speed is measured."""
 ONE_PHOTO = "scene: builtin/brick\nwant: relief\ndepth: luminance\nworkspace: {width_m: 0.04}\n"
 
 

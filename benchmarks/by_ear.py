@@ -18,10 +18,9 @@ from .tests_path import page_files
 STROKES, FEWER = 60, (10, 20)
 SHARES = ("precision", "recall", "order")
 LEAST = 0.9
+# Border from which two parts are neighbours that are to be found: a fingertip is five times as wide.
 MIN_BORDER_M = 0.002
-"""Border from which two parts are neighbours that are to be found: a fingertip is five times as wide."""
-MIN_STEP_M = 0.0003
-"""Difference from which the order of two heights is to be found."""
+MIN_STEP_M = 0.0003  # difference from which the order of two heights is to be found
 
 
 class Score(NamedTuple):
@@ -30,14 +29,10 @@ class Score(NamedTuple):
     kind: str
     parts: int
     pairs: int
-    precision: float
-    """Of the pairs that were said to touch, the share of those that do."""
-    recall: float
-    """Of the pairs that touch, the share of those that were said to."""
-    order: float
-    """Of all pairs of parts of different heights, the share of those whose order is right."""
-    words: int
-    """Words that were spoken."""
+    precision: float  # of the pairs that were said to touch, the share of those that do
+    recall: float  # of the pairs that touch, the share of those that were said to
+    order: float  # of all pairs of parts of different heights, the share of those whose order is right
+    words: int  # words that were spoken
 
 
 def section() -> str:

@@ -12,10 +12,9 @@ from tangible_core.parts.layering import Layering
 
 ROWS, COLUMNS, WIDTH_M = 240, 320, 0.08
 PITCH_M = WIDTH_M / COLUMNS
-SMOOTH_M = 0.001
-"""Standard deviation by which a pipeline file smooths the borders of parts."""
+SMOOTH_M = 0.001  # standard deviation by which a pipeline file smooths the borders of parts
+# Smallest part, cells, 10 square millimetres: smaller ones go to a neighbour.
 MIN_CELLS = 160
-"""Smallest part, cells, 10 square millimetres: smaller ones go to a neighbour."""
 MAX_HIGH_M = 0.0042
 NAMES = (
     "wall", "table", "cup", "jug", "cloth", "apple", "window", "door", "roof", "tree", "hill", "road", "river", "boat",

@@ -18,10 +18,8 @@ NUMBERED = re.compile(r"^.*\bpart (\d+)$")
 class Rebuilt(NamedTuple):
     """A picture as it was understood: its parts by what they are called."""
 
-    touching: frozenset[frozenset[str]]
-    """Pairs of parts that touch."""
-    height_mm: dict[str, float]
-    """Heights over the first part, for every part that a way of steps leads to."""
+    touching: frozenset[frozenset[str]]  # pairs of parts that touch
+    height_mm: dict[str, float]  # heights over the first part, for every part that a way of steps leads to
 
 
 def rebuild(announcements: Iterable[str]) -> Rebuilt:

@@ -8,12 +8,12 @@ from .results import ROOT, newest, promises
 
 CHARTS = ROOT / "docs/pictures/performance.svg"
 OURS, OTHERS = "#0b6e4f", "#8a8a8a"
+# Rows of the section on lateness: loops of one kind of rights, and their labels.
 LOOPS = {
     "no rights: all compiled": "ours, compiled",
     "no rights: compiled tick, a device that Python asks": "ours, a device in Python",
     "a loop in C": "a loop in C",
 }
-"""Rows of the section on lateness: loops of one kind of rights, and their labels."""
 
 
 def table_of(result: dict[str, Any], *columns: str) -> list[tuple[str, ...]]:

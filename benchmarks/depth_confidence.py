@@ -12,10 +12,9 @@ from .depth_pairs import KnownScene, real, synthetic
 from .figures import Figure, table
 
 LARGEST_RATIO = 1.25
-MAX_OFF = 0.05
-"""Largest difference of a probability and what happens."""
+MAX_OFF = 0.05  # largest difference of a probability and what happens
+# Lower ends of ranges of probability; hardly any value is below the second.
 EDGES = (0.0, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98)
-"""Lower ends of ranges of probability; hardly any value is below the second."""
 
 
 def figures() -> list[Figure]:

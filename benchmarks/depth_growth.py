@@ -15,12 +15,12 @@ from .figures import Figure, table
 from .turns import peak_bytes, seconds
 
 DISPARITIES = 128
+# The builtin pair this often side by side and below itself: 0.4 to 18 megapixels, all with the same disparities.
 TILES = (1, 2, 3, 5, 7)
-"""The builtin pair this often side by side and below itself: 0.4 to 18 megapixels, all with the same disparities."""
 VOLUMES_BYTES = strips.VOLUME_BYTES
 Effort = Literal["balanced", "best"]
+# What `semi-global` states, as VOLUMES_BYTES.
 MEMORY_BYTES_PX: Mapping[Effort, int] = {"balanced": 25, "best": 32}
-"""What `semi-global` states, as VOLUMES_BYTES."""
 OF: Mapping[Effort, str] = {"balanced": "", "best": ", `effort: best`"}
 Size = tuple[float, float, float, float]
 ROUNDS = 5

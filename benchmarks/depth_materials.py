@@ -19,10 +19,8 @@ from tangible_core.testing.synthetic.stereo_scenes import (
 from tangible_core.testing.synthetic.texture_scenes import FAMILIES, smooth_noise
 
 WIDTH, HEIGHT = 480, 360
-TILE_PX = 256
-"""Side of a material, which repeats beyond it."""
-POINTS = 2
-"""Points across a pixel, along either axis, of which it is the mean."""
+TILE_PX = 256  # side of a material, which repeats beyond it
+POINTS = 2  # points across a pixel, along either axis, of which it is the mean
 NOISES, HOW_OFTEN = (0.0, 0.5, 1.0, 2.0, 4.0), (0.2, 0.3, 0.3, 0.15, 0.05)
 """Standard deviations of noise, in grey levels, and their shares."""
 Where = Callable[[Surface, np.ndarray, np.ndarray], np.ndarray]

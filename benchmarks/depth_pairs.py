@@ -13,10 +13,9 @@ from tangible_core.data import Views
 from tangible_core.testing.synthetic.stereo_scenes import SCENES, KnownPair
 from tangible_depth.search.pairs import Pair, grey_pair
 
+# Environment variable: a folder whose sub-folders hold left.png, right.png and disparity.npz.
 FOLDER = "TANGIBLE_STEREO"
-"""Environment variable: a folder whose sub-folders hold left.png, right.png and disparity.npz."""
-LARGE_PX = 300_000
-"""Pixels from which times are promised."""
+LARGE_PX = 300_000  # pixels from which times are promised
 
 
 class KnownScene(NamedTuple):

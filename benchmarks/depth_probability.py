@@ -22,8 +22,8 @@ HIGHEST_FILLED = float(np.float32(FILLED))
 FILLED_EDGES = np.linspace(0, HIGHEST_FILLED, 9)
 MATCHED_EDGES = np.array([HIGHEST_FILLED, 0.22, 0.26, 0.3, 0.34, 0.38, 0.42, 0.46, 0.5, 0.55, 0.6, 0.7, 0.8, 1])
 """Ends of the ranges of confidence whose means are the table's places."""
+# Share of errors by which scenes are weighted: 1 / (share + this), so that hard ones do not drown the others.
 EVEN_OUT = 0.02
-"""Share of errors by which scenes are weighted: 1 / (share + this), so that hard ones do not drown the others."""
 
 
 def main() -> None:

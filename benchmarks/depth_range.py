@@ -11,8 +11,7 @@ from .depth_pairs import KnownScene, real, synthetic
 from .figures import Figure
 from .turns import in_turns
 
-MAX_SHARE = 0.09
-"""Of the time of the match."""
+MAX_SHARE = 0.09  # of the time of the match
 
 
 def figures() -> list[Figure]:

@@ -15,10 +15,9 @@ from tangible_depth.semi_global import SemiGlobal
 
 from .figures import Figure
 
+# Of the pairs, and what is cut off at each side: warping leaves no picture there.
 SHAPE, CUT = (720, 960), 0.12
-"""Of the pairs, and what is cut off at each side: warping leaves no picture there."""
-COURSE_PX = 24
-"""Height of a course of bricks."""
+COURSE_PX = 24  # height of a course of bricks
 
 
 class Taken(NamedTuple):

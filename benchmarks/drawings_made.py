@@ -311,11 +311,11 @@ def _page(columns: int) -> Callable[[Paper], None]:
     return draw
 
 
+# What is drawn, by half and kind; maps and cells have outlines in the first half only.
 FAMILIES: dict[str, dict[str, tuple[Callable[[Paper], None], ...]]] = {
     "chosen": {"lines": (_house, _flowers, _sketch), "drawing": (_map, _cell, _bars, _scene), "text": (_page(1),)},
     "told": {"lines": (_outlines, _plan, _geometry), "drawing": (_map, _cell, _pie, _tiles), "text": (_page(2),)},
 }
-"""What is drawn, by half and kind; maps and cells have outlines in the first half only."""
 
 
 def _noise(sigma: float) -> Callable[..., np.ndarray]:

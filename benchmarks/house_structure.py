@@ -15,12 +15,12 @@ from .house_words import ROOT, count_words, shipped
 
 CORE = "tangible_core"
 IMPORT_OF_CORE = re.compile(rf"^\s*(?:from|import) ({CORE}[\w.]*)", re.MULTILINE)
+# Modules of the core that plugins import from, at most: its rooms, whose stubs list the names.
 PLUGINS_IMPORT = 40
-"""Modules of the core that plugins import from, at most: its rooms, whose stubs list the names."""
 NAMES = {"functions": 1, "locals": 1.5, "parameters": 1.5, "attributes": 3}
 """The kinds of names, and the share of each that may be a bare participle, in per cent."""
+# Files next to `__init__.py` that a folder holds at most, as a stranger looks through them at a glance.
 LARGEST_FOLDER = 10
-"""Files next to `__init__.py` that a folder holds at most, as a stranger looks through them at a glance."""
 
 
 def structure_rows() -> list[str]:

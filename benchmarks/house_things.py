@@ -46,6 +46,7 @@ def entry(kind: str, line: str, floor: str = "") -> Edit:
     return lambda text: (swap(floor, f"contours | {floor}") if floor else str)(point(text))
 
 
+# The edits that add a thing, by the files that they touch; texts in other languages are in the catalogue.
 THINGS: Mapping[str, Mapping[str, Edit]] = {
     "device": {
         "plugins/devices/tangible_devices/handle.py": example("device/acme_handle/handle.py"),
@@ -65,7 +66,6 @@ THINGS: Mapping[str, Mapping[str, Edit]] = {
         )(swap("surface, self.stiffness_n_per_m)", "surface, self.share * self.stiffness_n_per_m)")(text))
     },
 }
-"""The edits that add a thing, by the files that they touch; texts in other languages are in the catalogue."""
 
 
 def add(thing: str, folder: Path) -> dict[str, str]:

@@ -24,8 +24,8 @@ these they this those though through to together told too toward under until up 
 whenever where wherever whether which whichever while who whoever whom whose why will with within without yes
 """
 _NOUN_PHRASES = "a all another both called each every half made no said several some told"
+# Words that begin neither an imperative nor a noun phrase; articles and counts of a noun are left out.
 FUNCTION_WORDS = frozenset(_FUNCTION_WORDS.split()) - frozenset(_NOUN_PHRASES.split())
-"""Words that begin neither an imperative nor a noun phrase; articles and counts of a noun are left out."""
 _IRREGULAR = """
 asked awaited become been begun bent bound bought bred brought built burnt caught chosen come cut dealt done
 drawn driven dug eaten fallen fed felt fit flown forbidden forgotten found frozen given gone got grown heard
@@ -33,11 +33,10 @@ held hidden hit hung hurt kept known laid learnt led left lent let lost made mea
 risen run said sat seen sent set shown shut slept slid sold sought spent split spoken spread stolen stood stuck
 struck sunk swept swum swung taken taught thought thrown told torn understood woken won worn written wrung
 """
-IRREGULAR = frozenset(_IRREGULAR.split())
-"""Participles that do not end in -ed."""
+IRREGULAR = frozenset(_IRREGULAR.split())  # participles that do not end in -ed
 _VERBS = "cut feed fit heed hit let need put read run seed set shed shut speed split spread"
+# Participles that are imperatives as well, and words on -ed that are not participles.
 VERBS = frozenset(_VERBS.split())
-"""Participles that are imperatives as well, and words on -ed that are not participles."""
 
 
 class Place(NamedTuple):

@@ -29,8 +29,8 @@ from .mutants_sample import sample
 from .mutants_tree import Programs, Tree, copy_of
 
 ROOT = Path(__file__).parents[1]
+# A mutant's tests may take so long, and three times what all tests of its list take without it; then they hang.
 PATIENCE_S = 30.0
-"""A mutant's tests may take so long, and three times what all tests of its list take without it; then they hang."""
 PASSED, INTERRUPTED = 0, 2
 """What pytest ends with: 1 between them where a test fails, the last where a test file cannot be imported."""
 

@@ -14,12 +14,10 @@ from typing import Any, NamedTuple
 
 from .mutants_lists import Mutant
 
-SHIPPED = ("tangible_core", "plugins")
-"""Folders whose Python files faults are put into."""
+SHIPPED = ("tangible_core", "plugins")  # folders whose Python files faults are put into
+# Operators of mutmut that are left out: texts, and None in place of a value.
 COARSE = {"operator_string", "operator_assignment", "operator_lambda"}
-"""Operators of mutmut that are left out: texts, and None in place of a value."""
-SILENT = {"log", "logging", "warnings"}
-"""Names of objects whose calls change no result."""
+SILENT = {"log", "logging", "warnings"}  # names of objects whose calls change no result
 
 
 class Fault(NamedTuple):

@@ -22,8 +22,8 @@ sys.exit({function}())
 """
 
 
+# The built page, which git does not know: tests of what is made of it need it.
 BUILT = "plugins/web/tangible_web/static"
-"""The built page, which git does not know: tests of what is made of it need it."""
 
 
 class Ended(NamedTuple):

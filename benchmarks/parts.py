@@ -30,10 +30,9 @@ WIDTH_M, TALL_M = 0.16, 0.006
 GIVEN, GUESS = HeightChoice(by="given"), HeightChoice(by="guess")
 TOP_M = TALL_M - GIVEN.bulge_m - GIVEN.detail_m
 MIN_SHARE, MAX_PARTS, MIN_WIDTH = 0.89, 12, 1 / 16
+# Of automatic parts: share of drawn borders that are felt, and share of what is felt that is a drawn border.
 MIN_FOUND, MIN_TRUE = 0.75, 0.60
-"""Of automatic parts: share of drawn borders that are felt, and share of what is felt that is a drawn border."""
-SIZES = {0.4: (500, 741), 5: (2000, 2667), 12: (3000, 4000)}
-"""Rows and columns, by megapixels."""
+SIZES = {0.4: (500, 741), 5: (2000, 2667), 12: (3000, 4000)}  # rows and columns, by megapixels
 RELIEF_MS, RUNS = 15, 7
 
 

@@ -22,8 +22,7 @@ from tangible_core.scene import geometry
 from .figures import Figure, judged, part, table
 from .house import tangible
 
-SIZES = {12: (4000, 3000), 60: (9000, 6700)}
-"""Columns and rows, by megapixels."""
+SIZES = {12: (4000, 3000), 60: (9000, 6700)}  # columns and rows, by megapixels
 SECONDS, PEAK_GB = {12: 3.4, 60: 8.0}, {12: 1.5, 60: 1.5}
 RUNS = 3
 PIPELINE = """
@@ -42,8 +41,7 @@ class Process(NamedTuple):
     """What a process took."""
 
     seconds: float
-    processor_s: float
-    """Of all processors together, which what else runs changes little."""
+    processor_s: float  # of all processors together, which what else runs changes little
     peak_gb: float
 
 
@@ -65,8 +63,8 @@ def section() -> str:
     return "\n".join([head, "", *table(names, rows), "", *judged(figures)])
 
 
+# What processes took, by name; and megabytes in the cache and in the folder of results.
 Taken = tuple[dict[str, Process], tuple[float, float]]
-"""What processes took, by name; and megabytes in the cache and in the folder of results."""
 
 
 def _took(folder: Path, size: int) -> Taken:

@@ -35,45 +35,36 @@ from .figures import Figure, judged, table
 from .regions_drawn import photographs
 from .tests_path import drawn_parts
 
-NAMED = "astronaut", "chelsea", "coffee"
-"""Photographs that scikit-image ships."""
-PAIR = "motorcycle"
-"""The pair that scikit-image ships."""
+NAMED = "astronaut", "chelsea", "coffee"  # photographs that scikit-image ships
+PAIR = "motorcycle"  # the pair that scikit-image ships
+# Those of the photographs that people drew regions in whose faces are the widest; no number was chosen on them.
 WITH_FACES = "189013", "230098", "368037"
-"""Those of the photographs that people drew regions in whose faces are the widest; no number was chosen on them."""
 DRAWN = "astronaut", "camera", "chelsea", "coffee", "rocket", "motorcycle"
 """Photographs of the picture in the docs, which `python -m benchmarks.recognition` draws."""
 CELL_PX = 300
 SECONDS = 60, 600
 MIN_LIGHTS, MAX_MEAN_OFF, MIN_OVERLAP = 9, 0.04, 0.8
+# The press is a light one: on 800 N/m, a hand that presses with 1 N is over a millimetre deep, and misses eyes.
 TICK_S, PRESS_N, SPEED_M_PER_S = 1e-3, 0.3, 0.15
-"""The press is a light one: on 800 N/m, a hand that presses with 1 N is over a millimetre deep, and misses eyes."""
-LANDING = 100
-"""Ticks in which the hand comes down on one place."""
-LIGHTS = tuple(range(0, 360, 30))
-"""Directions of the light, degrees."""
-FIGURE_LIGHTS = LIGHTS[3::6]
-"""Those under which the figure is looked for, which takes a second each."""
-AROUND = 1.5
-"""Distance from a face's middle within which it is looked for, of its width."""
+LANDING = 100  # ticks in which the hand comes down on one place
+LIGHTS = tuple(range(0, 360, 30))  # directions of the light, degrees
+FIGURE_LIGHTS = LIGHTS[3::6]  # those under which the figure is looked for, which takes a second each
+AROUND = 1.5  # distance from a face's middle within which it is looked for, of its width
 ELEVATION = 35
+# Largest mean distance of the points of a face from those in the photograph, of its width: farther, it is another.
 MAX_OFF = 0.3
-"""Largest mean distance of the points of a face from those in the photograph, of its width: farther, it is another."""
 
 
 class Felt(NamedTuple):
     """What networks see of a relief."""
 
-    lights: int
-    """Number of lights under which the photograph's face is found."""
-    off: float
-    """Mean distance of the face's points from the photograph's, of the face's width."""
-    overlap: float
-    """Intersection over union of the figure with the photograph's, the best of all lights."""
-    has_face: bool
-    """True if the photograph shows a face."""
+    lights: int  # number of lights under which the photograph's face is found
+    off: float  # mean distance of the face's points from the photograph's, of the face's width
+    overlap: float  # intersection over union of the figure with the photograph's, the best of all lights
+    has_face: bool  # true if the photograph shows a face
 
 
+# The ways to make a relief of a photograph, as options of a pipeline.
 WAYS: Mapping[str, Mapping[str, Any]] = {
     "brightness": {"depth": Luminance()},
     "edges": {"relief": "edges", "texture": Hierarchy()},
@@ -82,7 +73,6 @@ WAYS: Mapping[str, Mapping[str, Any]] = {
     "figure": {"relief": "figure"},
     "figure, no slope bound": {"relief": {"by": "figure", "slope": 0}},
 }
-"""The ways to make a relief of a photograph, as options of a pipeline."""
 PAIR_WAYS: Mapping[str, Mapping[str, Any]] = {
     "disparity": {"depth": SemiGlobal()},
     "disparity, no slope bound": {"depth": SemiGlobal(), "relief": {"slope": 0}},

@@ -21,8 +21,8 @@ from tangible_render.proxy import Proxy
 from .figures import Figure, judged, part
 
 KILLS = 20
-BATCH = 100
-"""Ticks in a tenth of a second, which is how often a session appends."""
+BATCH = 100  # ticks in a tenth of a second, which is how often a session appends
+# A thousand ticks a second, as they happen, by the clock that all processes share.
 WRITES = """
 import sys, time
 from pathlib import Path
@@ -38,7 +38,6 @@ with Writer(Path(sys.argv[1])) as writer:
         time.sleep(max(0.0, end - time.monotonic()))
         writer.append(rows)
 """
-"""A thousand ticks a second, as they happen, by the clock that all processes share."""
 
 
 def section() -> str:

@@ -64,8 +64,7 @@ def covering(counts: Counts) -> float:
 
 COUNTED = {"covering": covering, "PRI": rand_index, "ARI": adjusted_rand_index}
 MEASURES = *COUNTED, "F"
-NEAR = 0.0075
-"""The distance within which two borders are one, of the diagonal."""
+NEAR = 0.0075  # the distance within which two borders are one, of the diagonal
 
 
 def section() -> str:

@@ -8,10 +8,10 @@ import cv2
 import numpy as np
 from jaxtyping import Int32, UInt8
 
+# Environment variable: a folder of photographs, .jpg, each with an .npz of the same name: label maps (h, w).
 REGIONS = "TANGIBLE_REGIONS"
-"""Environment variable: a folder of photographs, .jpg, each with an .npz of the same name: label maps (h, w)."""
+# The end of the name of a folder beside it: photographs that networks were not trained on.
 UNSEEN = "_unseen"
-"""The end of the name of a folder beside it: photographs that networks were not trained on."""
 
 
 class Photograph(NamedTuple):

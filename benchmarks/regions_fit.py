@@ -35,14 +35,11 @@ from tangible_texture.tree.regions import Regions, measure_regions, small_region
 
 from .regions_drawn import UNSEEN, Photograph, photographs
 
-ROUNDS, SAMPLES = 4, 5000
-"""The rounds of fitting, and the borders taken from each photograph in each of them."""
+ROUNDS, SAMPLES = 4, 5000  # the rounds of fitting, and the borders taken from each photograph in each of them
+# The cells taken from each photograph, nearer to a drawn border than this or farther than that from all.
 PLACES, NEAR_CELLS, FAR_CELLS = 12_000, 0.8, 3
-"""The cells taken from each photograph, nearer to a drawn border than this or farther than that from all."""
-SIZE_POWER = 0.6
-"""The power of the smaller region's share of the picture that weights a border."""
-RIDGE = 1e-3
-"""The penalty on squared weights of standardised terms."""
+SIZE_POWER = 0.6  # the power of the smaller region's share of the picture that weights a border
+RIDGE = 1e-3  # the penalty on squared weights of standardised terms
 
 
 class Model(NamedTuple):
@@ -61,8 +58,7 @@ class Prepared(NamedTuple):
     colours: np.ndarray
     roughness: np.ndarray
     cues: Tensors
-    drawn: list[np.ndarray]
-    """The people's labels of cells."""
+    drawn: list[np.ndarray]  # the people's labels of cells
 
 
 def prepare(photograph: Photograph, seen: bool = False) -> Prepared:

@@ -32,8 +32,8 @@ from .turns import processor_s
 
 WIDTH_M = 0.08
 SIZE, CHOICE = Workspace().size("depth"), ReliefChoice()
+# Height and smoothing of the relief that was the default before: linear, and blurred all over.
 BEFORE_M = (0.01, 0.002)
-"""Height and smoothing of the relief that was the default before: linear, and blurred all over."""
 PRESS_N, SPEED_M_PER_S, TICK_S = 1.5, 0.12, 0.001
 RUNS = 7
 BOUNDS = {
@@ -44,13 +44,11 @@ BOUNDS = {
     "crisp": (">=", 0.62),
     "rank": (">=", 0.93),
 }
-SIZES = {(741, 500): 20.0, (2667, 1800): 150.0}
-"""Milliseconds of a processor at most, by columns and rows."""
+SIZES = {(741, 500): 20.0, (2667, 1800): 150.0}  # milliseconds of a processor at most, by columns and rows
 BEST, MIN_ORDER_BEST = "`effort: best`", 0.92
 """The other effort, and the share of borders that have the right order with it."""
 DEVICES = "mock", "falcon-simulated"
-SMALL, LARGE = 461, 741
-"""Columns of the pictures in docs/."""
+SMALL, LARGE = 461, 741  # columns of the pictures in docs/
 DOCS = Path(__file__).parents[1] / "docs/explanation/relief"
 
 Make = Callable[[DisparityMap, Calibration | None], Relief]

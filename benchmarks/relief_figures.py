@@ -15,8 +15,7 @@ from tangible_core.plugins.interfaces import Touch
 from tangible_core.scene.geometry import nearness_range, unit_nearness
 from tangible_legibility.neighbours import WITHIN_M, felt_steps
 
-BORDER = 0.04
-"""The least difference of neighbours at a true border, of the range of disparities."""
+BORDER = 0.04  # the least difference of neighbours at a true border, of the range of disparities
 SKIN_M = 0.0003
 STEP_M, LEVEL_M, RISE_M = 0.0005, 0.00005, 0.0003
 """The least step that is felt; the least that has an order; and the least rise that is crisp or blunt."""
@@ -32,8 +31,7 @@ class Truth(NamedTuple):
     row: np.ndarray
     column: np.ndarray
     along: np.ndarray
-    across: np.ndarray
-    """Unit normals at the borders' pixels, towards the near side: along rows and columns."""
+    across: np.ndarray  # unit normals at the borders' pixels, towards the near side: along rows and columns
 
 
 def truth_of(disparity: DisparityMap, width_m: float) -> Truth:

@@ -12,8 +12,7 @@ from .tests_path import rough_surfaces
 
 TICKS, DEPTH_M = 4000, 0.0008
 AMPLITUDE_M, WAVE = 0.004, 2 * np.pi / 0.02
-HAND, FAST = 1.0, 6.1
-"""82 and 500 mm/s at most, over the ground."""
+HAND, FAST = 1.0, 6.1  # 82 and 500 mm/s at most, over the ground
 
 
 def figures() -> Iterator[Figure]:

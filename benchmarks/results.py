@@ -23,8 +23,7 @@ from .figures import table
 ROOT = Path(__file__).parents[1]
 RESULTS = Path(__file__).with_name("results")
 VERSIONS = ("tangible-images", "numpy", "opencv-contrib-python-headless", "scikit-image", "numba", "pydantic", "typer")
-JUDGED = ["what", "bound", "measured", ""]
-"""The columns of a table of promises (`figures.judged`)."""
+JUDGED = ["what", "bound", "measured", ""]  # the columns of a table of promises (`figures.judged`)
 
 
 def keep(name: str, title: str, markdown: str) -> Path:

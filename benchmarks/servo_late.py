@@ -34,8 +34,7 @@ from .servo_rounds import (
 from .tests_path import Circling
 
 ROUNDS = 8
-RECORDED_S, PLAIN_S = 3.5, 3.0
-"""Each kind's share of a round."""
+RECORDED_S, PLAIN_S = 3.5, 3.0  # each kind's share of a round
 SHARE = f"<= {TIMES:g} x {{}}, or {POINTS:g} points more"
 RECORDED, UNRECORDED = "with a recorder", "without one"
 IN_C = "a loop in C"

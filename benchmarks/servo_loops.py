@@ -20,8 +20,7 @@ from .figures import Figure
 from .servo_rounds import Round
 from .tests_path import Circling
 
-SLICE_S, SLICES = 10.0, 3
-"""Each loop runs for so long, in turn with the others, so often."""
+SLICE_S, SLICES = 10.0, 3  # each loop runs for so long, in turn with the others, so often
 SOURCE = Path(__file__).with_name("control_loop.c")
 LOOPS = {"all compiled": Circling(), "compiled tick, a device that Python asks": Circling(exchanges=True)}
 

@@ -15,20 +15,17 @@ from tangible_core.servo.ring import MAX_LATE_S
 from .figures import Figure
 
 LATE_US = 200
+# A loop is no later than another if its share of late ticks is at most so many times the other's, or points more.
 TIMES, POINTS = 1.2, 0.1
-"""A loop is no later than another if its share of late ticks is at most so many times the other's, or points more."""
 HEADINGS = f"later than {LATE_US} us", "p50", "p99", "p99.9", "latest", "periods without a tick"
-BY_CHANCE = 0.05
-"""What happens by chance in a larger share of cases is no difference."""
+BY_CHANCE = 0.05  # what happens by chance in a larger share of cases is no difference
 
 
 class Round(NamedTuple):
     """Ticks of one loop, for a few seconds."""
 
-    late: np.ndarray
-    """Ticks that began so many microseconds late; the last for all that were later."""
-    overruns: int
-    """Periods without a tick."""
+    late: np.ndarray  # ticks that began so many microseconds late; the last for all that were later
+    overruns: int  # periods without a tick
     most_late_s: float
 
     @classmethod

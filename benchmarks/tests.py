@@ -15,10 +15,10 @@ from pathlib import Path
 from .figures import Figure, judged, table
 
 ROOT = Path(__file__).parents[1]
+# Seconds of README's command, and of what `--whole` adds, on two quiet cores, all kernels compiled before.
 COMMANDS = {"": 300, "--whole -m whole": 300}
-"""Seconds of README's command, and of what `--whole` adds, on two quiet cores, all kernels compiled before."""
+# Processor seconds of the rooms' tests in README's command; "tests" holds the modules that lie in no room.
 BUDGET_S: dict[str, float] = json.loads((ROOT / "tests" / "budget.json").read_text("utf-8"))
-"""Processor seconds of the rooms' tests in README's command; "tests" holds the modules that lie in no room."""
 
 
 def section() -> str:

@@ -31,17 +31,14 @@ VARIANTS, MOSAICS, STEPS, BATCH = 2, 3000, 7000, 2
 HIDDEN, VALUES = 24, 6
 """The values of each hidden layer and of the result, four times as many in all: see `orders`."""
 SIDE_PX, SIDES_PX = 512, (256, 320, 384, 448, 512)
-LARGE_PX = 760
-"""The side of a texture of which a square of SIDE_PX is cut, turned by any angle."""
+LARGE_PX = 760  # the side of a texture of which a square of SIDE_PX is cut, turned by any angle
 SEGMENTS = 2, 3, 4, 5, 6, 7, 8, 10, 12, 16
 KIND_SHARES = {"straight": 0.15, "curved": 0.2, "letters": 0.25, "grid": 0.1, "rings": 0.15, "unequal": 0.15}
 """The share of mosaics of each kind of region."""
-KEPT_BACK = 12
-"""One of so many textures is not fitted to."""
+KEPT_BACK = 12  # one of so many textures is not fitted to
 NOISY, MAX_NOISE = 0.25, 10.0
 """The share of mosaics with noise, and its largest standard deviation in grey levels."""
-PAIRED = 384
-"""The number of cells of a mosaic of which all pairs are judged."""
+PAIRED = 384  # the number of cells of a mosaic of which all pairs are judged
 CELL_PX = 8
 
 

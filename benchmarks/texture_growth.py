@@ -10,12 +10,10 @@ from .figures import Figure, table
 from .texture_scenes import held_out
 from .turns import peak_bytes, seconds
 
-SIDES_PX = (256, 512, 1024, 2048, 4096)
-"""A mosaic, cut or mirrored over and over: 0.07 to 17 megapixels."""
+SIDES_PX = (256, 512, 1024, 2048, 4096)  # a mosaic, cut or mirrored over and over: 0.07 to 17 megapixels
 SEGMENTS = 4
 ROUNDS = 3
-MEMORY_BYTES_PX, MEMORY_BYTES = 64, 16 << 20
-"""What `gabor` states."""
+MEMORY_BYTES_PX, MEMORY_BYTES = 64, 16 << 20  # what `gabor` states
 
 
 def measured() -> tuple[list[Figure], list[str]]:

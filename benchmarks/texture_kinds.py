@@ -21,15 +21,12 @@ from tangible_core.testing.synthetic.texture_scenes import (
 from .texture_scenes import folders
 
 SEGMENTS = 2, 3, 4, 5, 6, 7, 8, 10, 12, 16
-ROUNDS = 8
-"""The number of mosaics of each number of segments, every one of another kind and seed."""
-SMALL_PX, LARGE_PX, FEW = 384, 512, 4
-"""The sides of mosaics of FEW segments at most, and of more."""
+ROUNDS = 8  # the number of mosaics of each number of segments, every one of another kind and seed
+SMALL_PX, LARGE_PX, FEW = 384, 512, 4  # the sides of mosaics of FEW segments at most, and of more
 LETTERS = "AOBHERSTUXZK"
-THICK = 0.2
-"""The width of a letter's strokes, as a share of its square."""
+THICK = 0.2  # the width of a letter's strokes, as a share of its square
+# The least share of the area of a segment; regions are drawn again until none is smaller.
 MIN_SHARE = 0.006
-"""The least share of the area of a segment; regions are drawn again until none is smaller."""
 TRIES = 50
 TUNING_SEED, REPORTED_SEED = 1000, 3000
 

@@ -13,21 +13,19 @@ import cv2
 import numpy as np
 from PIL import Image
 
+# The least side of a picture; the least side above which it is halved; what is kept of it.
 MIN_PX, MAX_PX, CROP_PX = 256, 900, 640
-"""The least side of a picture; the least side above which it is halved; what is kept of it."""
 SPREAD, TURN = 0.3, 0.14
 """The largest deviation, between 16 parts of a texture, of the logarithm of energies, and of their directions."""
-ALIKE = 0.9
-"""The correlation of thumbnails from which two pictures are the same."""
-FLATTEST = 1.5
-"""The least local contrast, in grey levels, that 95 % of a texture must have."""
+ALIKE = 0.9  # the correlation of thumbnails from which two pictures are the same
+FLATTEST = 1.5  # the least local contrast, in grey levels, that 95 % of a texture must have
 ENDINGS, ARCHIVES = frozenset((".png", ".jpg", ".jpeg", ".tga", ".rgb", ".dds")), frozenset((".zip", ".pk3", ".mpz"))
+# Names of pictures that are no textures: maps of normals and gloss, faces of dials, signs.
 OTHER = re.compile(
     r"norm|_local|_gloss|_glow|_bump|_nm\b|_[nsh]\.|_spec|mask|gui|icon|font|levelshot|env/|sky|skin|minimap|_lum|"
     r"_reflect|hud|menu|karts/|wheel|driver|crosshair|logo|height|screenshot|loading|license|flag|sign|poster",
     re.IGNORECASE,
 )
-"""Names of pictures that are no textures: maps of normals and gloss, faces of dials, signs."""
 
 
 class Texture(NamedTuple):

@@ -18,12 +18,12 @@ from tangible_texture.gabor import Gabor
 from .texture_kinds import reported_half, tuning_half
 from .texture_scenes import builtin, held_out
 
+# What the sum of the weights' squares, without the constant's, costs beside the mean log-likelihood.
 PENALTY = 0.01
-"""What the sum of the weights' squares, without the constant's, costs beside the mean log-likelihood."""
 
 
+# Sides of the crops, one a mosaic in turn; tries to find one in which each segment has this share; seed of places.
 CROPS_PX, CROP_TRIES, MIN_SHARE, CROP_SEED = (96, 128, 192, 256, 320), 60, 0.04, 7
-"""Sides of the crops, one a mosaic in turn; tries to find one in which each segment has this share; seed of places."""
 
 
 class Joined(NamedTuple):

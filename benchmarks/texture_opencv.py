@@ -7,8 +7,7 @@ WAVELENGTHS_PX = tuple(2 * 2**0.5 * 2**i for i in range(5))
 ORIENTATIONS = 6
 SIGMA, GAMMA = 0.56, 0.5
 """Standard deviation of the Gaussian over the wavelength (one octave), and its width over its height."""
-WINDOW = 1.5
-"""Standard deviation of the smoothing over the wavelength."""
+WINDOW = 1.5  # standard deviation of the smoothing over the wavelength
 ATTEMPTS, ROUNDS, STILL = 3, 20, 0.1
 RECIPE = (
     "`cv2.getGaborKernel` in 6 orientations x 5 wavelengths from 2 sqrt 2 to 45 px by octaves (sigma 0.56 wavelengths, "

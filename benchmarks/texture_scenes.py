@@ -13,8 +13,7 @@ FOLDER = "TANGIBLE_TEXTURES"
 The first has eight or more that no method was tuned on.
 """
 SEGMENTS = (2, 3, 4, 5, 6, 8)
-SEEDS = (1, 3, 5, 7, 9)
-"""Odd ones: methods are tuned on even ones."""
+SEEDS = (1, 3, 5, 7, 9)  # odd ones: methods are tuned on even ones
 SIDE_PX = 512
 SMOOTH_SEEDS = range(700, 716)
 

@@ -18,8 +18,7 @@ from .figures import Figure, mean_and_error, table
 from .texture_kinds import KINDS, reported_half, tuning_half
 from .texture_opencv import segmented
 
-MANY = 8
-"""The number of segments from which there are many."""
+MANY = 8  # the number of segments from which there are many
 WORTHS = 0.0, 0.2, 0.4, 0.6, 0.8, 1.01
 """The borders of the confidences of guesses that are compared with the share that is right."""
 

@@ -27,8 +27,8 @@ FLAGS = [
     "--ignore-gpu-blocklist",
     "--enable-precise-memory-info",
 ]
+# The first that is installed is measured; the shell is the same without windows.
 BROWSERS = ("chromium", "google-chrome", "google-chrome-stable", "chromium-browser", "chromium-headless-shell")
-"""The first that is installed is measured; the shell is the same without windows."""
 SIZE = {"width": 1180, "height": 720}
 LONGEST_S = 120.0
 CONFIG = """\
@@ -48,8 +48,7 @@ class Served:
 
     process: subprocess.Popen[str]
     url: str
-    begun_s: float
-    """When its command was given, Unix time."""
+    begun_s: float  # when its command was given, Unix time
 
 
 @contextmanager

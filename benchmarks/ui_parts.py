@@ -14,8 +14,7 @@ from .ui_drive import browser, drag, felt, opened, percentile, scene_640, served
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-LARGE = (4000, 3000)
-"""Columns and rows of a photograph of twelve megapixels."""
+LARGE = (4000, 3000)  # columns and rows of a photograph of twelve megapixels
 DRAG_S = 5.0
 HEIGHTS = 20
 STROKES = [[[x, y], [x + 250, y + 150]] for y in (900, 1800, 2600) for x in (500, 1500, 2700)]

@@ -19,15 +19,15 @@ from .figures import Figure
 DEVICE = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)
 PERIOD_S, WIDTH_M = 0.001, 0.08
 TICKS, TICKS_A_FILM = 10_000_000, 20_000
+# A hand that went farther in a tick was put down there, and its account begins anew: sampling knows nothing of it.
 PUT_DOWN_M = 0.001
-"""A hand that went farther in a tick was put down there, and its account begins anew: sampling knows nothing of it."""
 STEP_N, GAIN_J, GAIN_SHARE = 0.08, 1e-2, 1e-4
 """What is allowed: of a force on a hand at rest; and of energy beyond what the surface did, once and as a share of all
 work that was done back and forth, of which sampling loses track."""
 DAMPED = int(TickFlag.DAMPED)
 (NOT_FINITE, STEP, WORK, SURFACE, SIZE, MOVED, GAIN, TOUCHED, BRAKED, GUARDED, MAX_GUARDED, AT_REST) = range(12)
+# What is kept of a film: figures, and the forces of the law and of the guard in the last tick.
 FORCE, LEFT, FOUND = 12, 15, 18
-"""What is kept of a film: figures, and the forces of the law and of the guard in the last tick."""
 
 
 class Worst(NamedTuple):

@@ -32,7 +32,8 @@ export function folder(net: Server, open: (paths: string[]) => void, say: (text:
     } catch (error) {
       return say((error as Error).message);
     }
-    if (path.value === before) path.value = shown.folder;
+    const isTyping = !place && document.activeElement === path; // the current folder comes late: the next key is the person's
+    if (path.value === before && !isTyping) path.value = shown.folder;
     list.replaceChildren(
       ...shown.entries.map(({ name, kind }) => new Option(t("entry", { name, kind: t(`kind_${kind}`) }), name)),
     );

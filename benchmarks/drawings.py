@@ -154,8 +154,7 @@ def _centre(made: Made) -> np.ndarray:
 
 def score_lines(made: Made) -> np.ndarray:
     """Return the lines' pixels that are found and all, and the found ones that are true and all but missed letters."""
-    ink, drawn = find_ink(made.picture), _centre(made)
-    centre = find_lines(ink, find_texts(ink).ink).centre
+    centre, drawn = find_marks(made.picture).lines.centre, _centre(made)
     reach = max(1.5, 0.0005 * made.picture.shape[1] / 0.16)  # 0.5 mm of 160 mm
     near = [cv2.distanceTransform((~one).astype(np.uint8), cv2.DIST_L2, 5) <= reach for one in (centre, drawn)]
     counted = centre.copy()

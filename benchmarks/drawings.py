@@ -199,8 +199,8 @@ def _labels() -> Iterator[Figure]:
         parts = find_parts(SegmentMap(find_areas(made.picture).labels)).labels
         marks = find_marks(made.picture)
         texts, size = texts_in(marks), np.tile(made.picture.shape[1::-1], 2)
-        tied = tie_texts(marks.lines.centre, texts, parts)
-        for read, part_number in zip(read_texts(made.picture, texts), tied, strict=True):
+        ties = tie_texts(marks.lines.centre, texts, parts)
+        for read, part_number in zip(read_texts(made.picture, texts), ties, strict=True):
             (column, row), at = read.middle * size[:2], np.array(made.texts).reshape(-1, 4)
             own = np.flatnonzero((at[:, 0] <= column) & (at[:, 2] >= column) & (at[:, 1] <= row) & (at[:, 3] >= row))
             if not own.size:

@@ -80,7 +80,7 @@ def _keys(entries: list[Entry], title: str, language: str, page: Page, like: She
 def drawn_lines(work: Work, picture: np.ndarray, sheet: Sheet, page: Page) -> list[Drawing]:
     """Return a drawing's page, and its key if it has one. Raises: PictureError without lines; BrailleError."""
     blank, title = _blank_page(work, sheet)
-    strokes, _ = strokes_on(picture, blank.sheet)
+    strokes = strokes_on(picture, blank.sheet)
     if not strokes:
         raise PictureError("the drawing has no lines; give `scene: {kind: photograph}` to outline its parts")
     inked = shapely.union_all(strokes).buffer(LINE_MM / 2)
@@ -130,7 +130,7 @@ def _draw_readable(
         outlines = [Area(group.name, shapes[number]) for group in groups for number in group.numbers]
         if not (near := narrow_places(read(svg(replace(blank, areas=tuple(outlines), texts=()))))):
             lines = None if drawn is None else shapely.union_all([shape.boundary for shape in shapes])
-            strokes = () if drawn is None else strokes_on(drawn, sheet, lines)[0]
+            strokes = () if drawn is None else strokes_on(drawn, sheet, lines)
             symbols = _choose_symbols(groups, shapes, _neighbours(parts, groups), blank.language)
             if drawn is not None:
                 symbols = [

@@ -19,10 +19,9 @@ SMOOTH_PX = 2.0  # standard deviation of the Gaussian along a stroke, which take
 ALONG_MM, LONG_MM = 2.0, 6.0
 
 
-def strokes_on(picture: np.ndarray, sheet: Sheet, outlines: Any = None) -> tuple[tuple[Any, ...], int]:
-    """Return a drawing's strokes, in millimetres and apart from `outlines`; and the number of texts left out."""
-    marks = find_marks(picture)
-    centre = marks.lines.centre
+def strokes_on(picture: np.ndarray, sheet: Sheet, outlines: Any = None) -> tuple[Any, ...]:
+    """Return a drawing's strokes, in millimetres and apart from `outlines`."""
+    centre = find_marks(picture).lines.centre
     rows, columns = centre.shape
     to_mm = np.divide(sheet.picture_mm, (columns, rows))
     lines = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(_links(centre))))
@@ -38,7 +37,7 @@ def strokes_on(picture: np.ndarray, sheet: Sheet, outlines: Any = None) -> tuple
             strokes.append(stroke)
     if outlines is not None and strokes:
         strokes = _apart(strokes, outlines)
-    return tuple(strokes), len(marks.texts.boxes)
+    return tuple(strokes)
 
 
 def _links(centre: Bool[np.ndarray, "r c"]) -> Float64[np.ndarray, "n 2 2"]:

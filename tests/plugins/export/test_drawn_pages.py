@@ -132,3 +132,12 @@ def test_page_comes_back_as_the_same_parts(tmp_path):
     for number, name in names.items():
         one, other = before == number - 1, whole == scene.segment_names.index(name)
         assert (one & other).sum() / (one | other).sum() > 0.9, name
+
+
+@pytest.mark.parametrize(("lost", "grade"), [(2, "warn"), (3, "illegible")])
+def test_drawing_that_loses_more_than_half_of_its_texts_is_illegible(lost, grade):
+    picture, texts = countries()[0], [PictureText(f"text {number}", (0.1, 0.1, 0.2, 0.2)) for number in range(4)]
+    parts = Pipeline(Scene.photo(picture), texture=Flat(), cached=False).engine.make("parts")
+    drawing = DrawnPicture(PictureKind.drawing, picture, True, parts, tuple(texts[:lost]), 4)
+    verdicts = legibility("swell", parts, 0.16, drawing=drawing)
+    assert [verdict.verdict for verdict in verdicts if verdict.check == "texts"] == [grade]

@@ -32,8 +32,10 @@ export function folder(net: Server, open: (paths: string[]) => void, say: (text:
     } catch (error) {
       return say((error as Error).message);
     }
-    const isTyping = !place && document.activeElement === path; // the current folder comes late: the next key is the person's
-    if (path.value === before && !isTyping) path.value = shown.folder;
+    if (path.value === before) {
+      path.value = shown.folder;
+      if (document.activeElement === path) path.select(); // it came late: what is typed next takes its place
+    }
     list.replaceChildren(
       ...shown.entries.map(({ name, kind }) => new Option(t("entry", { name, kind: t(`kind_${kind}`) }), name)),
     );

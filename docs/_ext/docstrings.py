@@ -11,6 +11,8 @@ from sphinx.environment import BuildEnvironment
 from sphinx.pycode import ModuleAnalyzer
 from sphinx.util.nodes import make_refnode
 
+from tangible_core.data.options import field_texts
+
 LABELS = re.compile(r"^(Parameters|Returns|Raises|Source|Frames?|Memory[^:.\n]*): ", re.MULTILINE)
 """What begins a paragraph of its own."""
 NAME = re.compile(r"[A-Za-z_][\w.]*")
@@ -44,13 +46,14 @@ def _inline(text: str) -> str:
 def options(method: type[BaseModel]) -> str:
     """Return the fields of a model, each with its type as it is written, its default and its docstring."""
     home = {name: cls for cls in reversed(method.__mro__) for name in vars(cls).get("__annotations__", ())}
-    entries: list[str] = []
+    entries, texts = list[str](), field_texts(method)
     for name, field in method.model_fields.items():
         analyzer = ModuleAnalyzer.for_module(home[name].__module__)
         analyzer.analyze()
         kind = analyzer.annotations.get((home[name].__name__, name), "")
         default = "" if field.is_required() else f" = {field.get_default(call_default_factory=True)!r}"
-        entries.append(f"``{name}: {kind}{default}``\n    {_inline(' '.join((field.description or '').split()))}")
+        text = texts.get(name, field.description or "")
+        entries.append(f"``{name}: {kind}{default}``\n    {_inline(' '.join(text.split()))}")
     return "\n\n".join(["", *entries])
 
 

@@ -1,6 +1,10 @@
-"""The options of a method in words, from its JSON Schema: values, bounds, defaults."""
+"""The options of a method in words: their docstrings, and from its JSON Schema values, bounds, defaults."""
 
+import ast
 from collections.abc import Iterable, Mapping
+from functools import cache
+from inspect import cleandoc, getsource
+from itertools import pairwise
 from textwrap import fill
 from typing import Any, NamedTuple, cast
 
@@ -9,6 +13,28 @@ from pydantic import BaseModel
 from .units import option_unit
 
 BOUNDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
+
+
+def field_texts(model: type[BaseModel]) -> dict[str, str]:
+    """Return the docstrings below a model's fields, by name; pydantic's own reading of sources delays each start."""
+    bases = (cls for cls in reversed(model.__mro__) if issubclass(cls, BaseModel) and cls is not BaseModel)
+    return {name: text for cls in bases for name, text in _own_texts(cls).items()}
+
+
+@cache
+def _own_texts(cls: type) -> dict[str, str]:
+    try:
+        source = getsource(cls)
+    except (OSError, TypeError):
+        return {}
+    tree = ast.parse("if 1:\n" + source if source[0].isspace() else source)
+    body = next(node.body for node in ast.walk(tree) if isinstance(node, ast.ClassDef))
+    return {
+        field.target.id: cleandoc(text.value.value)
+        for field, text in pairwise(body)
+        if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)
+        if isinstance(text, ast.Expr) and isinstance(text.value, ast.Constant) and isinstance(text.value.value, str)
+    }
 
 
 class Option(NamedTuple):

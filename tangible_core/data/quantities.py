@@ -15,7 +15,7 @@ from pydantic_core import CoreSchema
 
 from ..errors import OptionError
 from .option_errors import sentences_about
-from .options import options_as_text
+from .options import field_texts, options_as_text
 from .units import option_title, option_unit, option_units
 
 _DIGITS = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -62,7 +62,7 @@ class Quantities(BaseModel, metaclass=_Blocks):
     (0.006, 0.006)
     """
 
-    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid")
 
     @field_validator("*", mode="before")
     @classmethod
@@ -85,7 +85,10 @@ class Quantities(BaseModel, metaclass=_Blocks):
         if text := vars(cls).get("__doc__"):
             block["description"] = cleandoc(text)
         block["title"] = option_title(re.sub(r"(?<=[a-z])(?=[A-Z])", "_", cls.__name__).lower())
+        texts = field_texts(cls)
         for name, option in block.get("properties", {}).items():
+            if name in texts:
+                option.setdefault("description", texts[name])
             option["title"] = option_title(name)
             if unit := option_unit(name):
                 option["unit"] = unit

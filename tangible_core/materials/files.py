@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import fields, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated, Any, ClassVar, cast
+from typing import Annotated, Any, cast
 
-from pydantic import AfterValidator, ConfigDict, Discriminator, Field, Tag
+from pydantic import AfterValidator, Discriminator, Field, Tag
 
 from ..data import Material, Texture
 from ..data.quantities import Quantities
@@ -31,8 +31,6 @@ Explanations = dict[Annotated[str, AfterValidator(_check_key)], str]
 
 class MaterialBlock(Quantities):
     """The values of a material; for a shipped one, values that are left out stay."""
-
-    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, title="Material")
 
     stiffness_n_per_m: Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
     """Force for a depth of one metre, N/m. Desktop devices render up to 3000, and up to 900 under a texture."""

@@ -3,15 +3,16 @@
 import logging
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Annotated, ClassVar, Literal, Self, get_args
+from typing import Annotated, Literal, Self, get_args
 
 import numpy as np
 from jaxtyping import Float, UInt8
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchema, model_validator
+from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
 
 from ..data import PartMap, SegmentMap
 from ..data.part_words import check_number, label_of_number, missing_number, name_part, shown_number
 from ..data.pictures import to_rgb8
+from ..data.quantities import Quantities
 from ..errors import MaterialError, quoted
 from ..runtime.opencv import plain_opencv
 
@@ -77,10 +78,8 @@ Number = Annotated[int, AfterValidator(check_number), WithJsonSchema({"type": "i
 Choice = tuple[str, str]
 
 
-class MaterialRule(BaseModel):
+class MaterialRule(Quantities):
     """A material, and the segments or parts that get it, by one of `segment`, `part`, `at` and `colour`."""
-
-    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     segment: Number | None = None
     """The segment with this number, from 1; all of its parts, if there are parts."""

@@ -7,6 +7,7 @@ import subprocess
 
 from pydantic import ValidationError
 
+from ..data.options import field_texts
 from ..errors import OptionError
 from ..plugins.interfaces import Method
 from ..plugins.registry import Listing
@@ -59,7 +60,8 @@ def every_option_has_a_default(method: Method) -> None:
 
 def every_option_is_described(method: Method) -> None:
     """Check that each option has a docstring below it: the help that `tangible schema` and editors show."""
-    bare = [name for name, field in type(method).model_fields.items() if not field.description]
+    fields, texts = type(method).model_fields, field_texts(type(method))
+    bare = [name for name, field in fields.items() if not (field.description or texts.get(name))]
     demand(not bare, f"{', '.join(bare)} has no docstring; write one under the field")
 
 

@@ -67,7 +67,7 @@ _Representer.add_representer(str, _Representer.represent_str)  # pyright: ignore
 class PipelineConfig(BaseModel):
     """A checked configuration. Its fields with a marker are the keys of the pipeline file, in their order there."""
 
-    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid")
 
     scene: Annotated[str | SceneFiles | Scene, SceneBlock()]
     """The pictures, or the heights, that the surface is made of."""

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from ...data.options import field_texts
 from ...data.units import option_title
 from ...errors import UnknownName
 from ...materials.assignment import library
@@ -16,14 +17,14 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 def json_schema(registry: Registry | None = None, distribution: str | None = "tangible-images") -> dict[str, Any]:
     """Return one schema for the whole file; `distribution` limits it to methods of this one."""
-    forms = Forms(registry or default_registry(), distribution)
+    forms, texts = Forms(registry or default_registry(), distribution), field_texts(PipelineConfig)
     return {
         "$schema": DIALECT,
         "title": "Tangible Images pipeline",
         "type": "object",
         "required": [name for name in KEYS if PipelineConfig.model_fields[name].is_required()],
         "additionalProperties": False,
-        "properties": {name: key.schema_of_field(forms) for name, key in KEYS.items()},
+        "properties": {name: {**key.schema(forms), "description": texts.get(name, "")} for name, key in KEYS.items()},
         "$defs": forms.definitions,
     }
 
@@ -38,7 +39,8 @@ def stage_schema(
     return {
         "$schema": DIALECT,
         "title": option_title(kind),
-        **KEYS[kind].schema_of_field(forms),
+        **KEYS[kind].schema(forms),
+        "description": field_texts(PipelineConfig).get(kind, ""),
         "$defs": forms.definitions,
     }
 

@@ -1,10 +1,10 @@
 """The limits of a force loop: their options, and the two arrays in which `guard` takes them."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from jaxtyping import Float64
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from ...data import DeviceSpec, TickFlag
 from ...data.quantities import Quantities
@@ -28,8 +28,6 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 class Coupling(Quantities):
     """A spring and a damper between the device and the tool that touches the surface."""
 
-    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
-
     stiffness_n_per_m: Positive
     """Stiffness of the coupling, which is the greatest that can be felt."""
     damping_n_s_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)]
@@ -38,8 +36,6 @@ class Coupling(Quantities):
 
 class Safety(Quantities):
     """Limits of the force on a hand, whatever the force law; the ticks in which each limit acted are reported."""
-
-    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     max_force_n: Positive | None = None
     """Greatest force; the device's if null or larger than that."""

@@ -111,10 +111,6 @@ class Key(ABC):
     def schema(self, forms: Forms) -> dict[str, Any]:
         """Return the JSON Schema of what a file may have under this key."""
 
-    def schema_of_field(self, forms: Forms) -> dict[str, Any]:
-        """Return the JSON Schema with the description of the field."""
-        return {**self.schema(forms), "description": self.field.description or ""}
-
 
 def find_keys(model: type[BaseModel]) -> dict[str, Key]:
     """Return the keys of a pipeline file by name, in the order of the fields; fields without a marker are none."""

@@ -67,7 +67,8 @@ class UnknownMethod(TangibleError):
     def __init__(self, kind: str, name: str, known: Iterable[str], meant: str = "") -> None:
         """meant: the name to suggest where none is spelt like this one."""
         names, name = sorted(set(known)), str(name)
-        hint = did_you_mean(name, names) or (f" (did you mean {quoted(meant)}?)" if meant else "")
+        self.meant = _nearest(name, names) or meant  # the name that is suggested
+        hint = f" (did you mean {quoted(self.meant)}?)" if self.meant else ""
         there = ", ".join(names) or "none"
         super().__init__(self._sentence(kind, quoted(name), hint, there))
 
@@ -242,8 +243,13 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     >>> did_you_mean("stifness", ["stiffness", "damping"]), did_you_mean("cat.yaml", ["sky.yaml"])
     (" (did you mean 'stiffness'?)", '')
     """
+    near = _nearest(word, known)
+    return f" (did you mean {quoted(near)}?)" if near else ""
+
+
+def _nearest(word: str, known: Iterable[str]) -> str:
     near = get_close_matches(word, list(known), n=1) if len(word) <= MAX_QUOTED else []
-    return f" (did you mean {quoted(near[0])}?)" if near and _are_near(word, near[0]) else ""
+    return near[0] if near and _are_near(word, near[0]) else ""
 
 
 def _are_near(word: str, other: str) -> bool:

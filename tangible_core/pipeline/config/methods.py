@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar, cast
 
-from ...errors import ConfigError, TangibleError, quoted
+from ...errors import ConfigError, TangibleError, UnknownMethod, quoted
 from ...files.yaml.source import Location, Source
 from ...plugins.interfaces import KINDS, Method
 from ...plugins.registry import Registry
@@ -42,7 +42,10 @@ def choose(source: Source, location: Location, kind: str, block: Any, registry: 
     try:
         listing, cls = registry.find(kind, name), registry.load(kind, name)
     except TangibleError as error:
-        return source.complain((*location, "use"), str(error))
+        source.complain((*location, "use"), str(error))
+        if isinstance(error, UnknownMethod) and error.meant:  # its options are checked in the same run
+            choose(source, location, kind, {**options, "use": error.meant}, registry)
+        return None
     method = source.model(location, cls, options)
     return None if method is None else NamedMethod(name, listing.origin, method)
 

@@ -55,6 +55,7 @@ scene: builtin/motorcycle
 depht: {use: opencv-sgbm}
 depth:
   use: opencv-sgmb
+  fil: false
 texture:
   use: gradient
   segmnts: 3
@@ -65,8 +66,8 @@ workspace: {width_m: wide}
 want: surfaces
 """
     wanted = {
-        "2:1": "'depth'?", "12:1": "'surface'?", "11:13": "workspace.width_m", "4:3": "'opencv-sgbm'?",
-        "7:3": "'segments'?", "10:3": "not -5",
+        "2:1": "'depth'?", "13:1": "'surface'?", "12:13": "workspace.width_m", "4:3": "'opencv-sgbm'?",
+        "5:3": "'fill'?", "8:3": "'segments'?", "11:3": "not -5",
     }  # fmt: skip
     found = complaints(text)
     assert [line.split(": ")[0] for line in found] == [f"here/p.yaml:{place}" for place in wanted]

@@ -49,6 +49,12 @@ COMMANDS = {
     )
 }  # fmt: skip
 
+ELSEWHERE = {
+    "doctor": "devices doctor", "info": "describe", "convert": "export", "print": "export", "view": "ui",
+    "open": "ui", "show": "ui", "help": "--help", "version": "--version", "init": "new", "validate": "plan",
+}  # fmt: skip
+"""Commands by the words that other programs have for them."""
+
 
 def add(name: str, place: str, summary: str, group: str = GROUPS[-1], example: str = "") -> None:
     """Add a command that is imported when it is called; a name that is taken stays with its first owner.
@@ -72,6 +78,12 @@ class LazyGroup(TyperGroup):
     def list_commands(self, ctx: Any) -> list[str]:
         """Return the names, in the order of the help."""
         return list(self.commands)
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Suggest a command for a word by which other programs call theirs."""
+        if args and args[0] not in self.commands and (meant := ELSEWHERE.get(args[0])):
+            ctx.fail(f"No such command '{args[0]}'. Did you mean '{meant}'?")
+        return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write the summaries in full, however narrow the terminal is."""

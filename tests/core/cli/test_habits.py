@@ -48,6 +48,7 @@ def test_version_option_prints_the_version(tmp_path: Path):
     ("words", "said"),
     [
         ("pluins", "Did you mean 'plugins'"),
+        ("doctor", "No such command 'doctor'. Did you mean 'devices doctor'?"),
         ("preflight p.yaml --fix", "`tangible preflight --fix OUT.yaml`"),
         ("--lang en legible --width-m", "`tangible legible --width-m VALUE`"),
         ("feel p.yaml --device falcon", "`tangible feel --set device=VALUE`"),

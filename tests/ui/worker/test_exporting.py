@@ -57,6 +57,12 @@ class TestExport:
         base_mm, braille_mm = 1.5, 0.5
         assert base_mm < solid.extents[2] < base_mm + 1.0 + braille_mm + 0.2, "the file's relief is 4 mm"
 
+    async def test_export_takes_the_language_of_the_page(self, small: SmallSession, ask: Any) -> None:
+        for line, words in (("", "Eine Fläche"), ("language: en\n", "A surface")):
+            await ask("edit", text=TEXT + line)
+            found = await ask("export", exports=["text"], language="de")
+            assert words in (small.session.folder / found["folder"] / "mine.txt").read_text("utf-8")
+
     async def test_exporter_that_fails_leaves_the_others(self, ask: Any, monkeypatch) -> None:
         def fail(self: Stl, work: Any, stem: Path) -> Any:
             raise TangibleError("the relief has no height; raise workspace.relief_m")

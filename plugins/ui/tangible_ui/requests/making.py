@@ -96,6 +96,8 @@ async def _kill_if_still_running(session: Session, numbers: set[int]) -> None:
 
 
 @request()
-async def export(session: Session, tab: Tab | None, exports: list[dict[str, Any] | str]) -> dict[str, Any] | None:
+async def export(
+    session: Session, tab: Tab | None, exports: list[dict[str, Any] | str], language: str = "en"
+) -> dict[str, Any] | None:
     """Write files of the document, by `export:` of a pipeline file; None if it was stopped. Raises: ConfigError."""
-    return await long_job(session, "export", "surface", sets=session.document.sets, exports=exports)
+    return await long_job(session, "export", "surface", session.document.sets, exports=exports, language=language)

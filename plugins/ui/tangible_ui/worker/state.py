@@ -99,9 +99,11 @@ class WorkerState:
         self._last_config = key, config
         return config
 
-    def make_pipeline(self, text: str, path: Path, sets: list[str]) -> Pipeline:
-        """Return the pipeline of a text, with the results shared with the last good one. Raises: ConfigError."""
+    def make_pipeline(self, text: str, path: Path, sets: list[str], language: str = "") -> Pipeline:
+        """Return the pipeline of a text, in `language` if it names none; it shares results. Raises: ConfigError."""
         config, before = self.read_config(text, path, sets), self.pipeline
+        if language and "language" not in config.model_fields_set:
+            config = config.with_values(language=language)
         pipeline = self.after(before, config) if before is not None else None
         if pipeline is None:
             pipeline = Pipeline.from_config(config, self.registry, self._cache)

@@ -29,10 +29,10 @@ KEPT = 2  # folders that are kept: tabs may still fetch from the one before
 
 @job()
 def export(
-    state: WorkerState, number: int, text: str, path: Path, sets: list[str], exports: list[Any]
+    state: WorkerState, number: int, text: str, path: Path, sets: list[str], exports: list[Any], language: str = "en"
 ) -> dict[str, Any]:
     """Run exporters into a folder that pages fetch from; return their outcomes. Raises: as `Pipeline.export`."""
-    pipeline = state.make_pipeline(text, path, [*sets, f"export={json_in_yaml(exports)}"])
+    pipeline = state.make_pipeline(text, path, [*sets, f"export={json_in_yaml(exports)}"], language)
     at = state.folder / f"{FOLDER}{secrets.token_hex(8)}"
     try:
         with announce(state, number, pipeline, text, "export") as (work, report):
@@ -48,10 +48,10 @@ def export(
 
 @job(page=True)
 def export_preview(
-    state: WorkerState, text: str, path: Path, sets: list[str], block: dict[str, Any] | str
+    state: WorkerState, text: str, path: Path, sets: list[str], block: dict[str, Any] | str, language: str = "en"
 ) -> dict[str, Any]:
     """Draw what an exporter would write, into a file; no file without a picture, or where something slow `waits`."""
-    pipeline = state.make_pipeline(text, path, [*sets, f"export={json_in_yaml([block])}"])
+    pipeline = state.make_pipeline(text, path, [*sets, f"export={json_in_yaml([block])}"], language)
     (exporter,) = pipeline.config.export
     none = {"file": "", "waits": False, "columns": 0, "rows": 0, "width_m": 0.0}
     if not isinstance(exporter.method, Previewing):

@@ -58,7 +58,7 @@ export function build(page: Page, root: HTMLElement): Promise<void> {
     tell(t("running"));
     try {
       await title.written;
-      const outcome = await page.net.ask<Exported | null>("export", { exports });
+      const outcome = await page.net.ask<Exported | null>("export", { exports, language });
       if (outcome) tell(...summaryOf(outcome, download(outcome)));
       else tell(t("stopped"), "warn");
     } catch (error) {

@@ -4,7 +4,7 @@ import type { Page } from "kit/page";
 import { token } from "kit/server/token";
 import { isMap } from "../../forms/values";
 import type { Plain } from "kit/server/messages";
-import { decimal } from "kit/words/words";
+import { decimal, language } from "kit/words/words";
 import { exporterName } from "./choices";
 import { t } from "./words";
 
@@ -52,7 +52,7 @@ export class Previews {
     const drawn: HTMLElement[] = [];
     for (const block of this.wanted) {
       const name = exporterName(String(isMap(block) ? block.use : block));
-      const found = await this.page.net.ask<Preview>("export_preview", { block }).then(
+      const found = await this.page.net.ask<Preview>("export_preview", { block, language }).then(
         (preview) => picture(name, preview),
         (error: Error) => (error.name === "AbortError" ? null : refusal(name, error.message)),
       );

@@ -15,6 +15,7 @@ from .device import Force, HapticState
 NUMBERS = "buif"
 F = TypeVar("F", bound=Callable[..., Any])
 C = TypeVar("C", bound=type)
+_LEFT_OUT = type("LeftOut", (str,), {"__repr__": str.__str__})("...")  # help() shows Python's own as `Ellipsis`
 READERS = "; Scene and numpy.load read files"
 
 
@@ -41,7 +42,7 @@ def _unpack(parameter: Parameter) -> Sequence[Parameter]:
     if get_origin(parameter.annotation) is not Unpack:
         return [parameter]
     types = get_args(parameter.annotation)[0].__annotations__
-    return [Parameter(name, Parameter.KEYWORD_ONLY, default=..., annotation=types[name]) for name in types]
+    return [Parameter(name, Parameter.KEYWORD_ONLY, default=_LEFT_OUT, annotation=types[name]) for name in types]
 
 
 def named_fields(cls: C) -> C:

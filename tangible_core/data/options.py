@@ -114,7 +114,7 @@ def values_in_code(option: Mapping[str, Any]) -> str:
     if "const" in option:
         return f"`{option['const']}`"
     if "examples" in option:
-        return f"`{option['examples'][0]}`"
+        return f"text such as {option['examples'][0]}"
     bounds = [f"{sign} {option[word]}" for word, sign in BOUNDS.items() if word in option]
     return " ".join([option.get("type", "block"), *bounds])
 

@@ -5,14 +5,15 @@ from os import PathLike
 from typing import Literal, TypedDict
 
 from numpy.typing import ArrayLike
+from typing_extensions import TypeAliasType
 
 from ..data import Calibration
 from .formats.pairs import Layout
 from .formats.pictures import NonFinite, TruthScale
 from .rig import StereoRig
 
-File = str | PathLike[str]
-Picture = File | ArrayLike
+File = TypeAliasType("File", str | PathLike[str])  # so that help() shows the name
+Picture = TypeAliasType("Picture", File | ArrayLike)
 VideoLayout = Literal["mono", "side-by-side", "cross-eyed", "top-bottom", "bottom-top"]
 
 

@@ -84,7 +84,7 @@ def test_options_of_a_typed_dict_are_in_the_signature_by_name():
     def draw(text: str, **turn: Unpack[TurnOptions]) -> Mapping[str, object]:
         return turn
 
-    assert str(signature(draw)).startswith("(text: str, *, rotate: int = Ellipsis, invert: bool = Ellipsis)")
+    assert str(signature(draw)).startswith("(text: str, *, rotate: int = ..., invert: bool = ...)")
     assert draw("a", invert=True) == {"invert": True}
     with pytest.raises(ArgumentError, match="inverted: unknown option"):
         draw("a", inverted=True)
@@ -121,6 +121,6 @@ def test_three_numbers_become_a_state_or_a_force():
 
 def test_help_of_a_method_lists_its_options_and_its_schema_does_not():
     proxy = load_method("render", "proxy")
-    line = "stiffness_n_per_m = 800.0   (N/m, number > 0 or 6 N/m)\n    Stiffness between proxy and hand,"
+    line = "stiffness_n_per_m = 800.0   (N/m, number > 0 or text such as 6 N/m)\n    Stiffness between proxy and hand,"
     assert f"\n\nOptions:\n{line}" in str(proxy.__doc__)
     assert proxy.model_json_schema()["description"].endswith("Eurohaptics 2002.")

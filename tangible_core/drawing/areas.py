@@ -1,10 +1,12 @@
 """The areas of a flat drawing: each of one colour, with the blur of their edges, noise and JPEG undone."""
+# scikit-image has no types.
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Bool, Float32, Int32
+from jaxtyping import Bool, Float32, Int32, Int64
 
 from ..runtime.opencv import plain_opencv
 from .ink import eight_bits, noise_level
@@ -16,6 +18,7 @@ NOISY = 3.5  # the same in standard deviations of the noise that a blur leaves
 SAME = 14.0  # the greatest difference of two areas of one colour, of 255
 # The side of a square as large as the least area, as a share of the longer side; less is a speck.
 MIN_SIDE = 1 / 110
+LEAST_PX = 9  # the least pixels of an area
 # How far a pixel on an edge looks for the areas on both sides of the edge, px; a block of JPEG has 8.
 REACHES_PX = (3, 8, 14)
 # The difference to an area up to which a thin place is a piece of this area, and no stroke on it, of 255.
@@ -53,7 +56,7 @@ def find_areas(picture: np.ndarray) -> Areas:
         stroke = np.asarray(cv2.dilate(ink, np.ones((5, 5), np.uint8))) > 0
         inside: Bool[np.ndarray, "h w"] = (change <= max(ALIKE, NOISY * noise / sigma)) & ~stroke
         _, found, about, _ = cv2.connectedComponentsWithStats(np.asarray(inside, np.uint8), connectivity=4)
-        large = np.asarray(about, np.int64)[:, cv2.CC_STAT_AREA] >= max(9.0, (MIN_SIDE * longer) ** 2)
+        large = np.asarray(about, np.int64)[:, cv2.CC_STAT_AREA] >= max(LEAST_PX, (MIN_SIDE * longer) ** 2)
     large[0] = False
     pieces = np.asarray(found, np.int32)
     if not large.any():
@@ -96,14 +99,7 @@ def _divide_edges(
     # A thin piece in the colour of an area nearby, such as a corner, is no stroke. `inside` is -1 outside of areas.
     import cv2
 
-    with plain_opencv():
-        _, nearest = cv2.distanceTransformWithLabels(
-            (inside < 0).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
-        )
-    nearest, inside_mask = np.asarray(nearest, np.int32), inside >= 0
-    at = np.zeros(int(nearest.max()) + 1, np.int64)
-    at[nearest[inside_mask]] = np.flatnonzero(inside_mask)
-    source = at[nearest]
+    source, inside_mask = _nearest_place(inside >= 0), inside >= 0
     labels = inside.reshape(-1)[source]
     rows, columns = np.nonzero(~inside_mask)
     own, shades = colours[rows, columns].astype(np.float32), calm.reshape(-1, 3)
@@ -118,8 +114,34 @@ def _divide_edges(
         least = np.minimum(away, least)
     sure = ~stroke[rows, columns] | (least < NO_STROKE)
     labels[rows[sure], columns[sure]] = best[sure]
-    if labels.max() > 255:
-        return labels
+    if labels.max() <= 255:
+        with plain_opencv():
+            smooth = np.asarray(
+                cv2.medianBlur(labels.astype(np.uint8), 5), np.int32
+            )  # at a border of two, the majority
+        labels = np.where(inside_mask, labels, smooth)
+    return _without_specks(labels)
+
+
+def _nearest_place(mask: Bool[np.ndarray, "h w"]) -> Int64[np.ndarray, "h w"]:
+    """Return for each pixel the nearest one of a mask that is not empty, by its place in the flat picture."""
+    import cv2
+
     with plain_opencv():
-        smooth = np.asarray(cv2.medianBlur(labels.astype(np.uint8), 5), np.int32)  # at a border of two, the majority
-    return np.where(inside_mask, labels, smooth)
+        _, nearest = cv2.distanceTransformWithLabels(
+            (~mask).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
+        )
+    nearest = np.asarray(nearest, np.int32)
+    at = np.zeros(int(nearest.max()) + 1, np.int64)
+    at[nearest[mask]] = np.flatnonzero(mask)
+    return at[nearest]
+
+
+def _without_specks(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
+    """Give connected pixels of one label that are too few for an area to the pieces next to them."""
+    # Where three areas meet, the blur of their edges may look like a fourth.
+    from skimage.measure import label
+
+    pieces = np.asarray(label(labels, background=-1, connectivity=1), np.int64)
+    large = (np.bincount(pieces.reshape(-1)) >= LEAST_PX)[pieces]
+    return labels if large.all() or not large.any() else labels.reshape(-1)[_nearest_place(large)]

@@ -25,3 +25,8 @@ class PictureText(Record):
         """The middle of its box, as shares of the picture's width and height."""
         left, top, right, bottom = self.box
         return (left + right) / 2, (top + bottom) / 2
+
+    @property
+    def is_level(self) -> bool:
+        """Whether it runs from left to right and not upwards, as the titles of axes do."""
+        return abs(self.direction_deg % 180 - 90) >= 45

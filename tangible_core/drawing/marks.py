@@ -8,7 +8,7 @@ import numpy as np
 from ..data.records import digest_of
 from .ink import Ink, find_ink
 from .lines import Lines, find_lines
-from .text import Texts, find_texts
+from .text import Texts, add_upward_texts, find_texts
 
 
 @final
@@ -33,7 +33,7 @@ class Marks:
     @cached_property
     def texts(self) -> Texts:
         """The texts in the ink."""
-        return find_texts(self.ink)
+        return add_upward_texts(self.ink, find_texts(self.ink))
 
     @cached_property
     def lines(self) -> Lines:

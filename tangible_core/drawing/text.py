@@ -36,6 +36,10 @@ DARK = 0.35
 FAR = 4.0  # the greatest deviation of a measure that counts, in spreads
 # The least width of a row by its height whose direction is that of its ink; a shorter one counts as level.
 TILTED = 3.0
+UPWARD = 3  # the least number of letters in a row that runs upwards
+LEVEL = 6  # the number of letters from which on a level row cannot be letters of several that run upwards
+APART_UPWARD = 1.8  # APART for those: a title has several words
+EVEN = 0.12  # the greatest deviation of heights, as a share of their mean, of numbers above each other
 
 
 class Text(NamedTuple):
@@ -58,7 +62,7 @@ class Texts(NamedTuple):
     ink: Bool[np.ndarray, "r c"]  # true on letters, on the grid of the ink
 
 
-def find_texts(ink: Ink) -> Texts:
+def find_texts(ink: Ink, apart: float = APART) -> Texts:
     """Find rows of letters in ink: pieces of like height next to each other, shaped and inked like letters."""
     # Rows may be tilted by some degrees, letters of a word may touch, and a letter may stand alone.
     import cv2
@@ -77,7 +81,7 @@ def find_texts(ink: Ink) -> Texts:
     none = Texts((), np.zeros(pieces.shape, np.bool_))
     if not 0 < indices.size <= MAX_PIECES:
         return none
-    one, other = _neighbours(left[indices], top[indices], wide[indices], high[indices])
+    one, other = _neighbours(left[indices], top[indices], wide[indices], high[indices], apart)
     graph = coo_array((np.ones(one.size), (one, other)), (indices.size, indices.size))
     row = np.asarray(connected_components(graph, directed=False)[1], np.int64)
     letters, measures = np.bincount(row), _measure_rows(ink, pieces, boxes, indices, row)
@@ -104,6 +108,48 @@ def find_texts(ink: Ink) -> Texts:
     return Texts(tuple(rows_found), on[pieces])
 
 
+def add_upward_texts(ink: Ink, level: Texts) -> Texts:
+    """Return the texts of ink, with those that run upwards as the titles of axes do; `level` are those found so far."""
+    free, words = ink.mask.copy(), np.zeros(ink.mask.shape, np.bool_)
+    for text in level.boxes:
+        place = _place(text, free)
+        if text.letters >= LEVEL:
+            free[place] &= ~level.ink[place]
+        elif text.letters > 1:
+            words[place] = level.ink[place]
+    mask, darkness, ground = (np.ascontiguousarray(np.rot90(grid, -1)) for grid in (free, ink.darkness, ink.ground))
+    found = find_texts(ink._replace(mask=mask, darkness=darkness, ground=ground), APART_UPWARD)
+    upward, letters, letters_found = list[Text](), np.zeros(free.shape, np.bool_), np.rot90(found.ink)
+    for text in found.boxes:
+        text = text._replace(
+            left=text.top, top=1 - text.right, right=text.bottom, bottom=1 - text.left, direction_deg=90
+        )
+        own = letters_found[place := _place(text, free)]
+        is_row = own.any(axis=0).all() and words[place][own].mean() < 0.5 and _is_uneven(own)
+        if text.letters >= UPWARD and is_row:
+            upward.append(text)
+            letters[place] = own
+    if not upward:
+        return level
+    others = find_texts(ink._replace(mask=ink.mask & ~letters))
+    return Texts((*others.boxes, *upward), others.ink | letters)
+
+
+def _is_uneven(own: Bool[np.ndarray, "r c"]) -> bool:
+    """Return whether the pieces of ink differ in height; those of numbers above each other do not."""
+    import cv2
+
+    with plain_opencv():
+        pieces = cv2.connectedComponentsWithStats(own.astype(np.uint8))[2]
+    high = np.asarray(pieces, np.float64)[1:, cv2.CC_STAT_HEIGHT]
+    return bool(high.std() > EVEN * high.mean())
+
+
+def _place(text: Text, grid: np.ndarray) -> tuple[slice, slice]:
+    left, top, right, bottom = np.rint(np.array(text[:4]) * np.tile(grid.shape[1::-1], 2)).astype(np.int64)
+    return slice(top, bottom), slice(left, right)
+
+
 def _direction(own: Bool[np.ndarray, "r c"]) -> float:
     """Return the direction of the longer axis of ink, degrees; 0 where it is hardly longer."""
     if own.shape[1] < TILTED * own.shape[0]:
@@ -113,17 +159,19 @@ def _direction(own: Bool[np.ndarray, "r c"]) -> float:
     return float(np.degrees(np.arctan2(-2 * (x * y).sum(), (x * x - y * y).sum())) / 2)
 
 
-def _neighbours(left: np.ndarray, top: np.ndarray, wide: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _neighbours(
+    left: np.ndarray, top: np.ndarray, wide: np.ndarray, high: np.ndarray, apart: float = APART
+) -> tuple[np.ndarray, np.ndarray]:
     """Return the pairs of pieces that stand next to each other in a row."""
     order: np.ndarray = np.argsort(left)
     pairs = list[tuple[np.ndarray, np.ndarray]]()
-    reach = left + wide + APART * high.max()
+    reach = left + wide + apart * high.max()
     ends = np.searchsorted(left[order], reach[order], side="right")
     for place in range(order.size):
         here, there = order[place], order[place + 1 : ends[place]]
         higher, lower = np.maximum(high[here], high[there]), np.minimum(high[here], high[there])
         overlap = np.minimum(top[here] + high[here], top[there] + high[there]) - np.maximum(top[here], top[there])
-        near = (left[there] - left[here] - wide[here] <= APART * higher) & (overlap >= lower / 2)
+        near = (left[there] - left[here] - wide[here] <= apart * higher) & (overlap >= lower / 2)
         there = there[near & (higher <= TALLER * lower)]
         pairs.append((np.full(there.size, here), there))
     return np.concatenate([one for one, _ in pairs]), np.concatenate([other for _, other in pairs])

@@ -31,13 +31,35 @@ def read_texts(picture: np.ndarray, texts: Sequence[PictureText]) -> tuple[Pictu
         return tuple(texts)
     network, colours = networks[0], to_rgb(np.nan_to_num(picture))
     card, letters = network.card, _letters(network.path, network.path.stat().st_mtime_ns)
-    results = list[PictureText]()
+    classes = list[Float32[np.ndarray, "steps classes"]]()
     for text in texts:
         row = _upright_row(colours, text)
         values = tensor(row, card.input, fit_size((row.shape[0], row.shape[1]), card.input, row.size))
         steps = run(network.path, card.runtime or "opencv", {card.input.left: values}, [card.output.name])[0]
-        results.append(replace(text, content=_content(steps.reshape(-1, steps.shape[-1]), letters)))
+        classes.append(steps.reshape(-1, steps.shape[-1]))
+    results = [replace(text, content=_content(steps, letters)) for text, steps in zip(texts, classes, strict=True)]
+    digits = [letters.index(digit) for digit in "0123456789" if digit in letters]
+    for place in _among_numbers(results, colours.shape[:2]) if digits else ():
+        digit = letters[digits[int(classes[place][:, digits].max(axis=0).argmax())]]
+        results[place] = replace(results[place], content=digit)
     return tuple(results)
+
+
+def _among_numbers(texts: Sequence[PictureText], shape: tuple[int, ...]) -> list[int]:
+    """Return the single letters that stand in a row or column of numbers, as on an axis: O is 0 there."""
+    # A letter alone has no neighbour by which the network could tell its size.
+    boxes = np.array([text.box for text in texts]).reshape(-1, 4) * np.tile(shape[::-1], 2)
+    (wide, high), middles = (boxes[:, 2:] - boxes[:, :2]).T, (boxes[:, 2:] + boxes[:, :2]) / 2
+    is_number = np.array([text.content.replace(".", "", 1).isdecimal() for text in texts])
+    places = list[int]()
+    for place in np.flatnonzero(wide < high):
+        level, upright = (np.abs(middles - middles[place]) < high[place] / 2).T[::-1]
+        upright |= np.abs(boxes[:, 2] - boxes[place, 2]) < high[place] / 2
+        aligned = (level | upright) & (np.abs(high - high[place]) < high[place] / 2)
+        aligned[place] = False
+        if is_number[aligned].sum() > max(1, aligned.sum() / 2):
+            places.append(int(place))
+    return places
 
 
 @lru_cache(maxsize=2)
@@ -54,7 +76,10 @@ def _upright_row(colours: Colours, text: PictureText) -> Float32[np.ndarray, "48
     left, top, right, bottom = text.box * np.array([columns, rows, columns, rows])
     turn = np.radians(text.direction_deg)
     wide, high = max(right - left, 1), max(bottom - top, 1)
-    high = max((high - wide * abs(np.sin(turn))) / np.cos(turn), LEAST * high)
+    tilt = turn
+    if not text.is_level:
+        wide, high, tilt = high, wide, turn - np.pi / 2
+    high = max((high - wide * abs(np.sin(tilt))) / np.cos(tilt), LEAST * high)
     scale = high * (1 + 2 * MARGIN) / ROW_PX
     count = round(min((wide + 2 * MARGIN * high) / scale, MAX_WIDE * ROW_PX))
     across = (wide + 2 * MARGIN * high) / max(count, 1)

@@ -195,6 +195,9 @@ class TestTexts:
     @pytest.fixture
     def reader(self, models: Path) -> None:
         """A network that reads dark columns as `b` and light ones as nothing."""
+        self.read_dark_as(models, "a\nb")
+
+    def read_dark_as(self, models: Path, characters: str) -> None:
         names = [helper.make_tensor_value_info("x", TensorProto.FLOAT, [1, 3, 48, "w"])]
         out = [helper.make_tensor_value_info("steps", TensorProto.FLOAT, [1, "w", 3])]
         light = helper.make_node("ReduceMean", ["x"], ["light"], axes=[1, 2], keepdims=0)
@@ -205,7 +208,7 @@ class TestTexts:
         weights = [numpy_helper.from_array(each, name) for name, each in given.items()]
         graph = helper.make_graph([light, last, classes, biased], "reader", names, out, weights)
         model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 13)], ir_version=8)
-        helper.set_model_props(model, {"character": "a\nb"})
+        helper.set_model_props(model, {"character": characters})
         onnx.save(model, models / "own.onnx")
         (models / "own.yaml").write_text("task: text\noutput: {means: text}\n")
 
@@ -222,6 +225,17 @@ class TestTexts:
         (read,) = read_texts(picture, [given])
         assert (read.content, read.box) == ("bbbb", given.box)
         assert read_texts(picture // 2 + 127, [given])[0].content == "", "faint bars are no letters"
+
+    def test_letter_among_the_numbers_of_an_axis_is_one(self, models: Path) -> None:
+        self.read_dark_as(models, "a\n7")
+        picture = np.full((400, 400, 3), 255, np.uint8)
+        picture[40:60, 100:110] = picture[40:60, 300:310] = 140  # too faint to be read alone
+        boxes = [(100, 40, 110, 60), (300, 40, 310, 60)]
+        for top in (120, 200):
+            picture[top : top + 20, 60:80] = picture[top : top + 20, 95:110] = 0
+            boxes.append((60, top, 110, top + 20))
+        texts = [PictureText("", tuple(edge / 400 for edge in box)) for box in boxes]
+        assert [text.content for text in read_texts(picture, texts)] == ["7", "", "77", "77"]
 
     def test_without_a_network_texts_stay_as_they_are(self, models: Path) -> None:
         given = PictureText("", (0.1, 0.1, 0.4, 0.2))

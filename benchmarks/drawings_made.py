@@ -185,7 +185,7 @@ def _bars(paper: Paper) -> None:
     for n, colour in enumerate(colours):
         high = rng.uniform(0.2, 0.95) * (bottom - top)
         paper.area(_box(left + (n + 0.2) * step, bottom - high, 0.6 * step, high), colour)
-        _label(paper, left + (n + 0.2) * step, bottom + 8, ink)
+        _label(paper, left + (n + 0.2) * step, bottom + 8, ink, paper.last)
     paper.line(np.array([(left, top), (left, bottom), (right, bottom)]), rng.uniform(1.5, 3), ink)
     for y in np.linspace(top, bottom, 5):
         paper.line(np.array([(left - 8, y), (left, y)]), 1.5, ink)
@@ -201,7 +201,7 @@ def _pie(paper: Paper) -> None:
         middle = (one + other) / 2
         rim = np.stack([w / 2 + r * np.cos(turn), h / 2 + r * np.sin(turn)], axis=1)
         paper.area(np.concatenate([[(w / 2, h / 2)], rim]), colour)
-        _label(paper, w / 2 + 1.2 * r * np.cos(middle) - 20, h / 2 + 1.2 * r * np.sin(middle) - 8, ink)
+        _label(paper, w / 2 + 1.2 * r * np.cos(middle) - 20, h / 2 + 1.2 * r * np.sin(middle) - 8, ink, paper.last)
 
 
 def _scene(paper: Paper) -> None:

@@ -1,4 +1,4 @@
-"""The parts that the texts of a drawing name: those in which they lie, or in which their leader lines end."""
+"""The parts that the texts of a drawing name: around them, beside them, or at the end of their leader lines."""
 
 from collections.abc import Iterator, Sequence
 
@@ -16,6 +16,8 @@ BESIDE = 1.0  # the same distance for a text that lies in a part
 AROUND = 0.6  # the space around a text at which a leader line points, by the text's height
 AHEAD = 4  # the steps that a way is on the line by which it is chosen
 ALONG = 5  # the steps from the end of a line that give its direction
+NEXT = 2.5  # the greatest distance to the part beside a text, by the text's height
+NEARER = 1.25  # the least ratio of the distances to the next part but one and to the next
 INSIDE = 0.5  # the least share of a text that lies in the part that it names
 PAPER = 0.5  # the least share of the picture's rim that the paper of a drawing has
 
@@ -28,16 +30,17 @@ def texts_in(marks: Marks) -> tuple[PictureText, ...]:
 def tie_texts(
     centre: Bool[np.ndarray, "r c"], texts: Sequence[PictureText], parts: Int32[np.ndarray, "h w"]
 ) -> tuple[int | None, ...]:
-    """Return for each text the number of the part that it names; None for a text on the paper without a leader line.
+    """Return for each text the number of the part that it names; None for a text on the paper far from parts.
 
+    A part without a text in it or a leader line to it is named by the text beside it, unless that is a number.
     centre: the centre lines of a drawing, one pixel wide, on any grid.
     """
     # A leader line ends near the text, points at it, and runs on without a sharp turn across whatever lies between.
     rows, columns = parts.shape
     paper = _paper(parts)
     boxes = np.array([text.box for text in texts], np.float64).reshape(-1, 4)
-    named_parts: list[int | None] = []
-    for left, top, right, bottom in boxes * np.array([columns, rows, columns, rows]):
+    on_parts, named_parts = boxes * np.array([columns, rows, columns, rows]), list[int | None]()
+    for left, top, right, bottom in on_parts:
         inside = parts[int(top) : max(int(top) + 1, round(bottom)), int(left) : max(int(left) + 1, round(right))]
         numbers, counts = np.unique(inside, return_counts=True)
         most = int(counts.argmax())
@@ -56,7 +59,49 @@ def tie_texts(
             part = int(parts[_at(np.array([column, row]), shape, parts)])
             if part != paper:
                 nearest[number], named_parts[number] = distance, part
+    untied = [number for number, part in enumerate(named_parts) if part is None]
+    title, beside = title_among([texts[number] for number in untied]), dict[int, list[tuple[float, int]]]()
+    for number in untied:
+        is_name = texts[number].is_level and texts[number].content != title and not _has_digit(texts[number])
+        for part, distance in _beside(parts, on_parts[number], paper) if is_name else ():
+            if part not in named_parts:
+                beside.setdefault(part, []).append((distance, number))
+    for part, candidates in beside.items():
+        (distance, number), *others = sorted(candidates)
+        if not others or others[0][0] >= NEARER * distance:
+            named_parts[number] = part
     return tuple(named_parts)
+
+
+def _has_digit(text: PictureText) -> bool:
+    return any(letter.isdigit() for letter in text.content)
+
+
+def _beside(
+    parts: Int32[np.ndarray, "h w"], box: Float64[np.ndarray, "4"], paper: int | None
+) -> Iterator[tuple[int, float]]:
+    """Yield the part that is clearly the nearest to a text, if one is, and its distance, px."""
+    left, top, right, bottom = box
+    y, x = (np.asarray(np.arange(side) + 0.5, np.float64) for side in parts.shape)
+    across = np.maximum(np.maximum(left - x, x - right), 0)
+    down = np.maximum(np.maximum(top - y, y - bottom), 0)
+    reach = NEXT * max(bottom - top, 1.0)
+    rows, columns = np.flatnonzero(down <= NEARER * reach), np.flatnonzero(across <= NEARER * reach)
+    near, away = parts[np.ix_(rows, columns)], np.hypot(down[rows, None], across[columns])
+    by_distance = sorted((float(away[near == part].min()), int(part)) for part in np.unique(near) if part != paper)
+    distances = [distance for distance, _ in by_distance] + [np.inf, np.inf]
+    if distances[0] <= min(reach, distances[1] / NEARER):
+        yield by_distance[0][1], distances[0]
+
+
+def title_among(texts: Sequence[PictureText]) -> str:
+    """Return the text that stands where titles do: the uppermost, if it is in the middle above, and no small print."""
+    if not (texts := [text for text in texts if text.is_level]):
+        return ""
+    tallest = max(text.box[3] - text.box[1] for text in texts)
+    first = min(texts, key=lambda text: text.middle[1])
+    (across, down), tall = first.middle, first.box[3] - first.box[1]
+    return first.content if abs(across - 0.5) < 0.1 and down < 0.15 and tall > 0.8 * tallest else ""
 
 
 def _at(place: Float64[np.ndarray, "2"], shape: tuple[int, ...], parts: np.ndarray) -> tuple[int, int]:

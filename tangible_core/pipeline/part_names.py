@@ -5,10 +5,9 @@ from functools import lru_cache
 
 from ..data import PartMap, PictureText
 from ..drawing import Marks, PictureKind, find_marks
-from ..drawing.labels import texts_in, tie_texts
+from ..drawing.labels import texts_in, tie_texts, title_among
 from ..plugins.registry import Registry
 from ..scene.scene import Scene
-from ..scene.vectors import title_among
 from .config.model import PipelineConfig
 from .engine.cache import Cache
 from .engine.engine import Engine

@@ -3,6 +3,5 @@
 from .page import VectorPage as VectorPage
 from .page import frame_texts as frame_texts
 from .page import rank_labels as rank_labels
-from .page import title_among as title_among
 from .pdf import read_pdf as read_pdf
 from .svg import read_svg as read_svg

@@ -1,6 +1,5 @@
 """A page of vectors, whichever format it has."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -24,16 +23,6 @@ class VectorPage(NamedTuple):
     texts: tuple[PictureText, ...] = ()
     title: str = ""
     kind: PictureKind | None = None  # the kind of the picture; None to measure it
-
-
-def title_among(texts: Sequence[PictureText]) -> str:
-    """Return the text that stands where titles do: the uppermost, if it is in the middle above, and no small print."""
-    if not texts:
-        return ""
-    tallest = max(text.box[3] - text.box[1] for text in texts)
-    first = min(texts, key=lambda text: text.middle[1])
-    (across, down), tall = first.middle, first.box[3] - first.box[1]
-    return first.content if abs(across - 0.5) < 0.1 and down < 0.15 and tall > 0.8 * tallest else ""
 
 
 def rank_labels(labels: Int32[np.ndarray, "h w"]) -> tuple[tuple[int, ...], Int32[np.ndarray, "h w"]]:

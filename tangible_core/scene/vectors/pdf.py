@@ -11,9 +11,10 @@ from jaxtyping import UInt8
 
 from ...data import PictureText
 from ...drawing import PictureKind, picture_kind
+from ...drawing.labels import title_among
 from ...errors import PictureError
 from ..formats.multi_picture import Notify, ignore
-from .page import SIDE_PX, VectorPage, title_among, turn_box
+from .page import SIDE_PX, VectorPage, turn_box
 
 _turn = Lock()  # lock around the library, which keeps its state in global variables
 

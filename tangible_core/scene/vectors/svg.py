@@ -19,13 +19,13 @@ from jaxtyping import Bool, Int32, UInt8
 from ...data import PictureText
 from ...data.pictures import fill_from_nearest
 from ...drawing import PictureKind, find_marks
-from ...drawing.labels import tie_texts
+from ...drawing.labels import tie_texts, title_among
 from ...errors import PictureError, shown
 from ...files.reading import in_words
 from ...runtime.child_process import python
 from ...runtime.opencv import plain_opencv
 from ..formats.multi_picture import Notify, ignore
-from .page import SIDE_PX, VectorPage, rank_labels, title_among
+from .page import SIDE_PX, VectorPage, rank_labels
 from .tree import HIDE, Item, cut_off, find_items, find_label, local, walk, words_in
 
 MAX_BYTES = 20_000_000

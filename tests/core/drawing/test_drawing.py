@@ -1,12 +1,24 @@
 import cv2
 import numpy as np
 import pytest
+from matplotlib.font_manager import findfont
+from PIL import Image, ImageDraw, ImageFont
 
 from drawings import COLOURS, countries, house, page, scanned
 from tangible_core import Scene
+from tangible_core.data import SegmentMap
 from tangible_core.drawing import PictureKind, find_areas, find_ink, find_lines, find_marks, find_texts, picture_kind
 from tangible_core.drawing.kind import measure_kind
 from tangible_core.drawing.text import _neighbours
+from tangible_core.parts import find_parts
+
+
+def written(words: str) -> np.ndarray:
+    """Return a sheet with these words."""
+    sheet = Image.new("L", (300, 300), 255)
+    ImageDraw.Draw(sheet).text((60, 90), words, 20, ImageFont.truetype(findfont("DejaVu Sans"), 26), spacing=2)
+    return np.array(sheet)
+
 
 PICTURES = {"lines": house()[0], "drawing": countries()[0], "text": page()}
 
@@ -86,6 +98,20 @@ def test_texts_places_and_nothing_else():
     assert find_texts(find_ink(PICTURES["lines"])).boxes == ()
 
 
+@pytest.mark.parametrize("words", ["rain, mm", "Height, m", "litres"])
+def test_title_of_an_axis_runs_upwards(words):
+    letters = np.rot90(written(words))
+    texts = find_marks(letters).texts
+    assert [text.direction_deg for text in texts.boxes] == [90]
+    assert texts.ink[letters < 100].mean() > 0.95
+
+
+@pytest.mark.parametrize("words", ["7\n8\n5\n6\n4", "12\n15\n18\n20", "Oslo\nLima"])
+def test_words_and_numbers_above_each_other_do_not_run_upwards(words):
+    texts = find_marks(written(words)).texts
+    assert texts.boxes and all(text.direction_deg < 45 for text in texts.boxes)
+
+
 @pytest.mark.parametrize(("high", "pairs"), [(23, 1), (25, 0)])
 def test_letters_of_one_row_are_of_like_height(high, pairs):
     left, top, wide, highs = np.array([(0, 0, 8, 10), (10, 0, 8, high)]).T
@@ -103,6 +129,14 @@ def test_areas_are_colours_with_edges_in_place(copy, off):
         match = areas.labels == np.abs(areas.colours - colour).sum(axis=1).argmin()
         rim = np.count_nonzero(truth[:, 1:] != truth[:, :-1])
         assert np.count_nonzero(match != (truth == number)) < 2 * off * rim
+
+
+def test_place_where_areas_meet_is_no_area():
+    pie = np.full((400, 400, 3), 255, np.uint8)
+    for turn, colour in enumerate([(31, 119, 180), (255, 127, 14), (44, 160, 44), (214, 39, 40), (148, 103, 189)]):
+        cv2.ellipse(pie, (200, 200), (150, 150), 0, 72 * turn + 5, 72 * turn + 77, colour, -1, cv2.LINE_AA)
+    sizes = np.bincount(find_parts(SegmentMap(find_areas(pie).labels)).labels.reshape(-1))
+    assert len(sizes) == 6 and sizes.min() > 9_000
 
 
 def test_marks_are_found_once_for_equal_pictures():

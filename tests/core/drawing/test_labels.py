@@ -50,6 +50,21 @@ def test_text_names_a_part_that_has_half_of_it(share, named):
     assert tie_texts(np.zeros((100, 100), bool), [text], parts) == (named,)
 
 
+def test_text_names_the_bar_beside_it_unless_it_is_a_value_the_title_or_between_two():
+    parts = np.zeros((300, 300), np.int32)
+    for number, left in enumerate((40, 120, 200), 1):
+        parts[100:250, left : left + 40] = number
+    at = {"Rome": (45, 258), "12": (125, 85), "Oslo": (125, 258), "Rain": (130, 20), "mm": (150, 60), "Both": (85, 150)}
+    texts = [PictureText(word, (x / 300, y / 300, (x + 30) / 300, (y + 14) / 300)) for word, (x, y) in at.items()]
+    texts.append(PictureText("up", (205 / 300, 255 / 300, 215 / 300, 290 / 300), 90))
+    tied = tie_texts(np.zeros((300, 300), bool), texts, parts)
+    assert dict(zip((text.content for text in texts), tied, strict=True)) == {
+        **dict.fromkeys(("12", "Rain", "mm", "Both", "up")),
+        "Rome": 1,
+        "Oslo": 2,
+    }
+
+
 def test_leader_line_that_stops_at_an_outline_names_what_is_behind_it():
     picture, parts = cell()
     picture[:, 403:][parts[:, 403:] == PAPER] = 255

@@ -62,7 +62,10 @@ def flat() -> HapticSurface:
         (lambda: Pipeline(scene()).feel(secnds=3), "'seconds'?"),
         (lambda: Pipeline(scene(), texture="hierarhcy"), "(did you mean 'hierarchy'?)"),
         (lambda: Pipeline(scene(), render={"use": "proxy", "radius": 1}), "'radius_m'?"),
-        (lambda: Pipeline(scene(), depth=Proxy()), "depth: takes a name, or an object of a class of DepthEstimator"),
+        *(
+            (lambda wrong=wrong: Pipeline(scene(), depth=wrong), "depth: takes a name, or an object of a class")
+            for wrong in (Proxy(), Proxy, 3)
+        ),
         (lambda: Pipeline(scene()).with_(rendr="proxy"), "'render'?"),
         (lambda: Pipeline(scene()).feel("mok"), "'mock'?"),
         (lambda: Pipeline(scene()).export("swell"), "write `export(folder, to=[NAMES])`"),

@@ -101,7 +101,7 @@ SAID = "parts: {1: wall, 2: {name: left box, height_m: 1 mm}, 4: {name: chest, h
 
 
 class TestHeights:
-    def test_heights_given_are_those_of_the_relief(self):
+    def test_heights_are_given_or_medians_of_the_depth(self):
         made = pipeline(
             parts={1: "wall", 2: PartChoice(height_m=0.001), 4: {"name": "chest", "height_m": 0.003}},
             heights={"by": "given", "bulge_m": 0, "detail_m": 0},
@@ -118,8 +118,6 @@ class TestHeights:
             "no depth is needed: heights are given",
             "no height is given for parts 1 and 3, which lie at 0",
         ]
-
-    def test_heights_by_depth_are_medians_over_the_parts(self):
         made = pipeline(heights="depth", depth=Ramp())
         found = part_heights(made.engine)
         assert found is not None
@@ -136,7 +134,7 @@ class TestHeights:
         assert unknown.disparity is None
         assert float(unknown.relief.height_m.max()) == 0
 
-    def test_guessed_heights_give_a_warning(self, caplog: pytest.LogCaptureFixture):
+    def test_guessed_heights_are_told_and_holes_known_by_colour(self, caplog: pytest.LogCaptureFixture):
         made = pipeline(heights="guess")
         made.make("relief")
         (warning,) = [note for note in notes(made, "relief") if note.kind == "warning"]
@@ -148,9 +146,6 @@ class TestHeights:
         made = pipeline(heights="guess", parts={number: {"height_m": 0} for number in range(1, 5)})
         made.make("relief")
         assert [note.kind for note in notes(made, "relief")] == ["decision"]
-
-    def test_guessed_hole_in_a_ring_is_known_by_the_colour_beyond(self):
-        """A dark ring on blue: its middle is blue too, and lies behind it, or red, as a thing on a plate."""
         y, x = np.mgrid[:120, :160]
         far = np.hypot(x - 80, y - 85)
         labels = np.where(far < 12, 2, np.where(far < 30, 1, 0)).astype(np.uint8)
@@ -174,12 +169,10 @@ class TestSkipped:
         made.make("surface")
         assert (ran, outcome_kinds(made)["disparity"]) == ([], "skipped")
 
-    def test_texture_without_a_label_picture_runs_before_depth(self):
+    def test_stages_without_labels_or_parts_are_skipped_until_they_are_wanted(self):
         made = pipeline(None, heights="depth", depth=Ramp(), texture=Same())
         assert made.surface.labels is not None and made.surface.labels.max() == 3
         assert ran == ["segments", "disparity"]
-
-    def test_parts_without_a_key_are_made_on_request_only(self):
         made = pipeline(depth=Ramp())
         made.make("surface")
         assert "parts" not in outcome_kinds(made)
@@ -266,8 +259,6 @@ class TestMaterials:
         assert made.materials is not None
         assert [material.name for material in made.materials.materials] == ["plain", "brick", "ice", "plain"]
         assert made.materials.reasons[1] == "part 2: rule 2, 100 % of it red -> brick"
-
-    def test_rule_for_an_unknown_segment_is_refused(self):
         for choice in ({"by": "rules", "rules": [{"segment": 8, "material": "ice"}]}, {8: "ice"}):
             with pytest.raises(MaterialError, match="there is no segment 8: the 3 segments are numbered from 1 to 3"):
                 pipeline(parts={}, materials=choice, depth=Ramp()).make("materials")
@@ -344,13 +335,11 @@ class TestComplaints:
             made.make("surface")
         assert error.value.complaints[0].location == (key.partition(":")[0],)
 
-    def test_too_many_parts_are_refused(self):
+    def test_parts_that_are_small_or_too_many_are_told(self):
         grain = np.indices((2 * ROWS, 2 * COLUMNS)).sum(axis=0) % 2  # each pixel a part
         made = Pipeline(scene(grain, np.zeros(grain.shape)), heights="guess", cached=False)
         with pytest.raises(PictureError, match="at most 4096 can be felt"):
             made.plan("surface")
-
-    def test_small_parts_give_a_warning_and_keep_their_numbers(self):
         labels = LABELS.copy()
         labels[2, 50] = labels[30, 2] = 5
         made = pipeline(labels, heights="given")
@@ -362,7 +351,7 @@ class TestComplaints:
 
 
 class TestWritten:
-    def test_run_with_guessed_heights_writes_an_equal_file_to_correct(self, folder: Path):
+    def test_run_with_guessed_heights_lists_its_parts_in_an_equal_file(self, folder: Path):
         parts = "{1: Wand, 4: {name: Truhe, material: glass}}"
         text = f"title: Boxes\nlanguage: de\nparts: {parts}\nheights: {{by: guess, bulge_m: 1 mm}}\n"
         first = load_pipeline(write_pipeline(folder, text), cache=Cache(folder / "cache"))
@@ -383,8 +372,6 @@ class TestWritten:
         )
         rerun = again.run(folder / "out")
         assert not file.exists() and file not in rerun.files
-
-    def test_run_lists_its_parts(self, folder: Path):
         run = load_pipeline(write_pipeline(folder, f"title: Boxes\n{SAID}heights: given\n")).run(folder / "out")
         document = json.loads((folder / "out" / "outcomes.json").read_text(encoding="utf-8"))
         assert (document["title"], document["language"]) == ("Boxes", "en")

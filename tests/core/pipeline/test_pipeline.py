@@ -84,11 +84,15 @@ class TestScene:
 
 
 class TestMethods:
-    def test_method_of_a_custom_class_is_used(self):
+    def test_method_of_a_class_or_a_name_is_its_object(self):
         left, right = pair()
         pipeline = Pipeline(Scene.pair(left, right), depth=Flat())
         assert pipeline.disparity is not None and (pipeline.disparity.disparity_px == 3).all()
         assert pipeline.config.depth is not None and pipeline.config.depth.name == "Flat"
+        scene = Scene.photo(pair()[0])
+        named = Pipeline(scene, depth="luminance", render={"use": "proxy", "radius_m": "1 mm"}, export=["stl"])
+        made = Pipeline(scene, depth=Luminance(), render=Proxy(radius_m=0.001), export=[load_method("export", "stl")()])
+        assert named.config == made.config
 
     def test_pipeline_of_what_no_file_holds_is_not_written(self, tmp_path: Path):
         for scene, depth in ((Scene.builtin("coins"), Flat()), (Scene.heights(np.eye(4)), None)):
@@ -101,18 +105,6 @@ class TestMethods:
         assert tmp_path / "config.txt" in run.files
         with pytest.raises(ConfigError, match="no device"):
             pipeline.feel()
-
-    def test_method_by_name_is_the_object_of_its_class(self):
-        scene = Scene.photo(pair()[0])
-        named = Pipeline(scene, depth="luminance", render={"use": "proxy", "radius_m": "1 mm"}, export=["stl"])
-        made = Pipeline(scene, depth=Luminance(), render=Proxy(radius_m=0.001), export=[load_method("export", "stl")()])
-        assert named.config == made.config
-
-    @pytest.mark.usefixtures("unchecked_shapes")
-    @pytest.mark.parametrize("wrong", [3, SemiGlobal, Gabor()])
-    def test_method_of_another_kind_is_refused(self, wrong: object):
-        with pytest.raises(ConfigError, match="depth: takes a name, or an object of a class of DepthEst"):
-            Pipeline(Scene.builtin("coins"), depth=wrong)  # pyright: ignore[reportArgumentType]
 
     @pytest.mark.usefixtures("unchecked_shapes")
     @pytest.mark.parametrize(
@@ -143,7 +135,7 @@ class TestMethods:
 class TestOthers:
     """A person who compares: the same pipeline with one thing changed, and what suits a picture."""
 
-    def test_pipeline_with_another_law_shares_its_surface(self):
+    def test_pipelines_are_compared_with_another_law_or_the_suited_one(self, tmp_path: Path):
         scene = Scene.photo(pair()[0])
         first = Pipeline(scene, depth="luminance", workspace={"width_m": 0.04}, title="one", cached=False)
         disparity = first.disparity
@@ -154,8 +146,6 @@ class TestOthers:
         assert first.with_(scene=Scene.heights(np.ones((2, 3)))).relief.height_m.shape == (2, 3)
         with pytest.raises(AttributeError, match=r"`pipeline.with_\(render=...\)` returns another one"):
             first.render = Penalty()  # pyright: ignore[reportAttributeAccessIssue]
-
-    def test_suited_pipeline_is_that_of_the_command_line(self, tmp_path: Path):
         left, _ = pair()
         file = tmp_path / "left.png"
         Image.fromarray(left).save(file)
@@ -201,7 +191,7 @@ class TestThereAndBack:
 
 
 class TestWatching:
-    def test_progress_has_the_start_and_outcome_of_each_stage(self):
+    def test_stages_are_watched_and_stopped(self):
         heard: list[StageEvent] = []
         Pipeline(Scene.heights(np.eye(4)), cached=False).make("surface", progress=heard.append)
         assert [(each.product, each.outcome and each.outcome.outcome) for each in heard] == [
@@ -211,8 +201,6 @@ class TestWatching:
             ("surface", None),
             ("surface", "ran"),
         ]
-
-    def test_stop_within_a_long_stage_raises_stopped(self):
         left, right = pair()
         stop, pipeline = threading.Event(), Pipeline(Scene.pair(left, right), depth=Slow(), cached=False)
         threading.Timer(0.2, stop.set).start()
@@ -239,29 +227,21 @@ class TestFeeling:
         device = Mock(hand=None, path="circle", z_m=0.0015)
         return Pipeline(Scene.heights(np.arange(64.0).reshape(8, 8)), render=Penalty(), device=device, cached=False)
 
-    def test_simulated_session_is_recorded_and_reported(self, pipeline: Pipeline):
+    def test_sessions_are_recorded_replayed_or_refused_without_an_end(self, pipeline: Pipeline, tmp_path: Path):
         found = pipeline.feel(seconds=0.25, in_real_time=False)
         assert len(found.rows) == 250 and found.peak_force_n > 0
-
-    def test_session_is_recorded_into_a_file(self, pipeline: Pipeline, tmp_path: Path):
         for real, name in ((True, "a.nc"), (False, "c.csv")):
             found = pipeline.feel(seconds=0.2, in_real_time=real, record=tmp_path / name)
             np.testing.assert_array_equal(Recording.load(tmp_path / name).rows, found.rows)
         with pytest.raises(OutputError, match=r"hand\.txt"):
             pipeline.feel(seconds=0.1, record=tmp_path / "hand.txt")
-
-    def test_session_passes_ticks_to_a_function(self, pipeline: Pipeline):
         rows: list[np.ndarray] = []
         found = pipeline.feel(seconds=0.2, keep=rows.append)
         assert found.rows.size == 0 and sum(map(len, rows)) > 50
-
-    def test_simulated_session_without_end_is_refused(self, pipeline: Pipeline):
         with pytest.raises(ConfigError, match="seconds"):
             pipeline.feel(seconds=None, in_real_time=False)
         with pytest.raises(ConfigError, match="in real time"):
             pipeline.feel(in_real_time=False, on_wait=pytest.fail)
-
-    def test_recording_is_replayed_with_another_law(self, pipeline: Pipeline):
         before = pipeline.feel(seconds=1.0, in_real_time=False)
         other = Pipeline(pipeline.scene, render=Penalty(stiffness_n_per_m=400.0), cached=False)
         after = Feeling(other).replay(before)
@@ -269,15 +249,15 @@ class TestFeeling:
         assert 0 < after.peak_force_n < before.peak_force_n
 
 
-@pytest.mark.parametrize("product", ["views", "disparity", "segments", "relief", "surface"])
-def test_product_is_drawn_as_its_panel(product: str):
+def test_product_is_drawn_as_its_panel():
     from matplotlib.figure import Figure
 
     left, right = pair()
     sample = Pipeline(Scene.pair(left, right), depth=Flat(), texture=Histogram(segments=2), cached=False)
-    axes = Figure().add_subplot()
-    assert show(getattr(sample.scene if product == "views" else sample, product), axes) is axes
-    assert axes.get_title()
+    for product in ("views", "disparity", "segments", "relief", "surface"):
+        axes = Figure().add_subplot()
+        assert show(getattr(sample.scene if product == "views" else sample, product), axes) is axes
+        assert axes.get_title(), product
     with pytest.raises(OutputError, match="no picture of its own"):
         show(Calibration(1.0, 1.0))
 

@@ -42,19 +42,7 @@ def relief_mm(picture: str) -> float:
     return 1e3 * config.workspace.relief_m
 
 
-def test_starter_values_suit_the_picture(folder: Path, monkeypatch: pytest.MonkeyPatch):
-    made = starter([Path("calm.png")], folder / "p.yaml")
-    config = parse_config(made.text, folder / "p.yaml", default_registry())
-    assert isinstance(config.scene, SceneFiles) and config.scene.photo == folder / "calm.png"
-    assert config.workspace.width_m == 0.06, "portrait: its longer side fits the device"
-    assert made.scene.views is not None and made.scene.views.shape == (160, 120)
-    assert (config.relief.by, config.relief_kind, config.size[1:3]) == ("edges", "edges", (0.002, 0.00025))
-    monkeypatch.setattr(Auto, "finds_depth", True)
-    config = parse_config(starter([Path("calm.png")], Path("p.yaml")).text, Path("p.yaml"), default_registry())
-    assert (config.relief_kind, config.relief.slope, config.size.relief_m) == ("depth", 1.1, 0.005)
-
-
-def test_starter_of_a_video_is_as_high_as_its_edges_allow(folder: Path):
+def test_starter_of_pictures_videos_and_maps_suits_them(folder: Path, monkeypatch: pytest.MonkeyPatch):
     for name, most_mm in (("calm", 8.0), ("my steep: one", 3.9)):
         (folder / name).mkdir()
         picture = cv2.imread(f"{name}.png")
@@ -64,9 +52,6 @@ def test_starter_of_a_video_is_as_high_as_its_edges_allow(folder: Path):
         assert config.relief_kind == "photograph" and config.size.smooth_m == 0.0015
         assert 1e3 * config.size.relief_m <= most_mm
         assert (1e3 * config.size.relief_m == 8.0) == (name == "calm")
-
-
-def test_starter_of_heights_in_millimetres_keeps_their_size(folder: Path):
     tangible("export", "map.npy", "--to", "heights", "--out", ".", cwd=folder)
     for name in ("map-heights.json", "map-heights.tif", "map-heights.png"):
         assert are_pictures([Path(name)])
@@ -74,14 +59,19 @@ def test_starter_of_heights_in_millimetres_keeps_their_size(folder: Path):
         assert isinstance(config.scene, SceneFiles) and config.scene.height == folder / name
         assert config.size.width_m == pytest.approx(0.08)
         assert config.size.relief_m == pytest.approx(0.015)
-
-
-def test_starter_of_a_map_on_the_ground_has_its_proportions(folder: Path):
-    """60 x 30 cells of 5 x 20 m are 300 x 600 m: half as wide as long."""
     tags = [(33550, "d", 3, (5.0, 20.0, 0.0), True)]
     tifffile.imwrite("dem.tif", np.load("map.npy").astype(np.float32), extratags=tags)
     made = starter([Path("dem.tif")], folder / "p.yaml")
     assert parse_config(made.text, folder / "p.yaml", default_registry()).workspace.width_m == 0.04
+    made = starter([Path("calm.png")], folder / "p.yaml")
+    config = parse_config(made.text, folder / "p.yaml", default_registry())
+    assert isinstance(config.scene, SceneFiles) and config.scene.photo == folder / "calm.png"
+    assert config.workspace.width_m == 0.06, "portrait: its longer side fits the device"
+    assert made.scene.views is not None and made.scene.views.shape == (160, 120)
+    assert (config.relief.by, config.relief_kind, config.size[1:3]) == ("edges", "edges", (0.002, 0.00025))
+    monkeypatch.setattr(Auto, "finds_depth", True)
+    config = parse_config(starter([Path("calm.png")], Path("p.yaml")).text, Path("p.yaml"), default_registry())
+    assert (config.relief_kind, config.relief.slope, config.size.relief_m) == ("depth", 1.1, 0.005)
 
 
 @pytest.mark.parametrize("hole", [np.nan, np.inf, -np.inf])

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangible_core.errors import Complaint, ConfigError
+from tangible_core.parts import HeightChoice, PartChoice
 from tangible_core.pipeline.config.parsing import load_config, parse_config
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene_files import SceneFiles
@@ -75,6 +76,8 @@ want: surfaces
 
 
 RULES = "scene: builtin/brick\nmaterials:\n  rules:\n    - "
+SEGMENTED = "scene: {photo: a.png, segments: parts.png}\n"
+PART_RULE = ("materials", "rules", 0, "part")
 
 
 @pytest.mark.parametrize(
@@ -118,21 +121,49 @@ RULES = "scene: builtin/brick\nmaterials:\n  rules:\n    - "
         ("scene: [a\n", (), (2, 1), "expected"),
         ("scene: a\nscene: b\n", (), (2, 1), "duplicate key"),
         ("{B}depth:\n\tuse: x\n", (), (3, 1), "tabs"),
+        ("{S}parts: [wall]", ("parts",), (2, 1), "mapping"),
+        ("{S}parts: {one: wall}", ("parts", "one"), (2, 9), "not 'one'"),
+        ("{S}parts: {-1: wall}", ("parts", -1), (2, 9), "not -1"),
+        ("{S}parts: {0: wall}", ("parts", 0), (2, 9), "needs 1 more in each), not 0"),
+        ("{S}materials: {rules: [{part: 0, material: ice}]}", PART_RULE, (2, 22), "needs 1 more in each)"),
+        ("{S}parts: {true: wall}", ("parts", "True"), (2, 9), "not True"),
+        ("{S}parts: {7: wall, '7': floor}", ("parts", "7"), (2, 18), "twice"),
+        ("{S}parts: {7: 3}", ("parts", 7), (2, 9), "the name of a part"),
+        ("{S}parts: {7: {nam: wall}}", ("parts", 7, "nam"), (2, 13), "'name'?"),
+        ("{S}parts:\n  1: wall\n  7: {name: Wall}", ("parts", 7, "name"), (4, 7), "of part 1 as well"),
+        ("{S}parts: {1: wall, 7: 'wall '}", ("parts", 7, "name"), (2, 18), "of part 1 as well"),
+        ("{S}parts: {1: '12'}", ("parts", 1, "name"), (2, 9), "number of a part"),
+        ('{S}parts: {1: "a\\nb"}', ("parts", 1, "name"), (2, 9), "one line"),
+        (f"{{S}}parts: {{1: {'x' * 81}}}", ("parts", 1, "name"), (2, 9), "over 80"),
+        ("{S}parts: {1: {material: glas}}", ("parts", 1, "material"), (2, 13), "'glass'?"),
+        ("{S}parts: {1: {height_m: .nan}}\nheights: given", ("parts", 1, "height_m"), (2, 13), "finite"),
+        ("{S}parts: {1: {height_m: -1 mm}}\nheights: given", ("parts", 1, "height_m"), (2, 13), "greater than"),
+        ("{S}parts: {1: {height_m: 1 px}}\nheights: given", ("parts", 1, "height_m"), (2, 13), "units"),
+        ("{S}parts: {1: {height_m: 1 mm}}", ("parts", 1, "height_m"), (2, 13), "`heights: {by: given}`"),
+        ("{S}heights: {by: gues}", ("heights", "by"), (2, 11), "'guess'?"),
+        ("{S}heights: {round_m: 6 mm}", ("heights", "by"), (2, 1), "required"),
+        ("{S}heights: {by: given, round_m: .inf}", ("heights", "round_m"), (2, 22), "finite"),
+        ("{S}heights: {by: given, bulge_m: 6 mm}", ("heights",), (2, 1), "6.3 mm together"),
+        ("{S}title: [a]", ("title",), (2, 1), "string"),
+        ("{S}title: " + "x" * 201, ("title",), (2, 1), "200"),
+        *((f'{{S}}title: "{each}"', ("title",), (2, 1), "control") for each in (r"a\nb", r"a\eb", r"a\x85b", r"a\Lb")),
+        ("{S}language: german?", ("language",), (2, 1), "tag"),
+        ("{S}parts: {1: wall}\nmaterials: {rules: [{part: wal, material: ice}]}", PART_RULE, (3, 22), "'wall'?"),
+        ("{S}parts: {1: }\nmaterials: {rules: [{part: wal, material: ice}]}", PART_RULE, (3, 22), "names none"),
+        ("{S}materials: {rules: [{part: 1, material: ice}]}", PART_RULE, (2, 22), "nothing is by parts"),
     ],
 )  # fmt: skip
 def test_mistake_has_location_line_and_column(text: str, location: tuple, mark: tuple, word: str):
-    (found,) = located_complaints(text.replace("{B}", "scene: builtin/brick\n").replace("{R}", RULES))
+    begun = text.replace("{B}", "scene: builtin/brick\n").replace("{R}", RULES).replace("{S}", SEGMENTED)
+    (found,) = located_complaints(begun)
     assert (found.location, (found.line, found.column)) == (location, mark)
     assert word in found.text
     assert json.loads(json.dumps(found._asdict()))["location"] == list(location)
 
 
-def test_file_with_a_law_wants_the_touch_unless_it_says_otherwise():
+def test_materials_and_the_wish_of_a_file_are_completed(tmp_path: Path):
     for text, want in (("", "surface"), ("render: proxy\n", "touch"), ("render: proxy\nwant: relief\n", "relief")):
         assert parse(f"scene: builtin/brick\n{text}").want == want
-
-
-def test_materials_are_read_and_completed(tmp_path: Path):
     rules = "{at: [1, 2.5], material: ice}, {segment: 1, material: sand}"
     choice = parse(f"scene: builtin/brick\nmaterials: {{rules: [{rules}], by: rules}}\n").materials
     assert [(rule.at, rule.segment, rule.material) for rule in choice.rules] == [
@@ -240,7 +271,7 @@ device: {use: mock, hand: null}
 """
 
 
-def test_device_with_a_mapping_is_mapped():
+def test_device_is_mapped_and_parts_are_read_by_number():
     config = parse(MAPPED)
     assert config.felt_device is not None and config.device is not None
     assert config.felt_device.spec().workspace_m == pytest.approx((0.04, 0.04, 0.04))
@@ -250,3 +281,65 @@ def test_device_with_a_mapping_is_mapped():
     plain = parse("scene: builtin/brick\ndevice: mock\n")
     assert plain.felt_device is plain.device.method
     assert parse("scene: builtin/brick\n").felt_device is None
+    config = parse(FULL)
+    helmet = PartChoice(name=" helmet ", height_m=0.0042, material="glass")
+    assert config.parts == {1: PartChoice(name="wall"), 7: helmet, 8: PartChoice(), 9: PartChoice()}
+    assert config.heights == HeightChoice(by="given", bulge_m=0.001)
+    assert (config.title, config.language) == ("1969", "pt-BR")
+    assert (config.part_names, config.given_heights_m) == ({0: "wall", 6: "helmet"}, {6: 0.0042})
+    assert [rule.part for rule in config.materials.rules] == ["helmet", 8]
+    assert config.size[1:3] == (0.006, 0.0005)
+    assert config.top_m == pytest.approx(0.0047)
+    config = parse(SEGMENTED)
+    assert (config.parts, config.heights, config.by_parts) == (None, None, False)
+    assert (config.title, config.language, *config.size[1:3]) == ("", "en", 0.004, 0.0015)
+    assert parse(f"{SEGMENTED}parts:\n").by_parts
+    assert parse(f"{SEGMENTED}heights: guess\n").heights == HeightChoice(by="guess")
+    assert parse("scene: {height: a.npy, segments: b.png}\nparts: {1: sea}\n").by_parts
+
+
+FULL = f"""{SEGMENTED}title: 1969
+language: pt-BR
+parts:
+  1: wall
+  7: {{name: ' helmet ', height_m: 4.2 mm, material: glass}}
+  8:
+  '9': {{}}
+heights: {{by: given, bulge_m: 1 mm}}
+materials: {{rules: [{{part: helmet, material: ice}}, {{part: 8, material: sand}}]}}
+"""
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        FULL,
+        *(f"{SEGMENTED}{end}\n" for end in ("parts: {}", "heights: depth", "parts: {1: {height_m: 1 mm}}\nheights:")),
+    ],
+)
+def test_completed_parts_are_read_back_equal(text: str):
+    config = parse(text)
+    again = parse(config.as_yaml())
+    for name in ("part_names", "given_heights_m", "by_parts", "heights", "title", "language"):
+        assert getattr(again, name) == getattr(config, name)
+    assert again.as_yaml() == config.as_yaml()
+
+
+def test_part_mistakes_come_all_at_once_and_overrides_keep_names():
+    parts = "{1: wall, 2: wall, 3: {material: glas}, x: 1}"
+    text = f"{SEGMENTED}parts: {parts}\nwant: nothing\nheights: {{by: given, bulge_m: 1}}\n"
+    assert [each.location for each in located_complaints(text)] == [
+        ("want",), ("parts", "x"), ("heights", "bulge_m"), ("parts", 2, "name"), ("parts", 3, "material"),
+    ]  # fmt: skip
+    (complaint,) = located_complaints("scene: {height: a.npy, segments: b.png}\nheights: {by: given}\n")
+    assert (complaint.location, complaint.line) == (("heights",), 2)
+    config = parse(f"{SEGMENTED}parts: {{1: wall}}\nheights: given\n", "parts.1.height_m=2 mm", "parts.6.name=x")
+    assert config.parts == {1: PartChoice(name="wall", height_m=0.002), 6: PartChoice(name="x")}
+    config = parse(f"{SEGMENTED}parts: {{1: wall}}\nheights: given\n", "heights.bulge_m=2 mm")
+    assert config.heights == HeightChoice(by="given", bulge_m=0.002)
+    config = parse("scene: builtin/brick\nrender: proxy\n", "render.stiffness_n_per_m=500")
+    assert config.render is not None and config.render.method.model_dump()["stiffness_n_per_m"] == 500
+    wrong = f"{SEGMENTED}parts: {{1: a}}\n", "parts.4.name=a"
+    (sentence,), (complaint,) = complaints(*wrong), located_complaints(*wrong)
+    assert sentence.startswith("--set parts.4.name=a: 'a' is the name of part 1 as well")
+    assert complaint == Complaint(("parts", 4, "name"), complaint.text, None, None)

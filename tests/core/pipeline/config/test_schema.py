@@ -76,22 +76,21 @@ def test_schema_accepts_parts_in_every_form(validator: Draft202012Validator, rig
     validator.validate({"scene": {"photo": "a.png", "segments": "parts.png"}, **right})
 
 
-def test_schema_has_every_shipped_method():
-    schema = json_schema()
-    for kind in ("depth", "texture", "render", "device"):
-        names = schema["properties"][kind]["anyOf"][0]["enum"]
-        shipped = metadata.distribution("tangible-images").entry_points.select(group=f"tangible.{kind}")
-        assert set(names) == {point.name for point in shipped}
-
-
-def test_option_of_every_method_has_a_description():
-    schema = json_schema()
-    forms = [
-        form for kind in ("depth", "texture", "render", "device") for form in schema["properties"][kind]["anyOf"][1:]
-    ]
+@pytest.mark.parametrize("kind", ["depth", "texture", "render", "device"])
+def test_every_shipped_method_has_a_described_form_and_a_default_in_json(kind: str):
+    whole, stage, registry = json_schema(), stage_schema(kind), default_registry()
+    Draft202012Validator.check_schema(stage)
+    names, *forms = stage["anyOf"]
+    assert whole["properties"][kind]["anyOf"] == [names, *forms]
+    assert stage["$defs"].items() <= whole["$defs"].items()
+    shipped = metadata.distribution("tangible-images").entry_points.select(group=f"tangible.{kind}")
+    assert set(names["enum"]) == {point.name for point in shipped}
     for form in forms:
         for name, option in form["properties"].items():
             assert name == "use" or option.get("description"), f"{form['title']}.{name}"
+    for name in registry.names(kind):
+        config = parse_config(f"scene: builtin/brick\n{kind}: {name}\n", Path("p.yaml"), registry)
+        assert json.loads(json.dumps(config.as_data(), allow_nan=False))[kind]["use"] == name
 
 
 def test_form_has_titles_and_units():
@@ -122,14 +121,6 @@ def _options(node: object) -> Iterator[tuple[str, dict]]:
             yield from _options(each)
 
 
-@pytest.mark.parametrize("kind", ["depth", "texture", "render", "device"])
-def test_stage_schema_equals_its_part_of_the_whole(kind: str):
-    whole, stage = json_schema(), stage_schema(kind)
-    Draft202012Validator.check_schema(stage)
-    assert whole["properties"][kind]["anyOf"] == stage["anyOf"]
-    assert stage["$defs"].items() <= whole["$defs"].items()
-
-
 def test_method_schema_imports_no_other_method():
     mock = Draft202012Validator(method_schema("device", "mock"))
     assert mock.is_valid({"use": "mock", "path": "circle", "hand": {"mass_kg": "90 g"}})
@@ -148,49 +139,16 @@ def test_method_schema_imports_no_other_method():
         method_schema("depth", "znc")
 
 
-@pytest.mark.parametrize("kind", ["depth", "texture", "render", "device"])
-def test_default_of_every_option_is_json(kind: str):
-    registry = default_registry()
-    for name in registry.names(kind):
-        config = parse_config(f"scene: builtin/brick\n{kind}: {name}\n", Path("p.yaml"), registry)
-        assert json.loads(json.dumps(config.as_data(), allow_nan=False))[kind]["use"] == name
-
-
-@pytest.fixture(scope="module")
-def materials() -> Draft202012Validator:
+def test_shipped_library_fits_the_schema_of_materials_and_a_new_material_needs_all_values():
     schema = materials_schema()
     Draft202012Validator.check_schema(schema)
-    return Draft202012Validator(schema)
-
-
-def test_shipped_library_fits_the_schema_of_materials(materials: Draft202012Validator):
+    materials = Draft202012Validator(schema)
     materials.validate(YAML(typ="safe").load(ROOT / "tangible_core/materials/materials.yaml"))
-
-
-@pytest.mark.parametrize(
-    ("block", "right"),
-    [
-        ({"ice": {"grain_m": 0.002}}, True),
-        ({"ice": {"grain_m": 0}}, False),
-        ({"ice": {"texture": "rough"}}, False),
-        ({"ice": {"sorce": "guess"}}, False),
-        ({"felt": {"grain_m": 0.002}}, False),
-        (
-            {
-                "felt": dict.fromkeys(
-                    ("stiffness_n_per_m", "damping_n_s_per_m", "static_friction", "dynamic_friction"), 1
-                )
-            },
-            True,
-        ),
-    ],
-)
-def test_shipped_material_needs_changes_only_and_a_new_one_all(
-    materials: Draft202012Validator, block: dict, right: bool
-):
-    assert materials.is_valid(block) == right
-
-
-def test_value_of_every_material_has_a_description():
-    for name, value in materials_schema()["$defs"]["material"]["properties"].items():
+    needed = ("stiffness_n_per_m", "damping_n_s_per_m", "static_friction", "dynamic_friction")
+    for right in ({"ice": {"grain_m": 0.002}}, {"felt": dict.fromkeys(needed, 1)}):
+        assert materials.is_valid(right), right
+    for ice in ({"grain_m": 0}, {"texture": "rough"}, {"sorce": "guess"}):
+        assert not materials.is_valid({"ice": ice}), ice
+    assert not materials.is_valid({"felt": {"grain_m": 0.002}})
+    for name, value in schema["$defs"]["material"]["properties"].items():
         assert value.get("description"), name

@@ -125,14 +125,28 @@ class TestKeys:
         assert not self.differ(product, one, same)
         assert self.differ(product, same, other)
 
-    @pytest.mark.parametrize("product", ["disparity", "segments"])
-    def test_keys_differ_for_the_reduction_of_pictures(self, folder: Path, product: str):
+    @pytest.mark.parametrize(("product", "method"), [("disparity", Ramp), ("segments", Halves)])
+    def test_keys_differ_for_the_reduction_and_the_mask_of_pictures_and_the_version_of_a_method(
+        self, folder: Path, monkeypatch: pytest.MonkeyPatch, product: str, method: type
+    ):
         coarse, fine = (pipeline(folder, workspace=Workspace(width_m=0.03, finest_m=each)) for each in (0.01, 0))
         assert self.differ(product, coarse, fine)
         if product == "disparity":
             assert fine.make(product).disparity_px[0].tolist() == list(range(30))
+        whole, torn = (
+            pipeline(folder, scene=SceneFiles(photo=Path(f"{each}.npy"), non_finite="mask"))
+            for each in ("left", "torn")
+        )
+        np.testing.assert_array_equal(whole.scene.views.left, torn.scene.views.left)
+        assert self.differ(product, whole, torn)
+        assert torn.make(product).confidence[3, 5] == 0
+        one, other = pipeline(folder), pipeline(folder)
+        one.make(product)
+        monkeypatch.setattr(method, "version", method.version + 1)
+        other.make(product)
+        assert outcome(other, product) == "ran"
 
-    def test_relief_of_edges_depends_on_a_texture_method_that_makes_a_tree_alone(self, folder: Path):
+    def test_keys_depend_on_files_that_are_read_and_on_trees_alone(self, folder: Path):
         parts = {"want": "relief", "relief": ReliefChoice(by="edges"), "scene": SceneFiles(photo=Path("left.npy"))}
         found = [
             keys(folder, **parts, texture=NamedMethod(name, version, load_method("texture", name)()))["relief"]
@@ -141,27 +155,6 @@ class TestKeys:
         assert len({*found}) == 3
         assert found[2] == found[3]
 
-    @pytest.mark.parametrize("product", ["disparity", "segments"])
-    def test_keys_differ_for_the_mask_of_known_pixels(self, folder: Path, product: str):
-        whole, torn = (
-            pipeline(folder, scene=SceneFiles(photo=Path(f"{each}.npy"), non_finite="mask"))
-            for each in ("left", "torn")
-        )
-        np.testing.assert_array_equal(whole.scene.views.left, torn.scene.views.left)
-        assert self.differ(product, whole, torn)
-        assert torn.make(product).confidence[3, 5] == 0
-
-    @pytest.mark.parametrize(("product", "method"), [("disparity", Ramp), ("segments", Halves)])
-    def test_keys_differ_for_the_version_of_a_method(
-        self, folder: Path, monkeypatch: pytest.MonkeyPatch, product: str, method: type
-    ):
-        one, other = pipeline(folder), pipeline(folder)
-        one.make(product)
-        monkeypatch.setattr(method, "version", method.version + 1)
-        other.make(product)
-        assert outcome(other, product) == "ran"
-
-    def test_keys_differ_for_the_content_of_a_file_that_a_method_reads(self, folder: Path):
         def of(content: bytes) -> str:
             (folder / "weights.bin").write_bytes(content)
             return keys(folder, depth=NamedMethod("ramp", "t 1", Ramp(weights=folder / "weights.bin")))["disparity"]

@@ -266,16 +266,13 @@ def test_parts_of_the_scene_stand_for_products(folder: Path):
     assert ran == []
 
 
-def test_skipped_and_unneeded_methods_are_not_called(folder: Path):
+def test_stages_that_are_skipped_or_fail_are_not_kept(folder: Path):
     pipe = pipeline(folder, depth=name_method(Never()))
     assert np.ptp(pipe.make("relief").height_m) == 0
     assert {outcome.product: outcome.why for outcome in pipe.outcomes}["disparity"] == "nothing to see"
     pipe = pipeline(folder, render=name_method(FeelHeights()))
     assert pipe.make().surface.materials is None
     assert "segments" not in ran
-
-
-def test_failed_stage_is_noted_and_not_kept(folder: Path):
     pipe = pipeline(folder, texture=name_method(Fails()))
     with pytest.raises(ZeroDivisionError):
         pipe.make()
@@ -304,7 +301,9 @@ class Warns(Ramp):
         return super().estimate(views)
 
 
-def test_outcome_of_a_cached_product_repeats_its_notes(folder: Path, caplog: pytest.LogCaptureFixture):
+def test_surface_is_taken_from_the_cache_with_its_notes(
+    folder: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+):
     parts = {"depth": name_method(Warns()), "texture": name_method(Says()), "materials": MaterialChoice(by={1: "ice"})}
     noticed = [Note("every row is strange", "warning"), Note("hardly worth it", "doubt")]
     first = pipeline(folder, **parts)
@@ -323,17 +322,6 @@ def test_outcome_of_a_cached_product_repeats_its_notes(folder: Path, caplog: pyt
     assert found["segments"].why.endswith("; skipped: everything")
     again.make("disparity")
     assert len(caplog.records) == 2, "each note is logged once"
-
-
-def test_views_ordered_as_named_are_not_exchanged(folder: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(pair_checks, "view_order", lambda *_: pair_checks.ViewOrder(True, "exchanged"))
-    for order, most_px in ((None, 87), ("as-named", 0)):
-        files = SceneFiles(left=Path("left.png"), right=Path("right.png"), order=order)
-        found = pipeline(folder, scene=files, depth=name_method(Ramp(slope=-3.0))).make("disparity")
-        assert np.nanmax(found.disparity_px) == most_px
-
-
-def test_second_run_takes_the_surface_from_the_cache(folder: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("tangible_core.pipeline.engine.engine.perf_counter", count().__next__)
     pipeline(folder).make()
     ran.clear()
@@ -348,6 +336,14 @@ def test_second_run_takes_the_surface_from_the_cache(folder: Path, monkeypatch: 
     other.make()
     assert ran == ["touch"] * 2
     assert (outcome_kinds(other)["relief"], outcome_kinds(other)["surface"]) == ("cached", "ran")
+
+
+def test_views_ordered_as_named_are_not_exchanged(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(pair_checks, "view_order", lambda *_: pair_checks.ViewOrder(True, "exchanged"))
+    for order, most_px in ((None, 87), ("as-named", 0)):
+        files = SceneFiles(left=Path("left.png"), right=Path("right.png"), order=order)
+        found = pipeline(folder, scene=files, depth=name_method(Ramp(slope=-3.0))).make("disparity")
+        assert np.nanmax(found.disparity_px) == most_px
 
 
 @pytest.mark.parametrize(
@@ -437,19 +433,18 @@ class TestWorkingGrid:
 
     COARSE = Workspace(width_m=0.03, relief_m=0.01, smooth_m=0, finest_m=0.002)
 
-    def test_surface_is_as_coarse_and_as_large_in_metres(self, folder: Path):
+    def test_working_grid_is_as_coarse_in_metres_and_keeps_holes(self, folder: Path):
         surface = pipeline(folder, workspace=self.COARSE).make("surface")
         assert surface.height_m.shape == surface.labels.shape == (10, 15)
         assert surface.extent_m == (0.03, 0.02)
         assert surface.labels.tolist() == [[0] * 7 + [1] * 8] * 10
-        finest = Workspace(width_m=0.03, relief_m=0.01, smooth_m=0, finest_m=0)
-        whole = pipeline(folder, workspace=finest).make("surface")
+        whole_pipe = pipeline(folder, workspace=Workspace(width_m=0.03, relief_m=0.01, smooth_m=0, finest_m=0))
+        whole = whole_pipe.make("surface")
         assert whole.height_m.shape == whole.labels.shape == (20, 30)
         pairs = whole.height_m.reshape(10, 2, 15, 2).mean(axis=(1, 3))
         np.testing.assert_allclose(surface.height_m, pairs, atol=0.01 / 15)
-
-    def test_disparity_on_the_grid_is_in_pixels_of_the_picture_and_noted(self, folder: Path):
         pipe = pipeline(folder, workspace=self.COARSE)
+        found = pipe.make_on_grid("disparity")
         found = pipe.make_on_grid("disparity")
         assert found.disparity_px.tolist() == [[2.0 * column for column in range(15)]] * 10
         assert pipe.make("disparity").disparity_px[0, 15] == pytest.approx(15, abs=1)
@@ -457,9 +452,16 @@ class TestWorkingGrid:
         assert pipe.make("segments").labels.tolist() == [[0] * 14 + [1] * 16] * 20, "half of 15 columns is 7"
         whys = {outcome.product: outcome.why for outcome in pipe.outcomes}
         assert all("at 1/2 of the size" in whys[product] for product in ("disparity", "segments"))
-        whole = pipeline(folder, workspace=Workspace(width_m=0.03, finest_m=0))
-        assert whole.make("segments").labels.tolist() == [[0] * 15 + [1] * 15] * 20
-        assert "of the size" not in "".join(outcome.why for outcome in whole.outcomes)
+        assert whole_pipe.make("segments").labels.tolist() == [[0] * 15 + [1] * 15] * 20
+        assert "of the size" not in "".join(outcome.why for outcome in whole_pipe.outcomes)
+        heights = np.tile(np.arange(30.0), (20, 1))
+        heights[4:6, 10:12], heights[8, 20] = np.nan, np.nan
+        np.save(folder / "torn.npy", heights)
+        parts = {"scene": SceneFiles(height=Path("torn.npy")), "texture": None}
+        surface = pipeline(folder, **parts, workspace=self.COARSE.model_copy(update={"holes": "cut"})).make("surface")
+        wanted = np.tile(np.linspace(0, 0.01, 15), (10, 1))
+        wanted[2, 5] = 0
+        np.testing.assert_allclose(surface.height_m, wanted, atol=0.0002)
 
     def test_full_size_products_of_the_scene_make_an_equally_coarse_surface(self, folder: Path):
         labels = np.zeros((20, 30), np.uint8)
@@ -478,13 +480,3 @@ class TestWorkingGrid:
         assert surface.labels.tolist() == [[0] * 2 + [int(row == 1)] + [0] * 7 + [2] * 5 for row in range(10)]
         np.testing.assert_allclose(surface.height_m[0], np.linspace(0, 0.01, 15), atol=1e-8)
         assert pipe.make("segments").labels.shape == (20, 30)
-
-    def test_heights_are_reduced_and_holes_stay_holes(self, folder: Path):
-        heights = np.tile(np.arange(30.0), (20, 1))
-        heights[4:6, 10:12], heights[8, 20] = np.nan, np.nan
-        np.save(folder / "torn.npy", heights)
-        parts = {"scene": SceneFiles(height=Path("torn.npy")), "texture": None}
-        surface = pipeline(folder, **parts, workspace=self.COARSE.model_copy(update={"holes": "cut"})).make("surface")
-        wanted = np.tile(np.linspace(0, 0.01, 15), (10, 1))
-        wanted[2, 5] = 0
-        np.testing.assert_allclose(surface.height_m, wanted, atol=0.0002)

@@ -47,16 +47,13 @@ def film_pipeline(walk):
     return make
 
 
-def test_first_frame_equals_the_relief_of_the_still(film_pipeline, walk):
+def test_frames_equal_the_stills_of_their_disparity_and_scale(film_pipeline, walk):
     one_camera = Pipeline(Scene.video(walk, fps=20, repeat=False), depth=Luminance(), cached=False)
     for pipeline in (film_pipeline(), one_camera):
         with Feeling(pipeline).reliefs as reliefs:
             first = next(iter(reliefs))
         assert np.ptp(first.relief.height_m) > 0.0005
         assert np.array_equal(first.relief.height_m, pipeline.relief.height_m)
-
-
-def test_each_frame_equals_the_still_of_its_disparity_and_scale(film_pipeline, walk):
     pipeline = film_pipeline()
     later = Pipeline(Scene.pair(walk / "004.png", layout="side-by-side"), depth=pipeline.config.depth.method)
     maker = PipelineFrames(pipeline.config, pipeline.scene)

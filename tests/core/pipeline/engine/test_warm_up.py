@@ -1,4 +1,4 @@
-"""The warm-up of a pipeline: all kernels after its depth are compiled, and no stage that has begun is run again."""
+"""Kernels before they are needed, and functions for fingers: a broken package would end a run without its name."""
 
 import json
 import subprocess
@@ -6,13 +6,17 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pluggy
 import pytest
 
 from tangible_core import Pipeline, Scene, Workspace
 from tangible_core.compiled.background import LATE_STEPS, start_waiting
+from tangible_core.errors import BrokenMethod
 from tangible_core.pipeline.engine import warm_up as module
+from tangible_core.pipeline.engine.hooked import judge_function, legibility_point, simplify_function
 from tangible_core.pipeline.engine.warm_up import FELT, _work, run_stages
-from tangible_core.plugins import DepthEstimator
+from tangible_core.plugins import DepthEstimator, hooks
+from tangible_core.plugins.registry import Registry, default_registry
 from tangible_depth import Luminance, SemiGlobal
 from tangible_devices import Mock
 from tangible_render import GreyLevel, Penalty
@@ -83,7 +87,7 @@ print(json.dumps(added))
 """
 
 
-@pytest.mark.parametrize("effort", ["balanced", "best"])
+@pytest.mark.parametrize("effort", ["balanced", pytest.param("best", marks=pytest.mark.whole)])
 def test_rehearsal_compiles_every_kernel_that_fills_gaps(effort: str):
     words = [sys.executable, "-c", FILLED.replace("EFFORT", repr(effort))]
     done = subprocess.run(words, capture_output=True, text=True, check=True)
@@ -96,13 +100,20 @@ def pipeline(**methods) -> Pipeline:
 
 
 class TestWork:
-    def test_work_has_segments_touch_and_session(self):
-        work = _work(pipeline().engine, "touch")
-        assert work is not None
-        assert list(run_stages(*work.arguments)) == ["segments", "touch", FELT]
-        assert work.names == {"segments", "touch", FELT}
+    @pytest.mark.parametrize(
+        ("methods", "want", "steps"),
+        [
+            ({}, "touch", ["segments", "touch", FELT]),
+            ({}, "segments", ["segments"]),
+            ({"render": GreyLevel(), "device": None, "texture": None}, "touch", ["touch", FELT]),
+        ],
+    )
+    def test_work_has_the_wanted_stages_that_the_law_needs(self, methods: dict, want, steps: list[str]):
+        work = _work(pipeline(**methods).engine, want)
+        assert work is not None and work.names == set(steps)
+        assert list(run_stages(*work.arguments)) == steps
 
-    def test_work_leaves_out_stages_that_have_begun(self):
+    def test_work_without_anything_to_compile_or_of_begun_stages_is_left_out(self, monkeypatch: pytest.MonkeyPatch):
         made = pipeline()
         assert made.segments is not None
         work = _work(made.engine, "touch")
@@ -110,27 +121,21 @@ class TestWork:
         assert work.names == {"touch", FELT}
         assert made.touch is not None
         assert _work(made.engine, "touch") is None
-
-    def test_work_leaves_out_products_that_are_not_wanted(self):
-        work = _work(pipeline().engine, "segments")
-        assert work is not None
-        assert list(run_stages(*work.arguments)) == ["segments"]
-        assert _work(pipeline(texture=None).engine, "surface") is None
-
-    def test_work_leaves_out_products_of_the_scene(self):
-        scene = Scene.photo(PICTURE, segments=(PICTURE > 40).astype(np.uint8))
-        work = _work(Pipeline(scene, depth=Luminance(), texture=Gradient(), cached=False).engine, "segments")
-        assert work is None
-
-    def test_work_of_a_scene_without_a_picture_is_none(self):
-        scene = Scene.heights(np.eye(8))
-        assert _work(Pipeline(scene, render=Penalty(), cached=False).engine, "touch") is None
-
-    def test_work_on_one_processor_is_none(self, monkeypatch: pytest.MonkeyPatch):
+        labelled = Scene.photo(PICTURE, segments=(PICTURE > 40).astype(np.uint8))
+        for made, want in (
+            (pipeline(texture=None), "surface"),
+            (Pipeline(labelled, depth=Luminance(), texture=Gradient(), cached=False), "segments"),
+            (Pipeline(Scene.heights(np.eye(8)), render=Penalty(), cached=False), "touch"),
+        ):
+            assert _work(made.engine, want) is None
         monkeypatch.setattr("tangible_core.compiled.threads.thread_count", lambda: 1)
         assert _work(pipeline().engine, "touch") is None
 
-    def test_work_of_a_depth_that_has_begun_rehearses_it_first(self, monkeypatch: pytest.MonkeyPatch):
+    def test_work_of_a_begun_depth_rehearses_the_middle_of_a_picture(self, monkeypatch: pytest.MonkeyPatch):
+        monkeypatch.setattr(module, "MAX_PX", 20)
+        work = _work(pipeline().engine, "touch")
+        assert work is not None
+        assert np.array_equal(work.arguments[1].left, PICTURE[14:34, 14:34])
         engine = pipeline(depth=SemiGlobal()).engine
         engine.starts.add("disparity")
         rehearsed: list[SemiGlobal] = []
@@ -140,17 +145,6 @@ class TestWork:
         assert work.names == {LATE_STEPS, "segments"}
         assert next(run_stages(*work.arguments)) == LATE_STEPS
         assert rehearsed == [SemiGlobal()]
-
-    def test_work_crops_the_middle_of_a_large_picture(self, monkeypatch: pytest.MonkeyPatch):
-        monkeypatch.setattr(module, "MAX_PX", 20)
-        work = _work(pipeline().engine, "touch")
-        assert work is not None
-        assert np.array_equal(work.arguments[1].left, PICTURE[14:34, 14:34])
-
-    def test_work_of_a_law_without_materials_and_a_real_device(self):
-        work = _work(pipeline(render=GreyLevel(), device=None, texture=None).engine, "touch")
-        assert work is not None
-        assert list(run_stages(*work.arguments)) == ["touch", FELT]
 
 
 class Loud(DepthEstimator):
@@ -178,16 +172,49 @@ def test_run_is_the_same_with_and_without_warm_up(tmp_path: Path):
     assert np.array_equal(beside.recording.rows, alone.recording.rows, equal_nan=True)
 
 
-def test_run_without_compiling_starts_no_process(tmp_path: Path):
+def test_run_without_compiling_starts_no_process_and_make_warms_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     pipeline().run(tmp_path / "first", seconds=0.1)
     made = pipeline()
     made.run(tmp_path / "second", seconds=0.1)
     assert made.engine.compiler is not None
     assert made.engine.compiler._child is None
-
-
-def test_make_has_a_warm_up_too(monkeypatch: pytest.MonkeyPatch):
     asked: list[str] = []
     monkeypatch.setattr(module, "_work", lambda _, want: asked.append(want))
     assert pipeline(depth=Loud()).touch is not None
     assert asked == ["touch"]
+
+
+class Rules:
+    def __init__(self, **functions):
+        self.functions = functions
+
+    @hooks.hookimpl
+    def tangible_legibility(self):
+        return self.functions
+
+
+def registry(*rules: Rules) -> Registry:
+    plugins = pluggy.PluginManager("tangible")
+    plugins.add_hookspecs(hooks.Specs)
+    for rule in rules:
+        plugins.register(rule)
+    return Registry(plugins)
+
+
+def test_first_answer_counts_and_an_answer_without_the_name_is_passed_over():
+    chosen = legibility_point(registry(Rules(judge="a:b"), Rules(simplify="c:d"), Rules(simplify="e:f")), "simplify")
+    assert chosen.value == "c:d"
+    assert callable(judge_function(default_registry())) and callable(simplify_function(default_registry()))
+
+
+@pytest.mark.parametrize(
+    ("rules", "why"),
+    [
+        ((), "no hook tangible_legibility names a function to simplify parts"),
+        ((Rules(simplify="nothing.here:f"),), "nothing.here:f, which tangible_legibility names .*No module named"),
+        ((Rules(simplify="math:nothing"),), "math:nothing, which tangible_legibility names .*no attribute"),
+    ],
+)
+def test_missing_function_is_named(rules, why):
+    with pytest.raises(BrokenMethod, match=why):
+        simplify_function(registry(*rules))

@@ -132,27 +132,27 @@ def refused(text: str, place: Path, *sets: str) -> ConfigError:
 
 
 class TestWork:
-    def test_work_has_products_and_words(self, tmp_path: Path):
+    def test_work_has_products_words_and_a_title(self, tmp_path: Path):
         done = pipeline(**SAID, title="Ein Stück", language="de-AT", export=[Report(width_m=0.1)]).export(tmp_path)
         said = report_of(tmp_path)
         assert (said["title"], said["language"], said["names"]) == ("Ein Stück", "de-AT", ["wall", "box", ""])
         assert said["extent_m"][0] == 0.1
         assert [outcome.outcome for outcome in done.outcomes] == ["ran"]
         assert done.files == {"Report": (tmp_path / "Ein Stück.report",)}
-
-    def test_work_without_a_title_has_the_name_of_the_scene(self, tmp_path: Path):
         np.save(tmp_path / "old harbour.v2.npy", np.eye(8))
         Pipeline(Scene.heights(tmp_path / "old harbour.v2.npy"), cached=False).export(tmp_path / "out", [Report()])
         assert report_of(tmp_path / "out")["title"] == "old harbour.v2"
         assert (tmp_path / "out/old harbour-v2.report").is_file()
 
-    def test_work_has_the_width_of_the_exporter(self, tmp_path: Path):
+    def test_work_has_the_width_of_the_exporter_and_files_of_one_name_are_numbered(self, tmp_path: Path):
         exporters = [Report(), Report(width_m=0.16), Report(width_m=0.16)]
         done = pipeline(**SAID).export(tmp_path, exporters)
         widths = [json.loads(export.files[0].read_text())["extent_m"][0] for export in done.exports]
         assert widths == [0.08, 0.16, 0.16]
         made = [[each.product for each in one.made if each.outcome == "ran"] for one in done.exports]
         assert made == [["parts", "relief"], ["relief"], []]
+        usual = [name for name, files in done.files.items() if files[0].stem == name.replace("Report", "still life")]
+        assert usual == ["Report", "Report-2", "Report-3"]
 
     @pytest.mark.parametrize(
         ("said", "steepest"),
@@ -200,7 +200,7 @@ class TestWork:
 
 
 class TestSimplify:
-    def test_simplify_applies_to_relief_labels_and_materials(self):
+    def test_simplified_parts_are_felt_in_their_places_with_relief_and_materials(self):
         labels = np.zeros((60, 80), np.int32)
         labels[10:40, 10:40], labels[20:24, 60:64] = 1, 2
         said = {"parts": {1: "ground", 2: {"height_m": 0.004}, 3: {"height_m": 0.003}}, "heights": "given"}
@@ -213,8 +213,6 @@ class TestSimplify:
         assert simple.surface.height_m.shape == plain.surface.height_m.shape
         assert len(simple.materials.materials) == simple.make("parts").count == simple.make("simplified").count == 3
         assert part_heights(simple.engine).heights_m == part_heights(plain.engine).heights_m
-
-    def test_simplified_parts_are_felt_in_their_places(self):
         parts = PartMap(np.int32([[0, 3, 2]]), (0, 1, 2, 3))
         felt = parts_on_grid(parts, (1, 8), "simplified")
         assert felt.labels.tolist() == [[0, 0, 0, 3, 3, 2, 2, 2]]
@@ -251,7 +249,7 @@ class TestFiles:
         assert one.files == (path,)
         assert path.read_text() != kept
 
-    def test_files_are_moved_all_or_none(self, tmp_path: Path):
+    def test_files_are_moved_all_or_none_by_one_export_of_a_name(self, tmp_path: Path):
         (tmp_path / "still life.b").mkdir()
 
         def both(stem: Path) -> tuple[Path, ...]:
@@ -261,7 +259,6 @@ class TestFiles:
         assert one.outcome.outcome == "refused"
         assert sorted(path.name for path in tmp_path.iterdir()) == ["still life.b"]
 
-    def test_second_export_of_a_name_is_refused_during_the_first(self, tmp_path: Path):
         def export_another(stem: Path) -> tuple[Path, ...]:
             with pytest.raises(OutputError, match="another program is writing"):
                 pipeline(**SAID, language="de").export(tmp_path, [Report()])
@@ -273,13 +270,6 @@ class TestFiles:
         assert json.loads((tmp_path / "still life.report").read_text())["language"] == "fr"
         beside = write_file(tmp_path / "still life.second")[0]
         assert (tmp_path / "still life.first").stat().st_mode == beside.stat().st_mode
-
-    def test_exporters_of_one_name_have_numbered_files(self, tmp_path: Path):
-        done = pipeline(**SAID).export(tmp_path, [Report(), Report(width_m=0.1)])
-        assert {name: files[0].name for name, files in done.files.items()} == {
-            "Report": "still life.report",
-            "Report-2": "still life-2.report",
-        }
 
     def test_concurrent_exports_keep_the_whole_list(self, tmp_path: Path):
         names = [f"{letter}{number}" for letter in "ab" for number in range(20)]
@@ -355,13 +345,6 @@ class TestFailures:
         assert (one.outcome.outcome, one.files) == (outcome, ())
         assert why in one.outcome.why
 
-    def test_folder_of_a_killed_export_is_swept_by_the_next(self, tmp_path: Path):
-        left = tmp_path / ".export.0123456789ab.tangible"
-        left.mkdir()
-        os.utime(left, (1, 1))
-        pipeline(**SAID).export(tmp_path, [Report()])
-        assert sorted(path.name for path in tmp_path.iterdir()) == [".exports.json", "still life.report"]
-
     @pytest.mark.parametrize("content", ["", "{}", '{"files": {"a": 1}}', "[[", '{"files": {"a": {"b": 1}}}'])
     def test_list_of_another_program_is_refused(self, tmp_path: Path, content: str):
         (tmp_path / ".exports.json").write_text(content)
@@ -392,7 +375,13 @@ class TestEnding:
         assert (list(tmp_path.iterdir()), heard) == ([], ["export: Does"])
 
     @pytest.mark.parametrize("error", [KeyboardInterrupt, Stopped])
-    def test_interrupted_export_leaves_no_partial_files(self, tmp_path: Path, error: type[BaseException]):
+    def test_interrupted_export_leaves_no_partial_files_and_sweeps_those_of_a_killed_one(
+        self, tmp_path: Path, error: type[BaseException]
+    ):
+        left = tmp_path / ".export.0123456789ab.tangible"
+        left.mkdir()
+        os.utime(left, (1, 1))
+
         def halfway(stem: Path) -> Any:
             write_file(stem.with_suffix(".txt"))
             raise error
@@ -404,7 +393,7 @@ class TestEnding:
 
 
 class TestDocument:
-    def test_exporters_of_a_file_are_listed(self, tmp_path: Path):
+    def test_names_and_places_of_exporters_are_checked(self, tmp_path: Path):
         config = parse_config(
             "scene: builtin/coins\nsimplify: {gap_m: 4 mm}\nexport: [heights, {use: heights, width_m: 160 mm}]",
             tmp_path / "p.yaml", default_registry(),
@@ -417,8 +406,6 @@ class TestDocument:
         for text in ("export:", "simplify:", "export: []"):
             config = parse_config(f"scene: builtin/coins\n{text}", tmp_path / "p.yaml", default_registry())
             assert (config.export, config.simplify) == ((), None)
-
-    def test_wrong_exporters_are_refused_with_their_places(self, tmp_path: Path):
         for text, column, word in (
             ("export: stl", 1, "list"),
             ("export: [hights]", 10, "'heights'"),

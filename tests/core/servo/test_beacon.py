@@ -22,7 +22,7 @@ def potential(memory: BeaconMemory, places_m: np.ndarray) -> np.ndarray:
 
 class TestPull:
     @pytest.mark.parametrize("part", PARTS)
-    def test_pull_is_the_gradient_of_the_potential_and_within_its_bound(self, part: int):
+    def test_pull_is_the_bounded_gradient_of_the_potential_and_zero_within_the_part(self, part: int):
         """At rest and at 3 m/s, over the picture and far outside."""
         random = np.random.default_rng(part)
         places = random.uniform(-0.1, 0.1, (1500, 2))
@@ -32,15 +32,11 @@ class TestPull:
         assert np.hypot(*still_n.T).max() <= 1.01 * PULL_N
         fast_n = pulls(faded_in(part), np.hstack([places, random.uniform(-3, 3, places.shape)]))
         assert np.hypot(*fast_n.T).max() <= MAX_N
-
         steep = np.hypot(*still_n.T)
         full = steep > BRAKED_FROM * PULL_N
         away_n = pulls(faded_in(part), np.hstack([places, -3 * still_n / np.maximum(steep, 1e-9)[:, None]]))
         assert np.hypot(*away_n[full].T) == pytest.approx(np.minimum(steep[full] + MAX_N - PULL_N, MAX_N), rel=1e-9)
         assert full.any()
-
-    @pytest.mark.parametrize("part", PARTS)
-    def test_pull_within_the_part_is_zero(self, part: int):
         assert SURFACE.labels is not None
         random, (across_m, along_m) = np.random.default_rng(0), SURFACE.relief.pitch_m
         cells = np.argwhere(SURFACE.labels == part)[random.integers(0, np.count_nonzero(SURFACE.labels == part), 400)]
@@ -121,7 +117,7 @@ class TestFadingAndRelease:
         pulls(memory, at, (41 << 8) | 4)
         assert memory.state == BeaconState(None, "button")
 
-    def test_pull_at_state_not_finite_is_zero(self):
+    def test_pull_is_zero_where_state_or_memory_is_not_valid(self):
         memory = faded_in(1)
         for bad in (math.nan, math.inf, -math.inf, 1e300):
             for axis in range(4):
@@ -131,8 +127,6 @@ class TestFadingAndRelease:
                 assert np.isfinite(found).all() and np.hypot(*found.T).max() <= MAX_N
                 assert abs(bad) < math.inf or not found.any()
         assert pulls(memory, np.array([[-0.03, 0.0, 0.0, 0.0]])).any()
-
-    def test_grid_larger_than_the_memory_is_not_read(self):
         memory = faded_in(1)
         for rows, columns in ((1 << 40, 1 << 40), (-5, 9), (0, 0), (2, 9), (1 << 62, 4)):
             memory.words[[2, 3]] = rows, columns
@@ -166,15 +160,13 @@ def drift(allowed: GuardedForce, seconds: float, at: np.ndarray, mass_kg: float 
 
 
 class TestBeaconInGuard:
-    def test_pull_is_not_counted_as_debt_by_the_guard(self):
+    def test_pull_in_the_guard_leaves_walls_and_is_no_debt(self):
         """A pulled hand is not damped and owes nothing at the end; a law that gives energy is damped as ever."""
         allowed, memory, _ = loop_of(beacon_to(SURFACE, 1), Safety(ramp_s=0))
         rows = drift(allowed, 4.0, np.array([-0.03, -0.02, 0.01]), b=2.0)
         assert not (rows[:, 9].astype(int) & TickFlag.DAMPED).any()
         assert np.hypot(rows[-1, 0] - 0.02, rows[-1, 1] - 0.01) < 0.007
         assert abs(memory[layout.ENERGY_J]) < 2e-3
-
-    def test_pull_on_a_wall_leaves_the_force_along_z(self):
         states = [(-0.03, -0.02, 0.004 - 0.003 * math.sin(0.01 * i)) for i in range(900)]
         (with_it, *_), (without, *_) = (loop_of(b, Safety(ramp_s=0)) for b in (beacon_to(SURFACE, 1), None))
         found = [(with_it(HapticState(s), T), without(HapticState(s), T)) for s in states]

@@ -134,7 +134,7 @@ class TestSessionsAndRecordings:
         touch = load_method("render", "penalty")().touch(SURFACE)
         return run_simulated(touch, Mock(path="press"), 1.5, None, Safety(ramp_s=0), beacon=beacon)
 
-    def test_recording_has_the_ticks_and_the_part_of_a_beacon(self, tmp_path: Path):
+    def test_beacon_ticks_are_recorded_and_left_out_of_replays(self, tmp_path: Path):
         felt, alone = self.record(beacon_to(SURFACE, 4)), self.record(None)
         for suffix in (".nc", ".npz", ".csv"):
             felt.save(tmp_path / f"a{suffix}")
@@ -142,8 +142,6 @@ class TestSessionsAndRecordings:
             assert (kept.beacon == 4).all()
             assert beacons_felt(kept, SURFACE) == ((4, "arc", 1.0),)
         assert (alone.beacon == -1).all() and beacons_felt(alone, SURFACE) == ()
-
-    def test_beacon_ticks_are_left_out_of_replays_and_of_touched_parts(self):
         from tangible_core.session import compare_replay, replay
 
         felt = self.record(beacon_to(SURFACE, 4))

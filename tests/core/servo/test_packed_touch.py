@@ -61,7 +61,7 @@ class TestStiffness:
 
 
 class TestOwner:
-    def test_parcel_of_killed_maker_belongs_to_its_adopter(self):
+    def test_parcel_of_killed_maker_is_adopted_unless_it_was_deleted(self):
         one = Packed(*of_a_dead_maker(stiff()))
         assert one.parcel.name == f"tangible-{os.getpid()}-a_b1.parcel"
         Ring.create(16).remove()  # which sweeps
@@ -69,8 +69,6 @@ class TestOwner:
         one.discard()
         one.discard()
         assert not parcels()
-
-    def test_parcel_deleted_before_adoption_is_an_error(self):
         path, stiffness = of_a_dead_maker(stiff())
         Ring.create(16).remove()
         with pytest.raises(DeviceError, match=r"the packed scene is missing .*; make it again"):

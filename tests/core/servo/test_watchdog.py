@@ -49,10 +49,7 @@ def test_watchdog_that_stood_still_itself_polls_four_times_before_it_expires(clo
     assert polls_until_expired(clock, [5] * 99, step=640) == 1 + limits.WATCHDOG_POLLS
 
 
-def test_limit_grows_with_the_period_of_a_slow_loop():
+def test_limits_of_a_watchdog_follow_its_polls_and_the_period_of_its_loop():
     assert watchdog.timeout_s(0.2, 0.001) == 0.2
     assert watchdog.timeout_s(0.2, 0.3) == pytest.approx(1.2)
-
-
-def test_own_watchdog_has_its_polls_within_the_least_timeout():
     assert limits.WATCHDOG_POLLS * limits.WATCHDOG_POLL_S < limits.WATCHDOG_OWN_SHARE * limits.MIN_WATCHDOG_S

@@ -32,12 +32,10 @@ def tick(arrays, place: Sequence[float], velocity: Sequence[float], force: Seque
 
 
 class TestObserver:
-    def test_energy_before_the_first_position_is_zero(self):
+    def test_energy_begins_at_the_first_position_and_its_debt_is_bounded(self):
         arrays = COUPLED.arrays(SPEC, 0.0)
         tick(arrays, (0.002, 0.002, 0.002), REST, (0.0, 0.0, 1e-12))
         assert arrays[1][ENERGY_J] == 0.0
-
-    def test_energy_debt_is_at_most_the_configured_force_over_a_millimetre(self):
         arrays = Safety(passivity="strict", ramp_s=0, max_step_n=10, max_force_n=2).arrays(SPEC, 0.0)
         for step in range(10):
             tick(arrays, (0.005 * step, 0.0, 0.0), REST, (8.0, 0.0, 0.0))
@@ -76,14 +74,12 @@ class TestController:
         np.testing.assert_allclose(left, (-0.1 * 5 * DAMPING, 0.0, 0.0))
         assert flags == TickFlag.DAMPED
 
-    def test_passivity_off_changes_no_force(self):
+    def test_hand_in_free_air_or_without_passivity_is_not_damped(self):
         arrays = Safety(passivity="off", ramp_s=0, max_step_n=10).arrays(SPEC, 0.0)
         arrays[1][ENERGY_J] = -1e-3
         left, flags = tick(arrays, REST, (0.1, 0.1, 0.1), (0.0, 0.0, 0.2))
         assert left.tolist() == [0.0, 0.0, 0.2]
         assert flags == TickFlag.TOUCHING
-
-    def test_hand_in_free_air_is_not_damped(self):
         arrays = STRICT.arrays(SPEC, 0.0)
         arrays[1][ENERGY_J] = -1e-3
         left, flags = tick(arrays, REST, (0.1, 0.0, 0.0), REST)
@@ -130,13 +126,11 @@ class TestPassivity:
             found.append(memory[ENERGY_J])
         assert found == pytest.approx([0.0, 5e-4, 0.0])
 
-    def test_slow_hand_is_damped(self):
+    def test_slow_hand_is_damped_up_to_the_maximum(self):
         settings, memory = Safety(passivity="strict", **AT_ONCE).arrays(SPEC, 0.0)
         memory[ENERGY_J] = -1e-3
         fx, _, fz, _ = guard(settings, memory, 0.001, 0.0, 0.0, 0.0, 2e-5, 0.0, 0.0, 0.0, 0.0, 0.2)
         assert (fx, fz) == pytest.approx((-7.5 * 2e-5, 0.2))
-
-    def test_damped_force_is_at_most_the_maximum(self):
         settings, memory = Safety(passivity="strict", **AT_ONCE).arrays(SPEC, 0.0)
         memory[ENERGY_J] = -8e-3
         left = guard(settings, memory, 0.001, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 8.0)

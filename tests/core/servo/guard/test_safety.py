@@ -26,14 +26,12 @@ def parse(text: str):
 
 
 class TestPipelineFile:
-    def test_file_without_safety_has_the_documented_limits(self):
+    def test_file_has_documented_limits_unless_it_says_others(self):
         stated = Safety(
             max_force_n=None, max_step_n=0.5, ramp_s=0.5, stale_s=0.02, watchdog_s=0.2, stiffness_margin=0.8,
             delay_ticks=0, friction_n=None, passivity="coupled", coupling=None,
         )  # fmt: skip
         assert parse("").safety == Safety() == stated
-
-    def test_file_options_reach_safety(self):
         text = "safety: {max_force_n: 2, coupling: {stiffness_n_per_m: 900, damping_n_s_per_m: 0.2}, passivity: off}\n"
         safety = parse(text).safety
         coupling = Coupling(stiffness_n_per_m=900, damping_n_s_per_m=0.2)
@@ -85,15 +83,13 @@ class TestArrays:
         assert gain(settings, 0.001) == pytest.approx(share, rel=1e-12)
         assert memory[layout.GAIN] == gain(settings, 0.001)
 
-    def test_gain_of_fast_loop_respects_the_device_stiffness(self):
+    def test_gain_and_coupling_respect_the_device(self):
         """At 4 kHz the device's damping allows 9600 N/m, but its stated limit is 3000."""
         settings, memory = Safety(ramp_s=0, passivity="off").arrays(FALCON, 5000.0)
         assert gain(settings, 0.00025) == pytest.approx(3000 / 5000)
         for _ in range(4000):
             left = guard.guard(settings, memory, 0.00025, *[0.0] * 6, 0.0, 0.0, 0.1)
         assert 0.1 * 2400 / 5000 < left[2] <= 0.1 * 3000 / 5000
-
-    def test_automatic_coupling_is_stable_on_the_device(self):
         for delay in range(9):
             settings, _ = Safety(coupling="auto", delay_ticks=delay).arrays(FALCON, 800.0)
             stiffness, damping = settings[[layout.COUPLING, layout.COUPLING_DAMPING]]

@@ -116,13 +116,11 @@ class TestMeasuredStiffness:
         assert found.n_per_m == pytest.approx(k, rel=1e-6)
         assert found.how == f"Law does not state its stiffness; {k:.4g} N/m was measured"
 
-    def test_steep_ground_raises_the_stiffness(self) -> None:
+    def test_steep_ground_and_walls_are_measured(self) -> None:
         """The stiffness along the force is k (1 + g^2)."""
         slope = load_method("render", "penalty-gradient")(stiffness_n_per_m=500.0).touch(ramp((0.6, 0.8), 0.06).surface)
         slope.stiffness_n_per_m = None
         assert find_stiffness(slope, SPEC).n_per_m == pytest.approx(1000, rel=0.01)
-
-    def test_wall_is_measured_sideways(self) -> None:
         law = Law(lambda x, y, z: (-3000.0 * x, 0.0, 2.0) if z < LEVEL_M else NO_FORCE)
         assert find_stiffness(law, SPEC).n_per_m == pytest.approx(3000, rel=1e-6)
 
@@ -167,11 +165,9 @@ class TestMeasuredStiffness:
 
         assert find_stiffness(Law(law), SPEC).n_per_m == pytest.approx(700, rel=1e-6)
 
-    def test_stiff_quarter_of_a_surface_is_found(self) -> None:
+    def test_measurement_finds_a_stiff_quarter_and_leaves_the_law_unchanged(self) -> None:
         law = Law(lambda x, y, z: (0.0, 0.0, (9000.0 if x > 0.01 and y > 0.01 else 500.0) * max(0.0, LEVEL_M - z)))
         assert find_stiffness(law, SPEC).n_per_m == pytest.approx(9000, rel=1e-6)
-
-    def test_measurement_is_repeatable_and_leaves_the_law_unchanged(self) -> None:
         heights = np.random.default_rng(0).uniform(0, 0.002, (32, 32)).astype(np.float32)
         touch = load_method("render", "proxy")(static_friction=0.4).touch(HapticSurface.from_heights(heights))
         touch.stiffness_n_per_m = None
@@ -204,14 +200,12 @@ class TestFaultyLaw:
         assert found.how.endswith(f"then it raised {type(error).__name__}: {error}")
         assert found.how in caplog.text
 
-    def test_law_that_cannot_be_copied_counts_as_zero(self) -> None:
+    def test_law_that_blocks_or_cannot_be_copied_counts_as_zero(self, monkeypatch: pytest.MonkeyPatch) -> None:
         touch = spring(900.0)
         touch.lock = threading.Lock()  # pyright: ignore[reportAttributeAccessIssue]
         found = find_stiffness(touch, SPEC)
         assert found.n_per_m == 0
         assert "then it raised TypeError" in found.how
-
-    def test_law_that_blocks_is_abandoned_in_time(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(stiffness, "MAX_S", 0.3)
         ended = threading.Event()
         touch = law_at_fault(lambda: ended.wait(60))

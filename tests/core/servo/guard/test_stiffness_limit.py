@@ -66,17 +66,13 @@ def test_any_law_behind_the_guard_comes_to_rest(delay: int):
 
 
 @DELAYS
-def test_energy_is_at_most_what_the_handle_damping_takes(delay: int):
+def test_energy_is_at_most_what_the_handle_takes_and_not_positive_if_strict(delay: int):
     law, held = wall(3 * limit(delay)), handle(delay)
     bare = ride(law, held, FALLING, 3.0)
     assert (bare.work_j - bare.lost_j).max() > 1e-4
     safety = Safety(delay_ticks=delay, **AT_ONCE)
     safe = ride(law, held, FALLING, 3.0, safety.arrays(SPEC, law.stiffness_n_per_m))
     assert (safe.work_j - safe.lost_j).max() <= 0
-
-
-@DELAYS
-def test_energy_with_strict_passivity_is_not_positive(delay: int):
     law, held = wall(3 * limit(delay)), handle(delay)
     safety = Safety(delay_ticks=delay, passivity="strict", **AT_ONCE)
     safe = ride(law, held, FALLING, 3.0, safety.arrays(SPEC, law.stiffness_n_per_m))

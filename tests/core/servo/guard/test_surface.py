@@ -76,7 +76,7 @@ class TestSurfaceWork:
         if way_m > 0:  # of the last way, half is yet to count
             assert felt.energy_j == pytest.approx(pressed_j - STIFF * 0.002 * way_m / 2)
 
-    def test_energy_released_by_a_sinking_surface_is_not_a_debt(self):
+    def test_surface_work_is_used_up_by_a_ratchet_and_no_debt_of_a_sinking_one(self):
         """That energy is lost to the hand: neither the surface nor the loop owes it."""
         felt = Felt()
         for i in range(21):
@@ -86,9 +86,6 @@ class TestSurfaceWork:
         for _ in range(15):
             felt.tick(0.0081, -1e-4)
         assert felt.energy_j == pressed_j
-
-    def test_ratchet_is_damped_once_the_surface_work_is_used_up(self):
-        """A hand that is lifted with force and comes down without gains 6 mJ a round, until it is damped."""
         felt, hand_m, way_m, most_j = Felt(), 0.0101, 5e-5, 0.02
         felt.settings[at.SURFACE_W], felt.settings[at.MAX_SURFACE_J], felt.memory[at.MAY_GIVE_J] = 0.0, most_j, most_j
         ways = [(-1, 0)] * 42 + ([(1, 1)] * 100 + [(0, -1)] * 38 + [(-1, -1)] * 62 + [(-1, 0)] * 38) * 10
@@ -99,15 +96,13 @@ class TestSurfaceWork:
                 break
         assert 0.95 * most_j < felt.work_j < 1.05 * most_j
 
-    def test_allowed_surface_work_recovers_with_time(self):
+    def test_allowed_surface_work_recovers_with_time_and_ends_in_free_air(self):
         felt = Felt()
         felt.tick(0.009)
         felt.memory[at.MAY_GIVE_J] = 0.0
         for _ in range(100):
             felt.tick(0.009)
         assert felt.memory[at.MAY_GIVE_J] == pytest.approx(0.1 * SPEC.max_force_n * SURFACE_M_PER_S)
-
-    def test_surface_work_account_ends_in_free_air(self):
         felt = Felt()
         felt.tick(0.009)
         for _ in range(20):
@@ -126,14 +121,12 @@ class TestSurfaceWork:
         assert arrays[1][at.ENERGY_J] == 0
         assert np.isfinite(arrays[1]).sum() == at.MEMORY - (not np.isfinite(rise)) - 1  # of the tool there is none
 
-    def test_surface_work_account_of_swapped_scene_is_zero(self):
+    def test_surface_work_is_none_at_rest_or_of_a_swapped_scene(self):
         felt = Felt()
         for _ in range(20):
             felt.tick(0.009, 5e-5)
         restart(felt.memory)
         assert felt.memory[[at.GIVEN_J, at.SURFACE_FORCE_N, at.LAST_RISE_M]].tolist() == [0, 0, 0]
-
-    def test_surface_at_rest_has_the_same_forces_to_the_bit(self):
         random = np.random.default_rng(0)
         steps = np.cumsum(random.normal(0, 2e-5, (500, 3)), axis=0)
         given: list[list[tuple[float, ...]]] = []

@@ -70,19 +70,13 @@ def nearness(values: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("runtime", RUNTIMES)
-def test_inverse_depth_becomes_nearness(networks: Path, runtime):
-    seen = picture()
-    found = Onnx(model=networks / "mono.onnx", runtime=runtime).estimate(Views(seen))
+def test_inverse_depth_becomes_nearness_and_a_stereo_network_gives_pixels(networks: Path, runtime):
+    seen, mono = picture(), Onnx(model=networks / "mono.onnx", runtime=runtime)
+    found = mono.estimate(Views(seen))
     assert found.unit == "relative"
     np.testing.assert_allclose(found.disparity_px, nearness(seen.mean(axis=2)), atol=1e-5)
     assert (found.confidence == 1).all()
-    assert (
-        Onnx(model=networks / "mono.onnx", runtime=runtime).estimate(Views(seen, 1 - seen)).digest() == found.digest()
-    )
-
-
-@pytest.mark.parametrize("runtime", RUNTIMES)
-def test_stereo_network_gives_pixels(networks: Path, runtime):
+    assert mono.estimate(Views(seen, 1 - seen)).digest() == found.digest()
     found = Onnx(model=networks / "stereo.onnx", runtime=runtime).estimate(wall(6.0))
     assert found.unit == "px"
     assert np.median(np.abs(found.disparity_px - 6)) < 0.2
@@ -140,16 +134,13 @@ def test_strips_bound_the_input_and_blend(networks: Path, monkeypatch: pytest.Mo
     assert sizes[0] <= 9_000 * 1.02
 
 
-def test_metres_with_known_cameras_become_disparity(card, networks: Path):
+def test_metres_and_confidence_of_a_network_are_used(card, networks: Path, tmp_path: Path):
     depth = np.linspace(1, 5, 2000).reshape(40, 50).astype(np.float32)
     seen = np.repeat(depth[..., None] / 5, 3, axis=2)
     told = card(networks / "mono.onnx", "input: {white: 5}\noutput: {means: depth-m}")
     found = told.estimate(Views(seen, None, Calibration(900.0, 0.2, 31.0)))
     assert (found.unit, told.estimate(Views(seen)).unit) == ("px", "relative")
     np.testing.assert_allclose(found.disparity_px, 900 * 0.2 / depth - 31, rtol=1e-4)
-
-
-def test_confidence_output_is_used(card, tmp_path: Path):
     model = onnx_models.mono(tmp_path / "c.onnx", confidence=True)
     found = card(model, "output: {name: inverse_depth, means: inverse-depth, confidence: sure}").estimate(
         Views(picture())
@@ -158,13 +149,11 @@ def test_confidence_output_is_used(card, tmp_path: Path):
 
 
 class TestMistakes:
-    def test_missing_network_is_refused_with_its_address(self, tmp_path: Path):
+    def test_network_that_is_missing_or_another_is_refused(self, tmp_path: Path, networks: Path, card):
         with pytest.raises(ModelAbsent, match="needs a network"):
             Onnx().estimate(wall())
         with pytest.raises(ModelAbsent, match="fetch Depth Anything V2 Small"):
             Onnx(model=tmp_path / "no.onnx", card="depth-anything-v2-small").estimate(wall())
-
-    def test_file_of_another_digest_is_refused(self, networks: Path, card):
         digest = hashlib.sha256((networks / "mono.onnx").read_bytes()).hexdigest()
         text = "sha256: {}\noutput: {{means: inverse-depth}}"
         card(networks / "mono.onnx", text.format(digest)).estimate(Views(picture()))
@@ -188,20 +177,14 @@ class TestMistakes:
             with pytest.raises(ConfigError, match=said):
                 card(networks / "mono.onnx", text, runtime=runtime).estimate(wall())
 
-    def test_stereo_network_needs_a_pair(self, networks: Path):
-        stereo = Onnx(model=networks / "stereo.onnx")
-        assert stereo.needs_pair
-        assert not Onnx(model=networks / "mono.onnx").needs_pair
+    def test_stereo_network_needs_a_pair_that_is_not_one_view(self, networks: Path):
+        stereo, mono = Onnx(model=networks / "stereo.onnx"), Onnx(model=networks / "mono.onnx")
+        assert stereo.needs_pair and not mono.needs_pair
         with pytest.raises(PictureError):
             stereo.estimate(Views(picture()))
-
-
-def test_identical_views_are_skipped(networks: Path):
-    views = wall()
-    same = Views(views.left, views.left)
-    assert Onnx(model=networks / "stereo.onnx").skip(same)
-    assert Onnx(model=networks / "stereo.onnx").skip(views) is None
-    assert Onnx(model=networks / "mono.onnx").skip(same) is None
+        same = Views(wall().left, wall().left)
+        assert stereo.skip(same)
+        assert stereo.skip(wall()) is mono.skip(same) is None
 
 
 def test_changed_network_or_card_changes_the_result(tmp_path: Path):
@@ -266,21 +249,14 @@ class TestAuto:
         monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path / "models"))
         return tmp_path / "models"
 
-    def test_pair_is_matched_though_there_is_a_network(self, folder: Path):
+    def test_pairs_and_films_are_matched_though_there_is_a_network(self, folder: Path):
         folder.mkdir()
         onnx_models.mono(folder / "a.onnx")
         (folder / "a.yaml").write_text("output: {means: inverse-depth}")
         assert Auto().estimate(wall(6.0)).digest() == SemiGlobal().estimate(wall(6.0)).digest()
-
-    def test_film_of_pairs_is_followed_at_half_the_size(self):
         found = Auto().follow(wall(6.0))(wall(6.0)).digest()
         assert found == SemiGlobal(resolution="half").follow(wall(6.0))(wall(6.0)).digest()
         assert found != SemiGlobal().follow(wall(6.0))(wall(6.0)).digest()
-
-    def test_picture_without_a_network_is_luminance_with_a_warning(self, caplog: pytest.LogCaptureFixture):
-        found = Auto().estimate(Views(picture()))
-        assert found.digest() == Luminance().estimate(Views(picture())).digest()
-        assert "no depth" in caplog.text
 
     def test_first_network_for_one_picture_is_taken(self, folder: Path):
         folder.mkdir()
@@ -291,6 +267,11 @@ class TestAuto:
         found = Auto().estimate(Views(picture()))
         np.testing.assert_allclose(found.disparity_px, nearness(picture().mean(axis=2)), atol=1e-5)
         assert {path.name for path in Auto().reads()} == {"c.onnx", "c.yaml"}
+
+    def test_picture_without_a_network_is_luminance_with_a_warning(self, caplog: pytest.LogCaptureFixture):
+        found = Auto().estimate(Views(picture()))
+        assert found.digest() == Luminance().estimate(Views(picture())).digest()
+        assert "no depth" in caplog.text
 
 
 @pytest.mark.parametrize(("name", "kept"), [("mono", []), ("stereo", ["flat_pair_claims_nothing"])])
@@ -347,7 +328,7 @@ class TestHostileFiles:
         model.write_bytes(model.read_bytes()[:kept])
         self.demand_refusal(model, card, "fetch it again")
 
-    def test_weights_of_a_loops_own_graph_are_checked(self, tmp_path: Path, card):
+    def test_weights_of_own_graphs_are_checked_and_inputs_are_those_of_the_library(self, tmp_path: Path, card):
         bad = onnx.numpy_helper.from_array(np.zeros(1, np.float32), "bad")
         bad.dims[0] = -1
         model = onnx.load(onnx_models.endless(tmp_path / "m.onnx"))
@@ -360,8 +341,6 @@ class TestHostileFiles:
             put()
             (tmp_path / "m.onnx").write_bytes(model.SerializeToString())
             self.demand_refusal(tmp_path / "m.onnx", card, "'bad' has the impossible size")
-
-    def test_declared_inputs_are_those_of_the_library(self, tmp_path: Path):
         model = onnx_models.stereo(tmp_path / "m.onnx", 4, (48, "w"))
         assert read_inputs(model) == {"left": (1, 3, 48, None), "right": (1, 3, 48, None)}
         old = onnx.load(model)
@@ -396,7 +375,7 @@ def put_outside(place: str, weight: onnx.TensorProto) -> None:
         weight.external_data.add(key=key, value=value)
 
 
-def test_channel_of_points_is_taken_and_a_whole_number_goes_in(card, tmp_path: Path) -> None:
+def test_channels_of_points_and_normals_are_taken_with_their_steps(card, tmp_path: Path) -> None:
     """As MoGe-2 has them; its card names the only runtime that takes such a number."""
     text = "runtime: onnxruntime\ninput: {left: image, constants: {tokens: 3}}\n"
     text += "output: {name: points, channel: CHANNEL, means: disparity-px}\n"
@@ -405,10 +384,6 @@ def test_channel_of_points_is_taken_and_a_whole_number_goes_in(card, tmp_path: P
     np.testing.assert_allclose(found.disparity_px, 3 * shown[..., 2], rtol=1e-6)
     with pytest.raises(ConfigError, match=r"points of .*3.*is not a map"):
         card(model, text.replace("CHANNEL", "3")).estimate(Views(shown))
-
-
-def test_depth_has_the_slopes_of_normals_and_keeps_its_steps(card, tmp_path: Path) -> None:
-    """Waves that only normals have, on two walls, seen by a camera that stands farther off than the points say."""
     at = np.stack(np.meshgrid(np.arange(90) - 44.5, np.arange(70) - 34.5), axis=-1) / 80
     walls = np.where(at[..., 0] < 0, 0.6, 0.9)
     true = walls + 0.004 * np.sin(40 * at[..., 0]) * np.sin(50 * at[..., 1])

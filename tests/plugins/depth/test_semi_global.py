@@ -34,17 +34,13 @@ def test_slanted_plane_is_matched(across, down):
     assert share_within(found, truth, 1.0) >= 0.97
 
 
-def test_occlusion_at_a_step_is_filled_from_behind():
+def test_occlusion_at_a_step_is_filled_from_behind_or_stays_unknown():
     views, truth, hidden = step()
     found = SemiGlobal(max_disparity_px=32).estimate(views)
     assert share_within(found.disparity_px, truth, 0.5) >= 0.985
     assert share_within(found.disparity_px, truth, 0.5, hidden) >= 0.95
     assert np.isfinite(found.disparity_px).all()
     assert found.confidence[hidden].mean() < 0.2 < 0.6 < found.confidence[~hidden].mean()
-
-
-def test_occlusion_without_filling_stays_unknown():
-    views, truth, hidden = step()
     found = SemiGlobal(max_disparity_px=32, fill=False).estimate(views)
     assert np.isnan(found.disparity_px[hidden]).mean() >= 0.9
     known = np.isfinite(found.disparity_px)
@@ -62,7 +58,7 @@ def test_range_of_either_sign_is_estimated(offset):
     assert any("as none was found up to 192 px; for nearer things write `max_disparity_px`" in note for note in notes)
 
 
-def test_identical_views_are_not_matched():
+def test_identical_views_and_strips_without_texture_are_not_matched():
     left = slanted()[0].left
     with collected() as notes:
         found = SemiGlobal().estimate(Views(left, left.copy()))
@@ -70,9 +66,6 @@ def test_identical_views_are_not_matched():
     assert any("identical" in note for note in notes)
     matched = SemiGlobal(skip_identical=False, max_disparity_px=16).estimate(Views(left, left.copy()))
     assert share_within(matched.disparity_px, np.zeros(left.shape), 0.5) >= 0.99
-
-
-def test_strips_without_texture_are_not_matched():
     views, truth = slanted(shape=(400, 120))
     pair = [np.array(each) for each in (views.left, views.right)]
     for each in pair:
@@ -87,16 +80,13 @@ def test_strips_without_texture_are_not_matched():
     assert not any("no texture" in note for note in notes)
 
 
-def test_preview_at_half_resolution_has_the_full_size():
+def test_preview_has_the_full_size_and_noise_another_cost():
     views, truth, _ = step(shape=(151, 223), back=8, front=24, box=(40, 110, 90, 170))
     with collected() as notes:
         found = SemiGlobal(max_disparity_px=48, resolution="half").estimate(views)
     assert found.disparity_px.shape == truth.shape
     assert any("full resolution" in note for note in notes)
     assert share_within(found.disparity_px, truth, 1.0) >= 0.96
-
-
-def test_noisy_pair_gets_another_cost():
     views, truth = slanted(shape=(160, 200))
     rng = np.random.default_rng(0)
     noisy = [
@@ -111,8 +101,11 @@ def test_noisy_pair_gets_another_cost():
 
 
 @pytest.mark.parametrize("effort", ["balanced", "best"])
-def test_grey_levels_are_compared_at_equal_exposure_only(effort):
+def test_grey_levels_are_compared_at_equal_exposure_only_and_every_cost_finds_the_step(effort):
     views, truth, _ = step()
+    for cost in ("sharp", "levels", "light", "heavy"):
+        found = SemiGlobal(max_disparity_px=32, cost=cost, effort=effort).estimate(views).disparity_px
+        assert share_within(found, truth, 0.5) >= 0.95, cost
     darker = Views(views.left, np.rint(0.6 * views.right).astype(np.uint8))
     levels = SemiGlobal(max_disparity_px=32, cost="levels", effort=effort)
     with collected() as notes:
@@ -139,13 +132,6 @@ def test_best_effort_closes_gaps_that_the_right_view_sees(resolution, monkeypatc
         ]
         wrong.append(np.mean(np.concatenate(seen) > 2))
     assert wrong[1] < 0.95 * wrong[0]
-
-
-@pytest.mark.parametrize("cost", ["sharp", "levels", "light", "heavy"])
-def test_every_cost_finds_the_step(cost):
-    views, truth, _ = step()
-    found = SemiGlobal(max_disparity_px=32, cost=cost).estimate(views).disparity_px
-    assert share_within(found, truth, 0.5) >= 0.95
 
 
 def test_empty_range_is_refused():

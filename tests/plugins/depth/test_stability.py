@@ -42,9 +42,6 @@ SLOW_PEERS = {"kornia-zncc", "kornia-report", "report"}
 """Methods that others replace, and that take nine tenths of the time of all: in the nightly tests."""
 
 
-# Scenes
-
-
 def noise(seed: int, *shape: int) -> np.ndarray:
     return np.random.default_rng(seed).integers(0, 256, shape or SHAPE, np.uint8)
 
@@ -127,8 +124,6 @@ def unknown(left: np.ndarray, right: np.ndarray) -> KnownPair:
     shape = left.shape[:2]
     return KnownPair(Views(left, right), np.full(shape, np.nan, np.float32), np.zeros(shape, np.bool_))
 
-
-# What is demanded
 
 Demand = Callable[[DisparityMap, KnownPair], bool]
 

@@ -103,7 +103,7 @@ def trial(pair: Pair, cost=LEVELS):
     return module._Trial(pair, Span(-4, 11), cost, 1.08, "best")
 
 
-def test_levels_are_compared_where_the_views_match():
+def test_views_are_compared_where_they_match_by_the_share_that_differs():
     """Halved levels that differ by four are far apart: one of four in the first row, and the only one of the 17th."""
     left = np.full((17, 12), 100, np.uint8)
     right = np.full((17, 12), 150, np.uint8)
@@ -117,9 +117,6 @@ def test_levels_are_compared_where_the_views_match():
     looked.out.disparity[1:16] = 0  # of every 16th row alone
     assert looked.levels_apart([(0, 17)]) == pytest.approx(2 / 5)
     assert looked.levels_apart([(1, 2)]) == 1
-
-
-def test_health_is_the_share_of_speckles_and_that_of_bits_that_differ_elsewhere():
     left = np.random.default_rng(0).integers(0, 256, (80, 60), np.uint8)
     right = np.roll(left, -3, axis=1)
     right[:, :25] = np.random.default_rng(1).integers(0, 256, (80, 25))
@@ -188,7 +185,7 @@ def test_range_without_positive_disparities_is_matched_in_a_mirror(span: Span, t
     assert found.confidence[0] == pytest.approx(np.arange(8, -1, -1) / 10)
 
 
-def test_identical_views_are_unknown_where_they_are_flat_unless_filled():
+def test_pixels_are_unknown_where_flat_and_known_at_the_least_confidence():
     left = np.full((9, 14), 80, np.uint8)
     left[:, 9:] = np.arange(5) * 30
     for fill in (True, False):
@@ -196,9 +193,6 @@ def test_identical_views_are_unknown_where_they_are_flat_unless_filled():
         assert np.array_equal(np.isnan(found.disparity_px), (np.arange(14) < 7) & (not fill) & (left > -1))
         assert np.array_equal(found.confidence, (np.arange(14) >= 7) * np.ones((9, 1)))
         assert np.isnan(zero_disparity(left[:, :5], fill).disparity_px).all()
-
-
-def test_pixel_of_just_the_least_confidence_is_not_low():
     confidence = np.float32([[0.1, 0.15, 0.2, 0.14]])
     assert chain.LOW_CONFIDENCE == 0.15
     confidence[0, 1] = 0.15000001
@@ -234,14 +228,10 @@ def test_pictures_are_smaller_where_more_disparities_are_tried_than_fit(resoluti
     assert notes == [f"skipped: full resolution, matched at 1/{factor}"] * (factor > 1)
 
 
-def test_strip_has_texture_if_a_window_of_its_rows_has():
+def test_strips_have_texture_and_confidence_by_their_windows(monkeypatch: pytest.MonkeyPatch):
     grey = np.full((40, 30), 90, np.uint8)
     grey[20, 7] = 91
     assert [scaling._has_texture(grey, y, y + 4) for y in (14, 15, 20, 22, 23)] == [False, True, True, True, False]
-
-
-def test_confidence_of_a_match_falls_from_one_to_that_of_the_worst_with_its_cost(monkeypatch: pytest.MonkeyPatch):
-    """In a picture without steps or gaps: of 96 bits on four paths."""
     grey = np.random.default_rng(0).integers(0, 256, (20, 60), np.uint8)
     sums = np.tile(np.repeat([0, 24, 48, 96, 255], 12), (20, 1)).astype(np.uint8)
     disparity = np.full(grey.shape, np.int16(64))

@@ -25,15 +25,11 @@ MAPS = arrays(
 
 
 @given(st.floats(-0.5, 0.5), st.floats(0.1, 100), st.floats(-100, 100))
-def test_parabola_through_samples_gives_its_vertex(vertex, bend, level):
+def test_parabola_and_v_through_samples_give_their_vertex_and_tip(vertex, bend, level):
     samples = [bend * (x - vertex) ** 2 + level for x in (-1, 0, 1)]
     assert parabola(*samples) == pytest.approx(vertex, abs=1e-6)
     assert parabola(*[-sample for sample in samples]) == pytest.approx(vertex, abs=1e-6)
-
-
-@given(st.floats(-0.5, 0.5), st.floats(0.1, 100), st.floats(-100, 100))
-def test_v_through_samples_gives_its_tip(tip, slope, level):
-    assert equiangular(*[slope * abs(x - tip) + level for x in (-1, 0, 1)]) == pytest.approx(tip, abs=1e-6)
+    assert equiangular(*[bend * abs(x - vertex) + level for x in (-1, 0, 1)]) == pytest.approx(vertex, abs=1e-6)
 
 
 def islands(disparity, step):
@@ -167,13 +163,23 @@ def test_grey_steps_on_a_path_add_up(left, right, levels, near):
     assert np.flatnonzero(fill_from_four_directions(disparity, grey)[0, 40:52] == 320).tolist() == near
 
 
-def test_median_takes_25_pixels():
+def test_median_and_flat_pixels_are_of_the_nearest_values():
     disparity = np.random.default_rng(0).integers(0, 900, (40, 30)).astype(np.int16)
     windows = np.lib.stride_tricks.sliding_window_view(np.pad(disparity, 2, mode="edge"), (5, 5))
     assert np.array_equal(median(disparity), np.median(windows, axis=(2, 3)).astype(np.int16))
+    grey = np.full((12, 12), 7, np.uint8)
+    grey[6, 6] = 8
+    assert np.array_equal(flat_pixels(grey), np.maximum(*np.abs(np.indices(grey.shape) - 6)) > 2)
+    grey = np.full((9, 12), 40, np.uint8)
+    grey[:, 8:] = np.arange(4) * 20
+    dense = DenseMatches(np.full(grey.shape, np.int16(40)), np.full(grey.shape, np.float32(0.7)))
+    for fill in (True, False):
+        found = to_disparity_map(dense, grey, fill)
+        assert np.array_equal(found.confidence > 0, ~flat_pixels(grey))
+        assert np.array_equal(np.isnan(found.disparity_px), flat_pixels(grey) & (not fill))
 
 
-def test_confidence_of_a_kept_match_is_read_from_the_table():
+def test_confidence_is_of_the_table_and_falls_next_to_steps():
     matched = np.full((1, 60), 160, np.int16)
     table = 1 - np.arange(256) / 255
     quality = np.tile(np.array([0, 51, 255], np.uint8), 20)[None]
@@ -182,9 +188,6 @@ def test_confidence_of_a_kept_match_is_read_from_the_table():
     assert np.allclose(confidence(matched, matched + np.int16(17), quality, table), 0.1)
     nothing = np.full((1, 60), UNKNOWN)
     assert confidence(nothing, nothing, quality, table).max() <= 0.1
-
-
-def test_confidence_next_to_depth_steps_and_in_gaps_falls():
     matched = np.full((40, 90), 160, np.int16)
     matched[:, 60:] = 160 + 16 * 8
     final = matched.copy()
@@ -198,13 +201,7 @@ def test_confidence_next_to_depth_steps_and_in_gaps_falls():
     assert np.allclose(column, expected, atol=0.003)
 
 
-def test_flat_pixels_have_one_grey_value_near_them():
-    grey = np.full((12, 12), 7, np.uint8)
-    grey[6, 6] = 8
-    assert np.array_equal(flat_pixels(grey), np.maximum(*np.abs(np.indices(grey.shape) - 6)) > 2)
-
-
-def test_plane_is_enlarged_exactly():
+def test_plane_is_enlarged_and_turned_into_pixels_exactly():
     y, x = np.indices((20, 30))
     small = (4 * x + 2 * y + 100).astype(np.int16)
     large = enlarge(DenseMatches(small, np.ones(small.shape, np.float32)), np.full((39, 60), 9, np.uint8))
@@ -212,33 +209,14 @@ def test_plane_is_enlarged_exactly():
     exact = 2 * (4 * (columns - 0.5) / 2 + 2 * (rows - 0.5) / 2 + 100)
     assert np.abs(large.disparity - exact)[1:-1, 1:-1].max() <= 1
     assert large.confidence.shape == (39, 60)
-
-
-def test_steps_within_a_pixel_are_enlarged_to_a_slope_and_larger_ones_to_a_step():
     for apart, beside in ((16, [208, 216, 232, 240]), (17, [208, 208, 242, 242])):
         small = np.full((4, 6), np.int16(104))
         small[:, 3:] += np.int16(apart)
         large = enlarge(DenseMatches(small, np.ones(small.shape, np.float32)), np.full((8, 12), 9, np.uint8))
         assert large.disparity[4, 4:8].tolist() == beside
-
-
-@pytest.mark.parametrize(("value", "large"), [(20000, 32767), (-20000, -32767), (-16384, -32767), (-16383, -32766)])
-def test_disparity_beyond_16_bits_is_enlarged_to_the_largest(value: int, large: int):
-    small = DenseMatches(np.full((4, 6), np.int16(value)), np.ones((4, 6), np.float32))
-    assert (enlarge(small, np.full((8, 12), 9, np.uint8)).disparity == large).all()
-
-
-def test_flat_pixels_keep_their_disparity_without_trust():
-    grey = np.full((9, 12), 40, np.uint8)
-    grey[:, 8:] = np.arange(4) * 20
-    dense = DenseMatches(np.full(grey.shape, np.int16(40)), np.full(grey.shape, np.float32(0.7)))
-    for fill in (True, False):
-        found = to_disparity_map(dense, grey, fill)
-        assert np.array_equal(found.confidence > 0, ~flat_pixels(grey))
-        assert np.array_equal(np.isnan(found.disparity_px), flat_pixels(grey) & (not fill))
-
-
-def test_map_in_pixels_has_nan_where_unknown():
+    for value, largest in ((20000, 32767), (-20000, -32767), (-16384, -32767), (-16383, -32766)):
+        small = DenseMatches(np.full((4, 6), np.int16(value)), np.ones((4, 6), np.float32))
+        assert (enlarge(small, np.full((8, 12), 9, np.uint8)).disparity == largest).all()
     grey = np.random.default_rng(0).integers(0, 255, (6, 6), np.uint8)
     disparity = np.full((6, 6), 40, np.int16)
     disparity[0] = UNKNOWN

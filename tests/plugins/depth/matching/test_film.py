@@ -41,15 +41,12 @@ def test_frames_of_a_film_match_as_well_as_single_pairs_with_one_range_search(me
     assert len(searches) == 1
 
 
-def test_nearer_object_widens_the_range_at_the_next_search():
+def test_range_follows_the_latest_searches_without_empty_frames(monkeypatch):
     far, near = slanted(offset=6.0)[0], slanted(offset=60.0)
     estimate = SemiGlobal(resolution="half").follow(far)
     assert isinstance(estimate, FilmMatcher)
     errors = [np.median(np.abs(estimate(near[0]).disparity_px - near[1])[:, 70:]) for _ in range(SEARCH_EVERY + 1)]
     assert errors[-1] < 0.5 < errors[0]
-
-
-def test_range_ignores_empty_frames_and_forgets_old_searches(monkeypatch):
     monkeypatch.setattr(chain, "SEARCH_EVERY", 1)
     near, far, dark = slanted(offset=40.0)[0], slanted(offset=6.0)[0], np.zeros((96, 160), np.uint8)
     estimate = SemiGlobal(resolution="half", skip_identical=False).follow(near)
@@ -69,7 +66,7 @@ def test_given_range_is_kept_without_a_search(searches):
     assert searches == []
 
 
-def test_unrectified_film_is_rectified_by_its_first_frame(monkeypatch):
+def test_film_is_rectified_and_its_rows_corrected_once(monkeypatch):
     import cv2
 
     generator = np.random.default_rng(6)
@@ -88,9 +85,6 @@ def test_unrectified_film_is_rectified_by_its_first_frame(monkeypatch):
         apart = np.abs(estimate(each).disparity_px - expected)
         assert np.mean(apart < 0.5) > 0.98
     assert counted == [1]
-
-
-def test_row_offset_of_a_film_is_corrected_within_a_given_range():
     views, true, hidden = step((120, 200))
     lower = Views(views.left, np.roll(views.right, 1, axis=0))
     estimate = SemiGlobal(resolution="half", min_disparity_px=0, max_disparity_px=24).follow(lower)

@@ -204,7 +204,7 @@ def true_map(scene, rectified):
     return original, disparity.reshape(rows, columns).astype(np.float32)
 
 
-def test_rolled_and_tilted_picture_is_rectified():
+def test_rolled_and_tilted_picture_is_rectified_and_its_map_hits_the_original_pixels():
     scene, warp, views = warped_scene()
     rectified = rectify(views)
     assert not rectified.skipped
@@ -215,11 +215,6 @@ def test_rolled_and_tilted_picture_is_rectified():
     assert np.median(np.abs(shift[:, 1])) <= 0.15
     # A warp about the middle leaves disparities as they were.
     assert np.median(np.abs(shift[:, 0] + rectified.offset_px - scene.disparity_px().ravel())) < 0.3
-
-
-def test_map_to_original_hits_the_original_pixels():
-    scene, warp, views = warped_scene()
-    rectified = rectify(views)
     _, perfect = true_map(scene, rectified)
     found = rectified.to_original(DisparityMap(perfect - np.float32(rectified.offset_px)))
     known = np.isfinite(found.disparity_px)
@@ -227,7 +222,6 @@ def test_map_to_original_hits_the_original_pixels():
     assert known.mean() > 0.95
     assert np.mean(found.disparity_px[known] == scene.disparity_px()[known]) > 0.97
     assert np.array_equal(found.confidence > 0, known)
-    y, x = np.indices(scene.shape, np.float64)
     expected = transform(warp, np.column_stack([(x - scene.disparity_px()).ravel(), y.ravel()])).reshape(
         *scene.shape, 2
     )
@@ -245,33 +239,30 @@ def test_pictures_of_any_kind_are_rectified(dtype):
     assert found.dtype == (np.float32 if dtype in (np.bool_, np.float16) else dtype)
 
 
-class TestHomographyCheck:
-    @pytest.mark.parametrize(
-        ("homography", "words"),
-        [
-            (np.diag([2.0, 2.0, 1.0]), "times its area"),
-            (np.diag([0.5, 0.5, 1.0]), "times its area"),
-            (np.diag([-1.0, 1.0, 1.0]), "order"),
-            (np.array([[1, 0, 0], [0, 1, 0], [-0.01, 0, 1.0]]), "infinity"),
-        ],
-    )
-    def test_distorting_homographies_are_refused(self, homography, words):
-        for side, pair in (("right", (np.eye(3), homography)), ("left", (homography, np.eye(3)))):
-            with pytest.raises(RectificationError, match=f"the {side} picture.*{words}"):
-                check_homographies(pair, (100, 200), np.zeros(5))
+@pytest.mark.parametrize(
+    ("homography", "words"),
+    [
+        (np.diag([2.0, 2.0, 1.0]), "times its area"),
+        (np.diag([1.8, 1.8, 1.0]), "times its area"),
+        (np.diag([0.55, 0.55, 1.0]), "times its area"),
+        (np.diag([0.5, 0.5, 1.0]), "times its area"),
+        (np.diag([-1.0, 1.0, 1.0]), "order"),
+        (np.array([[1, 0, 0], [0, 1, 0], [-0.01, 0, 1.0]]), "infinity"),
+    ],
+)
+def test_distorting_homographies_are_refused(homography, words):
+    for side, pair in (("right", (np.eye(3), homography)), ("left", (homography, np.eye(3)))):
+        with pytest.raises(RectificationError, match=f"the {side} picture.*{words}"):
+            check_homographies(pair, (100, 200), np.zeros(5))
 
-    @pytest.mark.parametrize(
-        ("share", "offset_px", "refused"), [(0.04, 9.0, False), (0.06, 3.1, True), (0.06, 2.9, False)]
-    )
-    def test_rectification_with_one_match_in_twenty_off_its_row_holds(self, share, offset_px, refused):
+
+def test_rectification_with_an_area_within_a_third_and_one_match_in_twenty_off_its_row_holds():
+    for side in (1.7, 0.6):
+        check_homographies((np.diag([side, side, 1.0]), np.eye(3)), (100, 200), np.zeros(5))
+    for share, offset_px, refused in ((0.04, 9.0, False), (0.06, 3.1, True), (0.06, 2.9, False)):
         offsets = np.where(np.arange(1000) < 1000 * share, offset_px, 0.0)
         with pytest.raises(RectificationError) if refused else nullcontext():
             check_homographies((np.eye(3), np.eye(3)), (100, 200), offsets)
-
-    @pytest.mark.parametrize(("side", "refused"), [(1.7, False), (1.8, True), (0.6, False), (0.55, True)])
-    def test_area_may_change_by_a_factor_of_three(self, side, refused):
-        with pytest.raises(RectificationError, match="area") if refused else nullcontext():
-            check_homographies((np.diag([side, side, 1.0]), np.eye(3)), (100, 200), np.zeros(5))
 
 
 @pytest.mark.parametrize(
@@ -333,7 +324,7 @@ def test_distortion_keeps_the_middle_and_a_circle_of_half_the_longer_side_over_r
     assert moved == pytest.approx(np.array(expected))
 
 
-def test_map_to_original_applies_the_lens():
+def test_lens_and_parts_of_a_picture_are_exact():
     """Each pixel of the original gets what stands at its place in the turned view, and leads to its match."""
     size = np.indices((60, 80), np.uint8).sum(axis=0).astype(np.uint8)
     bent = warp_pair(Views(size, size), (np.eye(3), np.eye(3)), "", 0, (-0.1, -0.1))
@@ -347,10 +338,6 @@ def test_map_to_original_applies_the_lens():
     # A grey that grows along the diagonal is where the lens's inverse puts it.
     rows, columns = bent.to_original(DisparityMap(bent.views.left.astype(np.float32))).disparity_px, size
     assert np.abs(rows - columns)[2:-2, 2:-2].max() <= 2
-
-
-def test_parts_of_a_picture_are_quarters_of_its_sides():
-    """A point in the middle of each part, and points on the border, which belong to the last parts."""
     x, y = np.meshgrid(np.arange(4) * 200 + 100, np.arange(4) * 50 + 25)
     points = np.column_stack([x.ravel(), y.ravel()]).astype(float)
     assert rectifying_rotation._count_parts(points, (200, 800)) == 16
@@ -376,14 +363,8 @@ def test_equal_matches_count_once_and_keep_their_order():
     assert found.right_px.tolist() == [[4, 1], [1, 2], [0, 2], [0, 9]]
 
 
-def test_range_of_verified_matches_is_rounded_outwards():
-    points = np.random.default_rng(0).uniform(0, 100, (50, 2))
-    assert verified_range(points, np.full(50, 10.5)) == (10, 11)
-    assert verified_range(points, np.full(50, -10.5)) == (-11, -10)
-
-
 @pytest.mark.parametrize(("alike", "high"), [(4, 10), (5, 41)])
-def test_match_needs_four_others_that_are_like_it(alike: int, high: int):
+def test_range_is_rounded_outwards_and_a_match_needs_four_others_that_are_like_it(alike: int, high: int):
     """Groups of nine close matches: in each of ten, `alike` ones lie at 40 px, and the others at 0, 10, ... px."""
     random = np.random.default_rng(0)
     points = np.concatenate([at + random.uniform(0, 1, (9, 2)) for at in random.uniform(0, 9000, (60, 2))])
@@ -391,6 +372,8 @@ def test_match_needs_four_others_that_are_like_it(alike: int, high: int):
     disparity[:10] = 1000 * np.arange(9)
     disparity[:10, :alike] = 40.5
     assert verified_range(points, disparity.ravel()) == (9, high)
+    for sign, found in ((1, (10, 11)), (-1, (-11, -10))):
+        assert verified_range(np.random.default_rng(0).uniform(0, 100, (50, 2)), np.full(50, 10.5 * sign)) == found
 
 
 LEFT, RIGHT = np.random.default_rng(0).integers(0, 256, (2, 20, 31), np.uint8)
@@ -406,7 +389,7 @@ def test_right_view_moves_so_that_the_start_becomes_zero(start_px: int):
     assert (found.offset_px, found.verified_px) == (start_px, (-3 - start_px, 9 - start_px))
 
 
-def test_disparity_and_place_in_the_right_picture_count_the_move():
+def test_canvas_holds_the_left_picture_and_its_values_and_counts_the_move():
     found = warp_pair(Views(LEFT, RIGHT), STILL, "", -5)
     disparity_px = np.full((20, 31), np.float32(7))
     back = found.to_original(DisparityMap(disparity_px, np.full((20, 31), np.float32(0.5))))
@@ -414,19 +397,11 @@ def test_disparity_and_place_in_the_right_picture_count_the_move():
     assert (back.confidence == 0.5).all()
     y, x = np.indices((20, 31), np.float64)
     assert found.right_px(back.disparity_px) == pytest.approx(np.dstack([x - 2, y]))
-
-
-def test_canvas_holds_the_whole_left_picture_and_nothing_beyond_it():
-    """The left picture is turned by a right angle; what the canvas does not show is unknown in the original."""
     turn = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]])
     found = warp_pair(Views(LEFT, RIGHT), (turn, turn), "")
     assert np.array_equal(found.views.left, np.rot90(LEFT, -1))
     values = np.indices(found.views.shape, np.float32).sum(axis=0)
     assert np.array_equal(found.to_original(DisparityMap(values)).disparity_px, np.rot90(values))
-
-
-def test_warped_values_stay_within_those_of_the_picture():
-    """Cubic interpolation runs over at a step."""
     step = np.where(np.arange(31) < 15, 0.2, 0.7) * np.ones((20, 1))
     half = np.array([[1, 0, 0.5], [0, 1, 0], [0, 0, 1.0]])
     found = warp_pair(Views(step, step), (STILL[0], half), "")

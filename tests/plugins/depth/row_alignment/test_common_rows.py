@@ -65,13 +65,6 @@ def test_rotated_camera_is_detected(degrees: float, correspond: Look):
     assert not correspond(grey_pair(roll_camera(degrees), ""))
 
 
-def test_common_offset_within_the_matchers_limit_is_accepted():
-    views = known_pair("planes", 320, 240).views
-    assert not corners_correspond(grey_pair(shift_right_view(views, 1), ""))
-    assert corners_correspond(grey_pair(shift_right_view(views, 1), ""), most_row_offset_px=1)
-    assert not corners_correspond(grey_pair(shift_right_view(views, 3), ""), most_row_offset_px=1)
-
-
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("rows", [-1, 0, 1])
 def test_common_offset_is_measured(scene: str, rows: int):
@@ -79,8 +72,11 @@ def test_common_offset_is_measured(scene: str, rows: int):
     assert offset(grey_pair(shift_right_view(views, rows), "")) == pytest.approx(rows, abs=0.1)
 
 
-def test_common_offset_is_corrected_without_rectification():
+def test_common_offset_within_the_matchers_limit_is_accepted_and_corrected_without_rectification():
     views = known_pair("planes", 320, 240).views
+    assert not corners_correspond(grey_pair(shift_right_view(views, 1), ""))
+    assert corners_correspond(grey_pair(shift_right_view(views, 1), ""), most_row_offset_px=1)
+    assert not corners_correspond(grey_pair(shift_right_view(views, 3), ""), most_row_offset_px=1)
     with collected() as notes:
         found = Zncc().estimate(shift_right_view(views, 1)).disparity_px
     assert any(note.startswith("rows realigned by") for note in notes)
@@ -93,7 +89,7 @@ def share_right(found: np.ndarray) -> float:
     return float(np.mean(np.abs(found - SCENE.disparity_px())[SCENE.visible()] <= 2))
 
 
-def test_raw_pair_is_matched_nearly_as_well_as_a_rectified_one():
+def test_raw_pair_is_matched_as_a_rectified_one_and_a_calibrated_one_not_tested():
     straight = Zncc().estimate(Views(SCENE.left(), SCENE.right())).disparity_px
     with collected() as notes:
         raw = Zncc().estimate(roll_camera(2)).disparity_px
@@ -101,9 +97,6 @@ def test_raw_pair_is_matched_nearly_as_well_as_a_rectified_one():
     assert share_right(raw) >= share_right(straight) - 0.03
     never = Zncc(rectify="never").estimate(roll_camera(2)).disparity_px
     assert share_right(never) < 0.8
-
-
-def test_calibrated_pair_is_not_tested():
     views = roll_camera(2)
     calibrated = Views(views.left, views.right, Calibration(300.0, 0.1))
     with collected() as notes:
@@ -171,12 +164,9 @@ Y, X = np.indices((160, 240), float)
 def test_offset_is_common_if_twenty_edges_and_45_of_100_have_one(agreed: int, lost: int, offset: float | None):
     votes = np.r_[np.full(agreed, 0.4), np.full(lost, np.nan)].astype(np.float32)
     assert common_rows._agreed_offset_px(votes, 0.45, 0.3) == (offset and pytest.approx(offset))
-
-
-def test_offset_that_varies_is_not_common():
     for apart, common in ((0.29, True), (0.31, False)):
-        votes = np.repeat([0.4 - apart, 0.4, 0.4 + apart], [33, 34, 33]).astype(np.float32)
-        assert (common_rows._agreed_offset_px(votes, 0.45, 0.3) is not None) == common
+        varying = np.repeat([0.4 - apart, 0.4, 0.4 + apart], [33, 34, 33]).astype(np.float32)
+        assert (common_rows._agreed_offset_px(varying, 0.45, 0.3) is not None) == common
 
 
 @pytest.mark.parametrize("rows", [-1.0, 1.0])

@@ -57,7 +57,7 @@ def test_estimated_range_fills_its_lanes_from_the_lower_end(least, estimate: Spa
     assert find_disparity_range(PAIR, least, "auto").span == span
 
 
-def test_range_of_exchanged_views_ends_at_zero(monkeypatch: pytest.MonkeyPatch):
+def test_range_of_exchanged_views_ends_at_zero_and_that_without_matches_is_the_default(monkeypatch: pytest.MonkeyPatch):
     estimated(monkeypatch, Span(-40, 3), swapped=True)
     found = find_disparity_range(PAIR, "auto", "auto")
     assert found.span == Span(-40, 0)
@@ -67,9 +67,6 @@ def test_range_of_exchanged_views_ends_at_zero(monkeypatch: pytest.MonkeyPatch):
         "skipped: disparities outside -40..0 px, as none was found up to 400 px; for nearer things write "
         "`max_disparity_px`"
     )
-
-
-def test_pair_without_matches_has_the_default_range(monkeypatch: pytest.MonkeyPatch):
     estimated(monkeypatch, None)
     found = find_disparity_range(PAIR, "auto", "auto")
     assert (found.span, len(found.notes)) == (Span(0, 191), 1)
@@ -210,7 +207,7 @@ def test_rows_of_a_band_are_means_with_the_edge_repeated(factor: int, middle: in
     assert np.array_equal(means, np.pad(expected, (RADIUS, means.size - columns - RADIUS), mode="edge"))
 
 
-def test_flat_columns_of_a_band_are_flat_pixels_of_its_middle_row():
+def test_specks_and_flat_columns_are_counted(monkeypatch: pytest.MonkeyPatch):
     random = np.random.default_rng(2)
     for _ in range(20):
         band = np.repeat(random.integers(0, 3, (TALL, 12)), 6, axis=1).astype(np.uint8)
@@ -218,9 +215,6 @@ def test_flat_columns_of_a_band_are_flat_pixels_of_its_middle_row():
         flat = np.empty(72 - 2 * RADIUS, np.bool_)
         bands._find_flat_columns(band, flat)
         assert np.array_equal(flat, flat_pixels(band)[RADIUS, RADIUS:-RADIUS])
-
-
-def test_loss_is_the_share_of_the_matches_that_are_specks(monkeypatch: pytest.MonkeyPatch):
     left = np.random.default_rng(0).integers(0, 256, (64, 90), np.uint8)
     pair = Pair.of(left, np.roll(left, -3, axis=1))
     monkeypatch.setattr(bands, "remove_speckles", lambda *_: 0)
@@ -242,22 +236,16 @@ def test_smaller_pair_has_means_with_the_edge_repeated(factor: int, shape: tuple
         assert np.abs(one - means).max() <= 0.5
 
 
-def test_exchanged_pair_has_the_same_disparity():
+def test_exchanged_or_brightened_pair_has_the_same_disparity():
     """A place is at 3 in the left view and at 1 in the right one; mirrored in five columns, at 3 in the first."""
     left, right = np.zeros((2, 1, 5), np.uint8)
     left[0, 3] = right[0, 1] = 9
     found = Pair.of(left, right).exchange()
     assert (found.left.tolist(), found.right.tolist()) == ([[0, 0, 0, 9, 0]], [[0, 9, 0, 0, 0]])
     assert found.left.flags.c_contiguous
-
-
-def test_both_views_are_brightened_alike_by_a_power_of_two():
     left, right = np.array([[0.0, 1 / 3]]), np.array([[1 / 9, 0.0]])
     found = grey_pair(Views(left, right), "test")
     assert (found.left.tolist(), found.right.tolist()) == ([[0, 170]], [[57, 0]])
-
-
-def test_negative_values_are_lifted_to_black():
     found = grey_pair(Views(np.array([[-0.5, 0.5]]), np.array([[-0.25, 0.25]])), "test")
     assert (found.left.tolist(), found.right.tolist()) == ([[0, 255]], [[64, 191]])
 

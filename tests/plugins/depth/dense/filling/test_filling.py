@@ -89,11 +89,25 @@ def test_four_samples_make_a_plane(count: int, slanted: bool):
     assert (len(np.unique(found[disparity == UNKNOWN])) > 1) == slanted
 
 
-def test_maps_without_matches_or_without_gaps_stay_unchanged():
+def test_gaps_take_the_best_candidate_and_maps_without_any_stay():
     grey = np.zeros((7, 9), np.uint8)
     for value in (UNKNOWN, np.int16(48)):
         disparity = np.full((7, 9), value)
         assert np.array_equal(fill_from_eight_directions(disparity, grey), disparity)
+    random = np.random.default_rng(1)
+    steps = [(v, u) for v in (-1, 0, 1) for u in (-1, 0, 1) if (v, u) != (0, 0)]
+    disparity = random.choice([-40, 16, 64, 200, 330], (24, 30)).astype(np.int16)
+    disparity[:, 2:][random.random((24, 28)) < 0.75] = UNKNOWN
+    grey = random.choice([0, 30, 90], disparity.shape).astype(np.uint8)
+    filled = fill_from_eight_directions(disparity, grey)
+    told = set()
+    for y, x in zip(*np.nonzero(disparity == UNKNOWN), strict=True):
+        found = scores(disparity, grey, y, x, steps)
+        best, *others = sorted(found, key=found.__getitem__, reverse=True)
+        if not others or found[best] - found[others[0]] > 1e-3:
+            assert filled[y, x] == best, (y, x)
+            told.add((y, x))
+    assert len(told) > 400
 
 
 def walk(disparity: np.ndarray, grey: np.ndarray, place: tuple[int, int], step: tuple[int, int]) -> tuple[int, int]:
@@ -133,33 +147,6 @@ def scores(disparity: np.ndarray, grey: np.ndarray, y: int, x: int, steps: list[
     return found
 
 
-def test_each_gap_takes_the_candidate_of_the_best_score():
-    """Away from the left border, and nothing said where two are nearly as good."""
-    random = np.random.default_rng(1)
-    steps = [(v, u) for v in (-1, 0, 1) for u in (-1, 0, 1) if (v, u) != (0, 0)]
-    disparity = random.choice([-40, 16, 64, 200, 330], (24, 30)).astype(np.int16)
-    disparity[:, 2:][random.random((24, 28)) < 0.75] = UNKNOWN
-    grey = random.choice([0, 30, 90], disparity.shape).astype(np.uint8)
-    filled = fill_from_eight_directions(disparity, grey)
-    told = set()
-    for y, x in zip(*np.nonzero(disparity == UNKNOWN), strict=True):
-        found = scores(disparity, grey, y, x, steps)
-        best, *others = sorted(found, key=found.__getitem__, reverse=True)
-        if not others or found[best] - found[others[0]] > 1e-3:
-            assert filled[y, x] == best, (y, x)
-            told.add((y, x))
-    assert len(told) > 400
-
-
-def test_path_of_more_steps_than_16_bits_hold_is_the_longest():
-    """On the left a far surface behind 65540 levels, which would wrap to 4; on the right a near one without a step."""
-    disparity = np.full((1, 800), UNKNOWN)
-    disparity[0, :200], disparity[0, 500:] = 16, 160
-    grey = np.full((1, 800), 250, np.uint8)
-    grey[0, :200], grey[0, 200:458] = 0, np.arange(258) % 2 * 255
-    assert (fill_from_eight_directions(disparity, grey)[0, 460:500] == 160).all()
-
-
 def corner() -> tuple[np.ndarray, np.ndarray]:
     """A dark wall, known above alone, that goes on at the left border below a near, light cloth that widens."""
     grey = np.full((30, 40), 20, np.uint8)
@@ -172,24 +159,23 @@ def corner() -> tuple[np.ndarray, np.ndarray]:
     return disparity, grey
 
 
-def test_path_follows_the_surface_around_a_corner():
+def test_path_follows_the_straight_surface_of_the_least_changes_however_long():
     disparity, grey = corner()
     found = geodesic_candidates(disparity, grey)
     wall = (grey == 20)[:, :14] & (np.arange(14) < found.first[:, None])
     assert (found.values[:, :14][wall] == 64).all()
     assert found.lengths[20, 2] == 15  # as many steps as there are rows to row 5, some of them slanting
-
-
-def test_path_length_is_its_steps_and_grey_changes():
     disparity = np.array([[UNKNOWN, UNKNOWN, UNKNOWN, 80, 80]], np.int16)
     found = geodesic_candidates(disparity, np.array([[10, 40, 35, 35, 0]], np.uint8))
     assert (found.first.tolist(), found.values[:, :3].tolist()) == ([3], [[80, 80, 80]])
     assert found.lengths[:, :3].tolist() == [[3 + 35, 2 + 5, 1]]
-
-
-def test_of_ways_of_equal_length_the_straight_one_is_taken():
     disparity = np.array([[UNKNOWN, 16], [UNKNOWN, 32], [UNKNOWN, 48]], np.int16)
     assert geodesic_candidates(disparity, np.zeros((3, 2), np.uint8)).values[:, 0].tolist() == [16, 32, 48]
+    disparity = np.full((1, 800), UNKNOWN)
+    disparity[0, :200], disparity[0, 500:] = 16, 160
+    grey = np.full((1, 800), 250, np.uint8)
+    grey[0, :200], grey[0, 200:458] = 0, np.arange(258) % 2 * 255
+    assert (fill_from_eight_directions(disparity, grey)[0, 460:500] == 160).all()
 
 
 @pytest.mark.parametrize("filled", [fill_from_four_directions, fill_from_eight_directions])

@@ -71,39 +71,6 @@ def grey(k: Known, scale: int, dtype: type = np.uint8) -> np.ndarray:
     return np.rint(scale * np.nan_to_num(k.truth_px)).astype(dtype)
 
 
-def middlebury_2001(root: Path, k: Known) -> None:
-    put_views(root / "sawtooth", k, "im2.ppm", "im6.ppm")
-    put(root / "sawtooth/disp2.pgm", grey(k, 8))
-
-
-def middlebury_2003(root: Path, k: Known) -> None:
-    put_views(root / "cones", k, "im2.png", "im6.png")
-    put(root / "cones/disp2.png", grey(k, 4))
-
-
-def middlebury_2005(root: Path, k: Known) -> None:
-    put_views(root / "HalfSize/Art", k, "view1.png", "view5.png")
-    put(root / "HalfSize/Art/disp1.png", grey(k, 2))
-
-
-def middlebury_2006(root: Path, k: Known) -> None:
-    put_views(root / "ThirdSize/Aloe", k, "view1.png", "view5.png")
-    put(root / "ThirdSize/Aloe/disp1.png", grey(k, 3))
-    (root / "ThirdSize/Aloe/dmin.txt").write_text("270\n")
-
-
-def middlebury_2014(root: Path, k: Known) -> None:
-    put_views(root / "Adirondack-perfect", k)
-    put_pfm(root / "Adirondack-perfect/disp0.pfm", with_inf(k))
-    (root / "Adirondack-perfect/calib.txt").write_text(CALIB)
-
-
-def middlebury_2021(root: Path, k: Known) -> None:
-    put_views(root / "data/artroom1", k)
-    put_pfm(root / "data/artroom1/disp0.pfm", with_inf(k), ">")
-    (root / "data/artroom1/calib.txt").write_text(CALIB)
-
-
 def middlebury_eval3(root: Path, k: Known) -> None:
     folder = root / "trainingQ/Adirondack"
     put_views(folder, k)
@@ -189,15 +156,32 @@ class Layout(NamedTuple):
     test: str = ""
 
 
+def middlebury_of_bytes(folder: str, left: str, right: str, truth: str, scale: int) -> Layout:
+    def make(root: Path, k: Known) -> None:
+        put_views(root / folder, k, left, right)
+        put(root / folder / truth, grey(k, scale))
+        if scale == 3:  # the sets of 2006 alone cut a margin off
+            (root / folder / "dmin.txt").write_text("270\n")
+
+    return Layout(make, Path(folder).name, f"{folder}/{left}", f"{folder}/{truth}", 1 / (2 * scale))
+
+
+def middlebury_of_floats(folder: str, order: str) -> Layout:
+    def make(root: Path, k: Known) -> None:
+        put_views(root / folder, k)
+        put_pfm(root / folder / "disp0.pfm", with_inf(k), order)
+        (root / folder / "calib.txt").write_text(CALIB)
+
+    return Layout(make, Path(folder).name, f"{folder}/im0.png", f"{folder}/disp0.pfm", 0)
+
+
 LAYOUTS: Mapping[str, Layout] = {
-    "middlebury-2001": Layout(middlebury_2001, "sawtooth", "sawtooth/im2.ppm", "sawtooth/disp2.pgm", 1 / 16),
-    "middlebury-2003": Layout(middlebury_2003, "cones", "cones/im2.png", "cones/disp2.png", 1 / 8),
-    "middlebury-2005": Layout(middlebury_2005, "Art", "HalfSize/Art/view1.png", "HalfSize/Art/disp1.png", 1 / 4),
-    "middlebury-2006": Layout(middlebury_2006, "Aloe", "ThirdSize/Aloe/view1.png", "ThirdSize/Aloe/disp1.png", 1 / 6),
-    "middlebury-2014": Layout(
-        middlebury_2014, "Adirondack-perfect", "Adirondack-perfect/im0.png", "Adirondack-perfect/disp0.pfm", 0
-    ),
-    "middlebury-2021": Layout(middlebury_2021, "artroom1", "data/artroom1/im0.png", "data/artroom1/disp0.pfm", 0),
+    "middlebury-2001": middlebury_of_bytes("sawtooth", "im2.ppm", "im6.ppm", "disp2.pgm", 8),
+    "middlebury-2003": middlebury_of_bytes("cones", "im2.png", "im6.png", "disp2.png", 4),
+    "middlebury-2005": middlebury_of_bytes("HalfSize/Art", "view1.png", "view5.png", "disp1.png", 2),
+    "middlebury-2006": middlebury_of_bytes("ThirdSize/Aloe", "view1.png", "view5.png", "disp1.png", 3),
+    "middlebury-2014": middlebury_of_floats("Adirondack-perfect", "<"),
+    "middlebury-2021": middlebury_of_floats("data/artroom1", ">"),
     "middlebury-eval3": Layout(
         middlebury_eval3, "Adirondack", "trainingQ/Adirondack/im0.png", "trainingQ/Adirondack/disp0GT.pfm", 0,
         "trainingQ/Adirondack/mask0nocc.png", True, "Australia",

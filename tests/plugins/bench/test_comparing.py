@@ -1,4 +1,4 @@
-"""A whole comparison, by the command and by a program: figures that are lost, or worse ones that nobody notices."""
+"""A whole comparison, and regressions between two: figures that are lost, or noise called a change."""
 
 import json
 import threading
@@ -12,6 +12,7 @@ from command_line import tangible
 from tangible_bench.comparing import ComparisonOutcome, Step, compare, read_comparison
 from tangible_bench.config.reading import load_comparison, parse_comparison
 from tangible_bench.measuring.rows import Row, append, read_rows
+from tangible_bench.results.regressions import find_regressions
 from tangible_core.errors import ResultsError, Stopped
 from tangible_core.plugins.registry import Registry, default_registry
 from tangible_core.runtime.system.files import folder_lock
@@ -176,3 +177,78 @@ def test_command_with_a_mistake_exits_with_2_and_a_message(tmp_path: Path, words
     assert why in done.stderr
     assert "Traceback" not in done.stderr
     assert not (tmp_path / "out").exists()
+
+
+ROW = Row("k", "depth", "m", "m", {}, "d 1", "s", "digest", "none", (), 0, {}, {"processor": "p"})
+
+
+def rows(seconds: list[float], method: str = "m", bad2: float | None = 5.0, memory: int = 10**8, **more) -> list[Row]:
+    return [
+        replace(
+            ROW, method=method, repeat=repeat, seconds=second, peak_memory_bytes=memory, measures={"bad2": bad2}, **more
+        )
+        for repeat, second in enumerate(seconds)
+    ]
+
+
+def worse(before: list[Row], after: list[Row]) -> list[str]:
+    return [each.what for each in find_regressions(before, after).worse]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "expected"),
+    [
+        ([1.0, 1.0, 1.0], [1.09, 1.09, 1.09], []),
+        ([1.0, 1.0, 1.0], [1.11, 1.11, 1.11], ["time s"]),
+        ([1.0, 1.0, 1.0], [0.1, 0.1, 0.1], []),
+        ([0.9, 1.0, 1.1], [1.3, 1.4, 1.5], []),
+        ([0.9, 1.0, 1.1], [1.6, 1.7, 1.8], ["time s"]),
+        ([1.0], [1.05], []),
+    ],
+    ids=["within a tenth", "over a tenth", "faster", "within the noise", "over the noise", "one repeat"],
+)
+def test_time_is_worse_beyond_a_tenth_and_the_noise(before: list[float], after: list[float], expected: list[str]):
+    assert worse(rows(before), rows(after)) == expected
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "expected"),
+    [(5.0, 5.004, []), (5.0, 5.006, ["bad2 %"]), (5.0, 1.0, []), (5.0, None, ["bad2 %"]), (None, 5.0, [])],
+)
+def test_error_is_worse_beyond_its_tolerance(before: float | None, after: float | None, expected: list[str]):
+    assert worse(rows([1.0], bad2=before), rows([1.0], bad2=after)) == expected
+
+
+def test_changes_have_bounds_of_their_own_as_means_and_ratios():
+    for before, after, expected in ((10**8, 104 * 10**6, []), (10**8, 106 * 10**6, ["memory bytes"]), (0, 10**6, [])):
+        assert worse(rows([1.0], memory=before), rows([1.0], memory=after)) == expected
+    high, low = ([replace(ROW, seconds=1.0, measures={"density": value})] for value in (90.0, 80.0))
+    assert worse(high, low) == ["density %"] and worse(low, high) == []
+    (found,) = find_regressions(rows([0.9, 1.0, 1.1]), rows([1.6, 1.7, 1.8])).worse
+    assert found.allowed == pytest.approx(3 * 2**0.5 * 1.4826 * 0.1), "three standard deviations"
+    assert (found.before, found.after) == (1.0, 1.7)
+    before = rows([1.0], baseline="base") + rows([2.0], "base", baseline="base")
+    other = {"baseline": "base", "machine": {"processor": "q"}}
+    assert worse(before, rows([10.0], **other) + rows([20.0], "base", **other)) == []
+    assert worse(before, rows([12.0], **other) + rows([20.0], "base", **other)) == ["time / baseline"]
+    (found,) = find_regressions(rows([1.0]), [replace(ROW, error="gone")]).worse
+    assert (found.what, found.why) == ("fails", "gone")
+    assert worse([replace(ROW, error="gone")], rows([1.0])) == []
+    assert worse([replace(ROW, error="gone")], [replace(ROW, error="still")]) == []
+    verdict = find_regressions(rows([1.0]) + rows([1.0], "gone"), rows([1.0]) + rows([1.0], "new"))
+    assert (verdict.compared, verdict.missing) == (1, ("gone | s | none", "new | s | none"))
+
+
+@pytest.mark.parametrize(
+    ("after", "why"),
+    [
+        ([], "a file without rows"),
+        (rows([1.0], compare="texture"), "compares depth, the other texture"),
+        (rows([1.0], machine={"processor": "q"}), "seconds on p and on q"),
+        (rows([1.0], "other"), "in common"),
+        (rows([1.0], scene_digest="other"), "in common"),
+    ],
+)
+def test_files_without_common_ground_are_refused(after: list[Row], why: str):
+    with pytest.raises(ResultsError, match=why):
+        find_regressions(rows([1.0]), after)

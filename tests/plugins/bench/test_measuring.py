@@ -55,7 +55,9 @@ def test_rows_of_processes_have_every_field_and_leave_out_the_process(registry: 
 
 
 @pytest.mark.usefixtures("cells_here")
-def test_measures_are_errors_against_the_truth(registry: Registry, tmp_path: Path):
+def test_measures_are_errors_with_the_options_of_the_scene(
+    registry: Registry, tmp_path: Path, caplog: pytest.LogCaptureFixture
+):
     """A constant of 0 px is wrong by the truth itself."""
     from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 
@@ -63,13 +65,6 @@ def test_measures_are_errors_against_the_truth(registry: Registry, tmp_path: Pat
     pair = synthetic_pair("steps", 64, 32)
     assert row.measures["average_px"] == pytest.approx(pair.truth_px.mean(), rel=1e-5)
     assert row.measures["bad2_noc"] == pytest.approx(100 * (pair.truth_px > 2)[pair.visible].mean())
-
-
-@pytest.mark.usefixtures("cells_here")
-def test_option_given_by_the_scene_is_set_for_that_method_only(
-    registry: Registry, tmp_path: Path, caplog: pytest.LogCaptureFixture
-):
-    """Disparities of this scene end below 16: the next multiple of 16, for the method with `given:` only."""
     methods = "{use: ranged, max_disparity_px: 2}, {use: ranged, label: told, given: [max_disparity_px]}"
     rows = measure_rows(registry, tmp_path / "r.jsonl", methods)
     assert [(row.method, row.options) for row in rows] == [
@@ -79,18 +74,9 @@ def test_option_given_by_the_scene_is_set_for_that_method_only(
     (doubt,) = caplog.messages
     assert doubt.startswith("ranged on steps 64x32: max_disparity_px 2 is below the truth of "), doubt
     assert doubt.endswith("write `max_disparity_px: 16`, or `given: [max_disparity_px]`")
-
-
-def test_option_given_by_the_scene_out_of_bounds_is_refused(registry: Registry, tmp_path: Path):
     wanted = comparison(registry, "{use: ranged, given: [max_disparity_px]}")
-    with pytest.raises(
-        ConfigError, match=r"ranged cannot be given .* less than or equal to 1000; leave out its `given:`"
-    ):
+    with pytest.raises(ConfigError, match=r"ranged cannot be given .* equal to 1000; leave out its `given:`"):
         wanted.methods[0].method_for({"max_disparity_px": 2000})
-
-
-@pytest.mark.usefixtures("cells_here")
-def test_fill_is_applied_to_the_named_methods_only(registry: Registry, tmp_path: Path):
     rows = measure_rows(registry, tmp_path / "r.jsonl", "half, {use: half, label: filled}", QUICK + "fill: [filled]\n")
     assert [(row.method, row.measures["density"], row.finishes) for row in rows] == [
         ("half", 50, ()),
@@ -113,12 +99,7 @@ def test_failing_methods_are_rows_and_stop_no_other(registry: Registry, tmp_path
     assert rows["raises"].seconds is None and rows["raises"].measures == {}
 
 
-def test_method_beyond_the_timeout_is_ended(registry: Registry, tmp_path: Path):
-    (row,) = measure_rows(registry, tmp_path / "r.jsonl", "sleeps", QUICK + "timeout_s: 0.5\n")
-    assert row.error == "took longer than 0.5 s and was ended; raise timeout_s or drop the method"
-
-
-def test_rounds_start_with_different_methods(registry: Registry):
+def test_rounds_start_with_different_methods_and_end_at_the_timeout(registry: Registry, tmp_path: Path):
     wanted = measurements(comparison(registry, "constant, half, talks", "repeats: 3\nperturb: [none, {noise: 5}]\n"))
     order = [(each.row.repeat, each.row.perturb, each.row.method) for each in wanted]
     assert order[:4] == [(0, "none", "constant"), (0, "none", "half"), (0, "none", "talks"), (0, "noise 5", "constant")]
@@ -128,6 +109,8 @@ def test_rounds_start_with_different_methods(registry: Registry):
         "constant",
     ]
     assert len({each.row.key for each in wanted}) == 18
+    (row,) = measure_rows(registry, tmp_path / "r.jsonl", "sleeps", QUICK + "timeout_s: 0.5\n")
+    assert row.error == "took longer than 0.5 s and was ended; raise timeout_s or drop the method"
 
 
 @pytest.mark.parametrize(
@@ -243,13 +226,10 @@ def test_killed_comparison_continues_where_it_stopped(tangible, tmp_path: Path):
     assert [len(cell["seconds"]) for cell in json.loads(output)["cells"]] == [2, 2]
 
 
-def test_peak_memory_counts_from_its_start():
+def test_peak_memory_counts_from_its_start_and_held_bytes_are_those_of_the_result():
     np.ones(40_000_000, np.uint8)
     peak = start_peak()
     np.ones(20_000_000, np.uint8)
     assert peak() == pytest.approx(20_000_000, rel=0.1)
-
-
-def test_held_bytes_are_those_of_the_result():
     assert held_bytes(lambda: np.ones(10_000)) == pytest.approx(80_000, rel=0.01)
     assert held_bytes(lambda: np.ones(10_000).sum()) < 1000

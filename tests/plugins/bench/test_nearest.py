@@ -1,4 +1,4 @@
-"""Nearest points on analytic surfaces: on the surface, along its normal, and no other point is nearer."""
+"""Nearest points and controlled damage: what they are on surfaces and pictures of which the answer is known."""
 
 import numpy as np
 import pytest
@@ -13,6 +13,9 @@ from tangible_bench.strokes import (
     on_waves,
     relief_stroke,
 )
+from tangible_bench.tasks import damage
+from tangible_bench.tasks.depth import PERTURBATIONS
+from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 
 SMOOTH = ("plane", "ramp", "sphere", "sine", "cone")
 
@@ -62,15 +65,12 @@ def test_nearest_point_on_ridge_stays_on_its_face():
         ((0.001, 0.0, -0.001), (0.0, 0.0, 0.0)),  # in the corner
     ],
 )
-def test_nearest_point_on_step_from_below(hand: tuple[float, ...], point: tuple[float, ...]):
+def test_nearest_point_on_step_depends_on_the_way(hand: tuple[float, ...], point: tuple[float, ...]):
     way = np.array([(-0.01, 0.0, 0.001), (-0.001, 0.0, 0.001), hand])
     np.testing.assert_allclose(on_step(way, 0.004)[2], point, atol=1e-15)
-
-
-def test_nearest_point_on_step_from_above():
-    way = np.array([(0.01, 0.0, 0.005), (0.01, 0.0, 0.003), (0.001, 0.0, 0.001), (-0.001, 0.0, -0.001)])
+    above = np.array([(0.01, 0.0, 0.005), (0.01, 0.0, 0.003), (0.001, 0.0, 0.001), (-0.001, 0.0, -0.001)])
     expected = [(0.01, 0, 0.004), (0.001, 0, 0.004), (-0.001, 0, 0)]
-    np.testing.assert_allclose(on_step(way, 0.004)[1:], expected, atol=1e-15)
+    np.testing.assert_allclose(on_step(above, 0.004)[1:], expected, atol=1e-15)
 
 
 def test_nearest_point_far_below_a_crest_is_unknown():
@@ -96,14 +96,11 @@ def test_analytic_stroke_scripted_path_is_in_and_out_of_contact(name: str):
     assert speeds.mean() < 0.058
 
 
-def test_analytic_stroke_own_path_is_unknown_outside_the_surface():
+def test_nearest_points_are_unknown_outside_the_surface_and_on_a_relief():
     way = np.array([(0.0, 0.0, 0.019), (0.0, 0.0, 0.021), (0.05, 0.0, 0.0), (1.0, 1.0, 0.0)])
     stroke = analytic_stroke("sphere", 16, path_m=way)
     np.testing.assert_allclose(stroke.nearest_m[:2], [(0, 0, 0.02), (0, 0, 0.021)], atol=1e-15)
     assert np.isnan(stroke.nearest_m[2:]).all()
-
-
-def test_relief_stroke_nearest_points_are_unknown():
     surface = SURFACES["sine"].surface((64, 32)).surface
     stroke = relief_stroke(surface)
     assert np.isnan(stroke.nearest_m).all()
@@ -111,3 +108,64 @@ def test_relief_stroke_nearest_points_are_unknown():
     depths = [known.height_m(x, y) - z for x, y, z in stroke.position_m]
     assert 0.0005 < np.percentile(depths, 90) < 0.0015
     assert np.abs(stroke.position_m[:, :2]).max(axis=0) == pytest.approx([0.03, 0.06], rel=1e-3)
+
+
+GREY = np.full((64, 64), 100, np.uint8)
+
+
+def test_damage_follows_its_formulas_and_spreads_by_its_quality():
+    assert (damage.gain(GREY, 0.8) == 80).all()
+    assert (damage.gain(GREY, 5) == 255).all()
+    assert (damage.gamma(GREY, 1.4) == round(255 * (100 / 255) ** 1.4)).all()
+    assert (damage.offset(GREY, 20) == 120).all()
+    assert (damage.offset(GREY, -200) == 0).all()
+    lit = damage.light(GREY, 0.4)
+    assert (lit[:, 0] == 60).all() and (lit[:, -1] == 140).all()
+    np.testing.assert_array_equal(lit, np.rint(lit[:1].repeat(64, axis=0)))
+    np.testing.assert_array_equal(damage.light(np.dstack([GREY] * 3), 0.4)[..., 1], lit)
+    point = np.zeros((33, 33), np.uint8)
+    point[16, 16] = 255
+    blurred = damage.blur(point, 1.0)
+    assert blurred[16, 16] == round(255 / (2 * np.pi)) or abs(int(blurred[16, 16]) - 255 / (2 * np.pi)) < 1
+    assert (damage.blur(GREY, 3) == 100).all()
+    picture = np.random.default_rng(0).integers(0, 255, (64, 64, 3), dtype=np.uint8)
+    losses = [np.abs(damage.jpeg(picture, quality) - picture.astype(float)).mean() for quality in (95, 50, 5)]
+    assert losses == sorted(losses)
+    assert damage.jpeg(GREY, 50).shape == GREY.shape
+
+
+@pytest.mark.parametrize(("rows", "expected"), [(1, [0, 0, 10, 20]), (-1, [10, 20, 30, 30]), (0.5, [0, 5, 15, 25])])
+def test_shift_down_interpolates_and_repeats_the_border(rows: float, expected: list[int]):
+    ramp = np.uint8([[0], [10], [20], [30]])
+    assert damage.shift_down(ramp, rows)[:, 0].tolist() == expected
+
+
+def test_noise_has_its_standard_deviation_and_seed_and_is_independent_in_each_channel():
+    changes = damage.noise(np.full((64, 64, 3), 100, np.uint8), 5, 0).astype(float) - 100
+    assert changes.std() == pytest.approx(5, rel=0.05) and changes.mean() == pytest.approx(0, abs=0.3)
+    assert np.abs(np.corrcoef(changes.reshape(-1, 3).T) - np.eye(3)).max() < 0.1
+    np.testing.assert_array_equal(damage.noise(GREY, 5, 0), damage.noise(GREY, 5, 0))
+    assert (damage.noise(GREY, 5, 0) != damage.noise(GREY, 5, 1)).any()
+
+
+@pytest.mark.parametrize(
+    "picture", [np.full((8, 8), 0.5, np.float32), np.full((8, 8, 4), 32768, np.uint16), np.ones((1, 1), np.bool_)]
+)
+def test_damage_accepts_every_kind_of_picture(picture: np.ndarray):
+    for change in (damage.jpeg, damage.blur, damage.gamma, damage.shift_down, damage.gain):
+        changed = change(picture, 1)
+        assert changed.dtype == np.uint8 and changed.shape == (*picture.shape[:2], 3)[: picture.ndim]
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("noise", 5), ("gain", 0.8), ("gamma", 1.4), ("jpeg", 50), ("blur", 1), ("shift", 1)]
+)
+def test_perturbation_of_a_pair_changes_its_views_only(name: str, value: float):
+    pair = synthetic_pair("steps", 64, 32)
+    changed = PERTURBATIONS[name].apply(pair, value)
+    off = [
+        np.subtract(getattr(changed.views, side), getattr(pair.views, side), dtype=int) for side in ("left", "right")
+    ]
+    assert off[1].any() and off[0].any() == (name in ("noise", "jpeg", "blur"))
+    assert name != "noise" or abs(np.corrcoef(off[0].ravel(), off[1].ravel())[0, 1]) < 0.1
+    np.testing.assert_array_equal(changed.truth_px, pair.truth_px)

@@ -43,17 +43,13 @@ def parse(text: str, registry: Registry) -> Comparison:
     return parse_comparison(text, Path("c.yaml"), registry)
 
 
-def test_vertical_spring_on_a_slope_has_known_errors(strokes):
+def test_vertical_spring_has_known_errors_and_work(strokes):
     """The error is tan(t), the strength 1 / cos(t), the direction off by t; a loop in and out gives work k d dh."""
     found = measure_method("penalty", strokes["ramp"])
     assert found["error_percent"] == pytest.approx(100 * RISE, rel=1e-3)
     assert found["direction_deg"] == pytest.approx(math.degrees(math.atan(RISE)), rel=1e-3)
     assert found["jnd"] == pytest.approx(math.degrees(math.atan(RISE)) / 18, rel=1e-3)
     assert found["loop_work_j"] > 1e-3
-
-
-def test_vertical_spring_around_a_loop_gives_known_work():
-    """1 mm deep along a ramp of 0.2, 40 mm up: 800 N/m x 1 mm x 8 mm = 6.4 mJ; back down it is taken again."""
     known = ramp((0.2, 0.0), shape=(CELLS, CELLS))
     across = np.linspace(-0.02, 0.02, 4001)
     along = np.array([known.at(x, 0.0, 0.001) for x in across])
@@ -78,23 +74,15 @@ def test_proxy_equals_the_spring_to_the_nearest_point(strokes, name: str, percen
     assert soft["error_percent"] < percent, "the true spring is as stiff as the law's"
 
 
-def test_gradient_spring_on_a_slope_is_too_stiff(strokes):
+def test_laws_on_a_slope_lag_or_step_or_are_too_stiff(strokes):
     """The factor is sqrt(1 + s^2) along the gradient's force, and the same again along the normal."""
     found = measure_method("penalty-gradient", strokes["ramp"])
     assert found["error_percent"] == pytest.approx(100 * RISE**2, rel=1e-3)
     assert found["direction_deg"] == pytest.approx(0, abs=0.01)
     assert found["jnd"] == pytest.approx(RISE**2 / 0.07, rel=1e-3)
-
-
-def test_grey_level_steps_by_its_whole_force(strokes):
-    """All of its force at once where the surface is met; a spring of 800 N/m at 20 mm/s steps by 0.016 N."""
     assert measure_method("grey-level", strokes["plane"], force_at_white_n=2.0)["step_n"] == pytest.approx(2)
     fastest = np.linalg.norm(np.diff(strokes["plane"].position_m, axis=0), axis=1).max()
     assert measure_method("penalty", strokes["plane"])["step_n"] <= 800 * fastest
-
-
-def test_friction_makes_the_proxy_lag(strokes):
-    """Sliding over a plane a depth d under it, the proxy is mu d behind."""
     circle = np.linspace(0, 2 * np.pi, 8001)
     way = np.column_stack([0.02 * np.cos(circle), 0.02 * np.sin(circle), np.full(8001, 0.009)])
     stroke = analytic_stroke("plane", CELLS, path_m=way)
@@ -221,7 +209,9 @@ calls: 1
     return Results(TASK, cells(rows, None), None)
 
 
-def test_render_comparison_end_to_end_has_exact_results(comparison_results: Results):
+def test_render_comparison_has_exact_results_and_plots(
+    comparison_results: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
     """The truth of the coins is unknown, so the error is that of the ramp alone."""
     (means,) = tables(comparison_results)
     assert means.headings[:6] == ("method", "*", "ns a tick", "peak MB", "error %", "error N")
@@ -229,11 +219,6 @@ def test_render_comparison_end_to_end_has_exact_results(comparison_results: Resu
     assert float(means.rows[0][4]) == pytest.approx(100 * RISE, abs=0.01)
     seconds = [cell.seconds for cell in comparison_results.cells.values() if cell.method == "penalty"]
     assert min(map(min, seconds)) <= float(means.rows[0][2]) * 1e-9 <= max(map(max, seconds)) * 1.001
-
-
-def test_plot_without_truth_has_the_panel_of_steps_only(
-    comparison_results: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
     monkeypatch.setattr("tangible_bench.results.plot.DPI", 40)
     coins = {key: cell for key, cell in comparison_results.cells.items() if "coins" in cell.scene}
     assert draw_plot(tmp_path / "all.png", comparison_results)

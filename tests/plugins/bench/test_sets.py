@@ -103,7 +103,7 @@ class TestMeasures:
         assert isinstance(found, MarkedPair)
         return found
 
-    def test_thresholds_count_pixels_of_the_full_size(self, folder: Path):
+    def test_measures_use_the_full_size_and_the_mask_of_the_set(self, folder: Path):
         """bad2 of a quarter of the size is what tables call bad8, and their bad2 is its bad0.5."""
         pair = self.pair(folder, {"set": "middlebury-eval3"})
         random = np.random.default_rng(1)
@@ -115,8 +115,6 @@ class TestMeasures:
             assert figures[f"average_px_full{end}"] == pytest.approx(4 * figures[f"average_px{end}"], rel=1e-5)
             assert figures[f"a90_px_full{end}"] == pytest.approx(4 * figures[f"a90_px{end}"], rel=1e-5)
         assert figures["bad2"] < figures["bad1"] < figures["bad0.5"] < 100
-
-    def test_noc_measures_use_the_mask_of_the_set(self, folder: Path):
         pair = self.pair(folder, {"set": "kitti-2015"})
         wrong = np.where(pair.noc, np.nan_to_num(pair.truth_px), 99).astype(np.float32)
         figures = measure(DisparityMap(wrong), pair)
@@ -125,12 +123,10 @@ class TestMeasures:
         without = measure(DisparityMap(wrong), replace(pair, noc=None))
         assert without["bad2"] > 0 and not [name for name in without if name.endswith("_noc")]
 
-    def test_estimates_are_clipped_to_the_range_of_the_set(self, folder: Path):
+    def test_estimates_and_ranges_follow_the_set(self, folder: Path):
         pair = self.pair(folder, {"set": "middlebury-2014"})
         truth, found = np.full(pair.views.shape, 19.5, np.float32), np.full(pair.views.shape, 500.0, np.float32)
         assert measure(DisparityMap(found), replace(pair, truth_px=truth))["average_px"] == 0.5
-
-    def test_range_for_methods_follows_the_set(self, folder: Path):
         assert range_px(self.pair(folder, {"set": "middlebury-2014"})) == 32
         assert range_px(self.pair(folder, {"set": "kitti-2015"})) == 16
         assert range_px(self.pair(folder, {"set": "kitti-2015", "split": "test"})) == 256
@@ -160,7 +156,7 @@ def test_kitti_measures_are_weighted_by_pixels():
     assert table.title == "KITTI 2015, 3 pairs"
 
 
-def test_set_table_has_the_benchmark_order_and_bold_best():
+def test_set_table_has_the_benchmark_order_and_whole_methods_alone():
     at = "middlebury-eval3@Q/x"
     found = results(
         row("one_a", at, bad2_full_noc=9.25, bad2_full=30.0),
@@ -177,9 +173,6 @@ def test_set_table_has_the_benchmark_order_and_bold_best():
     (first, *rest) = csv.DictReader(io.StringIO(set_tables.as_csv(table)))
     assert first["method"] == "two" and float(first["bad 2 noc"]) == 4.5 and first["bad 4 noc"] == ""
     assert len(rest) == 1
-
-
-def test_set_table_leaves_out_a_method_without_a_pair():
     found = results(
         row("m", "eth3d/a", bad1_noc=1.0),
         row("m", "eth3d/b", bad1_noc=2.0),

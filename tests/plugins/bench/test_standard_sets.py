@@ -25,15 +25,12 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_set_scene_gives_left_right_truth_and_cameras(folder: Path):
+def test_set_scene_gives_views_truth_and_cameras_to_a_pipeline(folder: Path):
     scene = parse(folder, "{set: kitti-2015, name: 000000_10}").scene
     assert isinstance(scene, SceneFiles)
     assert scene.left == folder / "kitti-2015/training/image_2/000000_10.png"
     assert (scene.truth_scale, scene.focal_px, scene.order) == (256, 700, "as-named")
     assert scene.baseline_m == pytest.approx(0.545)
-
-
-def test_set_scene_in_a_pipeline_has_its_truth(folder: Path):
     config = parse(folder, "{set: sintel, folder: films, name: alley_1/frame_0001}", rest="depth: {use: semi-global}\n")
     pipeline = Pipeline.from_config(config, default_registry(), None)
     truth = known().pair.truth_px

@@ -81,14 +81,11 @@ def test_transformed_labels_follow_the_picture(name: str, value: float):
     assert changed.count == SCENE.count
 
 
-def test_quarter_turns_and_flips_are_exact():
+def test_quarter_turns_flips_and_rotation_by_90_degrees_are_exact():
     back = damage.quarter(damage.quarter(SCENE, 1), 3)
     np.testing.assert_array_equal(back.picture, SCENE.picture)
     np.testing.assert_array_equal(damage.flip(SCENE, 1).labels, SCENE.labels[:, ::-1])
     np.testing.assert_array_equal(damage.flip(SCENE, 0).labels, SCENE.labels[::-1])
-
-
-def test_rotation_by_90_degrees_is_a_quarter_turn():
     square = smooth_scene(4, (41, 41), seed=1)
     turned, expected = damage.rotate(square, 90), damage.quarter(square, 1)
     np.testing.assert_array_equal(turned.labels, expected.labels)

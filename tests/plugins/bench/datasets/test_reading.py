@@ -1,4 +1,4 @@
-"""Standard sets as their archives unpack: a wrong disparity, mask or camera would falsify every figure of a paper."""
+"""Sets as their archives unpack: read exactly, found by globs, and made smaller with their truth."""
 
 from pathlib import Path
 from typing import get_args
@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from standard_sets import LAYOUTS, Known, Layout, known, put, put_pfm, put_views
-from tangible_bench.datasets import SETS, folders, pairs
+from tangible_bench.datasets import SETS, folders, match_files, pairs
 from tangible_bench.datasets.cameras import kitti_cameras
 from tangible_bench.datasets.choosing import SetName
-from tangible_bench.datasets.standard_pair import StandardPair
+from tangible_bench.datasets.standard_pair import StandardPair, shrink_mask, shrink_truth, shrink_views
 from tangible_bench.metrics.standard_sets import visible_pixels
-from tangible_core.data import Calibration
+from tangible_core.data import Calibration, Views
 from tangible_core.errors import ConfigError, PictureError
 
 EACH = pytest.mark.parametrize("name", LAYOUTS)
@@ -54,10 +54,6 @@ def grey(level: int) -> np.ndarray:
     return np.full((64, 96), level, np.uint8)
 
 
-def test_sets_all_have_a_layout_and_a_name():
-    assert list(SETS) == list(LAYOUTS) == list(get_args(SetName))
-
-
 @EACH
 def test_truth_masks_and_cameras_are_read(name: str, tmp_path: Path, k: Known):
     layout = make_set(name, tmp_path, k)
@@ -88,6 +84,7 @@ def test_truth_masks_and_cameras_are_read(name: str, tmp_path: Path, k: Known):
 
 
 def test_missing_and_empty_folders_name_the_archive_to_fetch(tmp_path: Path):
+    assert list(SETS) == list(LAYOUTS) == list(get_args(SetName))
     for name, known_set in SETS.items():
         for folder in (tmp_path / "nowhere", tmp_path):
             with pytest.raises(PictureError) as error:
@@ -165,16 +162,13 @@ def test_wrong_choice_of_pairs_is_refused(call: dict[str, object], said: str, tm
     assert said in str(error.value)
 
 
-def test_pairs_that_are_named_come_in_that_order(tmp_path: Path, k: Known):
+def test_named_pairs_come_in_order_of_the_nearest_folder(tmp_path: Path, k: Known):
     for name in ("a", "b", "c"):
         put_views(tmp_path / f"trainingQ/{name}", k)
     assert names("middlebury-eval3", tmp_path) == ["a", "b", "c"]
     assert names("middlebury-eval3", tmp_path, only=["c", "a"]) == ["c", "a"]
     make_set("kitti-2015", tmp_path, k)
     assert names("kitti-2015", tmp_path, only=[10]) == ["000000_10"], "YAML reads the name as a number"
-
-
-def test_part_and_size_are_those_of_the_nearest_folder(tmp_path: Path, k: Known):
     for part in ("testH", "trainingQ"):
         put_views(tmp_path / "testF" / part / "Adirondack", k)
     found = pairs("middlebury-eval3", tmp_path / "testF")
@@ -203,7 +197,7 @@ def test_grey_levels_of_old_sets_follow_size_and_scene(name, files, resolution, 
     assert np.all(found.open().truth_px == truth_px)
 
 
-def test_kitti_prefers_colour_and_takes_grey_with_its_own_cameras(tmp_path: Path, k: Known):
+def test_masks_and_cameras_are_those_of_their_set(tmp_path: Path, k: Known):
     make_set("kitti-2012", tmp_path, k)
     for name in ("image_0", "image_1"):
         put(tmp_path / f"training/{name}/000000_10.png", k.pair.views.left)
@@ -218,9 +212,6 @@ def test_kitti_prefers_colour_and_takes_grey_with_its_own_cameras(tmp_path: Path
     )
     found = kitti_cameras(tmp_path / "c.txt", "P2", "P3").calibration
     assert vars(found) == pytest.approx(vars(Calibration(700.0, 0.545, 12.0)))
-
-
-def test_masks_mark_what_their_set_says(tmp_path: Path, k: Known):
     make_set("sintel", tmp_path / "sintel", k)
     assert "clean_left" in str(only("sintel", tmp_path / "sintel", variant="clean").left)
     for name, column in (("occlusions", 20), ("outofframe", 70)):
@@ -292,3 +283,86 @@ def test_tiny_pair_is_shrunk(shape: tuple[int, int], tmp_path: Path):
     pair = only("middlebury-2014", tmp_path, resolution="Q").open()
     assert np.all(pair.truth_px == 2) and np.all(pair.views.left == 7)
     assert pair.truth_px.shape == pair.views.shape
+
+
+NAN = float("nan")
+
+
+@pytest.mark.parametrize(
+    ("block", "found"),
+    [
+        ([8.0, 2.0, 6.0, 4.0], 3.0),  # the upper one of the two in the middle, in pixels of half the size
+        ([8.0, 2.0, NAN, 4.0], 2.0),
+        ([NAN, 2.0, 6.0, NAN], 3.0),  # just half of them are known
+        ([NAN, 2.0, NAN, NAN], NAN),
+        ([NAN, NAN, NAN, NAN], NAN),
+    ],
+)
+def test_disparity_of_a_block_is_the_upper_middle_of_those_known(block: list[float], found: float):
+    truth_px = np.float32([[*block[:2], 5.0, 5.0], [*block[2:], 5.0, 5.0]])
+    np.testing.assert_array_equal(shrink_truth(truth_px, 2), np.float32([[found, 2.5]]))
+
+
+def test_block_is_marked_if_most_of_it_is_and_views_are_means_of_blocks_with_smaller_cameras():
+    for block, marked in (([1, 0, 1, 0], False), ([1, 1, 1, 0], True), ([0, 0, 0, 0], False)):
+        mask = np.array([[*block[:2], 1, 1], [*block[2:], 1, 1]], bool)
+        assert shrink_mask(mask, 2).tolist() == [[marked, True]]
+    left, right = np.uint8([[0, 4, 10], [8, 12, 10]]), np.uint8([[20, 20, 0], [40, 40, 0]])
+    found = shrink_views(Views(left, right, Calibration(900.0, 0.2, 30.0)), 2)
+    assert (found.left.tolist(), found.right.tolist()) == ([[6]], [[30]])
+    assert vars(found.calibration) == vars(Calibration(450.0, 0.2, 15.0))
+
+
+NEEDED = ("left", "right")
+
+
+def touch(folder: Path, *names: str) -> None:
+    for name in names:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).touch()
+
+
+@pytest.mark.parametrize(
+    ("files", "patterns", "names"),
+    [
+        (["a_left.png", "a_right.png", "b_left.png", "b_right.png"], ("*_left.png", "*_right.png"), ["a", "b"]),
+        (["l/1.png", "r/1.png", "l/x.txt"], ("l/*.png", "r/*.png"), ["1"]),
+        (["a/1/L.png", "a/1/R.png", "a/2/L.png", "a/2/R.png"], ("a/*/L.png", "a/*/R.png"), ["1", "2"]),
+        (["x/y/z/L1.png", "x/y/z/R1.png", "L2.png", "R2.png"], ("**/L*.png", "**/R*.png"), ["2", "x/y/z/1"]),
+        (["s1/L01.png", "s1/R01.png", "s1/L011.png"], ("s?/L[0-9]1.png", "s?/R[0-9]1.png"), ["1/0"]),
+        (["[x]/1.png", "[y]/1.png"], ("[[]x]/*.png", "[[]y]/*.png"), ["[/1"]),
+        (["a+b/1.png", "a+c/1.png"], ("a+b/*.png", "a+c/*.png"), ["1"]),
+    ],
+)
+def test_files_with_the_same_stars_are_matched_and_an_optional_part_may_be_missing(
+    files, patterns, names, tmp_path: Path
+):
+    touch(tmp_path, *files)
+    found = match_files(tmp_path, dict(zip(NEEDED, patterns, strict=True)), NEEDED)
+    assert list(found) == names
+    for parts in found.values():
+        assert parts["left"] != parts["right"] and all(path.is_file() for path in parts.values())
+    touch(tmp_path / "more", "L1.png", "R1.png", "D1.pfm", "L2.png", "R2.png")
+    found = match_files(tmp_path / "more", {"left": "L*.png", "right": "R*.png", "truth": "D*.pfm"}, NEEDED)
+    assert found["1"]["truth"] == tmp_path / "more/D1.pfm" and "truth" not in found["2"]
+
+
+@pytest.mark.parametrize(
+    ("patterns", "error", "why"),
+    [
+        ({"left": "L*.png", "right": "R.png"}, ConfigError, "right: 'R.png' has 0 stars and left: 'L*.png' has 1"),
+        ({"left": "L1.png", "right": "R1.png"}, ConfigError, "each pattern needs as many, at least one"),
+        (
+            {"left": "Q*.png", "right": "R*.png"},
+            PictureError,
+            "no file in it matches left: 'Q*.png'; check the pattern",
+        ),
+        ({"left": "L*.png", "right": "R*.png"}, PictureError, "L2.png: no file matches right: 'R*.png' with the same"),
+        ({"left": "no/L*.png", "right": "R*.png"}, PictureError, "no: there is no such folder for 'no/L*.png'"),
+    ],
+)
+def test_wrong_patterns_are_refused_in_one_line(patterns, error, why, tmp_path: Path):
+    touch(tmp_path, "L1.png", "R1.png", "L2.png")
+    with pytest.raises(error) as said:
+        match_files(tmp_path, patterns, NEEDED)
+    assert why in str(said.value) and "\n" not in str(said.value)

@@ -1,18 +1,20 @@
-"""`tangible devices` would call a broken device fine, lose a calibration or end with a wrong exit code."""
+"""`tangible devices` would call a broken device fine, or use or lose another one's calibration."""
 
 import json
+import os
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 import typer
+from pydantic import BaseModel
 
 from command_line import tangible
-from tangible_core.errors import ConfigError
+from tangible_core.errors import ConfigError, DeviceError, OutputError
 from tangible_core.plugins.registry import Registry
 from tangible_devices.commands import devices as command
-from tangible_devices.device_calibrations import calibration_path
+from tangible_devices.device_calibrations import calibration_path, load_calibration, save_calibration
 from tangible_devices.installed import installed_devices, stress_device
 from tangible_devices.mock import Mock
 
@@ -86,14 +88,12 @@ def answer(monkeypatch: pytest.MonkeyPatch, *texts: str) -> None:
 
 
 class TestList:
-    def test_list_as_json_has_all_installed_devices(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
+    def test_list_opens_no_device_and_has_all_installed(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
         command.devices(ALONE, as_json=True)
         arm, lost = json.loads(capsys.readouterr().out)
         assert (arm["name"], arm["origin"], arm["simulated"], arm["problem"]) == ("arm", "arms 1.0", False, "")
         assert arm["units"][0] == {"name": "Arm", "serial": "A1", "place": "bus 1", "problem": ""}
         assert lost["units"] == [] and "cannot be loaded" in lost["problem"]
-
-    def test_list_for_a_program_opens_no_device(self, registry: Registry):
         arm, lost = installed_devices(registry)
         assert (arm.name, arm.usable, [unit.problem for unit in arm.units]) == ("arm", True, ["", "is [busy]"])
         assert (lost.usable, lost.simulated, lost.units) == (False, None, ())
@@ -102,13 +102,11 @@ class TestList:
 
 
 class TestDoctor:
-    def test_doctor_as_json_has_check_and_verdict(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
+    def test_doctor_as_json_has_check_and_verdict_of_all(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
         with pytest.raises(typer.Exit):
             command.doctor("arm", ["state=wrong"], as_json=True)
         [_, permission] = json.loads(capsys.readouterr().out)["arm"]
         assert (permission["check"], permission["verdict"]) == ("permission", "failed")
-
-    def test_doctor_without_a_name_examines_all_devices(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
         with pytest.raises(typer.Exit):
             command.doctor(as_json=True)
         results = json.loads(capsys.readouterr().out)
@@ -116,20 +114,18 @@ class TestDoctor:
 
 
 class TestSettingUp:
-    def test_calibrate_saves_by_serial_number(
+    def test_calibrate_saves_by_serial_number_what_is_answered(
         self, registry: Registry, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
     ):
-        answer(monkeypatch, " 34.5 ")
-        command.calibrate("arm", [])
         path = calibration_path("arm", "A1")
-        assert json.loads(path.read_text()) == {"offset_deg": 34.5}
-        assert capsys.readouterr().out.splitlines()[-1] == f"saved in {path}"
-
-    def test_calibrate_without_an_answer_saves_nothing(self, registry: Registry, monkeypatch: pytest.MonkeyPatch):
         answer(monkeypatch)
         with pytest.raises(ConfigError, match="nothing was saved"):
             command.calibrate("arm", [])
-        assert not calibration_path("arm", "A1").exists()
+        assert not path.exists()
+        answer(monkeypatch, " 34.5 ")
+        command.calibrate("arm", [])
+        assert json.loads(path.read_text()) == {"offset_deg": 34.5}
+        assert capsys.readouterr().out.splitlines()[-1] == f"saved in {path}"
 
 
 class TestStress:
@@ -159,3 +155,53 @@ def test_devices_command_has_the_expected_exit_code(words: list[str], code: int,
     ran = tangible(*words, cwd=Path())
     assert message in ran.stdout + ran.stderr
     assert ran.returncode == code
+
+
+class Measured(BaseModel):
+    offset_deg: tuple[float, float, float] = (35.0, 35.0, 35.0)
+    gain: float = 1.0
+
+
+def test_saved_calibration_is_loaded_again(config_dir: Path):
+    values = Measured(offset_deg=(34.5, 35.0, 35.25), gain=0.1)
+    path = save_calibration("arm", "F123", values)
+    assert path == config_dir / "devices" / "arm-F123.json"
+    assert load_calibration("arm", "F123", Measured) == values
+    assert load_calibration("arm", "F124", Measured) is None
+    assert load_calibration("leg", "F123", Measured) is None
+    assert [each.name for each in path.parent.iterdir()] == ["arm-F123.json"]
+
+
+@pytest.mark.parametrize("serial", ["", "a/b", "../../x", "ä ö", "C:\\x", "."])
+def test_every_serial_number_has_its_own_file(config_dir: Path, serial: str):
+    assert calibration_path("arm", serial).parent == config_dir / "devices"
+    assert len({calibration_path("arm", each) for each in (serial, "F123", serial + "_")}) == 3
+    save_calibration("arm", serial, Measured())
+    assert load_calibration("arm", serial, Measured) == Measured()
+
+
+@pytest.mark.parametrize(
+    ("text", "place"), [('{"gain": "x"}', "gain"), ('{"offset_deg": [1, 2]}', r"offset_deg\.2"), ("", "the file")]
+)
+def test_damaged_calibration_is_named_and_not_ignored(text: str, place: str):
+    path = save_calibration("arm", "F123", Measured())
+    path.write_text(text)
+    with pytest.raises(DeviceError, match=rf"arm-F123.json: {place}: "):
+        load_calibration("arm", "F123", Measured)
+
+
+@pytest.mark.timeout(20)
+def test_calibration_at_a_pipe_or_device_is_refused_at_once():
+    path = calibration_path("arm", "F123")
+    path.parent.mkdir(parents=True)
+    os.mkfifo(path)
+    calibration_path("arm", "F124").symlink_to("/dev/zero")
+    for serial in ("F123", "F124"):
+        with pytest.raises(DeviceError, match="cannot be read"):
+            load_calibration("arm", serial, Measured)
+
+
+def test_calibration_that_cannot_be_written_raises(config_dir: Path):
+    (config_dir / "devices").write_text("a file where the folder should be")
+    with pytest.raises(OutputError):
+        save_calibration("arm", "F123", Measured())

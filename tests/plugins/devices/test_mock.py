@@ -1,4 +1,4 @@
-"""A mock device would follow another path than its options say, or play a broken file."""
+"""A simulated device or hand would follow another path than its options say, gain energy or press too hard."""
 
 import math
 import os
@@ -6,11 +6,36 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from level_ground import positions, read
-from tangible_core.data import Force
+from tangible_core.data import Force, HapticState, HapticSurface
 from tangible_core.errors import DeviceError, OptionError
+from tangible_core.plugins.interfaces import Link, Touch
+from tangible_devices.hand import MovingHand, VirtualHand, free_motion
 from tangible_devices.mock import Mock
+from tangible_render.penalty_gradient import PenaltyGradient
+
+GROUND_M = 1 / 128  # exact in float32
+GROUND = HapticSurface.from_heights(np.full((8, 8), GROUND_M))
+
+
+def read(link: Link, count: int) -> list[HapticState]:
+    return [link.read() for _ in range(count)]
+
+
+def positions(mock: Mock, count: int) -> np.ndarray:
+    with mock.open() as link:
+        return np.array([state.position_m for state in read(link, count)])
+
+
+def feel(link: Link, touch: Touch, count: int) -> list[tuple[HapticState, Force]]:
+    felt = []
+    for _ in range(count):
+        state = link.read()
+        link.write(touch.force(state))
+        felt.append((state, link.applied))
+    return felt
 
 
 def write_csv(folder: Path, text: str | bytes) -> Path:
@@ -20,7 +45,7 @@ def write_csv(folder: Path, text: str | bytes) -> Path:
 
 
 class TestPaths:
-    def test_raster_follows_lines_at_its_speed_and_repeats(self):
+    def test_raster_follows_lines_and_circle_an_ellipse_of_their_sizes(self):
         """Two lines of 60 mm, 40 mm apart, and the way back: 200 mm at 0.1 m/s are 2000 ticks."""
         places = positions(Mock(hand=None, lines=2, size_m=(0.06, 0.04), z_m=-0.001, speed_m_per_s=0.1), 4001)
         corners = {0: (-0.03, 0.02), 600: (0.03, 0.02), 1000: (0.03, -0.02), 1600: (-0.03, -0.02), 300: (0, 0.02)}
@@ -28,14 +53,18 @@ class TestPaths:
             assert places[tick] == pytest.approx((x, y, -0.001), abs=1e-15)
         assert np.array_equal(places[:2000], places[2000:4000])
         assert np.allclose(np.linalg.norm(np.diff(places, axis=0), axis=1), 1e-4, rtol=1e-9)
-
-    def test_circle_is_an_ellipse_of_its_size(self):
         places = positions(Mock(hand=None, path="circle", size_m=(0.06, 0.02)), 2000)
         assert np.abs(np.hypot(places[:, 0] / 0.03, places[:, 1] / 0.01) - 1).max() < 1e-5
         assert tuple(places[0]) == (0.03, 0.0, -0.005)
         assert places[100, 1] > 0  # counter-clockwise
+        places = positions(Mock(hand=None, path="press", z_m=-0.01, lift_m=0.03, speed_m_per_s=0.08), 2001)
+        assert not places[:, :2].any()
+        assert places[[0, 500, 1000, 1500], 2] == pytest.approx([0.03, -0.01, 0.03, -0.01], abs=1e-15)
+        assert places[250, 2] == pytest.approx(0.01, abs=1e-15)
+        with Mock(period_s=0.002).open() as link:
+            assert [state.time_s for state in read(link, 200)] == [tick * 0.002 for tick in range(200)]
 
-    def test_spiral_fills_its_size_and_comes_back(self):
+    def test_spiral_fills_its_size_and_tremor_is_bounded(self):
         mock = Mock(hand=None, path="spiral", size_m=(0.04, 0.04), lines=4, speed_m_per_s=0.1)
         places = positions(mock, 10000)
         radius = np.hypot(places[:, 0], places[:, 1])
@@ -46,18 +75,6 @@ class TestPaths:
         assert np.array_equal(places[: lap + 1][:500], places[lap : lap + 500])
         right = places[: lap // 2][np.flatnonzero(np.diff(np.sign(places[: lap // 2, 1])) > 0)]
         assert np.allclose(np.diff(right[:, 0]), 0.02 / 4, atol=2e-4)
-
-    def test_press_goes_straight_down_and_up(self):
-        places = positions(Mock(hand=None, path="press", z_m=-0.01, lift_m=0.03, speed_m_per_s=0.08), 2001)
-        assert not places[:, :2].any()
-        assert places[[0, 500, 1000, 1500], 2] == pytest.approx([0.03, -0.01, 0.03, -0.01], abs=1e-15)
-        assert places[250, 2] == pytest.approx(0.01, abs=1e-15)
-
-    def test_time_rises_by_the_period(self):
-        with Mock(period_s=0.002).open() as link:
-            assert [state.time_s for state in read(link, 200)] == [tick * 0.002 for tick in range(200)]
-
-    def test_tremor_is_seeded_and_bounded(self):
         still, one, same, other = (
             positions(Mock(hand=None, tremor_m=tremor, seed=seed), 2000)
             for tremor, seed in ((0, 1), (1e-4, 1), (1e-4, 1), (1e-4, 2))
@@ -76,8 +93,6 @@ class TestCsv:
         x = [0, 0.001, 0.002, 0.003, 0.004, 0.004, 0.004, 0.004, 0.004, 0.004]
         y = [0, 0, 0, 0, 0, 0.002, 0.004, 0.004, 0.004, 0.004]
         assert np.allclose(places, np.column_stack([x, y, np.full(10, 0.01)]), atol=1e-12)
-
-    def test_csv_with_one_row_and_byte_order_mark_is_read(self, tmp_path: Path):
         path = write_csv(tmp_path, b"\xef\xbb\xbftime_s,x_m,y_m,z_m\r\n0,1e-3,2e-3,3e-3\r\n")
         assert np.array_equal(positions(Mock(hand=None, path="csv", csv_file=path), 3), [[0.001, 0.002, 0.003]] * 3)
 
@@ -146,3 +161,53 @@ def test_spec_is_that_of_a_falcon():
 def test_options_that_contradict_are_refused(options: dict, complaint: str):
     with pytest.raises(OptionError, match=complaint):
         Mock(**options)
+
+
+class TestHand:
+    @given(st.floats(1e-3, 100), st.floats(0, 1e4), st.floats(0.1, 1e6), st.floats(1e-5, 1))
+    def test_hand_motion_is_exact_and_never_gains_energy(self, mass: float, damping: float, k: float, period: float):
+        """The motion over T is the one over T/2 twice, and sqrt(k) x, sqrt(m) v never grow."""
+        hand = VirtualHand(mass_kg=mass, damping_n_s_per_m=damping, stiffness_n_per_m=k)
+        whole, half = np.array(free_motion(hand, period)), np.array(free_motion(hand, period / 2))
+        energy = np.diag([math.sqrt(k), math.sqrt(mass)])
+        scaled = energy @ whole @ np.linalg.inv(energy)
+        twice = energy @ half @ half @ np.linalg.inv(energy)
+        assert np.allclose(scaled, twice, atol=1e-7)
+        assert np.linalg.norm(scaled, 2) <= 1 + 1e-7
+
+    def test_hand_swings_or_rests_where_its_spring_balances_force(self):
+        hand = VirtualHand(mass_kg=0.25, damping_n_s_per_m=0, stiffness_n_per_m=100)
+        (xx, xv), (vx, vv) = free_motion(hand, 0.03)
+        angle = 20 * 0.03
+        assert (xx, xv) == pytest.approx((math.cos(angle), math.sin(angle) / 20), rel=1e-12)
+        assert (vx, vv) == pytest.approx((-20 * math.sin(angle), math.cos(angle)), rel=1e-12)
+        hand = MovingHand(VirtualHand(press_n=100), (0.0, 0.0, 0.03), 0.001)
+        for _ in range(5000):
+            hand.step((0.01, -0.01, -0.005), Force(0.3, -0.6, 0.9))
+        assert hand.position_m == pytest.approx((0.011, -0.012, -0.002), abs=1e-12)
+        assert hand.velocity_m_per_s == pytest.approx((0, 0, 0), abs=1e-12)
+
+    def test_hand_on_ground_presses_by_its_spring_with_limited_strength(self):
+        mock = Mock(path="circle", z_m=GROUND_M - 0.003, hand=VirtualHand(stiffness_n_per_m=200.0))
+        with mock.open() as link:
+            state, force = feel(link, PenaltyGradient(stiffness_n_per_m=800).touch(GROUND), 3000)[-1]
+        assert force.z == pytest.approx(200 * (state.position_m[2] - mock.z_m), rel=1e-9)
+        assert force.z == pytest.approx(0.003 * 200 * 800 / 1000, rel=1e-9)  # two springs in a row
+        with Mock(path="circle", z_m=-1.0, hand=VirtualHand(press_n=1.25)).open() as link:
+            ticks = feel(link, PenaltyGradient(stiffness_n_per_m=800).touch(GROUND), 3000)
+        state, force = ticks[-1]
+        assert force.z == pytest.approx(1.25, rel=1e-9)
+        assert state.position_m[2] == pytest.approx(GROUND_M - 1.25 / 800, rel=1e-9)
+
+    @pytest.mark.parametrize("stiffness", [200.0, 800.0, 3000.0])
+    def test_hand_on_wall_at_one_kilohertz_is_stable(self, stiffness: float):
+        """The hand's 6 N s/m are over K T / 2 = 1.5 N s/m, so a sampled wall of 3 N/mm is passive."""
+        with Mock(path="circle").open() as link:
+            ticks = feel(link, PenaltyGradient(stiffness_n_per_m=stiffness).touch(GROUND), 4000)
+        place, force = np.array([state.position_m for state, _ in ticks]), np.array([force for _, force in ticks])
+        assert np.abs(np.diff(place[-1000:, 2])).max() < 1e-12
+        assert force[:, 2].max() < 8
+        landed = int(np.flatnonzero(force[:, 2])[0])
+        kinetic = 0.05 * np.square(ticks[landed][0].velocity_m_per_s).sum()
+        given_back = np.sum(force[:-1] * np.diff(place, axis=0))
+        assert given_back < 0.25 * kinetic

@@ -57,6 +57,11 @@ def test_replay_at_end_rests_while_time_advances(tmp_path: Path):
     assert [state.time_s for state in states] == pytest.approx([5, 5.002, 5.004, 5.006, 5.008], abs=1e-12)
     assert {state.position_m for state in states[2:]} == {tuple(table[2, 2:5])}
     assert [state.velocity_m_per_s for state in states[3:]] == [(0, 0, 0)] * 2
+    with Replay().open() as link:
+        z_m = np.array([link.read().position_m[2] for _ in range(1001)])
+    assert (z_m[0], z_m[500], z_m[-1]) == pytest.approx((0.03, 0.0, 0.03), abs=1e-15)
+    assert (np.diff(z_m[:501]) < 0).all()
+    assert (np.diff(z_m[500:]) > 0).all()
 
 
 def test_replay_of_a_session_gives_the_same_forces(tmp_path: Path):
@@ -65,14 +70,6 @@ def test_replay_of_a_session_gives_the_same_forces(tmp_path: Path):
     first.save(tmp_path / "hand.npz")
     again = run_simulated(touch, Replay(file=tmp_path / "hand.npz"), 0.5)
     assert np.array_equal(again.rows, first.rows, equal_nan=True)
-
-
-def test_replay_without_file_goes_down_and_up_once():
-    with Replay().open() as link:
-        z_m = np.array([link.read().position_m[2] for _ in range(1001)])
-    assert (z_m[0], z_m[500], z_m[-1]) == pytest.approx((0.03, 0.0, 0.03), abs=1e-15)
-    assert (np.diff(z_m[:501]) < 0).all()
-    assert (np.diff(z_m[500:]) > 0).all()
 
 
 @pytest.mark.parametrize(

@@ -1,15 +1,20 @@
-"""An open Falcon would push before it is homed, keep its force at the end, or be mistaken for another one."""
+"""A Falcon's driver on a simulated one: no force may stay, and what is felt is what was sent."""
 
 from array import array
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from falcon_bus import held_bus, open_on
+from tangible_core import HapticSurface, load_method
 from tangible_core.data import NO_FORCE, Force
 from tangible_core.errors import DeviceAbsent, DeviceError
+from tangible_core.session import run_simulated
+from tangible_devices.falcon.falcon_simulated import FalconSimulated
 from tangible_devices.falcon.kernels.packet import GREEN, HOMING, RED
 from tangible_devices.falcon.link import FalconLink
+from tangible_devices.falcon.simulator.body import CENTRE_M, HOMED, REACH_M, Body
 from tangible_devices.falcon.simulator.bus import Bus
 from tangible_devices.falcon.usb.firmware import NULL
 
@@ -30,7 +35,11 @@ def record_writes(bus: Bus, monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
 
 
 class TestHoming:
-    def test_homing_shows_red_light_without_torque(self, monkeypatch: pytest.MonkeyPatch):
+    def test_homing_shows_red_light_and_times_out_without_a_hand(self, monkeypatch: pytest.MonkeyPatch):
+        bus, clock = held_bus()
+        with pytest.raises(DeviceError, match="0 of 3 arms are homed"):
+            open_on(bus, clock, home_within_s=0.2)
+        assert bus.units[0].claimed_by is None
         bus, clock = held_bus()
         sent = record_writes(bus, monkeypatch)
         open_on(bus, clock)
@@ -39,12 +48,6 @@ class TestHoming:
         infos = [packet[13] - 0x41 for packet in packets]
         assert sorted(infos, reverse=True) == infos
         assert set(infos) == {HOMING | RED, HOMING | GREEN}
-
-    def test_homing_without_a_hand_times_out(self):
-        bus, clock = held_bus()
-        with pytest.raises(DeviceError, match="0 of 3 arms are homed"):
-            open_on(bus, clock, home_within_s=0.2)
-        assert bus.units[0].claimed_by is None
 
 
 class TestForce:
@@ -131,7 +134,7 @@ class TestRate:
             assert np.diff(times).min() > 0
             assert link.health().rate_hz == pytest.approx(hertz, rel=0.02)
 
-    def test_silences_with_answers_between_are_tolerated(self):
+    def test_silence_is_an_error_unless_answers_come_between(self):
         bus, clock = held_bus()
         with open_on(bus, clock) as link:
             chip = bus.units[0].chip
@@ -145,8 +148,6 @@ class TestRate:
                 for _ in range(5):
                     link.exchange()
             assert link.read().time_s > 0
-
-    def test_silence_is_an_error_after_a_tenth_of_a_second(self):
         bus, clock = held_bus()
         with pytest.raises(DeviceError, match="no longer answers"), open_on(bus, clock) as link:
             link.write(PUSH)
@@ -173,7 +174,7 @@ class TestRate:
 
 
 class TestSeveral:
-    def test_open_selects_by_serial_and_index(self):
+    def test_open_selects_by_serial_and_index_and_refuses_others(self):
         bus, clock = held_bus(("A1", "B2"))
         first = open_on(bus, clock)
         second = open_on(bus, clock, index=1)
@@ -184,8 +185,12 @@ class TestSeveral:
         with open_on(bus, clock, serial="B2"):
             assert bus.units[1].claimed_by is not None
         first.close()
+        bus, clock = held_bus(("A1", "B2"))
+        for options in ({"serial": "C3"}, {"index": 2}):
+            with pytest.raises(DeviceError):
+                open_on(bus, clock, **options)
 
-    def test_open_twice_is_refused(self):
+    def test_open_twice_or_without_a_device_is_refused(self):
         bus, clock = held_bus()
         with open_on(bus, clock) as link:
             link.write(PUSH)
@@ -193,17 +198,9 @@ class TestSeveral:
                 open_on(bus, clock)
             link.read()
             assert link.applied == pytest.approx(PUSH)
-
-    def test_open_without_device_is_refused(self):
         bus, clock = held_bus(())
         with pytest.raises(DeviceAbsent, match="none is connected"):
             open_on(bus, clock)
-
-    def test_open_with_unknown_serial_or_index_is_refused(self):
-        bus, clock = held_bus(("A1", "B2"))
-        for options in ({"serial": "C3"}, {"index": 2}):
-            with pytest.raises(DeviceError):
-                open_on(bus, clock, **options)
 
 
 def test_kernels_work_on_the_link_s_buffers():
@@ -218,3 +215,45 @@ def test_kernels_work_on_the_link_s_buffers():
     link.exchange()
     assert link.applied == pytest.approx(PUSH)
     assert isinstance(link, FalconLink)
+
+
+FLAT = HapticSurface.from_heights(np.full((8, 8), 0.002))
+
+
+def test_simulated_falcon_feels_a_surface_and_injects_faults():
+    recording = run_simulated(load_method("render", "penalty")().touch(FLAT), FalconSimulated(path="press"), 2.0)
+    assert not recording.stopped
+    assert 1.0 < recording.force_n[:, 2].max() < 6.0
+    assert recording.position_m[:, 2].min() > -0.004, "the surface holds the hand up, whose path goes to -0.005"
+    device = FalconSimulated.model_validate({"faults": [{"at": "read", "error": "unplugged", "after": 3000}]})
+    recording = run_simulated(load_method("render", "penalty")().touch(FLAT), device, 10.0)
+    assert "was unplugged" in recording.stopped
+    with pytest.raises(DeviceError, match="TAG"):
+        FalconSimulated.model_validate({"faults": [{"at": "claim", "error": "access-denied"}]}).open()
+
+
+def test_simulated_falcon_in_real_time_follows_the_clock():
+    with FalconSimulated(real_time=True).open() as link:
+        states = [link.read() for _ in range(20)]
+    assert all(after.time_s > before.time_s for before, after in pairwise(states))
+
+
+class Holding:
+    """A hand that holds the grip out or in."""
+
+    buttons, out = 0, False
+
+    def wants(self, tip: np.ndarray, seeking: bool, homed: bool) -> np.ndarray:
+        return np.array([0.0, 0.0, CENTRE_M + (REACH_M if self.out else -REACH_M)])
+
+
+def test_arms_are_homed_by_going_out_and_in_where_the_host_asks_for_it():
+    hand = Holding()
+    body = Body(hand, np.array([0.2, 1.0, 0.1, 1000.0, 20.0]))
+    steps = [(0, True, 0), (0, False, 0), (1, False, 0), (1, True, 0), (1, False, sum(HOMED)), (0, False, 0)]
+    for number, (info, hand.out, homed) in enumerate([*steps, *steps[3:5]]):
+        body.obey((0, 0, 0), info, number)
+        body.move_until(number + 1)
+        assert body.report()[1] == homed, number
+    body.let_go()
+    assert body.report()[1] == 0

@@ -43,14 +43,10 @@ class TestDoctor:
         ]
         assert "SIM0001" in listed[2].says
         assert float(listed[-1].says.split()[0]) == pytest.approx(1000, rel=0.1)
-
-    def test_doctor_without_permission_gives_udev_rule(self):
         [finding] = failures(examine(Fault(at="open", error="access-denied", after=1, times=99)))
         assert 'ATTR{idVendor}=="0403"' in finding.cure
         assert "sudo udevadm control --reload-rules" in finding.cure
         assert "\n" not in finding.says
-
-    def test_doctor_without_firmware_and_file_fails(self):
         [finding] = failures(examine(loaded=False))
         assert "no file is given" in finding.says
         assert "nvent_firmware.bin" in finding.cure
@@ -137,8 +133,6 @@ class TestMeasuring:
         ):
             grip = Grip(moves)
             assert measuring.measure_axes(grip, grip.ask()) == axes
-
-    def test_measured_axes_of_short_or_equal_moves_are_refused(self):
         for moves, words in (
             ([(0, 0, 0), (0.003, 0, 0)], "did not move"),
             ([(0, 0, 0), (0.03, 0, 0), (0, 0, 0), (0, 0, 0.03)], "went along one axis"),
@@ -188,19 +182,15 @@ class TestKept:
             with open_on(bus, clock, index=index) as link:
                 assert np.array_equal(link._buffers.frame, calibration.frame())
                 assert np.array_equal(link._buffers.arms, calibration.arms())
-
-    def test_saved_calibration_determines_the_spec(self):
         save_calibration("falcon", "A1", Calibration(counts_per_newton_metre=20_000.0))
         assert Falcon(serial="A1").spec().max_force_n < Falcon(serial="B2").spec().max_force_n
 
-    def test_damaged_calibration_stops_opening_and_releases_device(self):
+    def test_calibration_that_is_damaged_or_of_no_device_is_refused(self):
         save_calibration("falcon", "SIM0001", Calibration()).write_text("{")
         bus, clock = held_bus()
         with pytest.raises(DeviceError, match="calibrate falcon"):
             open_on(bus, clock)
         assert bus.units[0].claimed_by is None
-
-    def test_calibrate_without_device_is_refused(self):
         bus, clock = held_bus(())
         with pytest.raises(DeviceAbsent, match="plug in"):
             calibrate(Falcon().settings(), None, input, bus, clock)

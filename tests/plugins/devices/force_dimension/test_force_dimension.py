@@ -91,20 +91,15 @@ def test_force_dimension_conforms(dhd: Library):
 
 
 class TestAxes:
-    def test_position_axes_are_those_of_the_workspace(self, dhd: Library):
+    def test_positions_and_forces_are_rotated_between_axes(self, dhd: Library):
         """10 mm towards the user, 20 mm to the right, 30 mm up."""
         dhd.velocity = [1.0, 2.0, 3.0]
         with ForceDimension().open() as link:
             state = link.read()
-        assert (state[:2], state.buttons) == (((0.02, -0.01, 0.03), (2.0, -1.0, 3.0)), 5)
-
-    def test_force_is_rotated_into_device_axes(self, dhd: Library):
-        with ForceDimension().open() as link:
+            assert (state[:2], state.buttons) == (((0.02, -0.01, 0.03), (2.0, -1.0, 3.0)), 5)
             link.write(Force(1.0, 2.0, 3.0))
             assert dhd.enabled
         assert dhd.forces == [(0, 0, 0), (-2, 1, 3), (0, 0, 0)]
-
-    def test_velocity_before_two_positions_is_zero(self, dhd: Library):
         dhd.velocity = None
         with ForceDimension().open() as link:
             assert link.read().velocity_m_per_s == (0, 0, 0)
@@ -121,19 +116,12 @@ class TestFaults:
         with pytest.raises(DeviceAbsent, match=r"pip install forcedimension-core"):
             ForceDimension().open()
 
-    def test_open_without_device_is_refused(self, dhd: Library):
-        dhd.serials.clear()
-        with pytest.raises(DeviceAbsent, match="plug it in"):
-            ForceDimension().open()
-
-    def test_open_used_by_another_program_is_refused(self, dhd: Library):
+    def test_open_without_a_free_device_is_refused(self, dhd: Library):
         dhd.busy.add(0)
         with pytest.raises(DeviceError, match="the words of the library"):
             ForceDimension().open()
         with ForceDimension(index=1).open() as link:
             link.read()
-
-    def test_open_used_by_this_program_is_refused(self, dhd: Library):
         with ForceDimension(serial=77).open() as link:
             with pytest.raises(DeviceError, match="open already"):
                 ForceDimension(serial=77).open()
@@ -141,6 +129,9 @@ class TestFaults:
         ForceDimension(serial=77).open().close()
         with pytest.raises(DeviceError, match="serial 5"):
             ForceDimension(serial=5).open()
+        dhd.serials.clear()
+        with pytest.raises(DeviceAbsent, match="plug it in"):
+            ForceDimension().open()
 
     def test_link_unplugged_is_refused(self, dhd: Library):
         link = ForceDimension().open()
@@ -170,19 +161,15 @@ class TestFaults:
 
 
 class TestService:
-    def test_connected_lists_devices(self, dhd: Library):
+    def test_connected_and_doctor_list_library_and_devices(self, dhd: Library):
         dhd.busy.add(1)
         first, second = ForceDimension().connected()
         assert first == Unit("omega.3", "1234", "index 0")
         assert (second.problem, dhd.opened) == ("the words of the library", set())
-
-    def test_doctor_lists_library_and_devices(self, dhd: Library):
         dhd.busy.add(1)
         library, first, second = ForceDimension().examine()
         assert {library.verdict, first.verdict} == {"fine"}
         assert second.verdict == "failed" and "close other programs" in second.cure
-
-    def test_doctor_without_device_has_not_asked(self, dhd: Library):
         dhd.serials.clear()
         assert [each.verdict for each in ForceDimension().examine()] == ["fine", "not asked"]
 

@@ -192,14 +192,12 @@ class TestMessages:
 
 
 class TestFaults:
-    def test_open_without_service_names_what_to_start(self):
+    def test_open_without_service_or_arm_names_what_to_do(self):
         with socket.socket() as taken:
             taken.bind(("127.0.0.1", 0))
             uri = f"ws://127.0.0.1:{taken.getsockname()[1]}"
             with pytest.raises(DeviceAbsent, match="no Haply service"):
                 Haply(uri=uri).open()
-
-    def test_open_without_arm_names_what_to_plug_in(self):
         with MockService(arms=()) as service, pytest.raises(DeviceAbsent, match="plug in"):
             Haply(uri=service.uri).open()
 
@@ -231,6 +229,14 @@ class TestFaults:
         assert link.applied == NO_FORCE
         link.close()
 
+    def test_read_from_unplugged_arm_is_refused(self, service: MockService):
+        link = Haply(uri=service.uri).open()
+        link.read()
+        service.arms.clear()
+        with pytest.raises(DeviceError, match="was unplugged"):
+            link.read()
+        link.close()
+
     def test_read_from_ended_service_is_refused(self):
         with MockService() as service:
             link = Haply(uri=service.uri).open()
@@ -245,14 +251,6 @@ class TestFaults:
         link.close()
         with MockService() as service, Haply(uri=service.uri).open() as link:
             link.read()
-
-    def test_read_from_unplugged_arm_is_refused(self, service: MockService):
-        link = Haply(uri=service.uri).open()
-        link.read()
-        service.arms.clear()
-        with pytest.raises(DeviceError, match="was unplugged"):
-            link.read()
-        link.close()
 
     @pytest.mark.usefixtures("unchecked_shapes")
     @pytest.mark.parametrize(
@@ -289,21 +287,17 @@ class TestFaults:
 
 
 class TestService:
-    def test_connected_lists_arms(self):
-        with MockService(arms=("049D", "05DA")) as service:
-            assert Haply(uri=service.uri).connected() == (
+    def test_connected_lists_arms_and_doctor_repeats_their_problem(self, service: MockService):
+        with MockService(arms=("049D", "05DA")) as two:
+            assert Haply(uri=two.uri).connected() == (
                 Unit("inverse3", "049D", "COM12"),
                 Unit("inverse3", "05DA", "COM12"),
             )
-            assert service.messages == []
-
-    def test_doctor_repeats_the_arm_s_problem(self, service: MockService):
+            assert two.messages == []
         service.status |= {"power_supply": False, "calibrated": False}
         findings = list(Haply(uri=service.uri).examine())
         assert findings[0] == Finding("service", "fine", f"answers at {service.uri}")
         assert findings[1].verdict == "failed"
         assert "plug in its power supply" in findings[1].says and "not calibrated" in findings[1].says
-
-    def test_doctor_without_service_has_not_asked(self):
         [finding] = Haply(uri="ws://127.0.0.1:9").examine()
         assert finding.verdict == "not asked"

@@ -181,15 +181,12 @@ class TestLettingGo:
         leave(client)
         assert spring.ticks(6) == [1.5, 1.0, 0.5, 0.0, 0.0, 0.0]
 
-    def test_release_gives_client_no_force(self, grip):
+    def test_release_gives_client_no_force_until_the_next_send(self, grip):
         client, spring = grip
         client.release()
         assert client.force() == NO_FORCE
         spring.ticks(1)
         assert client.force() == NO_FORCE
-
-    def test_release_then_send_starts_at_rest_with_force(self, grip):
-        client, spring = grip
         client.release()
         spring.ticks(10)
         client.send((0.1, 0.0, -0.001))
@@ -282,6 +279,15 @@ class TestNobody:
             client.send((0.1, 0.0, 0.0))
             assert run_tick(link)[1][0] == 0.1
 
+    def test_opened_device_has_no_force_and_no_old_sample(self):
+        shown = before_a_device(force_n=(0.0, 0.0, 2.0))
+        with Pointer().open() as link:
+            assert shown.take(channel.FORCE, channel.FORCE_WORDS)[1] == (0, 0, 0)
+            assert isinstance(link, CompiledLink)
+            assert run_tick(link)[0] == 0
+            assert link.read().position_m == HIGH_M
+        shown.close()
+
     def test_closed_device_shows_no_force(self, link: CompiledLink):
         link.write(Force(0.0, 0.0, 1.0))
         link.close()
@@ -290,15 +296,6 @@ class TestNobody:
         shown = Channel("pointer", "client")
         assert shown.take(channel.FORCE, channel.FORCE_WORDS)[1] == (0, 0, 0)
         assert not shown.flag(channel.DEVICE_OPEN)
-        shown.close()
-
-    def test_opened_device_has_no_force_and_no_old_sample(self):
-        shown = before_a_device(force_n=(0.0, 0.0, 2.0))
-        with Pointer().open() as link:
-            assert shown.take(channel.FORCE, channel.FORCE_WORDS)[1] == (0, 0, 0)
-            assert isinstance(link, CompiledLink)
-            assert run_tick(link)[0] == 0
-            assert link.read().position_m == HIGH_M
         shown.close()
 
     def test_device_is_open_only_after_zero_force(self):
@@ -429,11 +426,9 @@ class TestPlaces:
         with Pointer().open():
             pass
 
-    def test_client_without_device_is_refused(self):
+    def test_client_without_device_is_refused_after_its_wait(self):
         with pytest.raises(DeviceError, match="no device is open"):
             PointerClient()
-
-    def test_client_waits_for_a_device(self):
         opened: list[object] = []
         thread = Thread(target=lambda: (time.sleep(0.1), opened.append(Pointer().open())))
         thread.start()

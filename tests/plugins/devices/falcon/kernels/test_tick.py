@@ -122,14 +122,11 @@ def test_packet_ready_after_fault_holds_no_force():
         assert tuple(falcon.held[tick.APPLIED : tick.APPLIED + 3]) == (0, 0, 0)
 
 
-def test_read_gives_buttons():
+def test_buttons_are_read_and_leaps_wait_for_the_next_answer():
     falcon, counts = Falcon(), counts_at(0, 0, 0)
     falcon.settle(counts, 0.01)
     falcon.tell(counts, info=packet.HOMED | 0b0110)
     assert falcon.state[6] == 0b0110
-
-
-def test_leap_waits_for_the_next_answer():
     falcon, here, there = Falcon(), counts_at(0, 0, 0), counts_at(0.02, 0, 0)
     falcon.settle(here)
     assert [falcon.tell(each) for each in (there, here, there, there, there)] == [0, 1, 0, 1, 1]
@@ -166,7 +163,7 @@ def test_leap_confirmation_limit_grows_with_time(arm: int, sign: int, after_s: f
         assert falcon.tell(leapt, after_s=after_s) == taken
 
 
-def test_doubtful_answer_waits_though_it_is_near():
+def test_doubtful_answers_and_impossible_angles_give_no_force():
     falcon, here = Falcon(), counts_at(0, 0, 0)
     falcon.settle(here)
 
@@ -179,9 +176,6 @@ def test_doubtful_answer_waits_though_it_is_near():
 
     assert [doubtful(), doubtful(), falcon.tell(here)] == [0, 1, 1]
     assert falcon.push(0, 0, 5)[1][2] == 5, "where it goes on, no force is lost"
-
-
-def test_impossible_angles_give_no_force():
     falcon, counts = Falcon(), counts_at(0, 0, 0)
     falcon.settle(counts)
     impossible = np.array([1600, -2300, 1600])
@@ -250,8 +244,5 @@ def test_calibration_has_zero_and_gain_of_each_arm():
     rows = kinematics.jacobian(*angles, place[0], place[2], kinematics.CENTRE_M - place[1])
     torques = np.array(kinematics.torques(rows, (1.0, 1.0, -1.0)))
     assert counts == pytest.approx(-1e4 * np.multiply(gains, torques), abs=3)
-
-
-def test_calibration_with_repeated_axis_is_refused():
     with pytest.raises(ValueError, match="name an axis twice"):
         Calibration(axes=("x", "-x", "y"))

@@ -1,17 +1,21 @@
-"""A Falcon would not be found or claimed, be set up wrongly, or its user get a wrong reason for an error."""
+"""A Falcon would not be found or claimed, be set up wrongly, or be sent a wrong firmware."""
 
 import errno
+import os
 import sys
 from array import array
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from usb.core import NoBackendError, USBError
 
-from falcon_bus import held_bus
+from falcon_bus import Line, bus_of, held_bus, opener_of
 from tangible_core.errors import DeviceAbsent, DeviceError
 from tangible_devices.falcon.simulator.bus import Bus
-from tangible_devices.falcon.usb import port
+from tangible_devices.falcon.simulator.falcons import synthetic_image
+from tangible_devices.falcon.usb import firmware, port
+from tangible_devices.falcon.usb.image import read_image
 from tangible_devices.falcon.usb.port import UDEV_RULE, connected_devices, device_error, open_port, run_time
 
 LATENCY_1, BAUD, PURGES = (9, 1), (3, 0x0002), [(0, 1), (0, 2)]
@@ -34,7 +38,7 @@ def test_run_time_sets_the_chip_up_for_packets(event_character: bool, more: list
     assert asked == [LATENCY_1, *more, BAUD, *PURGES]
 
 
-def test_payload_has_no_status_bytes():
+def test_payload_has_no_status_bytes_and_whole_writes():
     bus, clock = held_bus()
     port = open_port(None, 0, bus)
     chip = bus.units[0].chip
@@ -43,9 +47,6 @@ def test_payload_has_no_status_bytes():
     assert port.payload() == bytes(range(150))
     assert port.payload() == b""
     assert clock() > 0
-
-
-def test_port_write_cut_short_is_refused():
     bus, _ = held_bus()
     port = open_port(None, 0, bus)
     bus.bulk_write = lambda *_: 7  # pyright: ignore[reportAttributeAccessIssue]
@@ -93,3 +94,79 @@ def test_libusb_of_the_package_is_used_where_the_system_has_none(shipped: bool, 
     else:
         with pytest.raises(DeviceAbsent, match="pip install libusb-package"):
             connected_devices(None)
+
+
+IMAGE = synthetic_image()
+
+
+class TestImage:
+    def test_image_complete_is_accepted(self, tmp_path: Path):
+        path = tmp_path / "firmware.bin"
+        path.write_bytes(IMAGE)
+        assert read_image(path) == IMAGE
+
+    @pytest.mark.parametrize(
+        ("image", "why"),
+        [
+            (b"", "0 bytes"),
+            (IMAGE + b"\0\0", "2 bytes follow"),
+            (b"\x7fELF" + IMAGE[4:], "0x457F"),
+            (IMAGE[:4] + b"\1" + IMAGE[5:], "reserved"),
+            (IMAGE[:22] + b"\0\0", "no block"),
+            (IMAGE[:-2], "cut off"),
+            (IMAGE[:-1], "even"),
+            (b"\0" * (1 << 20), "262144"),
+        ],
+    )
+    def test_image_fault_is_named(self, image: bytes, why: str, tmp_path: Path):
+        path = tmp_path / "some.bin"
+        path.write_bytes(image)
+        with pytest.raises(DeviceError, match=why):
+            read_image(path)
+
+    @pytest.mark.timeout(20)
+    def test_image_missing_or_from_pipe_is_refused_at_once(self, tmp_path: Path):
+        os.mkfifo(tmp_path / "pipe.bin")
+        for name in ("nothing.bin", "pipe.bin"):
+            with pytest.raises(DeviceError, match="cannot be read"):
+                read_image(tmp_path / name)
+
+
+def load(line: Line, image: bytes | None = IMAGE) -> int:
+    """Start a Falcon over this line; return the number of resets."""
+    bus = bus_of(line)
+    firmware.open_running(opener_of(bus), image).close()
+    assert bus.units[0].chip.processor.mode == "run"
+    assert bus.units[0].claimed_by is None and bus.units[0].kernel_driver
+    return line.resets
+
+
+class TestLoad:
+    def test_load_takes_one_attempt_and_is_skipped_where_firmware_runs(self):
+        assert load(Line()) == 1
+        line = Line()
+        bus = bus_of(line)
+        firmware.open_running(opener_of(bus), IMAGE).close()
+        firmware.open_running(opener_of(bus), None).close()
+        assert line.resets == 1
+
+    @pytest.mark.parametrize("at", [0, 3, 4, 5, 67, 2000, len(IMAGE) + 4])
+    @pytest.mark.parametrize("damage", ["flip", "drop", "double"])
+    def test_load_with_damaged_echo_is_repeated(self, at: int, damage: str):
+        assert load(Line(damage, at)) <= 2
+
+    @pytest.mark.parametrize("reply", [0, 1, 2, 30])
+    def test_load_with_late_echo_waits(self, reply: int):
+        assert load(Line(late_reply=reply)) == 1
+
+    @pytest.mark.parametrize("swallowed", [1, 7, 90])
+    def test_load_greets_a_deaf_boot_loader_again(self, swallowed: int):
+        assert load(Line(swallowed=swallowed)) == 1
+
+    def test_load_that_fails_gives_one_message(self):
+        with pytest.raises(DeviceError, match="10 attempts failed"):
+            load(Line("flip", 40, again=True))
+        line = Line()
+        with pytest.raises(DeviceError, match="firmware"):
+            load(line, None)
+        assert line.resets == 0

@@ -1,4 +1,4 @@
-"""A random hand on a failing device, compiled. Imports numba: `random_hand` imports it late."""
+"""A random hand on a failing device, compiled. Imports numba: `test_every_law.py` imports it late."""
 
 
 # ruff: noqa: NPY002 -- a generator would have to be handed in

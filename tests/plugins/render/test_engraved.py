@@ -60,14 +60,16 @@ class TestSection:
         assert error_m[near].mean() < 4e-6 * 400 / cells
         assert error_m[inner].max() < 17e-6 * 400 / cells
 
-    def test_circle_keeps_its_radius(self):
+    def test_circle_keeps_its_radius_and_lines_stay_by_the_labels(self):
         x, y = grid(400)
         distance_m = np.hypot(x, y) - 0.0203
         error_m = np.abs(HIGH_M - GROOVE.felt(level(distance_m < 0)).height_m - section(distance_m))
         assert error_m.max() < 5e-5 and error_m.mean() < 1e-6
-
-    def test_section_on_oblong_cells_where_borders_meet_is_the_formula(self):
-        """A cross is at its middle no deeper than anywhere on it."""
+        labels = np.random.default_rng(0).integers(0, 2, (40, 50)).astype(np.int32)
+        at, beside = borders.border_lines(labels)
+        assert len(at) == sum(np.count_nonzero(np.diff(labels, axis=axis)) for axis in (0, 1))
+        away = np.abs(at - borders._sides(labels)[0])
+        assert 0.49 < away.max() <= 0.5 and beside.min() >= 0 and beside.max() < len(at)
         x, y = grid(400)
         labels = ((x > 0) + 2 * (y > 0)).astype(np.int32)
         carved = GROOVE.felt(level(labels)).height_m
@@ -75,14 +77,6 @@ class TestSection:
         assert np.abs(HIGH_M - carved - section(away)).max() < 2e-5
         wide = HapticSurface(Relief(np.full((400, 200), HIGH_M, np.float32), (SIDE_M, SIDE_M)), labels[:, ::2])
         assert np.abs(GROOVE.felt(wide).height_m - carved[:, ::2])[5:-5, 10:-10].max() < 1e-4
-
-    def test_lines_stay_within_half_a_cell_of_the_labels(self):
-        """Labels are noise, which no smooth line follows; each cell side between two labels has its point."""
-        labels = np.random.default_rng(0).integers(0, 2, (40, 50)).astype(np.int32)
-        at, beside = borders.border_lines(labels)
-        assert len(at) == sum(np.count_nonzero(np.diff(labels, axis=axis)) for axis in (0, 1))
-        away = np.abs(at - borders._sides(labels)[0])
-        assert 0.49 < away.max() <= 0.5 and beside.min() >= 0 and beside.max() < len(at)
 
     @pytest.mark.parametrize("axis", [0, 1], ids=["rows", "columns"])
     def test_distance_on_long_cells_is_exact_in_both_directions(self, axis: int):

@@ -56,7 +56,7 @@ class TestFriction:
         along = np.linalg.norm(slid - (slid @ normal) * normal)
         assert along == pytest.approx(0.1 * (slid @ normal), rel=1e-3)
 
-    def test_materials_have_their_own_stiffness_and_friction(self):
+    def test_damping_and_friction_are_those_of_materials_along_the_normal(self):
         labels = np.zeros((64, 64), np.int32)
         labels[:, 32:] = 1
         materials = Material("ice", 1200.0, 0, 0.0, 0.0), Material("felt", 300.0, 0, 0.9, 0.7)
@@ -68,8 +68,6 @@ class TestFriction:
             assert last == pytest.approx([-friction * stiffness * 0.001, 0, stiffness * 0.001], abs=1e-3)
             off = Proxy(friction=False).touch(surface).path(path)[-1]
             assert off == pytest.approx([0, 0, stiffness * 0.001], abs=1e-6)
-
-    def test_damping_acts_along_the_normal_and_never_pulls(self):
         known = ramp((0.5, 0.0), 0.03)
         normal, along = known.normal(0, 0), np.array([1, 0, 0.5])
         renderer = Proxy(damping_n_s_per_m=4.0)

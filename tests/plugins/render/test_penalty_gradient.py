@@ -17,17 +17,15 @@ def material(name: str, stiffness_n_per_m: float) -> Material:
 
 class TestPenaltyGradient:
     @pytest.mark.parametrize("depth_m", [2**-20, 2**-10, 2**-7, 0.5])
-    def test_level_ground_is_a_spring(self, depth_m: float):
+    def test_level_ground_is_a_spring_and_a_tilted_plane_exact_in_height_and_direction(self, depth_m: float):
         touch = PenaltyGradient(stiffness_n_per_m=640.0).touch(tilted(0, 0))
         assert at(touch, 0.01, -0.02, UP_M - depth_m) == (0.0, 0.0, 640.0 * depth_m)
-
-    def test_tilted_plane_is_exact_in_height_and_direction(self):
         touch = PenaltyGradient(stiffness_n_per_m=512.0).touch(tilted(0.125, -0.0625))
         x, y, depth = 3 / 1024, -5 / 1024, 1 / 512
         z = UP_M + 0.125 * x - 0.0625 * y - depth
         assert at(touch, x, y, z) == (-0.125 * 1.0, 0.0625 * 1.0, 1.0)
 
-    def test_bilinear_patch_is_exact_in_height_and_gradient(self):
+    def test_bilinear_patch_is_exact_and_constant_to_the_edge(self):
         """h = a + b x + c y + e x y through four centres: height and gradient are those of the polynomial."""
         corners = np.array([[1, 3], [2, 7]]) / 1024  # far row first
         touch = PenaltyGradient(stiffness_n_per_m=1024.0).touch(HapticSurface.from_heights(corners, 2.0))
@@ -37,8 +35,6 @@ class TestPenaltyGradient:
         slope_x, slope_y = ((1 - v) * 2 + v * 5) / 1024, -((1 - u) * 1 + u * 4) / 1024
         depth = 1 / 256
         assert at(touch, x, y, height - depth) == (-4 * slope_x, -4 * slope_y, 4.0)
-
-    def test_heights_from_the_last_centre_to_the_edge_are_constant(self):
         surface = tilted(0.125, 0)
         touch = PenaltyGradient(stiffness_n_per_m=512.0).touch(surface)
         edge = WIDTH_M / 2
@@ -72,7 +68,7 @@ class TestPenaltyGradient:
             assert np.allclose(force, max(0.0, spring - b * speed) * normal, rtol=1e-12, atol=1e-12)
         assert at(touch, 0.0, 0.0, 0.05, (0.0, 0.0, -1.0)) == NO_FORCE
 
-    def test_materials_set_the_stiffness_of_their_cell(self):
+    def test_materials_set_the_stiffness_of_their_cell_and_labels_alone_leave_that_of_the_option(self):
         labels = np.zeros((4, 8), np.int32)
         labels[:, 4:], labels[3, :] = 1, 2
         materials = material("soft", 128.0), material("hard", 1024.0), material("middling", 256.0)
@@ -80,7 +76,5 @@ class TestPenaltyGradient:
         touch = PenaltyGradient().touch(surface)
         for x, y, stiffness in ((-1e-9, 0, 128), (1e-9, 0, 1024), (-0.03, -0.015, 256), (0.03125, -0.015625, 256)):
             assert at(touch, x, y, 0.0).z == stiffness * UP_M
-
-    def test_labels_without_materials_have_the_stiffness_of_the_option(self):
         surface = HapticSurface.from_heights(np.full((2, 2), UP_M), WIDTH_M, np.zeros((2, 2), np.int32))
         assert at(PenaltyGradient().touch(surface), 0.0, 0.0, 0.0).z == 800 * UP_M

@@ -1,15 +1,20 @@
-"""The default force law would push the wrong way or too hard: against exact nearest points."""
+"""The default force law would push the wrong way or too hard, kick a hand, or get stuck on rough ground."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from rough_surfaces import rough_surfaces
 from tangible_core.compiled.touch import CompiledTouch
-from tangible_core.data import Force, HapticState, HapticSurface, Material, Relief
+from tangible_core.data import NO_FORCE, Force, HapticState, HapticSurface, Material, Relief
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.testing.synthetic.scenes import KnownSurface, plane, ramp, sphere_cap, waves
 from tangible_render.proxy import Proxy
+from tangible_render.surface import spline
+from tangible_render.surface.coefficients import spline_surface
 
 RNG = np.random.default_rng(23)
 K = 800.0
@@ -51,14 +56,12 @@ def _newton(known: KnownSurface, p: np.ndarray, hand: np.ndarray, eps: float = 1
 
 
 class TestAccuracy:
-    def test_force_on_a_plane_is_a_spring_along_the_normal(self):
+    def test_force_on_plane_and_sphere_is_a_spring_along_the_normal(self):
         known = ramp()
         for x, y in RNG.uniform(-0.035, 0.035, (20, 2)):
             force = at(Proxy().touch(known.surface), *known.at(x, y, 0.001))
             normal = known.normal(x, y)
             assert np.allclose(force, K * 0.001 * normal[2] * normal, rtol=1e-4, atol=1e-5)
-
-    def test_force_on_a_sphere_points_from_the_centre(self):
         known = sphere_cap(shape=(256, 256))
         for x, y in RNG.uniform(-0.03, 0.03, (20, 2)):
             hand = np.add(known.at(x, y, 0.002), [0, 0, 0.08])  # from the sphere's centre
@@ -107,7 +110,7 @@ class TestAccuracy:
 
 
 class TestMaterials:
-    def test_spring_is_that_of_the_material_at_the_proxy(self):
+    def test_stiffness_is_that_of_materials_at_the_proxy_and_the_greatest(self):
         labels = np.zeros((64, 64), np.int32)
         labels[:, 32:] = 1
         hard, soft = (Material(name, k, 0.0, 50.0, 50.0) for name, k in (("hard", 1200.0), ("soft", 300.0)))
@@ -115,8 +118,6 @@ class TestMaterials:
         touch = Proxy().touch(surface)
         at(touch, -0.001, 0.0, 0.009)
         assert at(touch, 0.001, 0.0, 0.009) == pytest.approx((-1200 * 0.002, 0, 1200 * 0.001), abs=1e-5)
-
-    def test_touch_reports_the_greatest_stiffness(self):
         soft = Material("soft", 300.0, 0.0, 0.0, 0.0)
         labels = np.arange(4096, dtype=np.int32).reshape(64, 64) % 3
         for other in ({}, {"damping_n_s_per_m": 1.0}, {"roughness_m": 1e-4}):
@@ -127,3 +128,142 @@ class TestMaterials:
         plain = Proxy(stiffness_n_per_m=700.0).touch(LEVEL)
         assert isinstance(plain, CompiledTouch)
         assert plain.stiffness_n_per_m == 700.0
+
+
+GLUE = Proxy(static_friction=50.0, dynamic_friction=50.0)
+"""A friction that holds the proxy in its first place, so that the force shows that place."""
+
+
+class TestWays:
+    @pytest.mark.parametrize("slope", [(0.0, 0.0), (0.5, 0.0), (-1.5, 0.8)])
+    def test_contact_starts_within_a_64th_of_the_crossing(self, slope: tuple[float, float]):
+        """The start is on the hand's side, so that no energy is stored that was not given."""
+        known, starts = ramp(slope, 0.1), []
+        for _ in range(100):
+            x, y, dx, dy, dz = RNG.uniform(-1, 1, 5) * (0.02, 0.02, 0.0028, 0.0028, 0.0028)
+            outside = np.array(known.at(x, y, -abs(dz) - 1e-6))
+            inside = np.array(known.at(x + dx, y + dy, 0.002))
+            if np.linalg.norm(inside - outside) > 0.0049:
+                continue
+            touch = GLUE.touch(known.surface)
+            assert at(touch, *outside) == NO_FORCE
+            way = (inside - outside)[:2]
+            proxy = inside[:2] + np.array(at(touch, *inside))[:2] / K
+            assert (proxy - outside[:2]) @ (-way[1], way[0]) == pytest.approx(0, abs=1e-9)
+            over = abs(dz) + 1e-6
+            crosses, starts_at = over / (over + 0.002), way @ (proxy - outside[:2]) / (way @ way)
+            starts.append(crosses - starts_at)
+        assert min(starts) >= -1e-4 and max(starts) <= 1 / 64 + 1e-4
+        assert len(starts) > 20 and max(starts) > 1 / 128  # it is searched for in halves
+
+    def test_hand_from_the_side_is_pushed_back_to_its_own_side(self):
+        touch = Proxy().touch(LEVEL)
+        assert at(touch, 0.041, 0.002, 0.004) == NO_FORCE
+        assert at(touch, 0.039, 0.003, 0.004) == pytest.approx((K * 0.001, 0, 0), abs=1e-9)
+        assert at(touch, 0.038, 0.004, 0.007) == pytest.approx((K * 0.002, 0, 0), abs=1e-9)
+        assert at(touch, 0.038, 0.004, 0.0105) == NO_FORCE
+        assert at(touch, 0.038, 0.004, 0.0095) == pytest.approx((0, 0, K * 0.0005), abs=1e-4)
+        heights = np.zeros((256, 256))
+        heights[:, 100:116] = 0.01  # 5 mm thick
+        touch = Proxy().touch(HapticSurface.from_heights(heights))
+        x = np.linspace(-0.012, -0.005, 200)
+        force = touch.path(np.column_stack([x, np.zeros(200), np.full(200, 0.005)]))
+        assert (force[:, 0] <= 1e-9).all() and force[-1, 0] < -1.0
+
+    def test_proxy_below_a_farther_surface_is_not_released(self):
+        """At a depth of 24 mm the proxy is released beyond that distance, not beyond 20 mm."""
+        z, x = np.linspace(0.0099, -0.014, 30), np.append(np.linspace(0, 0.0238, 30), 0.0242)
+        path = np.vstack([np.column_stack([0 * z, 0 * z, z]), np.column_stack([x, 0 * x, np.full(31, -0.014)])])
+        force = GLUE.touch(LEVEL).path(path)
+        assert force[-2] == pytest.approx((-K * 0.0238, 0, K * 0.024), abs=1e-5)
+        assert force[-1] == pytest.approx((0, 0, K * 0.024), abs=1e-5)
+
+    @pytest.mark.parametrize("axis", range(3))
+    def test_hand_moving_5_mm_in_a_tick_starts_anew(self, axis: int):
+        for leap_m, held in ((0.0049, True), (0.0051, False)):
+            hand, touch = np.array((0.001, 0.001, 0.0)), GLUE.touch(LEVEL)
+            at(touch, 0.0, 0.0, 0.0)
+            assert at(touch, *hand) == pytest.approx((-K * 0.001, -K * 0.001, K * 0.01), abs=1e-5)
+            hand[axis] -= leap_m
+            x, y, z = hand if held else (0.0, 0.0, hand[2])
+            assert at(touch, *hand) == pytest.approx((-K * x, -K * y, K * (0.01 - z)), abs=1e-5)
+
+    def test_proxy_moves_two_millimetres_a_tick_at_most(self):
+        """There are eight steps of a quarter: after a hand that moved by 4.5 mm it arrives in the third tick."""
+        touch = Proxy(damping_n_s_per_m=1e-300).touch(LEVEL)
+        at(touch, 0.0, 0.0, 0.009)
+        for behind_m in (0.0025, 0.0005, 0.0):
+            assert at(touch, 0.0027, 0.0036, 0.009) == pytest.approx(
+                (-K * behind_m * 0.6, -K * behind_m * 0.8, K * 0.001), abs=1e-6
+            )
+
+    @pytest.mark.parametrize(
+        "other", [{}, {"damping_n_s_per_m": 1.0}, {"roughness_m": 1e-4}], ids=["spring", "damped", "textured"]
+    )
+    def test_force_not_finite_is_zero(self, other: dict[str, float]):
+        rock = replace(Material("rock", 1e308, 0.0, 0.0, 0.0), **other)
+        surface = HapticSurface.from_heights(np.full((8, 8), 0.01), 0.08, np.zeros((8, 8), np.int32), (rock,))
+        touch = Proxy().touch(surface)
+        assert at(touch, 0.0, 0.0, 0.009).z > 1e300
+        assert at(touch, 0.0, 0.0, -1000.0) == NO_FORCE
+        assert at(touch, 0.0, 0.0, 0.009).z > 1e300
+
+    def test_proxy_without_contact_is_absent(self):
+        for renderer in (Proxy(), Proxy(static_friction=0.5, dynamic_friction=0.5)):
+            touch = renderer.touch(LEVEL)
+            assert isinstance(touch, CompiledTouch)
+            at(touch, 0.01, 0.02, 0.009)
+            assert touch.memory[:3] == pytest.approx((0.01, 0.02, 0.01))
+            for elsewhere in ((0.01, 0.02, 0.011), (0.5, 0.02, 0.009), (np.nan, 0.02, 0.009)):
+                at(touch, *elsewhere)
+                assert np.isnan(touch.memory[2])
+                at(touch, 0.01, 0.02, 0.009)
+
+
+MAPS = rough_surfaces()
+
+
+@pytest.fixture(params=MAPS)
+def rough(request) -> HapticSurface:
+    return MAPS[request.param]
+
+
+class TestStress:
+    def test_proxy_at_rest_has_the_hand_along_its_normal(self, rough: HapticSurface):
+        coefficients, *_, across, down = spline_surface(rough, "auto")
+        for x, y in RNG.uniform(-0.03, 0.03, (60, 2)):
+            hand = np.array([x, y, spline.height(coefficients, across, down, x, y) - 0.003])
+            pull = Proxy().touch(rough).path(np.tile(hand, (200, 1)))[-1] / K
+            height, slope_x, slope_y = spline.slope(coefficients, across, down, *(hand + pull)[:2])
+            assert hand[2] + pull[2] == pytest.approx(height, abs=1e-8)
+            normal = np.array([-slope_x, -slope_y, 1]) / np.sqrt(1 + slope_x**2 + slope_y**2)
+            assert np.linalg.norm(np.cross(pull, normal)) <= 1e-6 * np.linalg.norm(pull)
+
+
+class TestShortCuts:
+    """Each short cut gives what the long way gives."""
+
+    def test_spring_alone_and_equal_materials_are_the_general_kernel(self, rough: HapticSurface):
+        """Damping without velocity has no force, which lets the general kernel run."""
+        turn = np.linspace(0, 6, 3000)
+        path = np.column_stack([0.03 * np.sin(3 * turn), 0.03 * np.cos(2 * turn), 0.002 * np.sin(9 * turn)])
+        states = [HapticState(tuple(place)) for place in path.tolist()]
+        general, spring = (Proxy(damping_n_s_per_m=b).touch(rough) for b in (1.0, 0.0))
+        assert general.tick is not spring.tick
+        assert np.allclose([general.force(s) for s in states], [spring.force(s) for s in states], rtol=0, atol=1e-9)
+        labels = np.arange(4096, dtype=np.int32).reshape(64, 64) % 3
+        alike = tuple(Material(name, 500.0, 0.0, 0.0, 0.0) for name in "abc")
+        one = Proxy(stiffness_n_per_m=500.0).touch(plane().surface)
+        three = Proxy().touch(HapticSurface.from_heights(np.full((64, 64), 0.01), 0.08, labels, alike))
+        assert three.tick is one.tick
+        assert three.force(HapticState((0.01, 0.02, 0.004))) == pytest.approx(
+            one.force(HapticState((0.01, 0.02, 0.004)))
+        )
+
+    @given(st.floats(-0.04, 0.04), st.floats(-0.04, 0.04), st.floats(-0.001, 0.011))
+    def test_hand_above_the_surface_is_in_free_air(self, x: float, y: float, z: float):
+        surface = MAPS["spikes"]
+        coefficients, _, _, across, down = spline_surface(surface, "auto")
+        assert (Proxy().touch(surface).force(HapticState((x, y, z))) == NO_FORCE) == (
+            z >= spline.height(coefficients, across, down, x, y)
+        )

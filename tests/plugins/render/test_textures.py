@@ -73,12 +73,10 @@ class TestHeights:
         expected = below - np.column_stack([tx * below[:, 2], ty * below[:, 2], 0 * t])
         assert np.allclose(Proxy().touch(in_stripes(MAPS[name], GRAINY)).path(path), expected, rtol=0, atol=1e-6)
 
-    def test_hand_too_fast_for_a_texture_gets_none(self):
+    def test_texture_is_whole_at_the_first_tick_and_none_at_great_speed(self):
         path = np.column_stack([np.arange(40) * 5e-4, np.zeros(40), np.full(40, 0.009)])
         lines = replace(GRAINY, anisotropy=1.0, direction_deg=90.0)
         assert np.allclose(Proxy().touch(level(lines)).path(path)[1:], [0, 0, K * 0.001], atol=1e-6)
-
-    def test_first_tick_anywhere_has_the_whole_texture(self):
         low = in_stripes(HapticSurface.from_heights(np.full((64, 64), 0.001)), GRAINY)
         touch, state = Proxy().touch(low), HapticState((0.0012, 0.0016, 0.0005))
         assert touch.force(state) == touch.force(state) != NO_FORCE

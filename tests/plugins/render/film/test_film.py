@@ -51,15 +51,12 @@ def slots_of(film: Film):
 class TestBounds:
     """The bounds by which a tick skips reading the surface hold for all of a slot's way."""
 
-    def test_sinking_surface_pushes_until_it_is_below_the_hand(self):
-        film = start(first=level(0.008))
-        film.show(level(0.005), 1)
-        up_n = hold(film, TICKS, z=0.0065)[:, 2]
-        there_m = 0.008 - 0.003 * np.arange(1, TICKS + 1) / TICKS
-        assert up_n == pytest.approx(800 * np.maximum(there_m - 0.0065, 0), abs=1e-3)
-
-    def test_texture_lies_on_the_moving_surface(self):
-        """A fine texture is felt on top of a frame that has arrived, as it is on a surface that does not move."""
+    def test_surface_that_moves_pushes_at_its_height_with_its_texture(self):
+        for first_m, then_m, hand_m in ((0.008, 0.005, 0.0065), (0.005, 0.008, 0.0045)):
+            film = start(first=level(first_m))
+            film.show(level(then_m), 1)
+            there_m = first_m + (then_m - first_m) * np.arange(1, TICKS + 1) / TICKS
+            assert hold(film, TICKS, z=hand_m)[:, 2] == pytest.approx(800 * np.maximum(there_m - hand_m, 0), abs=1e-3)
         ice = Material("ice", 800.0, 0.0, 0.0, 0.0, roughness_m=3e-4, grain_m=1e-3)
         labels = np.zeros(level(0.008).height_m.shape, np.int32)
         path = np.column_stack([np.linspace(0, 0.003, 300), np.full(300, 0.002), np.full(300, 0.0075)])
@@ -70,15 +67,9 @@ class TestBounds:
         assert np.ptp(still[:, 2]) > 0.05
         assert film.touch.path(path)[1:] == pytest.approx(still[1:], abs=1e-3)
 
-    def test_rising_level_surface_pushes_at_its_height(self):
-        film = start(first=level(0.005))
-        film.show(level(0.008), 1)
-        up_n = hold(film, TICKS, z=0.0045)[:, 2]
-        assert up_n == pytest.approx(800 * (0.0005 + 0.003 * np.arange(1, TICKS + 1) / TICKS), abs=1e-3)
-
 
 class TestSlots:
-    def test_slot_begins_to_the_bit_at_the_end_of_the_last(self):
+    def test_latest_frame_wins_and_slots_begin_where_the_last_ended(self):
         film, random = start(), np.random.default_rng(0)
         for frame in range(40):
             before, _ = playing.slots(slots_of(film).shared)
@@ -89,8 +80,6 @@ class TestSlots:
             assert np.array_equal(slots_of(film).pairs[after, ..., 0], ends)
             assert np.array_equal(slots_of(film).pairs[before, ..., 1], ends)
             hold(film, int(random.integers(1, 60)))
-
-    def test_latest_frame_wins_and_dropped_ones_are_counted(self):
         film = start()
         for frame in range(1, 6):
             film.show(relief(frame), frame)
@@ -100,9 +89,6 @@ class TestSlots:
         film.show(relief(7), 7)
         film.show(relief(7), 7)  # the same once more is none that was dropped
         assert film.dropped == 4
-
-    def test_slot_beginning_elsewhere_is_not_published(self):
-        """The tick has moved on since the host looked: the surface would jump, or never get there."""
         shared = np.array([playing.state(0, 1), 5], np.int64)
         assert not playing.publish(shared, 1, 1, 2)
         assert playing.slots(shared) == (0, 1)
@@ -172,7 +158,7 @@ class TestForces:
         assert np.linalg.norm(np.diff(force, axis=0), axis=1).max() <= STEP_N
         assert not force[-1].any()
 
-    def test_rise_without_contact_is_zero(self):
+    def test_films_gain_no_energy_and_rise_without_contact_is_zero(self):
         film = start()
         film.show(level(0.012), 1)
         hold(film, 3, z=0.03)
@@ -181,9 +167,6 @@ class TestForces:
         assert moving(film)[RISE_M] == 0.0
         hold(film, 1)
         assert moving(film)[RISE_M] > 0.0
-
-    def test_random_films_under_random_hands_gain_no_energy(self):
-        """This is short; `python -m benchmarks video` does ten million ticks."""
         worst = stress(100_000)
         assert worst.ticks == 100_000 and worst.touched > 25_000 and worst.moved_j > 1
         assert worst.not_finite == 0

@@ -92,15 +92,13 @@ class TestWaves:
         assert np.array_equal(np.floor((across_deg / 45 + 0.5) * count), np.arange(count))
         assert made.amplitude_m == pytest.approx(ROUGH_M / np.sqrt(count))
 
-    def test_weave_has_less_power_across_its_direction(self):
+    def test_weaves_and_irregular_lines_have_their_powers(self):
         made = waves(replace(PLAIN, texture="periodic", anisotropy=0.6, direction_deg=30.0))
         ahead, across = np.argsort(made.amplitude_m)
         assert made.amplitude_m[ahead] / made.amplitude_m[across] == pytest.approx(0.4)
         ways = np.rad2deg(np.arctan2(made.fy, made.fx)) % 180
         assert ways[[across, ahead]] == pytest.approx([120, 30])
         assert np.hypot(made.fx, made.fy) == pytest.approx(1 / GRAIN_M)
-
-    def test_irregular_lines_stray_by_a_tenth_of_an_octave_and_six_degrees(self):
         made = waves(replace(PLAIN, texture="periodic", anisotropy=1.0, direction_deg=30.0, irregularity=0.4))
         share = made.amplitude_m**2 / ROUGH_M**2
         assert share == pytest.approx([0.6, *[0.4 / 7] * 7])
@@ -158,12 +156,10 @@ class TestHeights:
 
 
 class TestSampling:
-    def test_wave_is_whole_gone_or_between(self):
+    def test_wave_is_whole_gone_or_between_and_a_slow_hand_gets_the_whole_texture(self):
         assert [remaining(turns) for turns in (0.0, WHOLE, GONE, 0.5, 1e300)] == [1, 1, 0, 0, 0]
         assert (WHOLE, GONE) == (1 / 5, 1 / 3)
         assert remaining(0.25) == pytest.approx(1 - 3 * 0.375**2 + 2 * 0.375**3)
-
-    def test_slow_hand_gets_the_whole_texture(self):
         x = np.linspace(0, 0.02, 100)
         slow = 0.99 * WHOLE * GRAIN_M / np.sqrt(2) / TICK_S  # the shortest wave is half an octave below the grain
         assert np.array_equal(heights(PLAIN, x, 0 * x, slow), heights(PLAIN, x, 0 * x))
@@ -171,28 +167,23 @@ class TestSampling:
 
 class TestDrag:
     @given(points, st.tuples(*[st.floats(-1, 1)] * 2), st.floats(1e-3, 10))
-    def test_drag_opposes_the_velocity_only(self, at: tuple, velocity: tuple, normal_n: float):
+    def test_drag_opposes_the_velocity_only_and_is_zero_without_contact(
+        self, at: tuple, velocity: tuple, normal_n: float
+    ):
         table = compile_textures([library()["water"]])
         found = texture_force(table, 0, np.zeros(STATE), *at, *velocity, normal_n)
         assert found == pytest.approx(-library()["water"].drag_n_s_per_m * np.array(velocity))
-
-    def test_drag_is_zero_without_contact(self):
-        table = compile_textures([library()["water"]])
         assert texture_force(table, 0, np.zeros(STATE), 0.0, 0.0, 1.0, 1.0, 0.0) == (0.0, 0.0)
 
 
 class TestStickSlip:
-    def test_sliding_starts_at_the_static_friction(self):
+    def test_friction_is_a_spring_until_it_slips_at_the_static_friction_to_the_dynamic_one_on_average(self):
         for normal_n in (0.5, 1.0, 3.0):
             pull_n = -forces(RUBBER, line(0.01, 1e-6), normal_n)[:, 0]
             assert pull_n.max() == pytest.approx(RUBBER.static_friction * normal_n, rel=2e-3)
-
-    def test_mean_force_is_the_dynamic_friction(self):
         sliding_n = -forces(RUBBER, line(0.0412, 2e-5))[600:, 0]  # forty grains
         assert sliding_n.mean() == pytest.approx(RUBBER.dynamic_friction, rel=0.005)
         assert sliding_n.min() == pytest.approx(2 * RUBBER.dynamic_friction - RUBBER.static_friction, rel=0.01)
-
-    def test_friction_is_a_spring_until_it_slips(self):
         way_m = np.append(np.linspace(0, 5e-4, 50), np.linspace(5e-4, 0, 50))
         found = forces(RUBBER, way_m[:, None] * (0.6, -0.8))
         rise = RUBBER.stiffness_n_per_m * RUBBER.static_friction / RUBBER.dynamic_friction
@@ -307,7 +298,7 @@ class TestSpectrum:
 
 
 class TestStroke:
-    def test_stroke_takes_any_direction_and_rate(self):
+    def test_strokes_take_any_direction_and_equal_ticks(self):
         """Stroke lines along x away from the user at 2 kHz: a wave of 1 mm at 100 mm/s spans 20 ticks."""
         lines, speed_m_per_s = replace(PLAIN, texture="periodic", anisotropy=1.0), 0.1
         felt = stroke(lines, speed_m_per_s, 2.0, 0.005, 0.0005, 90.0)
@@ -318,11 +309,7 @@ class TestStroke:
             -2 * lines.dynamic_friction + 2 * ROUGH_M * turn * np.sin(turn * felt.way_m[1:]), abs=1e-6
         )
         assert not np.any(stroke(lines, speed_m_per_s, 2.0, 0.005, 0.0005, 0.0).height_m - ROUGH_M)
-
-    def test_stroke_does_not_add_friction_twice(self):
         assert stroke(RUBBER, 0.02).force_n.min() == pytest.approx(-RUBBER.static_friction, rel=0.02)
-
-    def test_along_equals_tick_by_tick(self):
         table = compile_textures([library()["skin"]])
         path_m = np.cumsum(np.random.default_rng(0).normal(0, 1e-4, (50, 2)), axis=0)
         felt, state = np.empty((50, 5)), np.zeros(STATE)

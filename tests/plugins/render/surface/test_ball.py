@@ -1,4 +1,4 @@
-"""A thick fingertip would sink into a groove it does not fit in: a ball against formulas of where it lies."""
+"""A fingertip would sink into a groove it does not fit in, or not be pushed in a tile."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,9 @@ import pytest
 from tangible_core.data import HapticState, HapticSurface, Relief
 from tangible_core.errors import ConfigError
 from tangible_render.proxy import Proxy
-from tangible_render.surface.coefficients import roll_ball
+from tangible_render.surface import spline
+from tangible_render.surface.bilinear import cell
+from tangible_render.surface.coefficients import roll_ball, spline_surface, tile_bounds
 
 WIDE_M = 0.04
 CELLS = 300
@@ -22,11 +24,6 @@ def sheet(height_m: np.ndarray) -> np.ndarray:
     return np.broadcast_to(height_m, (CELLS, CELLS)).astype(np.float32)
 
 
-def test_ball_without_a_radius_is_a_point():
-    heights = np.random.default_rng(1).random((7, 9)).astype(np.float32)
-    assert roll_ball(heights, (0.07, 0.09), 0.0).tolist() == heights.tolist()
-
-
 @pytest.mark.parametrize("length_m", [WIDE_M, 0.5 * WIDE_M])
 @pytest.mark.parametrize("radius_m", RADII_M)
 def test_ball_on_waves_lies_where_the_formula_says(radius_m: float, length_m: float):
@@ -40,6 +37,7 @@ def test_ball_on_waves_lies_where_the_formula_says(radius_m: float, length_m: fl
     error = np.abs(rolled[150, inside] - exact).max()
     assert error < CELL_M**2 * (1.64 / radius_m + 5 * height_m * waves**2) / 32 + 1e-7
     assert np.abs(rolled - rolled[0]).max() < 1e-7
+    assert np.array_equal(roll_ball(sheet(AT_M), EXTENT_M, 0.0), sheet(AT_M)), "without a radius it is a point"
 
 
 def test_groove_narrower_than_the_ball_is_bridged():
@@ -68,9 +66,44 @@ def test_force_of_a_ball_on_a_sphere_is_that_of_the_larger_sphere(radius_m: floa
         touch.force(HapticState((float(lowest[0]), float(lowest[1]), 0.02), (0.0, 0.0, 0.0)))
         for _ in range(3):
             force = touch.force(state)
-        assert np.array(force) == pytest.approx(k * 0.001 * axis, abs=0.01)
-
-
-def test_film_is_felt_with_a_point():
+            assert np.array(force) == pytest.approx(k * 0.001 * axis, abs=0.01)
     with pytest.raises(ConfigError, match="leave out `radius_m`"):
-        Proxy(radius_m=0.001).film(HapticSurface(Relief(np.zeros((8, 8), np.float32), EXTENT_M)))
+        Proxy(radius_m=radius_m).film(HapticSurface.from_heights(cap))
+
+
+RNG = np.random.default_rng(2)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 40), (16, 16), (17, 33), (50, 70), (2, 4200)])
+def test_places_lie_between_the_bounds_of_their_tile(shape: tuple[int, int]):
+    surface = HapticSurface(Relief(RNG.uniform(0, 0.01, shape).astype(np.float32), (0.08, 0.05)))
+    coefficients, width, length, across, down = spline_surface(surface, "never")
+    bounds = tile_bounds(coefficients)
+    rows, columns, _ = bounds.shape
+    assert (rows, columns) == (-(-shape[0] // 16), min(256, -(-shape[1] // 16)))
+    edges = [
+        (c * width / columns - width / 2, r * length / rows - length / 2)
+        for c in range(columns + 1)
+        for r in range(rows + 1)
+    ]
+    for x, y in (*(RNG.uniform(-0.5, 0.5, (300, 2)) * [width, length]), *edges):
+        row, column = cell(rows, columns, width, length, x, y)
+        highest, lowest = bounds[row, column]
+        assert lowest - 1e-15 <= spline.height(coefficients, across, down, x, y) <= highest + 1e-15
+
+
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize("count", [40, 48])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_coefficient_counts_in_every_tile_it_reaches(count: int, turned: bool, sign: int):
+    """A coefficient that is not 0 raises or lowers the surface wherever it has a weight."""
+    for line in range(count + 4):
+        lines = np.zeros((count + 4, 5), np.float32)
+        lines[line] = sign
+        coefficients = np.ascontiguousarray(lines.T if turned else lines)
+        bounds = tile_bounds(coefficients)
+        for place in np.linspace(-0.5, 0.5, 12 * count + 1).tolist():
+            at = (place, 0.0) if turned else (0.0, place)
+            across, down = (count, 1) if turned else (1, count)
+            highest, lowest = bounds[cell(*bounds.shape[:2], 1.0, 1.0, *at)]
+            assert lowest <= spline.height(coefficients, float(across), float(down), *at) <= highest

@@ -59,7 +59,7 @@ def found(file: StudyFile, participants: int, model: str = "detection", *sets: s
     return rows, " ".join(analysis.sentences[result.comparison])
 
 
-def test_answers_that_do_not_count_are_left_out_and_counted(tmp_path: Path):
+def test_answers_that_count_are_few_or_odd_ones(tmp_path: Path):
     file = study_of(tmp_path, "odd")
     out = tmp_path / "out"
     write_folder(out, file, make_observer("detection", ["difference=3"], file), 1, 0)
@@ -78,17 +78,6 @@ def test_answers_that_do_not_count_are_left_out_and_counted(tmp_path: Path):
     [row] = analysis.results[0].of_all("proportion correct")
     assert row.trials == 20
     assert row.count == sum(answer.correct for answer in answers if answer.trial >= 13)
-
-
-def test_folder_without_a_study_is_refused(tmp_path: Path):
-    with pytest.raises(ResultsError, match="is not the folder of a study"):
-        analyse(tmp_path)
-    study_of(tmp_path, "odd")
-    with pytest.raises(ResultsError, match="no answer that counts yet"):
-        analyse(tmp_path)
-
-
-def test_odd_one_is_found_and_one_participant_is_said_to_be_few(tmp_path: Path):
     file = study_of(tmp_path, "odd")
     rows, text = found(file, 1, "detection", "difference=3", "spread=0")
     share, dprime = rows[What("proportion correct", "one", "two"), "S01"], rows[What("d'", "one", "two"), "S01"]
@@ -100,6 +89,19 @@ def test_odd_one_is_found_and_one_participant_is_said_to_be_few(tmp_path: Path):
     assert "says little about other people" in text
     _, text = found(file, 4, "detection", "difference=0")
     assert text.startswith("It is open whether one and two can be told apart")
+
+
+def test_folders_without_a_study_or_of_another_analysis_are_refused(tmp_path: Path):
+    with pytest.raises(ResultsError, match="is not the folder of a study"):
+        analyse(tmp_path)
+    study_of(tmp_path, "odd")
+    with pytest.raises(ResultsError, match="no answer that counts yet"):
+        analyse(tmp_path)
+    file, out = study_of(tmp_path, "odd"), tmp_path / "analysis"
+    analysis = analyse_answers(count_answers(file, [simulate(file, make_observer("detection", [], file), 0, 1)]))
+    with sole_writer(out / "results.tsv"), pytest.raises(OutputError, match="another program is writing the same"):
+        write_results(out, analysis)
+    assert list(out.iterdir()) == []
 
 
 def test_files_have_every_figure_and_plots_have_a_description(tmp_path: Path):
@@ -119,14 +121,6 @@ def test_files_have_every_figure_and_plots_have_a_description(tmp_path: Path):
     described = drawn.findtext("{http://www.w3.org/2000/svg}desc")
     assert described is not None
     assert "feels equal to the standard" in described
-
-
-def test_results_of_another_analysis_are_not_written_meanwhile(tmp_path: Path):
-    file, out = study_of(tmp_path, "odd"), tmp_path / "analysis"
-    analysis = analyse_answers(count_answers(file, [simulate(file, make_observer("detection", [], file), 0, 1)]))
-    with sole_writer(out / "results.tsv"), pytest.raises(OutputError, match="another program is writing the same"):
-        write_results(out, analysis)
-    assert list(out.iterdir()) == []
 
 
 def test_second_study_is_refused_by_a_folder_that_the_first_is_preparing(

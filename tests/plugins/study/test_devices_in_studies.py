@@ -118,7 +118,7 @@ def test_procedure_of_another_package_runs_a_study(tmp_path: Path, monkeypatch: 
     sys.modules.pop("acme_staircase", None)
 
 
-def test_command_checks_and_names_a_level_that_the_device_cannot_render(tmp_path: Path):
+def test_levels_and_surfaces_that_cannot_be_rendered_are_named(tmp_path: Path):
     study = write_study(tmp_path, RATING.replace("200", "90000"))
     done = tangible("study", "check", "study.yaml", cwd=tmp_path)
     assert (done.returncode, done.stderr.count("study.yaml:4:25: mock cannot render this: ")) == (2, 1)
@@ -126,9 +126,6 @@ def test_command_checks_and_names_a_level_that_the_device_cannot_render(tmp_path
     done = tangible("study", "check", "study.yaml", cwd=tmp_path)
     assert (done.returncode, done.stdout.split(".")[0]) == (0, "study")
     assert "A participant has 2 trials, with 2 surfaces on the device mock." in " ".join(done.stdout.split())
-
-
-def test_surfaces_that_cannot_be_made_are_not_counted_as_ready(tmp_path: Path):
     study = write_study(tmp_path, RATING)
     np.save(tmp_path / "hollow.npy", np.full((20, 20), np.nan))
     text = RATING.replace("{plain: {}, mellow:", "{hollow: {set: {scene.height: hollow.npy}}, mellow:")

@@ -1,6 +1,5 @@
-"""A new kind of question is a file and its name in a table; nobody else tells kinds apart by their names."""
+"""A new kind of question is a file and its name in a table."""
 
-import ast
 import os
 import subprocess
 import sys
@@ -102,30 +101,6 @@ def test_new_kind_of_question_is_asked_analysed_and_simulated_with_two_files_tou
     assert sentence.startswith("plain was liked in 50 % of 4 trials")
     assert simulated.startswith("plain was liked in 100 % of 8 trials") and simulated.endswith(" 4")
     assert about == "which interval is liked more"
-
-
-def test_nobody_but_a_question_compares_its_name():
-    """Responses and arguments may be equal to a name; a comparison or a case with one is a switch over kinds."""
-    switches = [
-        f"{path.relative_to(STUDY)}:{node.lineno}"
-        for path in STUDY.rglob("*.py")
-        if "kinds" not in path.parts
-        for node in ast.walk(ast.parse(path.read_text("utf-8")))
-        if isinstance(node, ast.Compare | ast.MatchValue | ast.Dict)
-        and any(isinstance(each, ast.Constant) and each.value in QUESTIONS for each in _compared(node))
-    ]
-    assert switches == []
-
-
-def _compared(node: ast.Compare | ast.MatchValue | ast.Dict) -> list[ast.expr | None]:
-    """Return what is compared: both sides, the members of a tuple too; or the keys of a table of more than one."""
-    if isinstance(node, ast.MatchValue):
-        return [node.value]
-    if isinstance(node, ast.Dict):
-        known = [key for key in node.keys if isinstance(key, ast.Constant) and key.value in QUESTIONS]
-        return list(known) if len(known) > 1 else []
-    sides = [node.left, *node.comparators]
-    return [elt for side in sides for elt in (side.elts if isinstance(side, ast.Tuple | ast.List) else [side])]
 
 
 def test_each_kind_has_a_line_in_the_table_of_the_page():

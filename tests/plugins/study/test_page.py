@@ -1,6 +1,7 @@
-"""The page as a desk: what it serves, tells and answers, as a browser asks."""
+"""The page as a desk: what it serves, tells and answers, and the surface as it gets it."""
 
 import re
+from base64 import b64decode
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
@@ -13,11 +14,13 @@ import pytest
 
 from participants import Participant
 from studies import write_study
+from tangible_core import HapticSurface
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import DeviceError
+from tangible_core.materials.assignment import library
 from tangible_core.translation import translate
 from tangible_study.desks.desk import ParticipantLeft
-from tangible_study.desks.page import Page, hand_changes, new_hand
+from tangible_study.desks.page import MAX_CELLS, Page, hand_changes, new_hand, surface_for_page
 from tangible_study.presenting.presenter import HeldLoop
 from tangible_study.presenting.stimuli import Stimuli
 from tangible_study.session.running import begin
@@ -70,7 +73,22 @@ def test_stop_ends_the_force_of_the_interval_and_leave_the_study():
             asked.result()
 
 
-def test_page_asks_nobody_else_and_nobody_else_finds_it():
+def test_answers_are_asked_of_one_page_and_told_to_later_tabs():
+    with Page("en", str) as page, ThreadPoolExecutor(1) as background, Participant(page) as tab:
+        for number in (1, 2):
+            asked = background.submit(page.ask, "Which?", {"1": ""})
+            question = tab.hear()
+            assert question["line"] == number
+            assert number == 1 or not tab.answer({"line": 1}, "1")
+            assert tab.answer(question, "1")
+            assert asked.result() == "1"
+    with Page("en", str) as page:
+        page.say("First.")
+        with Participant(page) as tab:
+            page.say("Then.")
+            told = [tab.hear() for _ in range(2)]
+            assert [each["text"] for each in told] == ["First.", "Then."]
+            assert "number" not in told[0] | told[1], "the page takes an event with a number for an answer"
     with Page("en", str) as page:
         with urlopen(page.address) as answer:
             html, policy = answer.read().decode(), answer.headers["Content-Security-Policy"]
@@ -81,27 +99,6 @@ def test_page_asks_nobody_else_and_nobody_else_finds_it():
         for path in ("", "live", "study.js", "x/live", "../"):
             with pytest.raises(HTTPError, match="404"):
                 urlopen(page.address.rpartition("/")[0].rpartition("/")[0] + "/" + path)
-
-
-def test_answer_to_an_earlier_question_is_not_taken():
-    with Page("en", str) as page, ThreadPoolExecutor(1) as background, Participant(page) as tab:
-        for number in (1, 2):
-            asked = background.submit(page.ask, "Which?", {"1": ""})
-            question = tab.hear()
-            assert question["line"] == number
-            assert number == 1 or not tab.answer({"line": 1}, "1")
-            assert tab.answer(question, "1")
-            assert asked.result() == "1"
-
-
-def test_tab_that_is_opened_later_is_told_all_that_was_said():
-    with Page("en", str) as page:
-        page.say("First.")
-        with Participant(page) as tab:
-            page.say("Then.")
-            told = [tab.hear() for _ in range(2)]
-            assert [each["text"] for each in told] == ["First.", "Then."]
-            assert "number" not in told[0] | told[1], "the page takes an event with a number for an answer"
 
 
 @pytest.mark.usefixtures("loop_in_thread")
@@ -178,3 +175,32 @@ def press_until_felt(tab: Participant, rows: list[np.ndarray]) -> None:
 def newest_n(rows: list[np.ndarray]) -> float:
     """The greatest component of the force of the last tick, newtons; 0 before the first one."""
     return float(np.abs(rows[-1][-1, FORCE]).max()) if rows else 0.0
+
+
+def test_surface_is_packed_small_without_what_would_name_it():
+    heights = np.float32(np.arange(12).reshape(3, 4) / 1000)
+    labels = np.int32([[0, 0, 1, 1]] * 3)
+    made_of = tuple(library()[each] for each in ("wood", "sand"))
+    sent = surface_for_page(HapticSurface.from_heights(heights, 0.08, labels, made_of), 7)
+    meta = sent["meta"]
+    assert np.array_equal(np.frombuffer(b64decode(sent["heights"]), "<f4").reshape(3, 4), heights)
+    assert np.frombuffer(b64decode(sent["labels"]), "<u2").tolist() == labels.ravel().tolist()
+    assert (sent["kinds"], [each["name"] for each in meta.pop("materials")]) == ([0, 1], ["", ""])
+    assert meta == {
+        "digest": "7", "name": "", "shows": "surface", "rows": 3, "columns": 4, "extent_m": pytest.approx([0.08, 0.06]),
+        "height_m": pytest.approx([0.0, 0.011]), "levels": [{"step": 1, "rows": 3, "columns": 4}], "labels": 2,
+        "label_bytes": 2, "parts": None, "photo": False, "fine_photo": None, "layers": {},
+    }  # fmt: skip
+    bare = surface_for_page(HapticSurface.from_heights(heights, 0.08), 8)
+    assert (bare["labels"], bare["kinds"], bare["meta"]["labels"], bare["meta"]["materials"]) == ("", [], 0, [])
+    labels = (np.indices((900, 1200))[1] >= 700).astype(np.int32)
+    made_of = tuple(library()[each] for each in ("wood", "sand"))
+    surface = HapticSurface.from_heights(np.float32(labels * 0.001), 0.12, labels, made_of)
+    sent = surface_for_page(surface, 1)
+    rows, columns = sent["meta"]["rows"], sent["meta"]["columns"]
+    assert 0.8 * MAX_CELLS < rows * columns <= MAX_CELLS and columns / rows == pytest.approx(4 / 3, rel=0.01)
+    at = np.frombuffer(b64decode(sent["labels"]), "<u2").reshape(rows, columns)
+    middle = ((np.arange(columns) + 0.5) * 1200 / columns).astype(int)
+    assert np.array_equal(at[0], middle >= 700)
+    assert np.frombuffer(b64decode(sent["heights"]), "<f4").size == rows * columns
+    assert sent["meta"]["extent_m"] == pytest.approx([0.12, 0.09])

@@ -53,24 +53,18 @@ def run(file: StudyFile, participant: int = 0, seed: int = 1, most: int = 1000) 
     return done
 
 
-def test_each_position_and_each_odd_one_come_equally_often(file: StudyFile):
+def test_adjustments_and_positions_come_in_turn_and_equally_often(file: StudyFile):
     tests = [trial for trial, _ in run(file) if trial.comparison == "odd" and trial.phase == "test"]
     assert set(Counter((test.position, test.intervals[test.position - 1].condition) for test in tests).values()) == {2}
     assert all(Counter(test.intervals).most_common()[0][1] == 2 for test in tests)
     levels = [trial for trial, _ in run(file) if trial.comparison == "levels"]
     assert set(Counter((level.level, level.position) for level in levels).values()) == {2}
-
-
-def test_same_and_different_pairs_come_equally_often(file: StudyFile):
     tests = [trial for trial, _ in run(file) if trial.comparison == "differ" and trial.phase == "test"]
     pairs = Counter((*(interval.condition for interval in trial.intervals), trial.target) for trial in tests)
     assert pairs == {
         ("one", "two", "different"): 2, ("two", "one", "different"): 2,
         ("one", "one", "same"): 2, ("two", "two", "same"): 2,
     }  # fmt: skip
-
-
-def test_adjustments_begin_at_the_least_and_the_greatest_level_in_turn(file: StudyFile):
     begins: dict[str, set[tuple[float, ...]]] = {"one": set(), "two": set()}
     for seed in range(6):
         course = Adjustment().course(file.study.comparison("equal"), np.random.default_rng(seed))
@@ -97,14 +91,10 @@ def test_replayed_answers_lead_to_the_same_next_trial(file: StudyFile, done: int
     assert course.next() == (whole[done][0] if done < len(whole) else None)
 
 
-def test_answers_to_other_trials_are_refused(file: StudyFile):
+def test_quest_goes_where_the_threshold_is_and_takes_no_other_answers(file: StudyFile):
     answers = [answer for _, answer in run(file)]
     with pytest.raises(ResultsError, match="trial 2: is an answer to another trial"):
         replay(StudyCourse(file, 0), [answers[0], answers[-1].__class__(**{**vars(answers[1]), "position": 99})])
-
-
-def test_quest_goes_where_the_threshold_is(file: StudyFile):
-    """By an observer for whom 0.0025 is equal to the standard: most levels of its trials are next to it."""
     course, levels = StudyCourse(file, 0), []
     while (trial := course.next()) is not None:
         response = trial.choices[0]
@@ -117,7 +107,7 @@ def test_quest_goes_where_the_threshold_is(file: StudyFile):
     assert late[0.002] + late[0.0025] > len(levels[8:]) / 2
 
 
-def test_each_place_and_each_neighbour_come_equally_often():
+def test_places_come_equally_often_or_in_the_order_of_the_file(tmp_path: Path):
     for count in (2, 3, 4, 5, 6):
         rows = [latin_square(count, row) for row in range(count * (1 + count % 2))]
         turns = len(rows) // count
@@ -125,9 +115,6 @@ def test_each_place_and_each_neighbour_come_equally_often():
         neighbours = Counter(pair for row in rows for pair in pairwise(row))
         assert len(neighbours) == count * (count - 1)
         assert len(set(neighbours.values())) == 1
-
-
-def test_order_is_the_one_in_the_file(tmp_path: Path):
     (tmp_path / "feel.yaml").write_text("scene: builtin/brick\nwant: touch\nrender: proxy\ndevice: mock\n")
     written = parse_study(f"order: as-written\n{STUDY}", tmp_path / "study.yaml")
     drawn = parse_study(f"order: random\n{STUDY}", tmp_path / "study.yaml")

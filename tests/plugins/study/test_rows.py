@@ -75,7 +75,7 @@ def test_p_of_right_answers_is_the_greater_of_trials_and_participants(right: tup
         assert own.estimate == proportion(each, 10)
 
 
-def test_interval_over_participants_stays_within_what_the_measure_can_be():
+def test_interval_and_difference_are_of_participants_who_can_be_compared():
     """Student's interval of 1, 1 and .5 reaches to 1.55, and that of d' below 0."""
     given = {name: hits(right, 10) for name, right in (("S01", 10), ("S02", 10), ("S03", 5))}
     rows = table(analyse_comparison(Comparison(name="c", question="same"), given))
@@ -92,9 +92,6 @@ def test_interval_over_participants_stays_within_what_the_measure_can_be():
     dprime = table(analyse_comparison(Comparison(name="c", question="different"), differ))["d'", "one", "two", ALL]
     assert dprime.estimate.low == 0.0 < dprime.estimate.value < dprime.estimate.high
     assert dprime.chance == 0.0
-
-
-def test_difference_is_that_of_participants_who_have_both_conditions():
     given = {
         "S01": [answer("one", "2"), answer("one", "4"), answer("two", "5"), answer("two", "7")],
         "S02": [answer("one", "1"), answer("two", "2"), answer("two", "4")],
@@ -112,16 +109,13 @@ def test_difference_is_that_of_participants_who_have_both_conditions():
     assert ("standard deviation", "one", "", "S03") not in rows, "of one value"
 
 
-def test_constant_error_is_counted_from_the_standard():
+def test_answers_are_counted_from_the_standard_by_level_or_distance():
     given = {"S01": [answer("one", each, level=0.1) for each in ("0.4", "0.5", "0.6")]}
     equal = Comparison(name="c", question="equal", levels=(0.1, 0.9), standard=0.3, unit="m")
     row = table(analyse_comparison(equal, given))["constant error", "one", "", "S01"]
     assert row.estimate == pytest.approx((0.2, 0.2 - T_2 * 0.1 / sqrt(3), 0.2 + T_2 * 0.1 / sqrt(3)))
     assert (row.unit, row.chance, row.trials) == ("m", 0.0, 3)
     assert row.p == pytest.approx(p_of_three([0.4, 0.5, 0.6], 0.3))
-
-
-def test_answers_about_levels_are_counted_by_level_or_by_distance():
     some = [
         answer("one", level=level, standard=2.0, chosen=chosen, correct=correct)
         for level, chosen, correct in ((3.0, 1, 1), (1.0, 1, 0), (3.0, 0, 0), (1.0, 0, 1), (2.5, 1, 1))
@@ -140,7 +134,7 @@ def at_levels(condition: str, *counts: int) -> list[Answer]:
     ]
 
 
-def test_conditions_differ_in_the_point_of_equality_and_in_what_is_noticed():
+def test_thresholds_differ_in_equality_and_may_be_guesses():
     """One curve is steep about 2, the other shallow about 2.25; the second participant answered at one level alone."""
     higher = Comparison(name="c", question="higher", levels=(1.0, 1.5, 2.0, 2.5, 3.0), standard=2.0, unit="N")
     given = {"S01": [*at_levels("one", 0, 1, 10, 19, 20), *at_levels("two", 1, 4, 8, 12, 17)]}
@@ -160,9 +154,6 @@ def test_conditions_differ_in_the_point_of_equality_and_in_what_is_noticed():
     assert any("S02/one has answers at one level only" in note for note in result.notes)
     with pytest.raises(TangibleError, match="c: has answers at one level only; run it to the end"):
         analyse_comparison(higher, {"S02": given["S02"]})
-
-
-def test_threshold_of_a_difference_has_no_noticeable_difference_and_may_be_a_guess():
     same = Comparison(name="c", question="same", levels=(1.0, 1.5, 2.5, 3.0), standard=2.0, unit="N")
     some = [at_level for at_level in at_levels("one", 12, 8, 0, 8, 12) if at_level.level != 2.0]
     result = analyse_comparison(same, {"S01": some})

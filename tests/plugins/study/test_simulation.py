@@ -1,5 +1,6 @@
-"""Observer models and power: their answers have the shares that theory gives, and a plan keeps its promise."""
+"""Simulated participants, and experiments that go wrong: a study would promise figures that it cannot find."""
 
+from math import inf
 from pathlib import Path
 from statistics import NormalDist
 
@@ -7,8 +8,9 @@ import numpy as np
 import pytest
 
 from tangible_core.errors import ConfigError
+from tangible_study.analysis.analysing import analyse_comparison, sentences
 from tangible_study.design import Comparison
-from tangible_study.measures.rows import Result, Row, What
+from tangible_study.measures.rows import ALL, Result, Row, What
 from tangible_study.procedures import Stimulus, Trial
 from tangible_study.simulation.observers import Detection, Hand, Psychometric, make_observer
 from tangible_study.simulation.power import (
@@ -19,8 +21,10 @@ from tangible_study.simulation.power import (
     simulate,
 )
 from tangible_study.statistics.intervals import Estimate
+from tangible_study.statistics.psychometric import Blocks, fit_choice, fit_difference
 from tangible_study.statistics.sensitivity import naming_correct, oddity_correct
 from tangible_study.study_file import StudyFile, load_study, parse_study
+from tangible_study.trials import Answer
 
 ROOT = Path(__file__).parents[3]
 STUDY = """\
@@ -57,16 +61,13 @@ def test_shares_of_right_answers_are_those_of_theory(
     assert (kept.trials, kept.training, list(kept.by_participant)) == (2 * len(answers), 0, ["S01", "S02"])
 
 
-def test_same_seed_gives_the_same_answers_and_another_does_not(tmp_path: Path):
+def test_seed_decides_the_answers_and_mistakes_are_named(tmp_path: Path):
     file = study_of(tmp_path, ODD)
     observer = make_observer("detection", [], file)
     assert simulate(file, observer, 1, 3) == simulate(file, observer, 1, 3)
     assert simulate(file, observer, 1, 3) != simulate(file, observer, 1, 4)
     times = [[each.response_time for each in simulate(file, observer, number, 3)] for number in (1, 2)]
     assert times[0] != times[1], "each participant has chances of their own, not only trials of their own"
-
-
-def test_mistakes_about_observers_are_named(tmp_path: Path):
     for model, sets, named in (
         ("detecton", [], "detection"), ("hand", ["jdn=1"], "jnd"), ("hand", ["lapse=2"], "lapse"),
         ("psychometric", [], "odd"),
@@ -144,7 +145,7 @@ def test_observer_without_noise_answers_by_what_differs(asked: Trial, answer: st
     assert lapses == [asked.choices[-1]], "any of the choices"
 
 
-def test_psychometric_observer_answers_by_its_function():
+def test_observers_answer_by_their_function_and_feel_differences():
     """By draws just below and above its share: a cumulative Gaussian, and a Weibull function from 1/3 on."""
     gaussian = NormalDist(2.5 + 0.4, 1.2 / 3.28970725)
     plain = Psychometric(lapse=0.0, width=1.2, difference=0.4)
@@ -162,9 +163,23 @@ def test_psychometric_observer_answers_by_its_function():
         assert [respond("same", "123", share + off, level=level) for off in (-1e-9, 1e-9)] == ["1", "3"]
     told = [respond("equal", "", draw, name) for name in ("one", "three") for draw in (-2.0, 0.5)]
     assert told == ["2.0", "3.0", "3.0", "3.0"]
+    noticed = NormalDist().inv_cdf(0.75) * 2**0.5
+    for quantity, levels, apart in (
+        ("force", (0.5, 1.0, 1.07), [np.log(0.5) / np.log(1.07) * noticed, 0.0, noticed]),
+        ("height", (0.5, 1.0, 1.00013), [-0.5 / 0.00013 * noticed, 0.0, noticed]),
+    ):
+        hand = Hand(quantity=quantity, lapse=0.0)
+        for level, expected in zip(levels, apart, strict=True):
+            for just in (-1e-6 - 1e-3 * abs(expected), 1e-6 + 1e-3 * abs(expected)):
 
+                class Noisy(Still):
+                    def standard_normal(self, size=None, by=(expected + just)):
+                        return np.array([0.0, by])
 
-def test_effects_are_differences_of_conditions_or_from_chance():
+                asked = trial("higher", Stimulus("one", level), Stimulus("one", 1.0))
+                told = hand.respond(asked, compared("higher", levels=levels, standard=1.0), Noisy())
+                assert told == ("2" if just > 0 else "1")
+
     def row(measure: str, name: str, value: float, condition: str, other: str = "", chance: float = np.nan) -> Row:
         return Row(What(measure, condition, other), name, Estimate(value), "", 10, None, chance)
 
@@ -183,26 +198,6 @@ def test_effects_are_differences_of_conditions_or_from_chance():
     }
 
 
-def test_hand_feels_noticeable_differences_of_force_and_height():
-    """A difference of one is noticed in three of four trials: 0.95 deviations, as Phi(0.95 / sqrt 2) is 0.75."""
-    noticed = NormalDist().inv_cdf(0.75) * 2**0.5
-    for quantity, levels, apart in (
-        ("force", (0.5, 1.0, 1.07), [np.log(0.5) / np.log(1.07) * noticed, 0.0, noticed]),
-        ("height", (0.5, 1.0, 1.00013), [-0.5 / 0.00013 * noticed, 0.0, noticed]),
-    ):
-        hand = Hand(quantity=quantity, lapse=0.0)
-        for level, expected in zip(levels, apart, strict=True):
-            for just in (-1e-6 - 1e-3 * abs(expected), 1e-6 + 1e-3 * abs(expected)):
-
-                class Noisy(Still):
-                    def standard_normal(self, size=None, by=(expected + just)):
-                        return np.array([0.0, by])
-
-                asked = trial("higher", Stimulus("one", level), Stimulus("one", 1.0))
-                told = hand.respond(asked, compared("higher", levels=levels, standard=1.0), Noisy())
-                assert told == ("2" if just > 0 else "1")
-
-
 @pytest.mark.parametrize(("apart", "participants"), [(0.2, 199), (0.5, 34), (0.8, 15), (1.2, 8), (0.19, None)])
 def test_participants_needed_are_those_of_cohen_s_tables(apart: float, participants: int | None):
     """For one sample, two-sided at 5 %, power .80: Cohen (1988) and G*Power 3.1."""
@@ -211,3 +206,60 @@ def test_participants_needed_are_those_of_cohen_s_tables(apart: float, participa
     assert participants_needed([-0.1, 0.1], 0.8) is None
     assert power_by_t_test(0.0, 1.0, 20) == pytest.approx(0.05)
     assert power_by_t_test(0.0, 0.0, 9) == 0.0 < power_by_t_test(0.1, 0.0, 2) == 1.0
+
+
+LEVELS_M = np.array([0.001, 0.0015, 0.002, 0.0025, 0.003])
+HIGHER = Comparison(name="c", question="higher", levels=tuple(LEVELS_M.tolist()), standard=0.002, unit="m")
+EXPERIMENTS = {
+    "all chosen": ((20, 20, 20, 20, 20), 20),
+    "none chosen": ((0, 0, 0, 0, 0), 20),
+    "all chosen once": ((1, 1, 1, 1, 1), 1),
+    "a step": ((0, 0, 0, 20, 20), 20),
+    "reversed": ((20, 18, 10, 2, 0), 20),
+    "guessing": ((11, 9, 10, 8, 11), 20),
+    "nearly all chosen": ((17, 20, 19, 20, 20), 20),
+    "few trials": ((0, 1, 0, 2, 2), 2),
+}
+
+
+def answers(counts: tuple[int, ...], trials: int, condition: str = "one") -> list[Answer]:
+    return [
+        Answer(
+            1, "test", "c", "any", "any", condition, level=level, response="1", standard=0.002, chosen=int(n < count)
+        )
+        for level, count in zip(LEVELS_M.tolist(), counts, strict=True)
+        for n in range(trials)
+    ]
+
+
+def make_rows(result: Result, whom: str, condition: str = "one") -> dict[str, Row]:
+    return {row.what.measure: row for row in result.rows if (row.participant, row.what.condition) == (whom, condition)}
+
+
+@pytest.mark.parametrize(("counts", "trials"), EXPERIMENTS.values(), ids=EXPERIMENTS)
+def test_estimates_of_an_odd_experiment_are_inside_their_intervals(counts: tuple[int, ...], trials: int):
+    blocks = Blocks(LEVELS_M, np.array(counts, float), np.full(5, float(trials)))
+    choice, odd = fit_choice(blocks, (0.001, 0.003)), fit_difference(blocks, (0.001, 0.003))
+    for estimate in (choice.threshold, choice.width, odd.threshold, odd.width):
+        assert estimate.low <= estimate.value <= estimate.high
+
+
+def test_answers_without_both_kinds_leave_bounds_alone():
+    """A threshold at the second level would have half of these unchosen, 10 of 20; one below all levels none."""
+    result = analyse_comparison(HIGHER, {"S01": answers((20,) * 5, 20), "S02": answers((0,) * 5, 20)})
+    below, above = (make_rows(result, whom)["point of equality"].estimate for whom in ("S01", "S02"))
+    assert below[:2] == (-inf, -inf) and below.high < 0.0015
+    assert above[::2] == (inf, inf) and above.low > 0.0025
+    assert make_rows(result, ALL)["point of equality"].estimate[1:] == (-inf, inf)
+    assert "With one, the answers do not tell the point of equality: any level explains them." in sentences(result)
+    alone = analyse_comparison(HIGHER, {"S01": answers((20,) * 5, 20)})
+    assert sentences(alone)[0] == (
+        f"With one, what feels equal to the standard, 0.002 m, is below {below.high:.3g} m (95 %)."
+    )
+    assert not any("is noticed" in sentence or "it is a guess" in sentence for sentence in sentences(alone))
+    all_right, none = (
+        fit_difference(Blocks(LEVELS_M, np.full(5, n), np.full(5, 20.0)), (0.001, 0.003)) for n in (20.0, 0.0)
+    )
+    assert all_right.threshold[:2] == (0.0, 0.0) and 0 < all_right.threshold.high < 0.0015
+    assert none.threshold[::2] == (inf, inf) and none.threshold.low > 0.0025
+    assert all_right.at(LEVELS_M) == pytest.approx([1 - all_right.lapses] * 5)

@@ -43,15 +43,12 @@ def blocks(rows: list[tuple[float, int]], trials: int) -> Blocks:
     return Blocks(levels, counts, np.full(len(levels), float(trials)))
 
 
-def test_scale_of_baseball_teams_is_as_published():
+def test_scale_is_as_published_and_marks_one_that_always_wins():
     scale = fit_scale([BASEBALL])
     assert np.round(scale.values[:-1] - scale.values[-1], 2).tolist() == [1.58, 1.44, 1.29, 1.25, 1.11, 0.68]
     halves = [scale.difference(team, 6).high - scale.difference(team, 6).value for team in range(6)]
     assert np.round(np.array(halves) / 1.96, 1).tolist() == [0.3] * 6
     assert scale.values.mean() == pytest.approx(0, abs=1e-12)
-
-
-def test_scale_with_one_that_always_wins_is_finite_and_is_marked():
     scale = fit_scale([np.array([[0.0, 9, 9], [0, 0, 5], [0, 4, 0]])])
     assert scale.was_completed
     assert np.isfinite(scale.values).all()
@@ -94,15 +91,12 @@ def test_share_of_odd_ones_is_that_of_the_model_integrated_over_two_intervals(dp
     )
 
 
-def test_dprime_of_same_or_different_at_the_ends():
+def test_dprime_is_finite_at_the_ends():
     none = sensitivity.same_different(5, 10, 5, 10)
     assert none.value == none.low == 0.0
     every = sensitivity.same_different(20, 20, 0, 20)
     assert every.value > 4 and every.high == np.inf
     assert np.isnan(sensitivity.same_different(3, 10, 0, 0).value)
-
-
-def test_dprime_at_the_ends():
     assert sensitivity.oddity(1.0) == np.inf
     assert sensitivity.oddity(0.2) == 0.0
     for near in np.linspace(-1e-13, 1e-13, 9).tolist():  # means of shares, such as (0.25 + 0.25 + 0.5) / 3
@@ -111,16 +105,12 @@ def test_dprime_at_the_ends():
     assert sensitivity.naming(0.1, 5) == 0.0
 
 
-def test_exact_interval_is_as_published():
+def test_intervals_and_their_differences_are_as_published():
     """Newcombe (1998), Statistics in Medicine 17:857, table I, method 5."""
     assert np.round(proportion(81, 263), 4).tolist() == [0.308, 0.2527, 0.3676]
     assert np.round(proportion(15, 148), 4).tolist() == [0.1014, 0.0578, 0.1617]
     assert np.round(proportion(0, 20)[1:], 4).tolist() == [0.0, 0.1684]
     assert np.round(proportion(29, 29)[1:], 4).tolist() == [0.8806, 1.0]
-
-
-def test_difference_of_two_intervals_takes_the_side_that_faces():
-    """By hand: the lower bound needs the lower side of the first and the upper side of the second."""
     one, other = Estimate(3.0, 2.0, 5.0), Estimate(1.0, 0.0, 1.5)
     assert difference(one, other) == pytest.approx((2.0, 2 - 1.25**0.5, 2 + 5**0.5))
     assert wider(one, other) == (3.0, 0.0, 5.0)
@@ -137,7 +127,7 @@ def test_fewest_right_answers_of_the_triangular_method_are_as_published(trials: 
         assert p_of_count(count - 1, trials, 1 / 3, one_sided=True) > level
 
 
-def test_fit_of_a_difference_is_that_of_psignifit_on_its_own_example():
+def test_fit_of_a_difference_has_the_bounds_of_its_likelihood():
     """Two intervals, a Weibull function of the logarithm: threshold and lapses as psignifit alone finds them."""
     curve = fit_difference(blocks(DETECTION, 90), (0.001, 0.01), choices=2)
     assert curve.threshold.value == pytest.approx(
@@ -146,13 +136,9 @@ def test_fit_of_a_difference_is_that_of_psignifit_on_its_own_example():
     assert curve.threshold.low < 0.00465 < curve.threshold.high
     assert curve.at(np.array([1e-9, 1.0])) == pytest.approx([0.5, 1 - curve.lapses], abs=1e-3)
     assert curve.at(np.array([curve.threshold.value])) == pytest.approx([0.75], abs=0.01)
-
-
-def test_bounds_of_a_width_are_where_the_likelihood_ratio_has_its_quantile():
-    """By another way to the best threshold and lapses of each width: the simplex of Nelder & Mead."""
     levels, trials = np.linspace(1.4, 2.6, 7), 40.0
     counts = np.array([1, 4, 11, 22, 30, 36, 38], float)
-    blocks = Blocks(levels, counts, np.full(7, trials))
+    counted = Blocks(levels, counts, np.full(7, trials))
 
     def lack(width: float) -> float:
         def negative(free: np.ndarray) -> float:
@@ -163,21 +149,18 @@ def test_bounds_of_a_width_are_where_the_likelihood_ratio_has_its_quantile():
         return min(float(optimize.minimize(negative, [2.0, at], method="Nelder-Mead").fun) for at in (-4.0, -1.0))
 
     best = optimize.minimize_scalar(lack, bounds=(0.3, 3.0), method="bounded")
-    found = width_interval(blocks, Estimate(1.97, 1.9, 2.04), float(best.x))
+    found = width_interval(counted, Estimate(1.97, 1.9, 2.04), float(best.x))
     assert found.value == best.x
     for bound in (found.low, found.high):
         assert 2 * (lack(bound) - best.fun) == pytest.approx(stats.chi2.ppf(0.95, 1), abs=0.02)
 
 
-def test_width_without_a_rise_has_no_upper_bound_and_a_step_no_lower():
+def test_fit_of_choices_finds_the_function_or_a_bound():
     levels, near = np.linspace(1.4, 2.6, 7), Estimate(2.0, 1.9, 2.1)
     flat = width_interval(Blocks(levels, np.full(7, 20.0), np.full(7, 40.0)), near, 2.0)
     assert flat.high == np.inf and flat.low > 0.5
     step = width_interval(Blocks(levels, np.array([0.0, 0, 0, 20, 40, 40, 40]), np.full(7, 40.0)), near, 0.1)
     assert step.low == 0.0 and step.high < 0.4
-
-
-def test_fit_of_choices_finds_the_function_that_made_them():
     levels = np.linspace(1.4, 2.6, 7)
     expected = 0.02 + 0.96 * stats.norm.cdf((levels - 2.05) / (0.6 / 3.2897))
     curve = fit_choice(Blocks(levels, np.round(400 * expected), np.full(7, 400.0)), (1.4, 2.6))

@@ -50,7 +50,7 @@ def two_tints(picture: np.ndarray) -> np.ndarray:
     return np.stack([picture + red, picture, picture - red * 0.299 / 0.114], axis=2) / 2 + 0.25
 
 
-def test_colour_differing_between_windows_is_used():
+def test_colour_is_used_where_it_differs_between_windows():
     grain = waves((128, 160), 6, 20, 1)
     picture = np.clip(two_tints(0.5 + (grain - 0.5) * 0.2), 0, 1)
     with collected() as notes:
@@ -58,15 +58,12 @@ def test_colour_differing_between_windows_is_used():
     assert any(note.startswith("colour used") for note in notes)
     truth = np.broadcast_to(np.arange(160) // 80, (128, 160))
     assert rand_index(truth, found.labels) > 0.95
-
-
-def test_colour_that_hardly_differs_between_windows_is_left_out():
     with collected() as notes:
         Gabor(segments=3).segment(np.stack([PICTURE, PICTURE, PICTURE * 0.999], axis=2))
     assert any(note.startswith("colour left out") and "of white, under 0.02" in note for note in notes)
 
 
-def test_filters_above_the_bandwidth_are_left_out():
+def test_labels_are_the_same_with_fewer_filters_or_one_thread(monkeypatch: pytest.MonkeyPatch):
     enlarged = cv2.GaussianBlur(cv2.resize(PICTURE, None, fx=3, fy=3, interpolation=cv2.INTER_CUBIC), (0, 0), 2)
     with collected() as notes:
         some = Gabor(segments=3).segment(enlarged)
@@ -75,9 +72,6 @@ def test_filters_above_the_bandwidth_are_left_out():
         every = Gabor(segments=3, least_energy=0).segment(enlarged)
     assert not any("filters left out" in note for note in notes)
     assert rand_index(some.labels, every.labels) > 0.95
-
-
-def test_labels_with_one_thread_are_the_same(monkeypatch: pytest.MonkeyPatch):
     whole = Gabor(segments=3).segment(PICTURE)
     monkeypatch.setattr("tangible_core.compiled.threads.thread_count", lambda: 1)
     alone = Gabor(segments=3).segment(PICTURE)

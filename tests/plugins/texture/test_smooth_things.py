@@ -1,13 +1,21 @@
-"""Segments by gradient, hierarchy and grey on pictures of a known answer: else smooth things are cut or joined."""
+"""Segments of smooth things and seen borders: else pictures are cut where nobody would."""
 
 from itertools import combinations, pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import drawn_parts
+from benchmarks.regions import covering
 from label_maps import rand_index
+from onnx_models import mono
+from tangible_bench.metrics.segments import contingency
+from tangible_core import Pipeline, Scene
+from tangible_networks.fetching import add_network
+from tangible_networks.store import known_networks
 from tangible_texture import Hierarchy
 from tangible_texture.gradient import Gradient
 from tangible_texture.histogram import MAX_LEVELS, Histogram, OtsuClasses
@@ -51,7 +59,7 @@ class TestGradient:
         assert found.count == 2
         assert np.all(np.abs(column_of_change(found.labels) - 60) <= 1)
 
-    def test_colours_of_one_brightness_are_separated(self):
+    def test_gradient_separates_colours_and_rough_objects(self):
         picture = np.zeros((60, 80, 3))
         picture[:, :40] = 0.7, 0.3, 0.3
         picture[:, 40:, 1] = (0.7 * 0.299 + 0.3 * 0.587) / 0.587  # the same luma, all of it green
@@ -59,8 +67,6 @@ class TestGradient:
         found = Gradient().segment(picture)
         assert np.array_equal(found.labels, np.repeat([[0, 1]], 40, axis=1).repeat(60, axis=0))
         assert Gradient(colour=False).segment(picture).count == 1
-
-    def test_rough_object_on_a_clean_ground_is_a_segment(self):
         rows, columns = np.indices((160, 160))
         disc = np.hypot(rows - 80, columns - 80) < 45
         texture = np.random.default_rng(0).normal(170, 25, disc.shape)
@@ -78,13 +84,11 @@ class TestGradient:
         np.add.at(merged, (found.labels.ravel(), truth.ravel()), 1)
         assert merged.max(axis=0).sum() >= 0.98 * truth.size  # each cell lies in one segment
 
-    def test_auto_stops_at_its_bound(self):
+    def test_gradient_stops_at_its_bound_with_confidence_falling_to_edges(self):
         levels = np.random.default_rng(0).permutation(np.linspace(0, 255, 144)).reshape(12, 12)
         picture = np.kron(levels, np.ones((24, 24))).astype(np.uint8)
         assert Gradient().segment(picture).count == MAX_SEGMENTS
         assert Gradient(segments=144, sigma_px=1.5).segment(picture).count > 120
-
-    def test_confidence_falls_towards_edges(self):
         confidence = Gradient().segment(halves((60, 120), 60, 160)).confidence
         assert np.all(confidence[:, :50] == 1)
         assert np.allclose(confidence[:, 59:61], 0, atol=1e-6)
@@ -113,14 +117,11 @@ def things(seed: int = 0, size: int = 256, noise: float = 6) -> tuple[np.ndarray
 
 class TestHierarchy:
     @pytest.mark.parametrize("seed", range(2))
-    def test_things_of_other_colours_are_found(self, seed: int):
+    def test_things_of_other_colours_are_found_in_the_number_requested(self, seed: int):
         picture, truth = things(seed)
         found = Hierarchy().segment(picture)
         assert rand_index(found.labels, truth) >= 0.97
         assert found.count == truth.max() + 1
-
-    @pytest.mark.parametrize("seed", range(2))
-    def test_number_requested_is_found_at_the_true_borders(self, seed: int):
         picture, truth = things(seed, noise=20)
         found = Hierarchy(segments=len(COLOURS)).segment(picture)
         assert found.count == len(COLOURS)
@@ -140,35 +141,29 @@ class TestHierarchy:
         grey = 128 + np.random.default_rng(0).normal(0, noise, (120, 160))
         assert Hierarchy().segment(np.clip(grey, 0, 255).astype(np.uint8)).count == 1
 
-    def test_borders_are_finer_than_a_cell(self):
+    def test_hierarchy_keeps_fine_borders_by_their_level(self):
         """A cell is 3.5 pixels wide here."""
         picture = np.full((600, 800, 3), (200, 60, 50), np.uint8)
         picture[:, 407:] = 60, 80, 190
         found = Hierarchy().segment(picture)
         assert found.count == 2
         assert np.abs((found.labels == 0).sum(axis=1) - 407).max() <= 2
-
-    def test_every_cut_of_the_tree_divides_the_one_before(self):
-        tree = Hierarchy().tree(things(0)[0])
-        cuts = [tree.cut(count).labels for count in range(1, 30)]
-        assert [int(cut.max()) + 1 for cut in cuts] == list(range(1, 30))
-        for coarse, fine in pairwise(cuts):
-            assert np.unique(np.stack([fine.ravel(), coarse.ravel()]), axis=1).shape[1] == fine.max() + 1
-
-    def test_weak_border_is_kept_at_a_low_level_alone(self):
         picture = np.full((90, 120, 3), (120, 110, 100), np.uint8)
         picture[:, 60:] = 150, 140, 130
         picture[:20, :20] = 250, 20, 20
         counts = [Hierarchy(level=level).segment(picture).count for level in (0.13, 0.5)]
         assert counts == [3, 2]
-
-    def test_level_is_the_confidence_of_segments(self):
         picture, truth = things(0)
         found = Hierarchy().segment(picture)
         assert found.confidence.min() > 0.5
         assert np.unique(found.confidence[truth == 0]).size == 1
 
-    def test_estimate_is_limited(self):
+    def test_tree_has_a_cut_for_each_number_up_to_the_limit(self):
+        tree = Hierarchy().tree(things(0)[0])
+        cuts = [tree.cut(count).labels for count in range(1, 30)]
+        assert [int(cut.max()) + 1 for cut in cuts] == list(range(1, 30))
+        for coarse, fine in pairwise(cuts):
+            assert np.unique(np.stack([fine.ravel(), coarse.ravel()]), axis=1).shape[1] == fine.max() + 1
         numbers = np.kron(np.arange(100).reshape(10, 10) * 37 % 100, np.ones((20, 20), int))
         colours = np.random.default_rng(0).permutation(np.indices((5, 5, 4)).reshape(3, -1).T * [60, 60, 80])
         picture = colours[numbers].astype(np.uint8)
@@ -199,13 +194,10 @@ class TestOtsuClasses:
         assert found.spreads[-1] == pytest.approx(min(every), abs=1e-9)
         assert spread(levels, number, tuple(found.starts(classes)[1:])) == pytest.approx(min(every), abs=1e-9)
 
-    def test_levels_even_or_of_one_gaussian_are_one_class(self):
+    def test_classes_are_the_humps_of_the_counts(self):
         levels = np.arange(256.0)
         for counts in (np.full(256, 9), np.rint(9999 * np.exp(-(((levels - 128) / 30) ** 2) / 2)).astype(int) + 1):
             assert OtsuClasses(levels, counts, MAX_LEVELS).clearest() == (1, 1.0)
-
-    def test_humps_are_counted(self):
-        levels = np.arange(256.0)
         humps = sum(np.exp(-(((levels - mean) / 5) ** 2) / 2) for mean in (40, 110, 200))
         number, ratio = OtsuClasses(levels, np.rint(9999 * humps).astype(int) + 1, MAX_LEVELS).clearest()
         assert number == 3
@@ -216,11 +208,9 @@ class TestSmallParts:
     CLASSES = np.array([[0, 0, 0, 1], [0, 1, 0, 1], [0, 0, 0, 1]], np.int32)
     LEVEL = np.zeros((3, 4), np.float32)
 
-    def test_small_parts_go_to_adjacent_classes(self):
+    def test_small_parts_go_to_adjacent_classes_and_edges_are_none(self):
         assert remove_small_parts(self.CLASSES, self.LEVEL, 1, 3).tolist() == [[0, 0, 0, 1]] * 3
         assert remove_small_parts(self.CLASSES, self.LEVEL, 1, 4).tolist() == [[0] * 4] * 3
-
-    def test_edge_is_not_a_part(self):
         classes = np.array([[0, 0, 0, 1, 1, 2, 2, 2]] * 9, np.int32)
         steep = np.array([[0, 0, 2, 4, 5, 2, 0, 0]] * 9, np.float32)
         assert np.delete(remove_small_parts(classes, steep, 1, 9), 4, axis=1).tolist() == [[0] * 4 + [2] * 3] * 9
@@ -253,3 +243,50 @@ class TestHistogram:
         confidence = Histogram(segments=2, sigma_px=0, smallest_px=1).segment(picture).confidence
         assert np.allclose(confidence[:, :30], 1)  # 0.5 away, where the class spreads by 0.2
         assert np.allclose(confidence[:, 30:90], 0.25)
+
+
+def scene() -> np.ndarray:
+    """A grey corner on a dark ground, and a bright line, which is what a network of brightness sees."""
+    picture = np.zeros((120, 160, 3), np.uint8)
+    picture[:40, :60] = 120
+    picture[:, 100:102] = 255
+    return picture
+
+
+def test_network_decides_which_borders_people_would_draw(models: Path) -> None:
+    before = Pipeline(Scene.photo(scene()), texture=Hierarchy()).segments
+    mono(models / "own.onnx")
+    (models / "own.yaml").write_text("task: borders\noutput: {means: borders}\n")
+    within = Pipeline(Scene.photo(scene()), texture=Hierarchy())
+    left, right = within.segments.labels[:, :98], within.segments.labels[:, 104:]
+    assert len({before.labels[place] for place in ((10, 10), (100, 10), (60, 150))}) == 3
+    assert (left == 0).all(), "the corner belongs to the ground"
+    assert (right == 1).all()
+    why = {outcome.product: outcome.why for outcome in within.outcomes}["segments"]
+    assert "borders: seen by the network own" in why
+    assert Hierarchy().reads() == (models / "own.onnx",)
+    (models / "own.onnx").unlink()
+    after = Pipeline(Scene.photo(scene()), texture=Hierarchy(), cached=False).segments
+    assert np.array_equal(after.labels, before.labels)
+    assert np.array_equal(after.confidence, before.confidence)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 2), (3, 5), (200, 1)])
+def test_network_sees_pictures_of_any_size(models: Path, shape: tuple[int, int]) -> None:
+    mono(models / "own.onnx")
+    (models / "own.yaml").write_text("task: borders\noutput: {means: borders}\n")
+    picture = np.arange(shape[0] * shape[1], dtype=np.uint16).reshape(shape) * 300
+    assert Hierarchy().segment(picture).labels.shape == shape
+
+
+@pytest.mark.nightly
+def test_published_network_finds_what_people_drew(models: Path) -> None:
+    drawings = [drawn_parts.drawn(name) for name in ("astronaut", "camera", "chelsea", "coffee", "rocket")]
+
+    def cover() -> list[float]:
+        found = [Hierarchy().segment(drawing.picture).labels for drawing in drawings]
+        return [covering(contingency(*pair)) for pair in zip(found, (d.parts.labels for d in drawings), strict=True)]
+
+    before = cover()
+    add_network(known_networks()["hed"])
+    assert (np.subtract(cover(), before) > 0.05).all()

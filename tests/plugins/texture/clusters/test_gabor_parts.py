@@ -217,14 +217,11 @@ def test_frequencies_are_those_of_patterns_counted_one_by_one(random: np.random.
     np.testing.assert_allclose(found[1], plain_patterns(grey, 3), atol=1e-6)
 
 
-def test_far_neighbours_are_taken_from_a_smoothed_picture(random: np.random.Generator):
+def test_neighbours_and_evidence_are_those_of_the_formulas(random: np.random.Generator):
     grey = random.standard_normal((24, 20)).astype(np.float32)
     found = pattern_frequencies(grey).reshape(len(RADII), COUNTERS, 6, 5)[2]
     smooth = gaussian(np.pad(grey, 12, mode="reflect")[..., None], 1.5)[12:-12, 12:-12, 0]
     np.testing.assert_allclose(found, plain_patterns(smooth, 5), atol=1e-6)
-
-
-def test_evidence_is_the_log_likelihood_up_to_a_common_term(random: np.random.Generator):
     planes, labels = two_groups(random)
     planes = planes + np.float32(3)
     fit = scatters(planes, one_hot(labels, 2))
@@ -319,16 +316,13 @@ def test_small_picture_has_few_textures(cells: int, most: int):
     assert largest_number(cells) == most
 
 
-def test_confidence_is_the_probability_among_the_numbers_that_were_possible():
+def test_confidence_is_the_probability_among_the_possible_numbers():
     rest = steps((25, 0.1), (60, 0.2))
     probabilities = np.exp(number_likelihoods(rest))
     assert probabilities.sum() == pytest.approx(1)
     with collected() as notes:
         likeliest_division(rest[:2])  # which never ends at one cluster
     assert f"confidence {probabilities[:2].max() / probabilities[:2].sum():.2f}" in notes[0]
-
-
-def test_clusters_without_any_difference_are_one_texture():
     with collected() as notes:
         assert not likeliest_division(steps((0, 0.1), (0, 0.25))).any()
     assert notes == ["segments: 1, estimated with confidence 1.00: the next best number is 3, with 0.00"]

@@ -107,13 +107,10 @@ def test_grating_peaks_in_its_own_filter_with_a_known_energy(wavelength_px):
         assert energy == pytest.approx(gain**2 * 9 / variance, abs=0.002 * 9 / variance)
 
 
-def test_flat_picture_has_no_energy():
+def test_mean_energies_are_those_of_the_mirrored_picture_and_none_of_a_flat_one():
     for value in (0.0, 0.3, -1e20, 1e-20, 255.0):
         assert not local_energy(np.full((33, 20), value, np.float32), OCTAVES).any()
     assert not local_energy(np.ones((1, 1), np.float32), OCTAVES).any()
-
-
-def test_mean_energies_are_those_of_the_mirrored_picture():
     grey = natural((150, 140), seed=5)
     filters = bank(OCTAVES)
     means = mean_energies(picture_spectrum(grey, padding(filters, 4.0)), filters)
@@ -135,15 +132,17 @@ def test_bandwidth_at_half_height_is_the_requested_one(bandwidth):
     assert log2((1 / 16 + half) / (1 / 16 - half)) == pytest.approx(bandwidth)
 
 
-def test_printed_frequencies_for_a_power_of_two_match_the_paper():
+def test_bank_has_every_direction_at_the_frequencies_that_the_paper_prints():
+    filters = bank((4.0, 8.0), 6)
+    assert [each.wavelength_px for each in filters] == [4.0] * 6 + [8.0] * 6
+    assert np.degrees([each.theta_rad for each in filters[:6]]) == pytest.approx([0, 30, 60, 90, 120, 150])
+    assert filters[3].frequency == pytest.approx((0.25, 0))
+    assert bank((4.0,), 1)[0].gamma == bank((4.0,), 2)[0].gamma == 1
     offsets = np.array([2**-0.5, 2**0.5, 2**1.5]) * 2 / 128  # i = 0.5, 1.5, 2.5 less 1, doubled
     expected = np.concatenate([0.25 - offsets, [0.25 - 2**3.5 / 128], 0.25 + offsets, [0.25 + 2**3.5 / 128]])
     assert np.sort(1 / np.array(printed_wavelengths(128))) == pytest.approx(np.sort(expected))
     assert len(printed_wavelengths(512)) == 12
     assert list(printed_wavelengths(512)) == sorted(printed_wavelengths(512))
-
-
-def test_printed_frequencies_for_other_widths_stay_in_range():
     assert len(printed_wavelengths(511)) == len(printed_wavelengths(256)) == 10
     assert max(1 / printed_wavelength for printed_wavelength in printed_wavelengths(300)) == pytest.approx(
         0.25 + 2**4.5 / 300
@@ -153,14 +152,6 @@ def test_printed_frequencies_for_other_widths_stay_in_range():
     for width in range(16, 2000, 37):
         frequencies = 1 / np.array(printed_wavelengths(width))
         assert 0.07 < frequencies.min() < 0.25 < frequencies.max() < 0.43
-
-
-def test_bank_has_every_wavelength_in_every_direction():
-    filters = bank((4.0, 8.0), 6)
-    assert [each.wavelength_px for each in filters] == [4.0] * 6 + [8.0] * 6
-    assert np.degrees([each.theta_rad for each in filters[:6]]) == pytest.approx([0, 30, 60, 90, 120, 150])
-    assert filters[3].frequency == pytest.approx((0.25, 0))
-    assert bank((4.0,), 1)[0].gamma == bank((4.0,), 2)[0].gamma == 1
 
 
 @pytest.mark.parametrize("gabor", bank((4.0, 11.0), 3))
@@ -185,7 +176,7 @@ def stripes(wavelength_px):
     return np.cos(2 * np.pi / wavelength_px * columns).astype(np.float32)[None].repeat(60, axis=0)
 
 
-def test_strongest_filters_are_the_fewest_holding_the_share():
+def test_filters_of_the_share_bandwidth_and_finest_octave_stay():
     energies = np.array([1.0, 60.0, 4.0, 35.0])
     assert are_strongest(energies, 0.95).tolist() == [False, True, False, True]
     assert are_strongest(energies, 0.96).tolist() == [False, True, True, True]
@@ -193,16 +184,10 @@ def test_strongest_filters_are_the_fewest_holding_the_share():
     assert are_strongest(np.array([50.0, 25.0, 25.0]), 0.75).tolist() == [True, True, False]
     assert are_strongest(energies, 1.0).all()
     assert are_strongest(np.zeros(3)).all()
-
-
-def test_filters_up_to_root_two_of_a_wave_stay():
     kept = filters_within_bandwidth(stripes(10), FILTERS)
     assert kept == FILTERS[12:]
     assert filters_within_bandwidth(stripes(7.5), FILTERS) == FILTERS[6:]
     assert filters_within_bandwidth(stripes(90), FILTERS) == FILTERS  # no filter would be left
-
-
-def test_octaves_of_a_blurred_picture_lose_the_finest():
     sharp = np.random.default_rng(0).random((200, 200)).astype(np.float32)
     with collected() as notes:
         assert needed_filters(sharp, FILTERS, skip_weak=False, skip_octaves=True) == FILTERS

@@ -46,7 +46,12 @@ def test_wide_windows_have_fewer_values_where_both_sides_are_long(shape: tuple[i
     assert features(halves(shape, 60), 3.0, 0.0, colour=False).wide.shape == wide
 
 
-def test_filters_of_less_than_a_share_of_all_energy_are_left_out(monkeypatch: pytest.MonkeyPatch):
+def test_colours_are_opponent_and_filters_of_little_energy_left_out(monkeypatch: pytest.MonkeyPatch):
+    paint = np.zeros((4, 20, 3), np.uint8)
+    for cell, colour in enumerate([(255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 0), (255, 255, 255)]):
+        paint[:, 4 * cell : 4 * cell + 4] = colour
+    found = module._colour_planes(paint, True)
+    np.testing.assert_allclose(found[:, 0], [[1.5, 0.5, 1, 1, 1], [1.25, 1.25, 0.5, 1.5, 1]], atol=1e-6)
     means = np.array([30, 12, 11, 9, 8, 8, 8, 8, 3, 1, 1, 1.0])
     monkeypatch.setattr(module, "mean_energies", lambda *_: means)
     with collected() as notes:
@@ -55,29 +60,15 @@ def test_filters_of_less_than_a_share_of_all_energy_are_left_out(monkeypatch: py
     assert len(found.middle.planes) == 3 + PATTERNS
 
 
-def test_colours_are_red_against_green_and_both_against_blue():
-    paint = np.zeros((4, 20, 3), np.uint8)
-    for cell, colour in enumerate([(255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 0), (255, 255, 255)]):
-        paint[:, 4 * cell : 4 * cell + 4] = colour
-    found = module._colour_planes(paint, True)
-    np.testing.assert_allclose(found[:, 0], [[1.5, 0.5, 1, 1, 1], [1.25, 1.25, 0.5, 1.5, 1]], atol=1e-6)
-
-
-def test_rare_values_are_limited_to_half_as_much_again_as_the_frequent_ones():
+def test_planes_are_limited_averaged_and_standardised():
     planes = np.random.default_rng(0).permuted(np.arange(2000, dtype=np.float32).reshape(2, 1000), axis=1)
     planes[0, 7], planes[1, 8] = 1e6, 2500
     expected = planes.copy()
     expected[0, 7] = 1.5 * np.sort(planes[0])[984]
     assert np.array_equal(cap_rare_values(planes.copy().reshape(2, 25, 40)).reshape(2, 1000), expected)
-
-
-def test_means_of_several_cells_are_means_of_their_means():
     planes = np.random.default_rng(4).random((3, 12, 18), np.float32)
     small = window_means(planes, 2.0, 2)
     np.testing.assert_allclose(small, window_means(planes, 2.0).reshape(3, 6, 2, 9, 2).mean(axis=(2, 4)), rtol=1e-5)
-
-
-def test_roots_are_standardised_and_a_constant_plane_is_zero():
     planes = np.stack([np.random.default_rng(5).random(1000, np.float32), np.full(1000, 3, np.float32)])
     roots = np.sqrt(planes[0] + 1e-6)
     standardise_roots(planes)
@@ -151,7 +142,7 @@ def test_flips_and_quarter_turns_leave_distances(turn: Callable[[np.ndarray], np
     np.testing.assert_allclose(distances, expected, atol=0.02 * expected.max())
 
 
-def test_cells_of_one_texture_lie_nearer_than_by_the_features():
+def test_cells_of_one_texture_lie_nearer_unless_pictures_are_too_small(scene: KnownSegments):
     """Of a pair within a texture and one across two, the first has the smaller distance more often."""
     gains: list[float] = []
     for seed in range(2):
@@ -164,6 +155,9 @@ def test_cells_of_one_texture_lie_nearer_than_by_the_features():
         gains.append(learned - plain)
     assert min(gains) > 0
     assert np.mean(gains) > 0.02
+    side = 4 * MIN_CELLS
+    assert learned_values(found(scene.picture[: side - 4, :side])) is None
+    assert learned_values(found(scene.picture[:side, :side])) is not None
 
 
 def _share_in_order(planes: np.ndarray, labels: np.ndarray, seed: int) -> float:
@@ -173,9 +167,3 @@ def _share_in_order(planes: np.ndarray, labels: np.ndarray, seed: int) -> float:
     within, across = (distances[(labels[one] == labels[other]) == same][:4000] for same in (True, False))
     count = min(within.size, across.size)
     return float(np.mean(within[:count] < across[:count]))
-
-
-def test_pictures_smaller_than_those_fitted_to_have_none(scene: KnownSegments):
-    side = 4 * MIN_CELLS
-    assert learned_values(found(scene.picture[: side - 4, :side])) is None
-    assert learned_values(found(scene.picture[:side, :side])) is not None

@@ -117,41 +117,14 @@ def test_confidence_of_a_count_is_where_its_silhouette_lies_between_a_quarter_an
         assert reason.endswith(f"silhouette, {every[best]:.2f}")
 
 
-def test_count_of_one_group_is_one():
+def test_flat_picture_and_one_group_have_one_segment():
     rows = np.random.default_rng(0).normal(size=(4000, 12)).astype(np.float32)
     assert (choose_count(rows, 8)[0], choose_count(np.ones((30, 4), np.float32), 8)[:2]) == (1, (1, 1))
     assert choose_count(np.ones((1, 4), np.float32), 8)[0] == 1
-
-
-def test_cells_at_full_size_repeat_label_and_confidence():
-    found = label_map_of_cells(np.array([[1, 0]], np.int32), np.array([0.25, 1], np.float32), 3, (2, 5))
-    assert found.labels.tolist() == [[0, 0, 0, 1, 1]] * 2
-    assert found.confidence.tolist() == [[0.25] * 3 + [1] * 2] * 2
-
-
-def test_margins_are_1_at_a_centre_and_0_half_way():
-    centres = np.array([[0, 0], [4, 0], [100, 0]], np.float32)
-    rows = np.array([[0, 0], [1, 0], [2, 0], [4, 0]], np.float32)
-    assert margins(rows, centres) == pytest.approx([1, 2 / 3, 0, 1])
-    assert margins(rows, centres[:1]).tolist() == [1] * 4
-
-
-def test_features_in_two_halves_are_two_segments():
-    features = np.zeros((4, 6, 2), np.float32)
-    features[:, 4:] = 1
-    found = segment_by_kmeans(features, 2, (7, 12), 5, seed=0)
-    assert np.array_equal(found.labels, (np.arange(12) >= 8).astype(np.int32)[None].repeat(7, axis=0))
-    assert (found.confidence == 1).all()
-
-
-def test_picture_of_rounding_or_one_pixel_is_flat():
     assert is_flat(np.full((9, 9), np.float32(0.1)))
     assert is_flat(np.float32(1e20) * (1 + 1e-7 * np.random.default_rng(0).random((9, 9))).astype(np.float32))
     assert is_flat((np.arange(81) == 40).astype(np.float32).reshape(9, 9))
     assert not is_flat(np.float32(1e-20) * (np.indices((9, 9))[0] > 4).astype(np.float32))
-
-
-def test_features_equal_or_too_coarse_are_one_texture():
     grey = np.random.default_rng(0).random((64, 64)).astype(np.float32)
     even = np.ones((3, 16, 16), np.float32)
     assert is_one_texture(even, 1, grey)
@@ -161,6 +134,21 @@ def test_features_equal_or_too_coarse_are_one_texture():
     assert is_one_texture(folded, 1, grey)
     framed = np.pad(0 * grey[16:-16, 16:-16], 16, constant_values=1) * grey
     assert not is_one_texture(folded, 1, framed)
+
+
+def test_cells_and_centres_give_labels_with_confidence():
+    found = label_map_of_cells(np.array([[1, 0]], np.int32), np.array([0.25, 1], np.float32), 3, (2, 5))
+    assert found.labels.tolist() == [[0, 0, 0, 1, 1]] * 2
+    assert found.confidence.tolist() == [[0.25] * 3 + [1] * 2] * 2
+    centres = np.array([[0, 0], [4, 0], [100, 0]], np.float32)
+    rows = np.array([[0, 0], [1, 0], [2, 0], [4, 0]], np.float32)
+    assert margins(rows, centres) == pytest.approx([1, 2 / 3, 0, 1])
+    assert margins(rows, centres[:1]).tolist() == [1] * 4
+    features = np.zeros((4, 6, 2), np.float32)
+    features[:, 4:] = 1
+    found = segment_by_kmeans(features, 2, (7, 12), 5, seed=0)
+    assert np.array_equal(found.labels, (np.arange(12) >= 8).astype(np.int32)[None].repeat(7, axis=0))
+    assert (found.confidence == 1).all()
 
 
 @pytest.mark.parametrize(("spread", "one"), [(0.02, True), (0.05, False), (0.16, False)])

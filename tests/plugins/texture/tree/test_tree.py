@@ -41,7 +41,7 @@ def test_cell_is_the_mean_of_its_pixels():
     assert cells[..., 0] == pytest.approx(picture.reshape(200, 4, 200, 4).mean(axis=(1, 3)), abs=1e-5)
 
 
-def test_opponent_colours_of_pure_colours_are_exact():
+def test_opponent_colours_are_exact_whatever_single_values_are():
     picture = np.array([[[0, 0, 0], [1, 1, 1]], [[1, 0, 0], [0, 0, 1]]], np.float32)
     colours = opponent_colours(picture)
     assert colours is not None
@@ -49,9 +49,6 @@ def test_opponent_colours_of_pure_colours_are_exact():
         pytest.approx(np.array([[0, 0, 0], [1, 0, 0], [0.299, 1, 0.5], [0.114, 0, -1]]), abs=1e-6)
         == colours.reshape(3, 4).T
     )
-
-
-def test_single_rare_values_do_not_set_the_range():
     picture = paint((100, 100), 1)
     torn = picture.copy()
     torn[3, 4] = 50
@@ -61,12 +58,18 @@ def test_single_rare_values_do_not_set_the_range():
     assert np.abs(np.delete(one - other, 3, axis=1)).max() < 0.01
 
 
-def test_value_is_divided_between_the_two_nearest_bins():
+def test_shares_divide_values_between_bins_and_tell_roughness():
     colours = np.zeros((3, 1, 3), np.float32)
     colours[0] = [[0, 0.25 / 11, 1]]
     found = shares(colours)["brightness"][:, 0]
     assert found[:2, 1].tolist() == pytest.approx([0.75, 0.25])
     assert (found[0, 0], found[-1, 2], found[2:, 1].max()) == (1, 1, 0)
+    colours = np.full((3, 40, 80), 0.5, np.float32)
+    colours[0, :, 40:] += np.random.default_rng(0).normal(0, 0.1, (40, 40))
+    rough = shares(colours)["roughness"]
+    mean = (np.arange(len(rough))[:, None, None] * rough).sum(axis=0)
+    assert mean[:, :30].max() < 1e-6
+    assert mean[:, 46:].min() > 2
 
 
 @pytest.mark.parametrize(
@@ -83,25 +86,13 @@ def test_slope_in_one_direction_has_that_share_alone(across: int, down: int, way
     assert np.delete(inner, [way, 4], axis=0).max() < 1e-6
 
 
-def test_smooth_cells_have_less_roughness_than_noisy_ones():
-    colours = np.full((3, 40, 80), 0.5, np.float32)
-    colours[0, :, 40:] += np.random.default_rng(0).normal(0, 0.1, (40, 40))
-    rough = shares(colours)["roughness"]
-    mean = (np.arange(len(rough))[:, None, None] * rough).sum(axis=0)
-    assert mean[:, :30].max() < 1e-6
-    assert mean[:, 46:].min() > 2
-
-
-def test_ramp_has_the_tensor_of_its_slope():
+def test_tensors_are_those_of_ramps_and_of_steps_at_every_width():
     rows, columns = np.indices((30, 40), np.float32)
     found = tensors(0.03 * columns - 0.01 * rows, {})
     assert found.shape == (1, 3, 30, 40)
     assert (
         pytest.approx(np.array([[9e-4, -3e-4, 1e-4]] * 22 * 32), rel=1e-3) == found[0, :, 4:-4, 4:-4].reshape(3, -1).T
     )
-
-
-def test_step_of_shares_has_a_tensor_across_it_at_every_width():
     share = np.zeros((2, 48, 64), np.float32)
     share[0, :, :32], share[1, :, 32:] = 1, 1
     found = tensors(np.zeros((48, 64), np.float32), {"one": share, "none": np.ones((1, 48, 64), np.float32)})
@@ -116,15 +107,12 @@ def test_step_of_shares_has_a_tensor_across_it_at_every_width():
         assert down.max() < 1e-6
 
 
-def test_change_of_shares_is_measured_between_their_square_roots():
+def test_strength_is_that_of_square_roots_in_every_direction():
     share = np.zeros((1, 3, 200), np.float32)
     share[0] = np.linspace(0.2, 0.4, 200)
     found = tensors(np.zeros((3, 200), np.float32), {"one": share})[1, 0, 1, 20:-20]
     slope = 0.2 / 199
     assert found == pytest.approx(slope**2 / (4 * (share[0, 1, 20:-20] + EMPTY)), rel=1e-3)
-
-
-def test_strength_is_the_root_of_the_steepest_change_whatever_its_direction():
     angles = np.linspace(0, np.pi, 7)
     steep, flat = 0.09, 0.01
     cosine, sine = np.cos(angles), np.sin(angles)
@@ -139,9 +127,6 @@ def test_strength_is_the_root_of_the_steepest_change_whatever_its_direction():
     both = np.concatenate([tensor, 16 * tensor])
     assert weighted_strength(both, np.float32([1, 0])) == pytest.approx(np.full((1, 7), 0.3), rel=1e-5)
     assert weighted_strength(both, np.float32([1, 2])) == pytest.approx(np.full((1, 7), 0.3 + 2 * 0.6), rel=1e-5)
-
-
-def test_borders_that_are_seen_are_as_strong_in_every_direction():
     seen = np.full((6, 8), 0.7, np.float32)
     both, flat = border_tensors(seen), np.zeros((8, 6, 8), np.float32)
     weights = np.float32([2, 3])

@@ -21,10 +21,8 @@ class TestHeights:
         assert framed is not None
         return framed
 
-    def test_crop_counts_from_the_upper_left_corner(self):
+    def test_crop_counts_from_the_upper_left_corner_and_rotate_turns_clockwise_after(self):
         assert self.of(crop=[1, 0, 3, 2]).tolist() == [[1, 2, 3], [5, 6, 7]]
-
-    def test_rotate_turns_clockwise_after_cropping(self):
         assert self.of(rotate=90).tolist() == [[8, 4, 0], [9, 5, 1], [10, 6, 2], [11, 7, 3]]
         assert self.of(rotate=270).tolist() == [[3, 7, 11], [2, 6, 10], [1, 5, 9], [0, 4, 8]]
         assert self.of(crop=[1, 0, 2, 1], rotate=180).tolist() == [[2, 1]]
@@ -37,14 +35,12 @@ class TestHeights:
         assert np.isnan(framed).tolist() == (torn == -9999).tolist()
         assert np.nanmin(framed) == 0
 
-    def test_clip_cuts_spikes(self):
+    def test_heights_are_clipped_and_unknown_where_transparent(self):
         spiked = np.linspace(0, 1, 1000).reshape(20, 50)
         spiked[3, 3] = 1e6
         framed = self.of(spiked, clip=[1, 99])
         assert framed.max() == pytest.approx(0.99, abs=0.005)
         assert framed.min() == pytest.approx(0.01, abs=0.005)
-
-    def test_transparent_heights_are_unknown(self):
         grey = np.repeat(HEIGHTS.astype(np.uint8)[..., None], 4, axis=2)
         grey[..., 3] = 255
         grey[0, 3, 3] = 0
@@ -57,14 +53,12 @@ class TestPhotos:
         assert views is not None
         return views.left
 
-    def test_labels_and_disparity_are_cropped_and_rotated_with_the_photo(self):
+    def test_photo_is_inverted_and_clipped_with_labels_and_disparity(self):
         labels = np.uint8([[0, 0, 0, 0], [0, 0, 7, 9], [0, 0, 7, 9]])
         scene = Scene.photo(PHOTO, segments=labels, disparity=HEIGHTS, crop=[2, 1, 2, 2], rotate=90)
         assert scene.segments is not None and scene.disparity is not None
         assert scene.segments.labels.tolist() == [[1, 1], [2, 2]]
         assert scene.disparity.disparity_px.tolist() == [[10, 6], [11, 7]]
-
-    def test_invert_exchanges_light_and_dark(self):
         for dark, light, white in ((np.uint8(200), np.uint8(55), 255), (np.float32(0.25), np.float32(0.75), 1)):
             photo = np.array([[0, dark, white]], dark.dtype)
             np.testing.assert_array_equal(
@@ -72,8 +66,6 @@ class TestPhotos:
             )
         assert self.of(np.uint16([[0, 65535]]), invert=True).tolist() == [[65535, 0]]
         assert self.of(np.array([[True, False]]), invert=True).tolist() == [[False, True]]
-
-    def test_clip_limits_brightness_to_percentiles(self):
         photo = np.linspace(50, 150, 1000).astype(np.uint8).reshape(20, 50)
         photo[0, 0], photo[5, 5] = 0, 255
         framed = self.of(photo, clip=[5, 95])
@@ -109,7 +101,7 @@ class TestTransparency:
         [why] = [outcome.why for outcome in pipeline.outcomes if outcome.product == "views"]
         assert why.endswith(f"{100 * hidden.mean():.0f} % of the array given as photo is transparent: flat ground")
 
-    def test_cache_key_depends_on_the_outline(self):
+    def test_outline_is_in_the_cache_key_and_an_empty_one_refused(self):
         photos = [np.full((8, 8, 4), 0.5), np.full((8, 8, 4), 0.5)]
         for photo, (clear, torn) in zip(photos, [(0, 1), (1, 0)], strict=True):
             photo[4:, :, :3] = 0.2
@@ -119,8 +111,6 @@ class TestTransparency:
         ]
         assert pipelines[0].scene.views.digest() == pipelines[1].scene.views.digest()
         assert pipelines[0].engine.key("segments") != pipelines[1].engine.key("segments")
-
-    def test_transparent_picture_is_refused(self):
         with pytest.raises(PictureError, match="all of the picture is transparent; there is nothing to feel"):
             Scene.photo(np.zeros((3, 3, 4), np.uint8))
 

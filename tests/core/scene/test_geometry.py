@@ -46,9 +46,6 @@ def test_depth_is_focal_length_times_baseline_over_disparity():
     assert depth_m.tolist() == [[4, 8, 16]]
     assert disparity_to_depth(np.float32([[50]]), 1000, 0.2, offset_px=50).tolist() == [[2]]
     assert np.isnan(disparity_to_depth(np.float32([[NAN, 0, -3]]), 1000, 0.2)).all()
-
-
-def test_fill_rows_without_known_values_raises():
     with pytest.raises(GeometryError, match="every value is unknown"):
         fill_rows(np.full((2, 3), NAN, np.float32))
 
@@ -78,36 +75,25 @@ def test_relief_without_calibration_is_linear_in_disparity():
     assert relief.extent_m == (0.08, 0.02)
 
 
-def test_relief_with_calibration_is_linear_in_depth():
+def test_relief_with_calibration_is_linear_in_depth_unless_disparity_is_relative():
     """At 1, 2 and 4 m, where d + offset is 10, 5 and 2.5 px."""
     for offset_px in (0, 30):
         camera = Calibration(focal_px=100, baseline_m=0.1, offset_px=offset_px)
         disparity_px = np.float32([[10, 5, 2.5]] * 500) - np.float32(offset_px)
         relief = make_relief(DisparityMap(disparity_px), camera, 0.06, 0.03)
         np.testing.assert_allclose(relief.height_m, [[0.03, 0.02, 0]] * 500, atol=1e-7)
-
-
-def test_relief_of_relative_disparity_ignores_the_calibration():
     camera = Calibration(focal_px=100, baseline_m=0.1)
     relief = make_relief(disparity(*[[0, 0.5, 1]] * 500, unit="relative"), camera, 0.06, 0.02)
     np.testing.assert_allclose(relief.height_m, [[0, 0.01, 0.02]] * 500, atol=1e-8)
-
-
-def test_disparity_at_or_beyond_infinity_is_far_and_not_a_hole():
-    camera = Calibration(focal_px=100, baseline_m=0.1)
     relief = make_relief(disparity(*[[5, 10, 0, -3, 10]] * 500), camera, 0.06, 0.02)
     np.testing.assert_allclose(relief.height_m, [[0, 0.02, 0, 0, 0.02]] * 500, atol=1e-8)
 
 
-def test_range_clips_half_a_percent_at_each_end():
+def test_range_clips_half_a_percent_at_each_end_and_ignores_holes():
     """Of 2001 equally spaced values the ten least are as low as the next, and the ten greatest as high."""
     values = np.random.default_rng(3).permutation(2001).astype(np.float32)
     heights = make_relief(DisparityMap(values[None]), None, 0.1, 0.0198).height_m[0]
     np.testing.assert_allclose(heights, np.clip(values - 10, 0, 1980) * 1e-5, atol=1e-9)
-
-
-def test_range_ignores_holes():
-    """Nor what they are filled with: 2001 values in one row, and more rows of the least alone."""
     values = np.full((3, 2001), NAN, np.float32)
     values[0] = np.arange(2001)
     values[1:, 0] = 0
@@ -168,19 +154,13 @@ def test_height_map_runs_from_the_base_to_the_relief(dtype):
     assert relief.extent_m == (0.1, 0.1)
 
 
-def test_height_map_holes_are_filled_or_cut():
+def test_height_map_is_scaled_between_its_known_heights_without_clipping():
     heights = np.array([[3, NAN, 2, np.inf, 1]])
     assert scale_heights(heights, 0.1, 1.0).height_m.tolist() == [[1, 0.5, 0.5, 0, 0]]
     assert scale_heights(heights, 0.1, 1.0, "cut").height_m.tolist() == [[1, 0, 0.5, 0, 0]]
-
-
-def test_height_map_peaks_are_not_clipped():
     heights = np.zeros((100, 100))
     heights[3, 4], heights[5, 6] = 1, 2
     assert scale_heights(heights, 0.1, 0.02).height_m[3, 4] == np.float32(0.01)
-
-
-def test_height_map_without_known_heights_raises():
     with pytest.raises(GeometryError, match="holds only NaN or infinity"):
         scale_heights(np.full((3, 3), NAN), 0.1, 0.02)
 
@@ -197,15 +177,12 @@ def test_any_height_map_gives_heights_in_range_or_one_error(heights):
     assert relief.height_m.max() <= np.float32(0.02)
 
 
-def test_flat_relief_has_square_cells():
+def test_flat_relief_has_square_cells_and_corners_are_those_of_the_workspace():
     relief = flat_relief((2, 4), 0.08)
     assert not relief.height_m.any()
     assert relief.pitch_m == (0.02, 0.02)
     with pytest.raises(GeometryError):
         flat_relief((0, 0), 0.08)
-
-
-def test_picture_corners_are_workspace_corners():
     shape, extent = (30, 40), (0.08, 0.06)
     assert picture_to_workspace(-0.5, -0.5, shape, extent) == pytest.approx((-0.04, 0.03))
     assert picture_to_workspace(39.5, 29.5, shape, extent) == pytest.approx((0.04, -0.03))

@@ -55,19 +55,14 @@ class TestCells:
         width_m, length_m = relief_of(Scene.heights(path), width_m=0.08).extent_m
         assert width_m / length_m == pytest.approx(COLUMNS / ROWS * math.cos(math.radians(latitude)))
 
-    def test_metres_of_web_maps_are_those_of_the_equator(self, tmp_path: Path):
+    def test_cells_are_metres_of_the_ground_in_web_maps_feet_and_matrices(self, tmp_path: Path):
         """At 60 degrees north, northing 8399737.9 m, a web map is drawn twice as large as the ground is."""
         path = geotiff(tmp_path / "tile.tif", 100, 100, [1024, 0, 1, 1], [3072, 0, 1, 3857], top=8399737.9 + 1600)
         assert read_ground(path).cell_m == pytest.approx((50, 50), rel=1e-4)
-
-    def test_feet_on_the_ground_and_of_height_are_metres(self, tmp_path: Path):
         ground = read_ground(geotiff(tmp_path / "dem.tif", 100, 100, FEET, VERTICAL_FEET))
         assert ground.cell_m == pytest.approx((30.48, 30.48)) and ground.unit_m == 0.3048
         ground = read_ground(geotiff(tmp_path / "dem.tif", 100, 100, METRES))
         assert ground.cell_m == (100, 100) and ground.unit_m == 1
-
-    def test_matrix_in_place_of_a_scale_gives_the_lengths_of_its_steps(self, tmp_path: Path):
-        """A map that is turned by a right angle: a column goes 5 m down, a row goes 10 m to the right."""
         matrix = (0.0, 10, 0, 1000, -5, 0, 0, 2000, 0, 0, 0, 0, 0, 0, 0, 1)
         tifffile.imwrite(tmp_path / "dem.tif", HEIGHTS, extratags=[(MATRIX, "d", 16, matrix, True)])
         assert read_ground(tmp_path / "dem.tif").cell_m == pytest.approx((5, 10))
@@ -138,14 +133,12 @@ class TestCells:
 
 
 class TestScale:
-    def test_width_and_heights_are_those_of_the_ground(self, tmp_path: Path):
+    def test_scale_gives_width_and_heights_of_the_ground(self, tmp_path: Path):
         """240 x 320 m with 100 m of height, at 1:2000: 120 x 160 mm, 50 mm high."""
         scene = Scene.heights(geotiff(tmp_path / "dem.tif", 5, 10))
         relief = relief_of(scene, scale="1:2000")
         assert relief.extent_m == pytest.approx((0.12, 0.16))
         np.testing.assert_allclose(relief.height_m, (HEIGHTS - 100) / 2000, atol=1e-8)
-
-    def test_exaggeration_and_feet_raise_the_heights_alone(self, tmp_path: Path):
         scene = Scene.heights(geotiff(tmp_path / "dem.tif", 5, 10, METRES, VERTICAL_FEET))
         relief = relief_of(scene, scale="1:2000", exaggeration=2)
         assert relief.extent_m == pytest.approx((0.12, 0.16))
@@ -158,11 +151,9 @@ class TestScale:
         np.testing.assert_allclose(np.concatenate([half.height_m for half in halves]), whole.height_m, atol=1e-8)
         assert whole.extent_m[0] == halves[0].extent_m[0] and whole.height_m.min() == pytest.approx(0.003)
 
-    def test_range_without_a_scale_spans_the_relief(self):
+    def test_range_without_a_scale_spans_the_relief_and_heights_beyond_are_told(self):
         relief = relief_of(Scene.heights(HEIGHTS), relief_m=0.01, low_m=0, high_m=400)
         np.testing.assert_allclose(relief.height_m, HEIGHTS / 400 * 0.01, atol=1e-8)
-
-    def test_heights_beyond_the_range_are_level_and_told(self):
         pipeline = Pipeline(Scene.heights(HEIGHTS), workspace=Workspace(low_m=125, high_m=150), cached=False)
         assert np.mean(pipeline.relief.height_m == 0) == pytest.approx(0.25, abs=0.01)
         assert "75 % of the heights are beyond low_m or high_m" in next(

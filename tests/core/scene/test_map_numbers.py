@@ -1,4 +1,4 @@
-"""If one of these fails, marks for no data flatten a height map, or small differences of large heights are lost."""
+"""If one of these fails, numbers of a map or a dark picture lose their small differences, or holes are heights."""
 
 import re
 
@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
-from tangible_core import Pipeline, Scene, Workspace
+from tangible_core import DisparityMap, Pipeline, Scene, Workspace
+from tangible_core.scene.geometry import nearness_range
 
 SLOPE = np.linspace(100, 200, 600).reshape(20, 30)
 SIZE = Workspace(width_m=0.05, relief_m=0.01)
@@ -77,12 +78,10 @@ class TestUndeclaredNoData:
 
 
 class TestOffsets:
-    def test_small_differences_of_large_numbers_are_kept(self):
+    def test_offset_keeps_small_differences_and_what_is_unknown(self):
         """The radius of Mars in metres: 32 bits have steps of 256 m there."""
         relief_mm = felt_mm(Scene.heights(3396190000.0 + 30 * SLOPE))
         np.testing.assert_allclose(relief_mm, (SLOPE - 100) / 10, atol=1e-5)
-
-    def test_unknown_and_negative_numbers_stay_what_they_are(self):
         heights = -3396190000.0 + SLOPE
         heights[0, 0], heights[5, 5] = np.nan, -9999
         scene = Scene.heights(heights, nodata=-9999)
@@ -97,3 +96,76 @@ class TestOffsets:
             scene = Scene.heights(values)
             assert scene.offset == 0
             np.testing.assert_array_equal(scene.height, values.astype(np.float32), strict=True)
+
+
+TONES = np.random.default_rng(0).random((20, 30))
+
+
+class TestUsedRange:
+    @pytest.mark.parametrize(
+        ("dtype", "low", "high", "white"),
+        [
+            (np.uint16, 6800, 7800, 65535),
+            (np.uint16, 0, 4095, 65535),
+            (np.uint16, 0, 16383, 65535),
+            (np.uint16, 7, 8, 65535),
+            (np.float32, 20, 37, 255),
+            (np.float64, 0.5, 0.51, 1),
+            (np.int32, 300, 900, 65535),
+        ],
+    )
+    def test_few_values_are_stretched_in_proportion_and_told(self, dtype, low: float, high: float, white: float):
+        values = (low + (high - low) * TONES).astype(dtype)
+        values.flat[:2] = low, high
+        scene = Scene.photo(values)
+        share = (values.astype(np.float64) - low) / (high - low)
+        step = 0.5 if scene.views.left.dtype.kind == "u" else white * 1e-5
+        np.testing.assert_allclose(scene.views.left, share * white, atol=step)
+        [note] = scene.notes
+        assert scene.warnings == (note,)
+        assert "of its range" in note and note.endswith("it is stretched to all of it") and f"of {white}" in note
+
+    @pytest.mark.parametrize(
+        "values",
+        [
+            *(np.uint16(30000 * TONES), np.uint8(20 * TONES), TONES > 0.5, np.float32(TONES), np.float32(0.3 * TONES)),
+            *(np.full((4, 5), 700, np.uint16), np.full((1, 1), 3, np.uint16), np.full((4, 5), 0.5)),
+        ],
+    )
+    def test_pictures_that_use_their_range_or_have_one_shade_stay_the_same_to_the_bit(self, values: np.ndarray):
+        scene = Scene.photo(values)
+        np.testing.assert_array_equal(scene.views.left, values, strict=True)
+        assert not scene.notes
+
+    def test_views_are_stretched_alike_by_their_opaque_known_pixels(self):
+        left, right = np.uint16(6800 + 1000 * TONES), np.uint16(7000 + 1000 * TONES)
+        views = Scene.pair(left, right).views
+        low, high = float(left.min()), float(right.max())
+        for view, values in ((views.left, left), (views.right, right)):
+            np.testing.assert_allclose(view, (values - low) / (high - low) * 65535, atol=0.5)
+        wide = np.uint16(60000 * TONES)
+        np.testing.assert_array_equal(Scene.pair(left, wide).views.left, left)
+        colours = np.uint16(6800 + 1000 * np.repeat(TONES[..., None], 4, 2))
+        colours[..., 3] = 65535
+        colours[0, 0] = 0
+        scene = Scene.photo(colours)
+        assert scene.views.left.min() == 0 and scene.views.left.max() == 65535
+        assert scene.views.left[5, 5, 0] == pytest.approx((colours[5, 5, 0] - 6800) * 65.7, rel=0.02)
+        hole = np.float32(20 + 17 * TONES)
+        hole[0, 0] = np.nan
+        assert Scene.photo(hole, non_finite="mask").views.left.max() == 255
+
+
+class TestFlat:
+    def test_map_with_one_pixel_that_differs_is_not_flat(self):
+        """Nearly all of a photograph's wall is at one distance: percentiles alone would see nothing else."""
+        values = np.full((40, 50), 5, np.float32)
+        values[3, 4] = 9
+        assert tuple(nearness_range(DisparityMap(values), None)) == (5, 9)
+
+    @pytest.mark.parametrize("heights", [np.full((4, 5), 7.0), np.zeros((3, 3), np.uint8), np.ones((1, 1))])
+    def test_flat_map_warns_with_its_relief(self, heights: np.ndarray):
+        pipeline = Pipeline(Scene.heights(heights), cached=False)
+        assert pipeline.relief.is_flat
+        [note] = next(one.notes for one in pipeline.outcomes if one.product == "relief")
+        assert note.kind == "warning" and "all heights are equal; check the file" in note.text

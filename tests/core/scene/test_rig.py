@@ -398,7 +398,7 @@ class TestFoundRig:
         (tmp_path / "calib.txt").write_text(MIDDLEBURY)
         return tmp_path
 
-    def test_run_says_that_there_is_a_rig_and_new_writes_it(self, folder: Path):
+    def test_run_says_that_there_is_a_rig_and_questions_its_baseline(self, folder: Path):
         (folder / "p.yaml").write_text("scene: {left: left.png, right: right.png}\n")
         scene = load_pipeline(folder / "p.yaml").scene
         assert scene.notes == ("calib.txt states the cameras of the pair; write `rig: calib.txt` to use it",)
@@ -407,8 +407,6 @@ class TestFoundRig:
         assert "\nscene: {left: left.png, right: right.png, rig: calib.txt}\n" in made.text
         assert made.scene.views is not None and made.scene.views.calibration is not None
         assert made.scene.notes == ()
-
-    def test_baseline_of_sixty_metres_works_and_is_questioned(self, folder: Path):
         paths = {"left": folder / "left.png", "right": folder / "right.png"}
         write_opencv(folder / "rig.yml", rig((0, 0, 0), (-60.0, 0, 0)))
         for options, cure in (

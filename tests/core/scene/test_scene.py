@@ -79,7 +79,7 @@ def test_unknown_scene_name_lists_the_builtin_scenes(name, hint):
     assert hint in str(caught.value)
 
 
-def test_relative_paths_start_at_the_folder(folder):
+def test_paths_of_a_photo_its_disparity_and_segments_start_at_the_folder(folder):
     files = SceneFiles(left="left.png", right=folder / "right.png")
     scene = Scene.read(files, folder)
     np.testing.assert_array_equal(scene.views.left, PICTURE)
@@ -87,9 +87,6 @@ def test_relative_paths_start_at_the_folder(folder):
     assert scene.name == "left.png"
     assert scene.views.calibration is None
     assert scene.truth is None
-
-
-def test_photo_brings_its_disparity_and_segments(folder):
     write_png(folder / "labels.png", np.repeat(np.uint8([[0, 0, 0, 9, 9, 9]]), 4, axis=0))
     files = SceneFiles(photo="photo.png", disparity="map.npy", segments="labels.png", truth="map.npy")
     scene = Scene.read(files, folder)
@@ -109,9 +106,6 @@ def test_height_map_brings_its_relief_and_no_views(folder):
     assert isinstance(relief, Relief)
     np.testing.assert_allclose(relief.height_m, np.load(folder / "map.npy") / 23 * 0.02, rtol=1e-6)
     assert relief.extent_m == pytest.approx((0.08, 0.08 * 4 / 6))
-
-
-def test_height_map_may_state_its_relief(folder):
     scene = Scene.read(SceneFiles(height="map.npy", relief_m=0.005), folder)
     assert scene.brings(**SIZE)["relief"].height_m.max() == np.float32(0.005)
 
@@ -151,6 +145,3 @@ def test_truth_is_decoded_by_its_scale(as_file: bool, tmp_path: Path):
         Scene.pair(left=view, right=view, truth=grey_of, truth_scale="sintel")
     with pytest.raises(ConfigError, match="truth_scale needs truth"):
         Scene.pair(left=view, right=view, truth_scale=4)
-
-
-# The constructors

@@ -1,11 +1,13 @@
-"""If one of these fails, a pair whose views are exchanged is felt inside out."""
+"""If one of these fails, a pair that is exchanged or hardly matches is felt, and nobody is warned."""
 
 import numpy as np
 import pytest
 
-from tangible_core.data import DisparityMap
+from tangible_core import Pipeline, Scene
+from tangible_core.data import DisparityMap, Views
+from tangible_core.plugins import DepthEstimator
 from tangible_core.scene import pair_checks
-from tangible_core.scene.pair_checks import correct_exchanged, view_order
+from tangible_core.scene.pair_checks import correct_exchanged, few_matches, identical_views, view_order
 
 SHAPE = 120, 200
 BOX = slice(80, 130)
@@ -104,3 +106,45 @@ def test_strips_vote_by_the_clearer_of_their_edges(rows: list[tuple], in_order: 
     for first in (0, 16):
         assert pair_checks._votes(values[:, first:], grey[:, first:]) == (in_order, exchanged)
     assert pair_checks._votes(values[:, 17:], grey[:, 17:]) == (0, 0), "too near to the rim"
+
+
+SMALL_SHAPE = 10, 20
+
+
+def matched(share: float, **kind: str) -> DisparityMap:
+    """Return a map of which this share, from the top, was matched."""
+    confidence = np.full(SMALL_SHAPE, 0.1, np.float32)
+    confidence[: round(share * SMALL_SHAPE[0])] = 0.9
+    return DisparityMap(np.full(SMALL_SHAPE, 5, np.float32), confidence, **kind)  # pyright: ignore[reportArgumentType]
+
+
+def test_few_matches_warns_where_most_known_pixels_are_filled_in():
+    assert "found for 20% of the left one" in few_matches(matched(0.2))
+    assert (few_matches(matched(0.3)), few_matches(matched(0.2, unit="relative"))) == ("", "")
+    known = np.zeros(SMALL_SHAPE, bool)
+    assert few_matches(matched(0.2), known) == ""
+    known[:4] = True
+    assert few_matches(matched(0.2), known) == ""
+    known[:] = True
+    assert few_matches(matched(0.2), known)
+
+
+def test_identical_views_are_reported():
+    left, right = np.random.default_rng(1).random((2, *SMALL_SHAPE))
+    twice = Scene.pair(left=left, right=left.copy()).views
+    two = Scene.pair(left, right).views
+    assert twice is not None and two is not None
+    assert "one and the same picture: " in identical_views(twice, matched(1))
+    assert identical_views(two, matched(1)) == ""
+    assert identical_views(twice, matched(1, unit="relative")) == ""
+    same = Pipeline(Scene.pair(left=left, right=left), depth=Guesses(), cached=False)
+    same.make("disparity")
+    [doubt] = same.outcomes.doubts
+    assert doubt.text.startswith("left and right are one and the same picture: ")
+
+
+class Guesses(DepthEstimator):
+    """A method that matches nothing."""
+
+    def estimate(self, views: Views) -> DisparityMap:
+        return DisparityMap(np.ones(views.shape, np.float32), np.zeros(views.shape, np.float32))

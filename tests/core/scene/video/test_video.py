@@ -85,7 +85,7 @@ class TestScene:
         assert first.left.shape == (9, 10, 3) and first.calibration.focal_px == 100
         assert (first.left.max(), first.right.max()) == (20, 180) and second.left.max() == 40
 
-    def test_rig_rectifies_every_frame_like_the_first(self, tmp_path: Path):
+    def test_frames_of_a_film_are_rectified_like_the_first_in_any_depth(self, tmp_path: Path):
         lens = Camera(np.array([[100.0, 0, 40], [0, 100, 30], [0, 0, 1]]), np.array([-0.2, 0.05, 0, 0]))
         rig = StereoRig(lens, lens, np.eye(3), np.array([-0.1, 0.01, 0.0]))
         rng = np.random.default_rng(0)
@@ -99,8 +99,6 @@ class TestScene:
         assert first.calibration.focal_px == scene.views.calibration.focal_px and first.calibration.baseline_m > 0
         assert second.left.shape == first.left.shape
         assert np.any(second.left != first.left)
-
-    def test_frames_of_other_depth_and_channels_show_the_same(self, tmp_path: Path):
         shades = np.arange(48, dtype=np.uint8).reshape(6, 8) * 5
         colours = np.dstack([shades] * 3)
         Image.fromarray(colours).save(tmp_path / "0.png")
@@ -116,20 +114,18 @@ class TestScene:
 
 
 class TestFiles:
-    def test_repeating_file_gives_frames_in_order_and_again(self, film: Path):
+    def test_file_gives_frames_in_order_and_repeats_where_asked(self, film: Path):
         with Scene.video(film).frames.open() as frames:
             read = [frames.next() for _ in range(23)]
         assert [each.number for each in read] == list(range(23))
         assert [shown(each.views) for each in read] == [number % 10 for number in range(23)]
         np.testing.assert_allclose([each.time_s for each in read], np.arange(23) / 25, atol=1e-9)
-
-    def test_file_without_repeat_ends(self, film: Path):
         with Scene.video(film, repeat=False).frames.open() as frames:
             assert frames.at(60).number == 9, "the last frame is due for ever, and is not lost"
             assert frames.at_end is False or frames.at(61) is None
             assert frames.next() is None and frames.at(62) is None and frames.at_end
 
-    def test_latest_due_frame_is_returned_once(self, film: Path):
+    def test_frames_follow_time_stamps_unless_a_rate_is_requested(self, film: Path):
         with Scene.video(film).frames.open() as frames:
             assert frames.at(0).number == 0
             assert frames.at(0.03) is None
@@ -137,8 +133,6 @@ class TestFiles:
             assert (latest.number, shown(latest.views), frames.skipped) == (4, 4, 3)
             assert frames.next().number == 5, "nothing beyond it was read"
             assert shown(frames.at(0.53).views) == 3, "the fourth of the second round"
-
-    def test_requested_rate_replaces_the_time_stamps(self, film: Path):
         video = Scene.video(film, fps=5).frames
         with video.open() as frames:
             assert video.fps == frames.fps == 5
@@ -172,15 +166,13 @@ class TestFiles:
             assert frames.at(0.8) is None
             assert frames.at(0.8 + 1.01 / 30).number == first.number + 1
 
-    def test_frame_of_another_size_raises_once(self, monkeypatch: pytest.MonkeyPatch):
+    def test_frames_that_cannot_be_shown_raise_once(self, monkeypatch: pytest.MonkeyPatch):
         captures = [Played([grey(0), grey(1), grey(2, (48, 32)), grey(3)]) for _ in range(2)]
         with play(monkeypatch, *captures).frames.open() as frames:
             frames.next(), frames.next()
             with pytest.raises(PictureError, match="is 32 x 48 and the first frame 32 x 24"):
                 frames.next()
             assert shown(frames.next().views) == 3, "the next call goes on behind it"
-
-    def test_damaged_frame_raises_once_and_is_left_out(self, monkeypatch: pytest.MonkeyPatch):
         captures = [Played([grey(0), None, None, grey(3)]) for _ in range(2)]
         with play(monkeypatch, *captures).frames.open() as frames:
             assert frames.next().number == 0

@@ -86,16 +86,13 @@ def test_camera_keeps_the_newest_picture_only():
     assert frames.at_end and frames.next() is None and frames.at(0) is None
 
 
-def test_scene_of_a_camera_shows_its_picture(monkeypatch: pytest.MonkeyPatch):
+def test_scene_of_a_camera_shows_its_picture_if_there_is_one(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(video_capture, "open_camera", opening(Played([grey(4)] * 99), Played([grey(7)] * 99)))
     scene = Scene.video(1)
     assert scene.name == "camera 1" and shown(scene.views) == 4
     assert scene.notes == ("camera 1 is a video, of which this is one picture; `tangible feel` plays it",)
     with scene.frames.open() as frames:
         assert shown(frames.next().views) == 7
-
-
-def test_camera_without_pictures_raises(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(video_camera, "FIRST_S", 0.05)
     stuck = Event()
     with pytest.raises(PictureError, match="camera 0: delivers no picture; check its cable"):
@@ -122,7 +119,7 @@ def shown_number(picture) -> int:
     return round(float(picture.mean()) / 8)
 
 
-def test_camera_closes_within_a_second_while_its_driver_hangs():
+def test_camera_closes_or_is_interrupted_while_its_driver_hangs():
     camera = Stepped(1)
     camera.may.release()
     frames = frames_of(camera)
@@ -133,9 +130,6 @@ def test_camera_closes_within_a_second_while_its_driver_hangs():
     assert not camera.released.is_set(), "not while the driver has it"
     camera.may.release(9)
     until(camera.released.is_set)
-
-
-def test_ctrl_c_interrupts_a_blocked_camera():
     stuck = Event()
     timer = threading.Timer(0.1, signal.raise_signal, (signal.SIGINT,))
     began_s = monotonic()

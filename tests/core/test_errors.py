@@ -28,36 +28,24 @@ def test_complaint_of_any_text_is_one_printable_line(complaints: list[str]):
     assert len(lines) == min(max(1, len(complaints)), MAX_LINES + (len(complaints) > MAX_LINES))
 
 
-def test_complaint_of_plain_text_is_unchanged():
+def test_message_has_plain_text_or_the_first_of_many_complaints():
     assert str(ConfigError("a.yaml:1:1: wörong", "a.yaml:2:1: again")) == "a.yaml:1:1: wörong\na.yaml:2:1: again"
-
-
-def test_message_of_many_complaints_shows_the_first_and_counts_the_rest():
     lines = str(ConfigError(*map(str, range(MAX_LINES + 7)))).splitlines()
     assert lines == [*map(str, range(MAX_LINES)), "and 7 more"]
 
 
-def test_control_characters_are_escaped():
+def test_text_is_escaped_and_keeps_its_length_and_both_ends():
     assert str(TangibleError("a\x1b[31m\r\nb\u2028\u202e\udcff")) == r"a\x1b[31m\r\nb\u2028\u202e\udcff"
-
-
-def test_long_line_keeps_both_ends():
     line = str(TangibleError("the place: " + "x" * 10_000 + "; the cure"))
     assert len(line) == MAX_IN_LINE
     assert line.startswith("the place: xxx")
     assert line.endswith("xxx; the cure")
-
-
-def test_escaped_text_keeps_the_maximum_length():
     assert len(shown("\U000e0001" * 70)) == MAX_QUOTED
 
 
-def test_pickled_error_has_the_same_message():
+def test_pickled_errors_keep_their_message_and_places():
     error = ConfigError("a\x1b", "b")
     assert str(pickle.loads(pickle.dumps(error))) == str(error)
-
-
-def test_pickled_config_error_keeps_printable_complaints_with_places():
     error = ConfigError("p.yaml:3:1: a\x1b", complaints=[Complaint(("render", "use"), "a\x1b" * 999, 3, 1)])
     (complaint,) = pickle.loads(pickle.dumps(error)).complaints
     assert (complaint.location, complaint.line, complaint.column) == (("render", "use"), 3, 1)
@@ -73,7 +61,7 @@ def test_quoted_value_of_any_size_is_short(value: object):
     assert len(quoted(value)) <= MAX_QUOTED
 
 
-def test_quoted_values_of_a_parser_look_like_plain_ones():
+def test_long_words_and_quoted_values_are_told_in_short():
     from ruamel.yaml import YAML
 
     tree = YAML(typ="rt").load("{a: [1, 2.5, 'x', 0x1F], b: {c: yes}}")
@@ -81,14 +69,8 @@ def test_quoted_values_of_a_parser_look_like_plain_ones():
     many = YAML(typ="rt").load("".join(f"k{number}: 1\n" for number in range(9)))
     assert quoted(many) == "{'k0': 1, 'k1': 1, 'k2': 1, 'k3': 1, ...}"
     assert quoted(YAML(typ="rt").load(f"[{', '.join('x' * 500)}]")) == "['x', 'x', 'x', 'x', 'x', 'x', ...]"
-
-
-def test_long_word_gets_no_hint():
     assert did_you_mean("x" * 1000, ["x" * 1000]) == ""
     assert "'dep\\x1bth'" in did_you_mean("depth", ["dep\x1bth"])
-
-
-def test_unknown_method_of_a_long_name_gives_a_short_message():
     assert len(str(UnknownMethod("depth", "x" * 10_000, ["zncc"]))) < 200
 
 

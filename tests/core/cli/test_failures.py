@@ -165,14 +165,9 @@ def test_fault_of_the_program_gives_one_line_and_code_1(folder: Path, log_dir: P
     assert "Traceback" in (log_dir / "failures.log").read_text()
 
 
-def test_failure_log_that_cannot_be_written_is_mentioned(folder: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setenv("TANGIBLE_LOG_DIR", str(folder / "p.yaml"))
-    assert failure(run(folder, "p.yaml")).endswith("--log-level debug shows it")
-    logged = tangible("run", "p.yaml", "--log-level", "tangible_core.plugins.failures=debug", cwd=folder)
-    assert "Traceback" in logged.stderr
-
-
-def test_failure_log_is_bounded_and_the_users_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_failure_log_is_bounded_and_said_where_it_cannot_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, folder: Path
+):
     monkeypatch.setattr("tangible_core.runtime.failure_log.MAX_BYTES", 10)
     monkeypatch.setenv("TANGIBLE_LOG_DIR", str(tmp_path / "logs"))
     for secret in "abc":
@@ -180,6 +175,10 @@ def test_failure_log_is_bounded_and_the_users_alone(tmp_path: Path, monkeypatch:
     assert [stat.S_IMODE(each.stat().st_mode) for each in (path.parent, path)] == [0o700, 0o600]
     assert sorted(each.name for each in path.parent.iterdir()) == ["failures.log", "failures.old.log"]
     assert all(each.read_text().count("ValueError") == 1 for each in path.parent.iterdir())
+    monkeypatch.setenv("TANGIBLE_LOG_DIR", str(folder / "p.yaml"))
+    assert failure(run(folder, "p.yaml")).endswith("--log-level debug shows it")
+    logged = tangible("run", "p.yaml", "--log-level", "tangible_core.plugins.failures=debug", cwd=folder)
+    assert "Traceback" in logged.stderr
 
 
 class TestHomes:
@@ -193,7 +192,7 @@ class TestHomes:
         monkeypatch.setenv("HOME", str(home))
         return home
 
-    def test_home_in_a_file_and_on_the_command_line_is_expanded(self, folder: Path, home: Path):
+    def test_home_is_expanded_and_that_of_an_unknown_user_refused(self, folder: Path, home: Path):
         text = "scene: {height: ~/a.npy}\nwant: surface\n"
         home.joinpath("p.yaml").write_text(text)
         done = tangible("run", "~/p.yaml", "--out=~/out", cwd=folder)
@@ -204,8 +203,6 @@ class TestHomes:
         assert failure(tangible("materials", "--library=~/mine.yaml", cwd=folder)).startswith(f"{library}: there is no")
         done = tangible("plan", "~/p.yaml", "--set", "scene={photo: ~/a.npy}", "--set", "depth=depth", cwd=folder)
         assert done.returncode == 0, done.stderr
-
-    def test_home_of_an_unknown_user_is_refused(self, folder: Path):
         message = "~nobody-here/a.npy: no user here is named 'nobody-here', and `~` names a home"
         for words in (("plan", "~nobody-here/a.npy"), ("plan", "p.yaml", "--set", "scene.photo=~nobody-here/a.npy")):
             assert failure(tangible(*words, cwd=folder)).endswith(message)

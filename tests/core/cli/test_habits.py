@@ -1,4 +1,4 @@
-"""Habits of command lines. Otherwise a mistake could not be mended, or a command would print or delete too much."""
+"""The habits of a command line, and its help. Otherwise people and scripts would be surprised, or wait for it."""
 
 import io
 import json
@@ -89,35 +89,31 @@ def test_mistake_on_the_command_line_is_refused_with_the_cure(words: str, said: 
     assert ("a key of the pipeline file" in done.stderr) == (said.startswith("`") and "--set" in said)
 
 
-def test_surface_wider_than_a_table_is_asked_about(folder: Path):
-    for width, asked in (("8", True), ("0.08", False)):
-        done = tangible("plan", "p.yaml", "--set", f"workspace.width_m={width}", cwd=folder)
-        assert ("if 8 cm are meant, write `width_m: 8 cm`" in done.stderr) == asked
-
-
-def test_two_views_are_named_by_their_folder(folder: Path):
+def test_views_and_words_of_a_picture_are_told_in_the_language_of_the_terminal(folder: Path):
     assert default_name(Path("cones/left.png"), Path("cones/right.png")) == "cones"
     assert default_name(Path("cones/left.png")) == "left"
     assert default_name(Path("a.png"), Path("b.png")) == "a"
     for name, title in (("left.png", "left.png"), ("right.png", folder.name)):  # a pair only once both are there
         write_png(folder / name, np.eye(8, dtype=np.uint8))
         assert without_folders(str(folder / "left.png")) == title
+    for width, asked in (("8", True), ("0.08", False)):
+        done = tangible("plan", "p.yaml", "--set", f"workspace.width_m={width}", cwd=folder)
+        assert ("if 8 cm are meant, write `width_m: 8 cm`" in done.stderr) == asked
+    said = [tangible(*lang, "describe", "p.yaml", cwd=folder).stdout for lang in ((), ("--lang", "de"))]
+    assert ["A surface 80 mm wide" in said[0], "Eine Fläche, 80 mm breit" in said[1]] == [True, True]
+    tangible("--lang", "de", "export", "dot.png", "--to", "pins", "--out", "out", cwd=folder)
+    assert json.loads((folder / "out/dot-monarch.json").read_text("utf-8"))["language"] == "de"
 
 
-def test_every_command_of_the_program_has_an_example_and_a_place():
+def test_commands_have_examples_and_are_offered_by_completion():
     hooks.tell(default_registry().plugins, "tangible_commands", app=app)
     for name, command in COMMANDS.items():
         assert command.example.startswith(f"tangible {name}") and command.group in GROUPS[:-1], name
         assert load(name).epilog == f"Example: {command.example}"
         for below in getattr(load(name), "commands", {}).values():
             assert not below.get_short_help_str(20).endswith("..."), below.name
-
-
-def test_words_of_a_picture_are_in_the_language_of_the_terminal(folder: Path):
-    said = [tangible(*lang, "describe", "p.yaml", cwd=folder).stdout for lang in ((), ("--lang", "de"))]
-    assert ["A surface 80 mm wide" in said[0], "Eine Fläche, 80 mm breit" in said[1]] == [True, True]
-    tangible("--lang", "de", "export", "dot.png", "--to", "pins", "--out", "out", cwd=folder)
-    assert json.loads((folder / "out/dot-monarch.json").read_text("utf-8"))["language"] == "de"
+    assert complete("tangible pre") == ["preflight"]
+    assert complete("tangible run p.yaml --set workspace.wid") == ["workspace.width_m="]
 
 
 def test_list_of_plugins_fits_a_terminal(monkeypatch: pytest.MonkeyPatch):
@@ -147,11 +143,6 @@ def complete(words: str) -> list[str]:
     cursor = {"COMP_WORDS": words, "COMP_CWORD": str(len(words.split(" ")) - 1)}
     environment = {**os.environ, "_TANGIBLE_COMPLETE": "complete_bash", **cursor}
     return subprocess.run([TANGIBLE], env=environment, capture_output=True, text=True).stdout.split()
-
-
-def test_completion_offers_commands_and_keys():
-    assert complete("tangible pre") == ["preflight"]
-    assert complete("tangible run p.yaml --set workspace.wid") == ["workspace.width_m="]
 
 
 @pytest.mark.parametrize(
@@ -243,3 +234,11 @@ def test_warning_on_a_product_is_printed_once_whether_it_is_made_or_cached(
         assert done.stderr == "warning: hardly any contrast\n", words
         assert "hardly any" not in done.stdout
     assert "hardly any contrast" in tangible("plan", "p.yaml", cwd=folder).stdout, "no warning stands elsewhere"
+
+
+def test_help_imports_neither_numpy_nor_the_pipeline():
+    code = (
+        "import sys; sys.argv[1:] = ['--help']\nfrom tangible_core.cli import main\ntry: main()\nfinally: "
+        "print([name for name in sys.modules if name in ('numpy', 'tangible_core.pipeline')], file=sys.stderr)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stderr.strip() == "[]"

@@ -72,15 +72,12 @@ def process_of(block: BackgroundCompiler) -> subprocess.Popen[bytes]:
     return block._child
 
 
-def test_background_compiler_is_not_started_without_a_compilation():
+def test_background_compiler_starts_one_process_and_only_to_compile(tmp_path: Path):
     with BackgroundCompiler(lambda: pytest.fail("was asked for work")) as block:
         block.wait("begun")
     start_waiting()  # after the block, too
     assert block._child is None
     assert not background._waiting
-
-
-def test_background_compiler_starts_one_process_for_many_kernels(tmp_path: Path):
     made: list[Work] = []
 
     def work() -> Work:
@@ -97,18 +94,26 @@ def test_background_compiler_starts_one_process_for_many_kernels(tmp_path: Path)
     assert number.name == str(process_of(block).pid) != str(os.getpid())
 
 
-def test_background_compiler_without_work_starts_no_process():
+def test_background_without_work_or_pickle_starts_no_process():
     with BackgroundCompiler(lambda: None) as block:
         start_waiting()
     assert block._child is None
+    with BackgroundCompiler(lambda: Work(frozenset(["begun"]), lambda: iter(()), ())) as block:
+        start_waiting()
+        block.wait("begun")
+    assert block._child is None
 
 
-def test_wait_for_names_already_compiled_returns():
+def test_wait_returns_without_a_process_or_after_a_failed_one():
     with BackgroundCompiler(lambda: Work(frozenset("abc"), yield_names, ("a", "b", "c"))) as block:
         start_waiting()
         for name in "cab":
             block.wait(name)
     assert not is_alive(process_of(block).pid)
+    with BackgroundCompiler(lambda: Work(frozenset(["begun", "never"]), yield_and_fail, ())) as block:
+        start_waiting()
+        block.wait("never")
+    assert process_of(block).returncode
 
 
 def test_wait_from_anywhere_lasts_until_the_process_has_compiled_it():
@@ -120,23 +125,9 @@ def test_wait_from_anywhere_lasts_until_the_process_has_compiled_it():
         assert not block._due
 
 
-def test_wait_for_a_failed_process_returns():
-    with BackgroundCompiler(lambda: Work(frozenset(["begun", "never"]), yield_and_fail, ())) as block:
-        start_waiting()
-        block.wait("never")
-    assert process_of(block).returncode
-
-
 def test_wait_without_a_process_returns(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(background, "command", lambda module: ["/nowhere/python"])
     with BackgroundCompiler(lambda: Work(frozenset(["begun"]), yield_names, ("begun",))) as block:
-        start_waiting()
-        block.wait("begun")
-    assert block._child is None
-
-
-def test_work_that_cannot_be_pickled_starts_no_process():
-    with BackgroundCompiler(lambda: Work(frozenset(["begun"]), lambda: iter(()), ())) as block:
         start_waiting()
         block.wait("begun")
     assert block._child is None
@@ -152,7 +143,7 @@ def test_error_in_the_block_ends_the_process(raised: type[BaseException]):
     assert not is_alive(process_of(block).pid)
 
 
-def test_wait_of_stopped_work_raises_and_ends_the_process():
+def test_wait_that_is_interrupted_or_stopped_ends_the_process():
     stop = threading.Event()
     block = BackgroundCompiler(lambda: Work(frozenset(["begun", "never"]), yield_and_sleep, ()))
     with pytest.raises(Stopped), stoppable(stop), block:
@@ -161,9 +152,6 @@ def test_wait_of_stopped_work_raises_and_ends_the_process():
         stop.set()
         block.wait("never")
     assert not is_alive(process_of(block).pid)
-
-
-def test_ctrl_c_while_waiting_ends_the_process():
     block = BackgroundCompiler(lambda: Work(frozenset(["begun", "never"]), yield_and_sleep, ()))
     with hearing(), pytest.raises(KeyboardInterrupt), block:
         start_waiting()

@@ -1,12 +1,17 @@
-"""If one of these fails, a result is taken from the cache for another one, or an impossible record is made."""
+"""If one of these fails, a cached result is taken for another one, or a device may get more force than it stands."""
+
+import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from tangible_core import Calibration, DisparityMap, HapticSurface, Material, MaterialMap, Relief, SegmentMap, Views
-from tangible_core.data import digest_of
+from tangible_core.data import NO_FORCE, DeviceSpec, Force, SegmentTree, digest_of, limited
 from tangible_core.data.outcome import text_table
-from tangible_core.errors import GeometryError, MaterialError, PictureError
+from tangible_core.errors import ConfigError, GeometryError, MaterialError, PictureError
 
 ICE = Material("ice", 2000.0, 1.0, 0.1, 0.03)
 GREY = np.full((4, 6), 100, np.uint8)
@@ -26,24 +31,19 @@ def records():
 
 @pytest.mark.parametrize("record", list(records()), ids=lambda record: type(record).__name__)
 class TestEveryRecord:
-    def test_record_holds_read_only_arrays(self, record):
+    def test_record_holds_read_only_arrays_and_has_the_digest_of_its_content(self, record):
         for value in vars(record).values():
             if isinstance(value, np.ndarray):
                 with pytest.raises(ValueError, match="read-only"):
                     value[...] = 1
-
-    def test_record_of_equal_content_has_the_same_digest(self, record):
         again = {type(each): each for each in records()}[type(record)]
         assert again is not record
         assert again.digest() == record.digest()
 
 
-def test_records_of_different_kinds_have_different_digests():
+def test_digests_differ_by_kind_type_and_contents():
     digests = [record.digest() for record in records()]
     assert len(set(digests)) == len(digests)
-
-
-def test_digest_differs_for_different_contents():
     last = np.where(np.indices(GREY.shape).sum(0) == 8, 101, 100).astype(np.uint8)
     for other in (GREY.astype(np.uint16), GREY.reshape(6, 4), GREY.reshape(3, 8), last):
         assert Views(other).digest() != Views(GREY).digest()
@@ -162,3 +162,67 @@ def test_text_table_has_columns_and_no_spaces_at_the_end_of_a_line():
     assert text_table(("a", "b", "why"), [("wide", "1", ""), (" x", "22", "so")]) == (
         "a     b   why\nwide  1\n x    22  so"
     )
+
+
+QUARTERS = np.array([[0, 0, 1], [2, 3, 1]], np.int32)
+JOINS = np.array([[1, 3], [0, 2], [4, 5]], np.int32)
+LEVELS = np.array([0.125, 0.5, 0.875], np.float32)  # exact in single precision: a level itself is kept
+
+
+@pytest.mark.parametrize(
+    ("most", "level", "labels", "confidence"),
+    [
+        (9, 0.0, [[0, 0, 1], [2, 3, 1]], [[0.5, 0.5, 0.125], [0.5, 0.125, 0.125]]),
+        (3, 0.0, [[0, 0, 2], [1, 2, 2]], [[0.5, 0.5, 0.875], [0.5, 0.875, 0.875]]),
+        (9, 0.125, [[0, 0, 1], [2, 3, 1]], [[0.5, 0.5, 0.125], [0.5, 0.125, 0.125]]),
+        (9, 0.2, [[0, 0, 2], [1, 2, 2]], [[0.5, 0.5, 0.875], [0.5, 0.875, 0.875]]),
+        (9, 0.6, [[1, 1, 0], [1, 0, 0]], [[0.875] * 3] * 2),
+        (2, 0.2, [[1, 1, 0], [1, 0, 0]], [[0.875] * 3] * 2),
+        (1, 0.0, [[0] * 3] * 2, [[1.0] * 3] * 2),
+        (9, 1.0, [[0] * 3] * 2, [[1.0] * 3] * 2),
+    ],
+)
+def test_cut_keeps_borders_of_the_level_and_at_most_the_number(
+    most: int, level: float, labels: list[list[int]], confidence: list[list[float]]
+):
+    found = SegmentTree(QUARTERS, JOINS, LEVELS).cut(most, level)
+    assert found.labels.tolist() == labels
+    assert found.confidence == pytest.approx(np.array(confidence, np.float32))
+
+
+SPEC = DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.1, 0.1), 1e-5)
+
+
+@given(st.tuples(*[st.floats()] * 3), st.floats(1e-3, 1e3))
+def test_limited_force_is_finite_within_the_limit_and_keeps_its_direction(parts, most_n: float):
+    force = limited(Force(*parts), most_n)
+    if not all(map(math.isfinite, parts)):
+        assert force == NO_FORCE
+    elif math.hypot(*parts) <= most_n:
+        assert force == parts
+    else:
+        assert math.hypot(*force) == pytest.approx(most_n)
+        greatest = max(map(abs, parts))
+        unit = np.array(parts) / greatest
+        assert np.allclose(np.array(force) / most_n, unit / np.linalg.norm(unit), atol=1e-12)
+
+
+def test_force_one_percent_over_the_limit_is_scaled_down():
+    assert limited(Force(0.0, 3.0, 4.0), 5.0) == (0.0, 3.0, 4.0)
+    assert limited(Force(0.0, 3.03, 4.04), 5.0) == pytest.approx((0.0, 3.0, 4.0))
+
+
+@pytest.mark.parametrize("wrong", [math.inf, -1.0, math.nan, 0.0])
+@pytest.mark.parametrize("name", ["max_force_n", "max_stiffness_n_per_m", "resolution_m", "damping_n_s_per_m"])
+def test_spec_with_a_number_that_no_device_has_is_refused_by_name(name: str, wrong: float):
+    if name == "damping_n_s_per_m" and wrong == 0:
+        assert replace(SPEC, damping_n_s_per_m=0.0).damping_n_s_per_m == 0
+        return
+    with pytest.raises(ConfigError, match=rf"^the device's {name}: is {wrong}; it must be positive and finite$"):
+        replace(SPEC, **{name: wrong})
+
+
+@pytest.mark.parametrize("wrong", [(0.1, -0.1, 0.1), (0.1, 0.1, math.inf), (math.nan, 0.1, 0.1)])
+def test_spec_with_a_workspace_without_size_is_refused(wrong: tuple[float, float, float]):
+    with pytest.raises(ConfigError, match="the device's workspace_m: is"):
+        replace(SPEC, workspace_m=wrong)

@@ -27,16 +27,13 @@ def points(count: int = 500) -> tuple[np.ndarray, np.ndarray]:
     return rng.uniform(-0.039, 0.039, (2, count // 2)), rng.uniform(-0.028, 0.028, (2, count // 2))
 
 
-def test_height_and_normal_of_a_saddle_are_those_of_its_formula():
+def test_height_beyond_the_extent_is_unknown_and_inside_that_of_the_formula():
     surface, (x, y) = surface_of(lambda x, y: 0.01 + 0.1 * x - 0.05 * y + 2 * x * y), points()
     np.testing.assert_allclose(surface.height_at(x, y), 0.01 + 0.1 * x - 0.05 * y + 2 * x * y, atol=2e-9)
     upright = np.stack([-(0.1 + 2 * y), 0.05 - 2 * x, np.ones_like(x)], axis=-1)
     upright /= np.linalg.norm(upright, axis=-1, keepdims=True)
     assert surface.normal_at(x, y).shape == (*x.shape, 3)
     np.testing.assert_allclose(surface.normal_at(x, y), upright, atol=2e-6)
-
-
-def test_height_beyond_the_extent_is_unknown_and_level_to_the_edge():
     surface = surface_of(lambda x, y: 0.004 + 0.05 * x + 0 * y)
     x, _ = centres()
     assert surface.height_at(WIDTH_M / 2, LENGTH_M / 2) == pytest.approx(0.004 + 0.05 * x[-1], abs=1e-9)

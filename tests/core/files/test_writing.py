@@ -36,7 +36,7 @@ def names_in(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-def test_atomic_write_shows_no_file_before_the_block_ends(tmp_path):
+def test_atomic_write_shows_a_whole_file_or_the_old_one(tmp_path):
     path = tmp_path / "c.bin"
     with atomic_write(path) as file:
         file.write(b"half")
@@ -45,15 +45,11 @@ def test_atomic_write_shows_no_file_before_the_block_ends(tmp_path):
         (part,) = tmp_path.iterdir()  # on the same disk, as names_in there a file gets its name at once
         assert part.read_bytes() == b"half"
     assert path.read_bytes() == b"half"
-
-
-def test_atomic_write_with_an_error_leaves_only_the_old_file(tmp_path):
-    path = tmp_path / "c.txt"
     write_text(path, "old")
     with pytest.raises(ZeroDivisionError), atomic_write(path) as file:
         file.write(b"new")
         raise ZeroDivisionError
-    assert (path.read_text(), names_in(tmp_path)) == ("old", ["c.txt"])
+    assert (path.read_text(), names_in(tmp_path)) == ("old", ["c.bin"])
 
 
 def test_full_disk_gives_one_clear_error_and_leaves_nothing(tmp_path, monkeypatch):
@@ -112,11 +108,21 @@ def test_sweep_removes_what_killed_processes_left_and_nothing_else(tmp_path):
     assert names_in(tmp_path) == sorted([".link.abcdefabcdef.tangible", new, "c.txt", *others])
 
 
-def test_file_of_the_longest_name_is_written(tmp_path):
+def test_names_as_long_as_they_may_be_are_written_by_one_writer(tmp_path):
     for letter in "aä🙂":
         path = tmp_path / (letter * (255 // len(letter.encode())))
         write_text(path, "new")
         assert path.read_text() == "new"
+    path = tmp_path / "a" / "b.bin"
+    write_text(path, "old")
+    with open_alone(path) as file:
+        assert path.read_bytes() == b""
+        file.write(b"new")
+        with pytest.raises(OutputError, match="another program is writing"):
+            open_alone(path)
+        assert path.read_bytes() == b"new"
+    open_alone(path).close()
+    assert path.read_bytes() == b""
 
 
 def test_concurrent_writers_leave_one_whole_file(tmp_path):
@@ -160,16 +166,3 @@ class TestSoleWriter:
         with sole_writer(path):
             pass
         assert names_in(tmp_path) == []
-
-
-def test_file_opened_alone_cannot_be_opened_again_until_closed(tmp_path):
-    path = tmp_path / "a" / "b.bin"
-    write_text(path, "old")
-    with open_alone(path) as file:
-        assert path.read_bytes() == b""
-        file.write(b"new")
-        with pytest.raises(OutputError, match="another program is writing"):
-            open_alone(path)
-        assert path.read_bytes() == b"new"
-    open_alone(path).close()
-    assert path.read_bytes() == b""

@@ -175,11 +175,17 @@ class TestGeometry:
         way = np.subtract(to_hand(place, step), to_hand(place, (0.0, 0.0, 0.0)))
         assert np.dot((x, y, z), way) == pytest.approx(place.scale * np.dot(force, step), abs=1e-12 * (1 + place.scale))
 
-    def test_quarter_turns_are_exact(self):
+    def test_spec_is_in_metres_and_quarter_turns_are_exact(self):
         """Rotate a picture counter-clockwise: its bottom comes to lie right of the hand."""
         for degrees, seen in ((0, (0.03, 0.01)), (90, (0.01, -0.03)), (180, (-0.03, -0.01)), (-90, (-0.01, 0.03))):
             place = WorkspaceMapping(rotation_deg=degrees).placement(SPEC.workspace_m)
             assert to_picture(place, (0.03, 0.01, 0.002)) == (*seen, 0.002)
+        mapping = WorkspaceMapping(scale=2, rotation_deg=90)
+        spec = mapping.spec_on_picture(DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.06, 0.08), 2e-5, buttons=4))
+        assert spec == DeviceSpec(8.0, 6000.0, 40.0, (0.03, 0.05, 0.04), 1e-5, buttons=4)
+        assert MappedDevice(device=Mock(), mapping=mapping).spec() == mapping.spec_on_picture(SPEC)
+        mapped = MappedDevice(device=Pointer(channel="hand"), mapping=mapping)
+        assert (mapped.follows("hand"), mapped.follows("pointer")) == (True, False)
 
     def test_rotated_region_fills_the_workspace_unless_a_scale_is_given(self):
         assert WorkspaceMapping(region_m=(0, 0, 0.02, 0.01), scale=2).placement(SPEC.workspace_m).scale == 2
@@ -189,25 +195,15 @@ class TestGeometry:
         assert place.scale == 8
         assert to_hand(place, (0.01, 0.005, 0.0)) == pytest.approx((-0.04, 0.08, 0.0), abs=1e-15)
 
-    def test_spec_is_in_metres_of_the_picture(self):
-        mapping = WorkspaceMapping(scale=2, rotation_deg=90)
-        spec = mapping.spec_on_picture(DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.06, 0.08), 2e-5, buttons=4))
-        assert spec == DeviceSpec(8.0, 6000.0, 40.0, (0.03, 0.05, 0.04), 1e-5, buttons=4)
-        assert MappedDevice(device=Mock(), mapping=mapping).spec() == mapping.spec_on_picture(SPEC)
-        mapped = MappedDevice(device=Pointer(channel="hand"), mapping=mapping)
-        assert (mapped.follows("hand"), mapped.follows("pointer")) == (True, False)
-
 
 class TestClutch:
-    def test_clutch_moves_the_picture_with_the_hand(self, buffer: np.ndarray):
+    def test_clutch_moves_the_picture_with_the_hand_from_the_start_or_later(self, buffer: np.ndarray):
         link = open_link(buffer, clutch_button=1, scale=2.0)
         assert hold(buffer, link, 0.02, 0.0, 0.01).position_m == (0.01, 0.0, 0.005)
         for x in (0.02, 0.01, -0.02):
             assert hold(buffer, link, x, x - 0.02, 0.03, 2).position_m == pytest.approx((0.01, 0.0, 0.015))
         assert hold(buffer, link, -0.02, -0.04, 0.01).position_m == pytest.approx((0.01, 0.0, 0.005))
         assert hold(buffer, link, 0.0, -0.04, 0.01).position_m == pytest.approx((0.02, 0.0, 0.005))
-
-    def test_clutch_held_from_the_start_keeps_the_picture_and_another_button_is_no_clutch(self, buffer: np.ndarray):
         link = open_link(buffer, clutch_button=0)
         assert hold(buffer, link, 0.02, 0.0, 0.01, 1).position_m == (0.02, 0.0, 0.01)
         link = open_link(buffer, clutch_button=1)
@@ -225,13 +221,11 @@ class TestClutch:
         assert push(link, *NO_FORCE) == NO_FORCE
         assert push(link, *part) == part
 
-    def test_clutch_gives_no_lateral_velocity(self, buffer: np.ndarray):
+    def test_clutch_gives_no_velocity_and_mutes_the_force(self, buffer: np.ndarray):
         link = open_link(buffer, clutch_button=0, scale=2.0, rotation_deg=90.0)
         for buttons, seen in ((0, (0.2, -0.1, 0.3)), (1, (0.0, 0.0, 0.3))):
             buffer[:7] = 0.01, 0.02, 0.03, 0.2, 0.4, 0.6, buttons
             assert link.read().velocity_m_per_s == pytest.approx(seen)
-
-    def test_clutch_mutes_force_until_the_law_gives_none(self, buffer: np.ndarray):
         link = open_link(buffer, clutch_button=0)
         hold(buffer, link, 0.0, 0.0, -0.001)
         assert push(link, 0.0, 0.0, 1.0) == (0, 0, 1)
@@ -270,7 +264,7 @@ class TestLimits:
 
 
 class TestKernels:
-    def test_kernels_agree_with_the_methods(self, buffer: np.ndarray):
+    def test_kernels_agree_with_the_methods_and_exchange_with_the_device(self, buffer: np.ndarray):
         options = {"scale": 3.0, "rotation_deg": 30.0, "offset_m": (0.01, 0.02, 0.03), "clutch_button": 0}
         rng = np.random.default_rng(0)
         by_method, by_kernel = open_link(buffer, **options), open_link(buffer, **options)
@@ -290,8 +284,6 @@ class TestKernels:
         buffer[7], before = 0, state.copy()
         assert own.read(*own.fixed, state) == 0
         assert np.array_equal(state, before), "a stale state stays"
-
-    def test_exchange_is_passed_to_the_device(self, buffer: np.ndarray):
         link = open_link(buffer, scale=2.0)
         assert isinstance(link, CompiledLink) and link.exchanges
         link.exchange()

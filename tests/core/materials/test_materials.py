@@ -1,16 +1,18 @@
-"""If one of these fails, a segment feels like another material than was meant, or a wrong library is not refused."""
+"""Materials and their rules. Otherwise a part would feel like another material than its file says."""
 
 from dataclasses import replace
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
+from matplotlib.colors import XKCD_COLORS, to_rgb
 
 from tangible_core.data import Material, SegmentMap
 from tangible_core.errors import ConfigError, MaterialError
 from tangible_core.materials.assignment import LADDER, assign, library, load_library, relative_roughness
 from tangible_core.materials.files import value_sources
-from tangible_core.materials.rules import MaterialRule
+from tangible_core.materials.rules import COLOURS, MaterialRule, colour_names, segment_colours
 
 MUD = "mud: {stiffness_n_per_m: 300, damping_n_s_per_m: 2, static_friction: 0.6, dynamic_friction: 0.5}\n"
 
@@ -36,16 +38,13 @@ def complaints(tmp_path: Path, text: str) -> list[str]:
 
 
 class TestOwnFile:
-    def test_file_adds_a_material(self, tmp_path: Path):
+    def test_file_adds_and_changes_materials(self, tmp_path: Path):
         path = tmp_path / "mine.yaml"
         path.write_text(MUD)
         more = load_library(path)
         assert more["mud"] == Material("mud", 300, 2, 0.6, 0.5, source="guess")
         assert [*more] == [*library(), "mud"]
         assert "mud" not in library()
-
-    def test_file_changes_some_values_of_a_shipped_material(self, tmp_path: Path):
-        path = tmp_path / "mine.yaml"
         path.write_text("ice: {stiffness_n_per_m: 1.2e3}\n")
         ice = load_library(path)["ice"]
         source = f"stiffness_n_per_m: mine.yaml; {library()['ice'].source}"
@@ -100,12 +99,10 @@ class TestOwnFile:
 
 
 class TestByName:
-    def test_each_label_gets_its_material(self):
+    def test_labels_get_their_materials_and_all_mistakes_are_reported(self):
         assigned = assign(stripes(3), None, {1: "ice", 2: "sand", 3: "ice"}, library())
         assert [material.name for material in assigned.materials] == ["ice", "sand", "ice"]
         assert assigned.reasons == ("segment 1: named ice", "segment 2: named sand", "segment 3: named ice")
-
-    def test_wrong_labels_and_names_are_all_reported(self):
         with pytest.raises(MaterialError) as error:
             assign(stripes(3), None, {1: "icee", 4: "sand", -1: "sand"}, library())
         first, second, third = str(error.value).splitlines()
@@ -115,7 +112,7 @@ class TestByName:
 
 
 class TestByRoughness:
-    def test_rougher_segment_gets_the_rougher_material(self):
+    def test_rougher_segment_gets_the_rougher_material_in_order(self):
         picture = checkers(0.3, 0.0, 0.1)
         assigned = assign(stripes(3), picture, "roughness", library())
         assert [material.name for material in assigned.materials] == ["brick", "ice", "wood"]
@@ -125,8 +122,6 @@ class TestByRoughness:
             "segment 2: number 1 of 3 from smooth to rough (0.000) -> ice",
             f"segment 3: number 2 of 3 from smooth to rough ({0.1 / spread * np.sqrt(80 / 81):.3f}) -> wood",
         )
-
-    def test_more_segments_than_materials_share_them_in_order(self):
         assigned = assign(stripes(12), checkers(*np.arange(12) / 30), "roughness", library())
         rungs = [LADDER.index(material.name) for material in assigned.materials]
         assert rungs == [0, 1, 1, 2, 3, 4, 4, 5, 6, 7, 7, 8]
@@ -191,7 +186,7 @@ class TestByRules:
         assigned = assign(quarters()[0], None, "rules", library(), rules({"at": at, "material": "ice"}))
         assert [material.name for material in assigned.materials].index("ice") == label
 
-    def test_rest_is_decided_by_name_or_by_roughness(self):
+    def test_rules_decide_by_colour_name_or_roughness(self):
         given = rules({"segment": 2, "material": "glass"})
         assigned = assign(stripes(3), None, {2: "sand", 3: "wood"}, library(), given)
         assert [material.name for material in assigned.materials] == ["plain", "glass", "wood"]
@@ -199,8 +194,6 @@ class TestByRules:
         alone, ruled = (assign(stripes(3), picture, "roughness", library(), each) for each in ([], given))
         assert [material.name for material in ruled.materials] == ["brick", "glass", "wood"]
         assert ruled.reasons[::2] == alone.reasons[::2]
-
-    def test_colour_rule_follows_most_pixels(self):
         segments, picture = quarters()
         picture[:9, :20] = (200, 30, 30)
         assigned = assign(segments, picture, "rules", library(), rules({"colour": "blue", "material": "water"}))
@@ -224,3 +217,34 @@ class TestByRules:
     def test_rule_with_two_selectors_or_none_is_refused(self, rule: dict):
         with pytest.raises(ValueError, match="takes one of segment, part, at and colour"):
             MaterialRule.model_validate({**rule, "material": "ice"})
+
+
+BASIC = [name for name in COLOURS if name not in ("black", "white", "grey")]
+SHADES = ("", "light ", "pale ", "bright ", "dull ", "dusty ", "dark ")
+SURVEY = {
+    f"{shade}{name}": (name, to_rgb(XKCD_COLORS[f"xkcd:{shade}{name}"]))
+    for name in BASIC
+    for shade in SHADES
+    if f"xkcd:{shade}{name}" in XKCD_COLORS
+}
+
+
+def name_of(rgb: tuple[float, float, float]) -> str:
+    (name,) = colour_names(cv2.cvtColor(np.float32([[rgb]]), cv2.COLOR_RGB2LAB)[0])
+    return COLOURS[name]
+
+
+@pytest.mark.parametrize("name", SURVEY)
+def test_colour_names_agree_with_the_survey(name: str):
+    expected, rgb = SURVEY[name]
+    assert name_of(rgb) == expected
+
+
+def test_colour_of_a_segment_is_named_by_its_hue_and_most_pixels():
+    assert [name_of((share,) * 3) for share in (0, 0.5, 1)] == ["black", "grey", "white"]
+    picture = np.zeros((2, 8, 3), np.uint8)
+    picture[:, :3] = (0, 0, 255)
+    picture[:, 3:4] = (255, 0, 0)
+    picture[:, 4:] = (255, 255, 255)
+    labels = np.repeat(np.int32([[0, 1]]), 4, axis=1).repeat(2, axis=0)
+    assert segment_colours(SegmentMap(labels), picture) == [("blue", 0.75), ("white", 1.0)]

@@ -89,7 +89,7 @@ def unmapped(*_: object) -> None:
     raise ImportError("_backend_agg.so: failed to map segment from shared object")
 
 
-def test_lack_of_memory_is_a_mistake_and_keeps_what_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_lack_of_memory_is_a_mistake_and_keeps_what_is_made_or_cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     np.save(tmp_path / "h.npy", np.eye(8))
     monkeypatch.setattr(Sheet, "draw", unmapped)
     monkeypatch.setattr(Heights, "write", unmapped)
@@ -102,8 +102,6 @@ def test_lack_of_memory_is_a_mistake_and_keeps_what_is_made(tmp_path: Path, monk
     with pytest.raises(ImportError, match="failed to map segment"):
         Registry().load("depth", "semi-global")
 
-
-def test_cached_result_is_kept_where_memory_lacks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     def no_memory(*_: object) -> None:
         raise MemoryError
 

@@ -111,17 +111,15 @@ class TestEnd:
         with pytest.raises(DeviceError, match="is closed"):
             link.read()
 
-    def test_block_with_a_refused_zero_force_raises_its_error(self):
+    def test_block_with_a_refused_zero_force_raises_the_first_error(self):
         with pytest.raises(DeviceError, match="it is gone"), Bare() as link:
             link.fails = DeviceError("it is gone")
         assert link.commands == [NO_FORCE, "released"]
-
-    def test_block_with_an_error_keeps_it_over_a_refused_zero_force(self):
         with pytest.raises(ZeroDivisionError), Bare() as link:
             link.fails = DeviceError("it is gone")
             raise ZeroDivisionError
 
-    def test_driver_that_released_the_device_has_its_first_reason_shown(self):
+    def test_driver_that_ends_keeps_its_first_reason_and_is_released_once(self):
         link = Bare()
         link._end("was closed after an error: it is gone")
         link._end("was closed again")
@@ -132,7 +130,6 @@ class TestEnd:
         with pytest.raises(DeviceError, match=r"^the bare device was closed after an error: it is gone; open"):
             link.write(PUSH)
 
-    def test_driver_that_breaks_at_zero_force_is_not_released_twice(self):
         class Brittle(Bare):
             def _send(self, force: Force) -> None:
                 self._end("broke")
@@ -143,7 +140,7 @@ class TestEnd:
         assert link.commands == []
 
 
-def test_driver_without_its_base_init_sends_no_force():
+def test_driver_without_its_base_init_or_with_equal_names_keeps_the_limit():
     class Mute(Bare):
         def __init__(self) -> None:
             self.commands, self.fails = [], None
@@ -151,8 +148,6 @@ def test_driver_without_its_base_init_sends_no_force():
     with pytest.raises(AttributeError):
         Mute().write(PUSH)
 
-
-def test_driver_with_fields_of_equal_names_keeps_the_limit():
     class Same(Bare):
         def __init__(self) -> None:
             super().__init__()

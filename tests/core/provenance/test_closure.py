@@ -59,7 +59,7 @@ def test_digest_changes_with_imported_modules_only(write: Write, folder: str, ch
     assert (digest("acme.method") == before) is (same or of_others_and_installed)
 
 
-def test_digest_changes_with_the_version_of_an_installed_package(write: Write):
+def test_digest_changes_with_versions_and_sources_of_installed_packages(write: Write):
     site = write(
         INSTALLED,
         **METHOD,
@@ -69,9 +69,6 @@ def test_digest_changes_with_the_version_of_an_installed_package(write: Write):
     before = digest("acme.method")
     (site / DIST.format("other")).write_text(metadata("other", "1.1"))
     assert digest("acme.method") != before
-
-
-def test_digest_changes_with_the_source_of_an_installed_plugin(write: Write):
     site = write(
         INSTALLED,
         **METHOD,
@@ -85,7 +82,7 @@ def test_digest_changes_with_the_source_of_an_installed_plugin(write: Write):
     assert digest("acme.method") != before
 
 
-def test_closure_reads_only_the_used_modules_of_tangible_images(write: Write):
+def test_closure_reads_the_used_modules_where_they_are_installed(write: Write, monkeypatch: pytest.MonkeyPatch):
     write(INSTALLED, **METHOD)
     modules = closure("acme.method").modules
     assert {"acme.kernel", "tangible_core", "tangible_core.data"} <= set(modules)
@@ -94,9 +91,6 @@ def test_closure_reads_only_the_used_modules_of_tangible_images(write: Write):
     modules = closure("acme.fast").modules
     assert {"tangible_core.compiled", "tangible_core.compiled.compiling"} <= set(modules)
     assert "tangible_core.compiled.threads" not in modules
-
-
-def test_closure_reads_an_installed_tangible_images(write: Write, monkeypatch: pytest.MonkeyPatch):
     write(INSTALLED, **METHOD)
     monkeypatch.setattr(versions, "INSTALLED", {*versions.INSTALLED, Path(versions.__file__).parts[-4]})
     assert "tangible_core.data" in closure("acme.method").modules
@@ -132,11 +126,19 @@ def test_closure_of_a_name_of_a_lazy_package_leaves_out_its_other_names(write: W
         assert closure(name).modules == tuple(sorted((*(handed_on if package else of_all), name)))
 
 
-def test_closure_has_the_versions_of_imported_libraries_only(write: Write):
+def test_closure_has_only_used_modules_and_libraries(write: Write):
     write("work", **{"none.py": "", "plain.py": "import json, numpy", "deep.py": "import plain, kornia"})
     assert set(closure("none").versions) == {"python"}
     assert set(closure("plain").versions) == {"python", "numpy"}
     assert set(closure("deep").versions) == {"python", "numpy", "kornia", "torch"}
+    site = write("work", **{"a.py": "", "b.py": "import c", "c.py": ""})
+    before = closure("a", alone=("b",)).digest
+    assert closure("a", alone=("b",)).modules == ("a", "b")
+    for name, same in {"c.py": True, "b.py": False}.items():
+        (site / name).write_text("import c\n")
+        forget()
+        assert (closure("a", alone=("b",)).digest == before) is same
+    assert closure("sys").modules == closure("nowhere.at.all").modules == ()
 
 
 def test_digest_changes_with_a_version(write: Write, monkeypatch: pytest.MonkeyPatch):
@@ -145,16 +147,6 @@ def test_digest_changes_with_a_version(write: Write, monkeypatch: pytest.MonkeyP
     forget()
     monkeypatch.setattr(closures.versions, "_version", lambda name: "0.1")
     assert closure("plain").digest != before
-
-
-def test_closure_of_a_module_alone_leaves_out_its_imports(write: Write):
-    site = write("work", **{"a.py": "", "b.py": "import c", "c.py": ""})
-    before = closure("a", alone=("b",)).digest
-    assert closure("a", alone=("b",)).modules == ("a", "b")
-    for name, same in {"c.py": True, "b.py": False}.items():
-        (site / name).write_text("import c\n")
-        forget()
-        assert (closure("a", alone=("b",)).digest == before) is same
 
 
 def test_closure_includes_compiled_modules_and_invalid_sources(write: Write):
@@ -168,11 +160,9 @@ def test_closure_includes_compiled_modules_and_invalid_sources(write: Write):
     assert digest("a") != before
 
 
-def test_closure_of_a_name_that_is_not_a_module_is_empty():
-    assert closure("sys").modules == closure("nowhere.at.all").modules == ()
-
-
-def test_closure_reads_a_loaded_module_from_its_own_file(write: Write, tmp_path: Path):
+def test_closure_reads_a_loaded_module_from_its_own_file_found_or_not(
+    write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
     write("first", **{"twice.py": "A = 1"})
     import_module("twice")
     before = digest("twice")
@@ -180,9 +170,6 @@ def test_closure_reads_a_loaded_module_from_its_own_file(write: Write, tmp_path:
     assert digest("twice") == before
     del sys.modules["twice"]
     assert digest("twice") != before
-
-
-def test_closure_reads_a_loaded_module_that_no_finder_finds(write: Write, monkeypatch: pytest.MonkeyPatch):
     site = write("work", **{"helper.py": ""})
     loaded = ModuleType("loaded_by_hand")
     loaded.__file__ = str(site / "by_hand.py")
@@ -209,15 +196,12 @@ def test_digest_with_a_file_changed_since_the_start_is_unique_to_the_process(
     assert len({before, closure("a").digest, settled.digest}) == 3
 
 
-def test_closure_of_a_function_without_a_file_is_none():
+def test_closure_of_a_function_is_that_of_its_file(write: Write):
     exec("def f(): pass", namespace := {"__name__": "made"})
     assert closure_of_function(namespace["f"]) is None
-    closure = closure_of_function(test_closure_of_a_name_that_is_not_a_module_is_empty)
-    assert closure is not None
-    assert {"tangible_core.provenance.closure"} <= set(closure.modules)
-
-
-def test_example_that_imports_from_its_own_package_ends(write: Write):
+    found = closure_of_function(test_closure_has_only_used_modules_and_libraries)
+    assert found is not None
+    assert {"tangible_core.provenance.closure"} <= set(found.modules)
     own = '"""Use:\n\n    from own import thing\n"""\n\nfrom .part import thing as thing\n\n__getattr__ = None\n'
     write("src", **{"own/__init__.py": own, "own/part.py": "thing = 1\n", "asks.py": "from own import thing\n"})
     assert "own.part" in closure("asks").modules

@@ -60,7 +60,7 @@ def test_borders_are_grooves() -> None:
     assert depth_m == pytest.approx(GROOVE_M, rel=0.1)
 
 
-def test_face_has_its_shape_and_no_rim() -> None:
+def test_faces_have_their_shape_and_are_higher_than_the_head() -> None:
     ball = face((160, 120), 40)
     plain, faced = (
         heights(Figure(DISK.astype(np.float32))),
@@ -73,21 +73,9 @@ def test_face_has_its_shape_and_no_rim() -> None:
     assert middle == pytest.approx(scale, rel=0.15), "of the same proportions everywhere"
     assert np.abs(np.diff(faced[120])).max() < 1.5 * np.abs(np.diff(plain[120])).max()
     assert np.array_equal(faced[:70], plain[:70]), "nothing else changes"
-
-
-def test_two_faces_are_higher_than_the_head_between_them() -> None:
     pair = np.stack([face((120, 120), 25), face((200, 120), 25)])
     height_m = heights(Figure(DISK.astype(np.float32), faces_px=pair))
     assert min(height_m[120, 120], height_m[120, 200]) > height_m[120, 160] + 0.0003
-
-
-def test_board_is_level_and_a_pole_is_not() -> None:
-    board, pole = np.zeros(SHAPE, np.float32), np.zeros(SHAPE, np.float32)
-    board[40:200, 60:260] = pole[40:200, 150:170] = 1
-    top_m = (STEP + BODY) * SIZE.relief_m
-    assert heights(Figure(board))[45:195, 65:255].min() == pytest.approx(top_m, rel=0.02)
-    assert heights(Figure(pole))[40:200].max() < 0.8 * top_m
-    assert np.ptp(heights(Figure(np.ones(SHAPE, np.float32)))) < 1e-6, "all of the picture"
 
 
 def test_depth_shapes_the_figure_without_spikes_at_its_outline() -> None:
@@ -101,12 +89,18 @@ def test_depth_shapes_the_figure_without_spikes_at_its_outline() -> None:
     assert np.ptp(height_m[:, :60].max(axis=1)) == pytest.approx(GROUND * SIZE.relief_m, rel=0.1)
 
 
-def test_flat_thing_stays_flat() -> None:
+def test_flat_things_and_boards_are_level_and_a_pole_is_not() -> None:
     nearness = np.where(DISK, 0.9 + 0.00001 * COLUMN, 0.001 * ROW)
     height_m = figure_relief(
         VIEWS, Figure(DISK.astype(np.float32)), SIZE, ReliefChoice(by="figure"), DisparityMap(nearness)
     ).height_m
     assert np.ptp(height_m[80:160, 120:200]) < 0.1 * BODY * SIZE.relief_m
+    board, pole = np.zeros(SHAPE, np.float32), np.zeros(SHAPE, np.float32)
+    board[40:200, 60:260] = pole[40:200, 150:170] = 1
+    top_m = (STEP + BODY) * SIZE.relief_m
+    assert heights(Figure(board))[45:195, 65:255].min() == pytest.approx(top_m, rel=0.02)
+    assert heights(Figure(pole))[40:200].max() < 0.8 * top_m
+    assert np.ptp(heights(Figure(np.ones(SHAPE, np.float32)))) < 1e-6, "all of the picture"
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 50), (3, 2)])
@@ -129,7 +123,7 @@ class TestPipeline:
         monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path))
         return tmp_path
 
-    def test_network_that_comes_or_goes_changes_the_result(self, models: Path) -> None:
+    def test_figure_changes_with_its_network_and_stays_apart(self, models: Path) -> None:
         picture = np.zeros((*SHAPE, 3), np.uint8)
         picture[DISK] = 255
         with pytest.raises(ModelAbsent, match="tangible networks add"):
@@ -141,6 +135,25 @@ class TestPipeline:
         (models / "own.onnx").unlink()
         with pytest.raises(ModelAbsent):
             _ = Pipeline(Scene.photo(picture), relief="figure").relief
+        picture = np.full((*SHAPE, 3), 120, np.uint8)
+        picture[:120] = 0
+        labels = np.where(DISK, 2, picture[..., 0] // 120).astype(np.int32)
+        picture[DISK] = 130
+
+        def simplified(relief: str) -> PartMap:
+            scene = Scene.photo(picture, segments=labels)
+            return Pipeline(scene, relief=relief, simplify={"textures": 2}, workspace={"width_m": 0.2}).make(
+                "simplified"
+            )
+
+        for relief, network, apart in (("figure", False, False), ("edges", True, False), ("figure", True, True)):
+            if network:
+                mono(models / "own.onnx")
+                (models / "own.yaml").write_text("task: figure\noutput: {means: figure}\n")
+            found = simplified(relief)
+            rows, columns = found.labels.shape
+            middle, below = (found.segments[found.labels[row, columns // 2]] for row in (rows // 2, rows - 9))
+            assert (middle != below) == apart
 
     def test_cut_out_leaves_the_ground_away(self, models: Path) -> None:
         picture = np.zeros((*SHAPE, 3), np.uint8)
@@ -162,35 +175,12 @@ class TestPipeline:
         cut = flatten_ground(parts, Figure(DISK.astype(np.float32)))
         assert np.array_equal(cut.labels, np.where(DISK, 2, 3))
 
-    def test_figure_stays_apart_where_parts_are_simplified(self, models: Path) -> None:
-        picture = np.full((*SHAPE, 3), 120, np.uint8)
-        picture[:120] = 0
-        labels = np.where(DISK, 2, picture[..., 0] // 120).astype(np.int32)
-        picture[DISK] = 130
-
-        def simplified(relief: str) -> PartMap:
-            scene = Scene.photo(picture, segments=labels)
-            return Pipeline(scene, relief=relief, simplify={"textures": 2}, workspace={"width_m": 0.2}).make(
-                "simplified"
-            )
-
-        for relief, network, apart in (("figure", False, False), ("edges", True, False), ("figure", True, True)):
-            if network:
-                mono(models / "own.onnx")
-                (models / "own.yaml").write_text("task: figure\noutput: {means: figure}\n")
-            found = simplified(relief)
-            rows, columns = found.labels.shape
-            middle, below = (found.segments[found.labels[row, columns // 2]] for row in (rows // 2, rows - 9))
-            assert (middle != below) == apart
-
-    def test_depth_that_a_method_finds_shapes_the_figure(self, models: Path) -> None:
+    def test_depth_of_a_method_shapes_the_figure_and_wrong_words_are_told(self, models: Path) -> None:
         mono(models / "own.onnx")
         (models / "own.yaml").write_text("task: figure\noutput: {means: figure}\n")
         scene = Scene.photo(np.where(DISK, 255, 0).astype(np.uint8))
         for depth, outcome in ((Luminance(), None), (Cues(), "ran")):
             plan = Pipeline(scene, relief="figure", depth=depth).plan("relief")
             assert {step.product: step.outcome for step in plan.steps}.get("disparity") == outcome
-
-    def test_wrong_word_is_told(self) -> None:
         with pytest.raises(ConfigError, match="figure"):
             Pipeline(Scene.builtin("builtin/brick"), relief="figur")

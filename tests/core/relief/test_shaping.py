@@ -1,11 +1,15 @@
-"""If one of these fails, a relief is too steep, too low or untrue to the depths of its map."""
+"""If one of these fails, a relief is too steep, too low or untrue to the depths that it is made of."""
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
 
 from tangible_core.data import Calibration, DisparityMap
-from tangible_core.relief import ReliefChoice, ReliefScale, shape_relief
-from tangible_core.relief.shaping import GRAIN_HIGH_M, STRAIGHT
+from tangible_core.relief import ReliefChoice, ReliefScale, limit_slopes, shape_relief
+from tangible_core.relief.shaping import BINS, GRAIN_HIGH_M, STEEPEST, STRAIGHT, apply_tones, relief_tones
+from tangible_core.relief.slope_limit import CHAMFER
 from tangible_core.scene import geometry
 from tangible_core.scene.geometry import ValueRange
 from tangible_core.scene.workspace import FeltSize, Workspace
@@ -110,6 +114,14 @@ def test_cliff_becomes_a_ramp_of_the_slope_about_the_border():
     assert found[0] == pytest.approx(0, abs=1e-7) and found[-1] == pytest.approx(HIGH_M)
     ramp_m = np.ptp(np.flatnonzero((found > 0.05 * HIGH_M) & (found < 0.95 * HIGH_M))) * WIDTH_M / 800
     assert ramp_m == pytest.approx(0.9 * HIGH_M, rel=0.06)
+    step = np.zeros((3, 60), np.float32)
+    step[:, 30:] = 0.002
+    limited = limit_slopes(step, PITCH_M, 2.0 * CHAMFER)
+    assert np.allclose(np.diff(limited[1])[25:34], 2.0 * PITCH_M, atol=1e-8)
+    assert limited[1, 29:31].mean() == pytest.approx(0.001)
+    assert np.allclose(limited[:, :25], 0, atol=1e-9) and np.allclose(limited[:, -25:], 0.002, atol=1e-9)
+    step = np.float32([[0, 0, 0.01, 0.01]])
+    assert limit_slopes(step, PITCH_M, 0) is step
 
 
 @pytest.mark.parametrize(("width_m", "kept"), [(0.001, 0.3), (0.0015, 0.5), (0.002, 0.6)])
@@ -119,7 +131,7 @@ def test_narrow_bar_keeps_a_share_of_its_height(width_m, kept):
     assert kept * HIGH_M <= height_m < HIGH_M
 
 
-def test_accent_raises_what_stands_before_and_lowers_what_lies_behind():
+def test_unknown_places_are_filled_or_cut_and_accents_raise():
     values = np.full((300, 800), 10, np.float32)
     values[100:200, 200:400] = 14
     values[:, 700:] = 30
@@ -131,9 +143,6 @@ def test_accent_raises_what_stands_before_and_lowers_what_lies_behind():
     assert with_accent.min() >= 0 and with_accent.max() <= HIGH_M + 1e-7
     half = shaped(values, {"accent_m": 0.0003, "spread": 0}) - without
     assert 0 < half.max() <= 0.0003 + 1e-6
-
-
-def test_unknown_places_are_filled_from_behind_or_cut():
     values = two_levels()
     values[:, 500:600] = np.nan
     values[:, 300:350] = np.nan
@@ -150,3 +159,83 @@ def test_given_scale_is_that_of_the_relief():
     found = shaped(values, {"accent_m": 0}, scale=scale)
     assert found[20, 10] == pytest.approx(HIGH_M / 16, rel=0.01)
     assert found[20, -10] == pytest.approx(HIGH_M / 4, rel=0.01)
+
+
+PITCH_M = 1e-4
+HEIGHTS = hnp.arrays(
+    np.float32, st.tuples(st.integers(1, 9), st.integers(1, 9)), elements=st.floats(0, 0.0078125, width=32)
+)
+SLOPES = st.floats(0.2, 5)
+
+
+def brute_force(height_m, slope):
+    """The middle of the two envelopes, by all pairs of cells at chamfer lengths."""
+    rows, columns = np.indices(height_m.shape).reshape(2, -1)
+    long, short = (
+        pick(np.abs(rows[:, None] - rows), np.abs(columns[:, None] - columns)) for pick in (np.maximum, np.minimum)
+    )
+    length = np.where(
+        2 * short <= long, (long - 2 * short) + short * 5**0.5, (2 * short - long) * 2**0.5 + (long - short) * 5**0.5
+    )
+    bound = length * (slope * PITCH_M / CHAMFER)
+    flat = height_m.reshape(-1).astype(np.float64)
+    return (((flat + bound).min(axis=1) + (flat - bound).max(axis=1)) / 2).reshape(height_m.shape)
+
+
+@given(HEIGHTS, SLOPES)
+def test_limited_heights_are_those_of_all_pairs_of_cells(height_m, slope):
+    expected = brute_force(brute_force(height_m, 2 * slope), slope)
+    assert np.allclose(limit_slopes(height_m, PITCH_M, slope), expected, atol=1e-8, rtol=0)
+
+
+@given(HEIGHTS, SLOPES)
+def test_negated_heights_give_the_negated_surface(height_m, slope):
+    assert np.array_equal(limit_slopes(-height_m, PITCH_M, slope), -limit_slopes(height_m, PITCH_M, slope))
+
+
+UNIT = st.floats(0, 1, width=32)
+MAPS = hnp.arrays(np.float32, st.tuples(st.integers(1, 12), st.integers(1, 12)), elements=UNIT)
+
+
+def steps(*values, rows=10, width=10):
+    """Level stripes of these values."""
+    return np.repeat(np.float32(values), width)[None].repeat(rows, axis=0)
+
+
+@given(MAPS, st.floats(0, 1))
+def test_tones_rise_from_zero_to_one_within_their_slopes(nearness, share):
+    tones = relief_tones(nearness, share)
+    slopes = np.diff(tones) * BINS
+    assert tones[0] == 0 and tones[-1] == pytest.approx(1)
+    assert slopes.min() >= 1 - share - 1e-9
+    assert slopes.max() <= 1 + share * STEEPEST + 1e-9
+
+
+@given(MAPS, st.floats(0, 0.99), UNIT, UNIT)
+def test_order_of_depths_is_kept(nearness, share, one, other):
+    low, high = sorted([one, other])
+    heights = apply_tones(np.float32([[low, high]]), relief_tones(nearness, share))[0]
+    assert heights[0] <= heights[1]
+    if high - low > 1e-4:
+        assert heights[1] - heights[0] > 0.9 * (1 - share) * (high - low) - 1e-6
+
+
+def test_each_border_counts_once_however_high_it_is():
+    slopes = np.diff(relief_tones(steps(0.0, 0.6, 0.6, 0.8, 0.8), 0.2)) - 0.8 / BINS
+    assert slopes[160:200].mean() == pytest.approx(3 * slopes[10:150].mean(), rel=0.05)
+
+
+@pytest.mark.parametrize("nearness", [np.zeros((1, 1)), np.full((9, 9), 0.4), np.linspace(0, 1, 400).reshape(1, -1)])
+def test_without_borders_tones_are_straight(nearness):
+    assert np.allclose(relief_tones(nearness.astype(np.float32), 0.9), STRAIGHT)
+
+
+@pytest.mark.parametrize(("step", "straight"), [(0.027, True), (0.033, False)])
+def test_difference_of_a_border_is_at_least_three_hundredths(step, straight):
+    assert np.allclose(relief_tones(steps(0.5, 0.5 + step), 0.9), STRAIGHT) == straight
+
+
+def test_values_between_places_are_interpolated():
+    tones = STRAIGHT**2
+    values = np.float32([[0, 0.5 / BINS, 0.25, 1]])
+    assert np.allclose(apply_tones(values, tones), [[0, tones[1] / 2, 1 / 16, 1]], atol=1e-7)

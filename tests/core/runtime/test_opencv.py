@@ -15,14 +15,11 @@ def check_reset():
     assert (cv2.useOptimized(), cv2.getNumThreads(), cv2.ipp.useIPP()) == before
 
 
-def test_plain_opencv_switches_back_after_the_block():
+def test_plain_opencv_switches_back_when_the_last_block_ends():
     with plain_opencv():
         assert not cv2.useOptimized()
         assert not cv2.ipp.useIPP()
         assert cv2.getNumThreads() == 1
-
-
-def test_plain_opencv_in_overlapping_threads_stays_until_the_last_ends():
     entered, left = Barrier(2, timeout=10), Barrier(2, timeout=10)
     seen = []
 

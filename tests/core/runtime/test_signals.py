@@ -1,15 +1,19 @@
-"""SIGTERM, SIGHUP and SIGQUIT end a program as Ctrl-C does, with their own exit codes."""
+"""Signals end a program as Ctrl-C does, with their own exit codes, and slow work is told while it goes on."""
 
+import logging
 import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
 from distributions import distribution
+from tangible_core.runtime import stopping
 from tangible_core.runtime.signals import ENDING, end_as_ctrl_c, received_signal
+from tangible_core.runtime.stopping import warn_if_slow
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 
@@ -61,3 +65,15 @@ def test_signal_ends_a_plugin_that_hangs_at_its_import(tmp_path: Path, number: s
         _, errors = program.communicate(timeout=60)
     assert errors == f"ended by {number.name}; what was finished is kept\n"
     assert program.returncode == code
+
+
+log = logging.getLogger("slow")
+
+
+def test_slow_work_is_reported_while_it_runs(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(stopping, "LONG_S", 0.01)
+    until = time.monotonic() + 60
+    with warn_if_slow(log, "importing acme"):
+        while not caplog.messages and time.monotonic() < until:
+            time.sleep(0.005)
+    assert caplog.messages == ["importing acme has taken 0.01 s so far and goes on; Ctrl-C ends it"]

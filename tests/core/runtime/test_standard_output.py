@@ -157,7 +157,7 @@ class TestStreams:
         )
         assert done.returncode == 0
 
-    def test_stream_writes_any_text_in_the_encoding_of_standard_output(self) -> None:
+    def test_stream_writes_any_text_as_wide_as_its_terminal(self, folder: Path) -> None:
         """A console or a pipe that has no sign for something shows its number; nothing ends in an error."""
         code = (
             "from tangible_core.runtime.standard_output import protect, stream\n"
@@ -166,9 +166,6 @@ class TestStreams:
         env = {**quiet(), "PYTHONIOENCODING": "cp437"}
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, env=env, check=True)
         assert done.stdout.rstrip() == "\u2265\u2800 \u00fc".encode("cp437", "backslashreplace")
-
-    def test_terminal_output_has_its_colours_and_width(self, folder: Path) -> None:
-        """132 columns, with standard input and error elsewhere."""
         host, terminal = pty.openpty()
         fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 50, 132, 0, 0))
         env = {name: value for name, value in quiet().items() if name not in ("COLUMNS", "NO_COLOR")}

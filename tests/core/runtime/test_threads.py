@@ -37,7 +37,7 @@ class Asking(Segmenter):
 SEEN: list[tuple[int, int]] = []
 
 
-def test_thread_limit_holds_for_kernels_and_opencv_until_the_block_ends(eight):
+def test_thread_limit_bounds_kernels_and_opencv_until_the_block_ends(eight):
     with limited_threads(3):
         assert (thread_count(), cv2.getNumThreads()) == (3, 3)
         with plain_opencv():
@@ -48,9 +48,6 @@ def test_thread_limit_holds_for_kernels_and_opencv_until_the_block_ends(eight):
     assert (thread_count(), cv2.getNumThreads()) == (8, 6)
     with limited_threads(20):
         assert (thread_count(), cv2.getNumThreads()) == (8, 6)
-
-
-def test_thread_limit_bounds_the_work_at_one_time(eight):
     meeting = Barrier(3)
 
     def meet(*_: object) -> None:
@@ -66,7 +63,7 @@ def test_thread_limit_bounds_the_work_at_one_time(eight):
         in_blocks(64, meet)
 
 
-def test_thread_limit_of_a_pipeline_overrides_that_of_the_environment(eight, monkeypatch: pytest.MonkeyPatch):
+def test_thread_limit_is_a_number_of_the_pipeline_or_the_environment(eight, monkeypatch: pytest.MonkeyPatch):
     SEEN.clear()
     scene = Scene.photo(np.zeros((8, 8), np.float32))
     Asking().segment(scene.views.left)
@@ -77,9 +74,6 @@ def test_thread_limit_of_a_pipeline_overrides_that_of_the_environment(eight, mon
     pipeline.make("segments")
     Pipeline(scene, texture=Asking(), cached=False).make("segments")
     assert SEEN == [(8, 6), (5, 5), (3, 3), (5, 5)]
-
-
-def test_thread_limit_that_is_not_a_number_is_refused(monkeypatch: pytest.MonkeyPatch):
     for text in ("none", "0", "1.5", "²"):
         monkeypatch.setenv("TANGIBLE_THREADS", text)
         with pytest.raises(ConfigError, match="TANGIBLE_THREADS"):

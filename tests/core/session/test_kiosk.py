@@ -112,13 +112,9 @@ def test_kiosk_waits_for_a_device_that_is_absent_at_first(tmp_path: Path) -> Non
 
 
 @pytest.mark.usefixtures("loop_in_thread")
-def test_kiosk_time_goes_on_without_a_device() -> None:
+def test_kiosk_goes_on_without_a_device_while_it_waits() -> None:
     last = run_kiosk([Slot(soft(), AT_ONCE)], Failing(), 0.5, on_wait=lambda _: None)
     assert (last.stopped, last.ticks) == (OVER, 99)
-
-
-@pytest.mark.usefixtures("loop_in_thread")
-def test_kiosk_without_on_wait_ends_with_its_device() -> None:
     last = run_kiosk([Slot(soft(), AT_ONCE)], Failing())
     assert (last.stopped, last.ticks) == ("the failing device does not answer; plug it in", 99)
 

@@ -122,7 +122,7 @@ class TestRun:
         recording, _ = feel(lambda _: PUSH, ticks * period, link)
         assert recording.time_s.size == ticks
 
-    def test_reports_come_ten_times_a_second_and_at_the_end(self):
+    def test_frames_and_reports_are_told_the_time(self):
         reports: list[ServoReport] = []
         recording, _ = feel(lambda _: PUSH, 1.0, on_report=reports.append)
         assert [report.time_s for report in reports[:-1]] == pytest.approx(5 + np.arange(1, 10) * 0.1, abs=0.0011)
@@ -132,14 +132,9 @@ class TestRun:
         assert last.state.position_m == pytest.approx((0, 0, 0.999))
         assert last.work_j == pytest.approx(2.0 * 0.999)
         assert recording.work_j == pytest.approx(last.work_j, rel=1e-12)
-
-    def test_frames_are_told_the_time_since_the_first_tick(self):
         told: list[float] = []
         feel(lambda _: PUSH, 0.004, frames=told.append)
         assert told == pytest.approx([0.0, 0.001, 0.002, 0.003])
-
-    def test_work_of_a_force_counts_from_its_tick_to_the_next(self):
-        """1 N at tick 0, 2 N at tick 1, ...: the last one has not worked yet."""
         reports: list[ServoReport] = []
         recording, _ = feel(lambda tick: Force(0.0, 0.0, tick + 1.0), 0.004, on_report=reports.append)
         assert recording.work_j == pytest.approx((1 + 2 + 3) * 0.001)
@@ -151,7 +146,7 @@ class TestRun:
         assert link.forces[2:6] == [PUSH, NO_FORCE, NO_FORCE, PUSH]
         assert "2 forces were not finite" in caplog.text
 
-    def test_recorded_force_is_the_one_that_the_device_applied(self):
+    def test_applied_force_is_recorded_and_scaled_to_the_device(self):
         class Weak(Scripted):
             @property
             def applied(self) -> Force:
@@ -159,8 +154,6 @@ class TestRun:
 
         recording, _ = feel(lambda _: PUSH, 0.01, Weak())
         assert recording.force_n.tolist() == [[0.0, 0.0, 1.0]] * 10
-
-    def test_law_too_stiff_for_the_device_is_scaled_down(self):
         level = HapticSurface.from_heights(np.zeros((8, 8)))
         device = Mock(hand=None, path="circle", z_m=-0.001)
         held = gain(FREE.arrays(device.spec(), 4000.0)[0], 0.001)
@@ -192,7 +185,7 @@ class TestRows:
 
 
 class TestEndings:
-    def test_ctrl_c_ends_the_session_without_force(self, caplog: pytest.LogCaptureFixture):
+    def test_stop_or_ctrl_c_ends_the_session_without_force(self, caplog: pytest.LogCaptureFixture):
         caplog.set_level(logging.INFO)
         reports: list[ServoReport] = []
         recording, link = feel(fails(KeyboardInterrupt(), 50), on_report=reports.append)
@@ -200,8 +193,6 @@ class TestEndings:
         assert recording.time_s.size == 50
         assert (link.held, link.closed) == (NO_FORCE, 1)
         assert [record.levelname for record in caplog.records] == ["INFO"]
-
-    def test_stop_from_another_thread_ends_the_session_without_force(self):
         stop = Event()
         recording, link = feel(lambda tick: PUSH if tick != 20 else stop.set() or PUSH, stop=stop)
         assert (recording.stopped, recording.time_s.size) == (STOPPED, 21)
@@ -222,15 +213,13 @@ class TestEndings:
         assert recording.time_s.size == 1
         assert link.held == NO_FORCE
 
-    def test_recording_that_is_full_ends_the_session(self, monkeypatch: pytest.MonkeyPatch):
+    def test_full_recording_or_failing_touch_ends_the_session(self, monkeypatch: pytest.MonkeyPatch):
+        link = Scripted()
+        with pytest.raises(ZeroDivisionError):
+            feel(fails(ZeroDivisionError(), 5), link=link)
+        assert (link.held, link.closed) == (NO_FORCE, 1)
         monkeypatch.setattr(simulated, "MAX_TICKS", 30)
         recording, link = feel(lambda _: PUSH, 1e9)
         assert "full, 30 ticks" in recording.stopped
         assert recording.time_s.size == 30
         assert link.held == NO_FORCE
-
-    def test_error_of_the_touch_is_raised_and_leaves_no_force(self):
-        link = Scripted()
-        with pytest.raises(ZeroDivisionError):
-            feel(fails(ZeroDivisionError(), 5), link=link)
-        assert (link.held, link.closed) == (NO_FORCE, 1)

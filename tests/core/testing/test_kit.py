@@ -41,7 +41,7 @@ def registry(install):
     return Registry()
 
 
-def test_run_checks_yields_results_with_messages(registry):
+def test_run_checks_pass_options_and_yield_results(registry):
     results = {result.name: result for result in run_checks("depth", "mine", registry)}
     assert list(results) == [check.__name__ for check in checks("depth")]
     assert {name for name, result in results.items() if not result.passed} == {
@@ -50,6 +50,12 @@ def test_run_checks_yields_results_with_messages(registry):
     }
     assert "100% of a pair without any texture is claimed" in results["flat_pair_claims_nothing"].message
     assert results["wall_is_found"].message.startswith("A textured wall shifted by 6 px is found")
+    [result] = [check for check in run_checks("depth", "mine", registry, shift_px=9.0) if check.name == "wall_is_found"]
+    assert result == CheckResult("wall_is_found", False, "the wall is shifted by 6 px; the median error is 3 px")
+    with pytest.raises(BrokenMethod, match="'lost'"):
+        list(run_checks("depth", "lost", registry))
+    with pytest.raises(UnknownMethod, match="did you mean 'mine'"):
+        list(run_checks("depth", "mime", registry))
 
 
 def source_declaring(*names: str) -> str:
@@ -75,18 +81,6 @@ def test_run_checks_unknown_declared_check_is_refused(install):
     install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme=source_declaring("wall_is_fond"))
     with pytest.raises(BrokenMethod, match=r"depth method mine: .*'wall_is_fond' \(did you mean 'wall_is_found'\?\)"):
         list(run_checks("depth", "mine", Registry()))
-
-
-def test_run_checks_options_reach_the_method(registry):
-    [result] = [check for check in run_checks("depth", "mine", registry, shift_px=9.0) if check.name == "wall_is_found"]
-    assert result == CheckResult("wall_is_found", False, "the wall is shifted by 6 px; the median error is 3 px")
-
-
-def test_run_checks_method_not_loadable_raises(registry):
-    with pytest.raises(BrokenMethod, match="'lost'"):
-        list(run_checks("depth", "lost", registry))
-    with pytest.raises(UnknownMethod, match="did you mean 'mine'"):
-        list(run_checks("depth", "mime", registry))
 
 
 def test_run_checks_other_exception_is_a_failure_with_its_place(install, caplog):

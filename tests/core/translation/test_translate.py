@@ -1,9 +1,10 @@
-"""Texts in other languages. Otherwise somebody would read half a sentence in English, or a wrong number."""
+"""Translated texts. Otherwise a text would stay English, or say something else, in a German program."""
 
 from pathlib import Path
 
 import pytest
 
+import catalogues
 from command_line import tangible
 from english import english_of
 from tangible_core.errors import UnknownMethod
@@ -183,7 +184,7 @@ def test_numbers_have_the_notation_of_the_language(english: str, german: str | N
     assert (Numerals("de")(english), Numerals("fr")(english)) == (german, french)
 
 
-def test_languages_are_chosen_by_their_tags_and_unknown_ones_are_english() -> None:
+def test_languages_are_chosen_by_tags_and_marks_stay() -> None:
     tags = {"de_AT.UTF-8": "de", "fr-CA": "fr", "DE": "de", "de.UTF-8": "de", "nl_NL": "en", "": "en"}
     try:
         for tag, spoken in tags.items():
@@ -193,10 +194,6 @@ def test_languages_are_chosen_by_their_tags_and_unknown_ones_are_english() -> No
             assert localise("1.5 mm") == ("1.5 mm" if spoken == "en" else "1,5 mm")
     finally:
         set_language("en")
-
-
-def test_marks_and_escaped_brackets_stay_where_they_are() -> None:
-    """A bracket of a text itself is escaped, so that no mark is made of it; English is not touched at all."""
     said = r"[bold red]1.5 mm[/] \[x] [bold #12ab_9]nobody's \[red] text[/bold][dim]2.5[/] 3"
     assert localise_marked(said) == said
     try:
@@ -283,3 +280,22 @@ def test_the_terminal_has_no_english_in_german(words: str, tmp_path: Path) -> No
     if words.startswith("plan"):
         data = tangible("--lang", "de", "plan", "photo.yaml", "--json", cwd=tmp_path)
         assert data.stdout == tangible("plan", "photo.yaml", "--json", cwd=tmp_path).stdout
+
+
+HOW = (
+    "run `python tests/helpers/catalogues.py`, and fill in the empty `msgstr` of "
+    "tangible_core/translation/{language}.po (CONTRIBUTING.md, “Texts in other languages”)"
+)
+
+
+@pytest.mark.parametrize("language", catalogues.WHOLE)
+def test_every_text_that_the_program_shows_is_translated(language: str) -> None:
+    missing = list(catalogues.missing(language))
+    assert not missing, HOW.format(language=language)
+
+
+@pytest.mark.parametrize("language", ["de", "fr"])
+def test_translations_are_of_living_texts_with_their_placeholders(language: str) -> None:
+    gone = list(catalogues.stale(language))
+    assert not gone, f"these are in {language}.po alone: run `python tests/helpers/catalogues.py`"
+    assert not list(catalogues.misfits(language))

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from full_disk import unreadable
 from hostile import YAML_BOMBS
 from tangible_core.errors import MAX_IN_LINE, MAX_LINES, ConfigError
 from tangible_core.files.reading import MAX_TEXT_BYTES
@@ -13,7 +14,6 @@ from tangible_core.files.yaml.bounds import MAX_DEPTH, MAX_DIGITS
 from tangible_core.files.yaml.source import Source, parse_source, plain, read_text
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
-from unreadable import unreadable
 
 PATH = Path("here/p.yaml")
 
@@ -45,26 +45,19 @@ def deep(levels: int) -> str:
     return "x: " + "[" * (levels - 1) + "1" + "]" * (levels - 1)
 
 
-def test_brackets_beyond_the_depth_limit_are_refused_where_they_are_read():
+def test_brackets_and_blocks_beyond_the_depth_limit_are_refused():
     """The parser's events would be a thousand brackets late."""
     assert complaint("scene: " + "[" * 500) == f"here/p.yaml:1:{8 + MAX_DEPTH}: more than {MAX_DEPTH} blocks are nested"
-
-
-def test_nested_blocks_beyond_the_depth_limit_are_refused():
     assert parse(deep(MAX_DEPTH)).tree
     assert complaint(deep(MAX_DEPTH + 1)) == f"here/p.yaml:1:23: more than {MAX_DEPTH} blocks are nested"
 
 
-def test_values_beyond_the_count_limit_are_refused(monkeypatch: pytest.MonkeyPatch):
+def test_values_and_aliases_beyond_the_count_limit_are_refused(monkeypatch: pytest.MonkeyPatch):
     """The mapping, a key, the list, and its items."""
     monkeypatch.setattr(bounds, "MAX_NODES", 100)
     assert parse(f"x: [{'1,' * 97}]").tree
     assert "more than 100 values" in complaint(f"x: [{'1,' * 98}]")
     assert "more than 100 values" in complaint("\n".join(f"x{number}: 1" for number in range(50)))
-
-
-def test_alias_counts_as_all_nodes_that_it_stands_for(monkeypatch: pytest.MonkeyPatch):
-    """The mapping, two keys, a list of 9 in it, and another list of what is left."""
     monkeypatch.setattr(bounds, "MAX_NODES", 100)
     text = f"a: &a [{'1,' * 9}]\nb: [{{}}]"
     assert len(parse(text.format("*a," * 8 + "1," * 6)).tree["b"]) == 14
@@ -141,13 +134,10 @@ def test_mark_of_yaml_in_place_of_a_value_is_a_text(text: str):
     assert json.loads(json.dumps(plain(tree))) == {"a": text, "b": [text, 1]}
 
 
-def test_plain_value_with_its_own_tag_and_tagged_mapping_are_read():
+def test_tagged_values_are_read_and_unreadable_text_says_why(tmp_path: Path):
     text = "a: !!int 3\nb: !!bool true\nc: !!opencv-matrix {rows: 3}\nd: !!float 2\n"
     tree = parse_source(text, Path("p.yaml"), "a mapping").tree
     assert {key: plain(value) for key, value in tree.items()} == {"a": 3, "b": True, "c": {"rows": 3}, "d": 2.0}
-
-
-def test_text_that_cannot_be_read_says_why(tmp_path: Path):
     for path, why in unreadable(tmp_path, ".yaml"):
         with pytest.raises(ConfigError) as error:
             read_text(path)

@@ -11,13 +11,12 @@ def report(stopped: str = "", part: str = "", material: str = "") -> ServoReport
     return ServoReport(100, 0.1, state, NO_FORCE, 1.5, 0.0, stopped, part=part, material=material)
 
 
-def test_progress_without_a_terminal_writes_nothing(capsys: pytest.CaptureFixture[str]):
+def test_progress_shows_one_spinner_in_a_terminal_alone(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+):
     progress.tangible_stage_started("relief", "core")
     progress.tangible_stage_finished(Outcome("relief", "ran", "requested"))
     assert capsys.readouterr() == ("", "")
-
-
-def test_progress_shows_one_spinner_until_the_loop_stops(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
     progress.tangible_stage_started("relief", "core")
     progress.tangible_servo_report(report())

@@ -27,7 +27,7 @@ def blocks(run: int) -> HapticSurface:
 
 
 class TestSlopes:
-    def test_too_stiff_half_of_the_surface_is_unsafe(self):
+    def test_slope_that_is_too_stiff_is_unsafe_and_smoothed(self):
         """Along the gradient, slope 2 makes 5000 N/m of 1000, over the limit of 4000; at the bend it is 2000."""
         surface, penalty = half_slope(2.0, cells=64), "penalty-gradient"
         [found] = slope_stiffness(fly(surface, penalty, stiffness_n_per_m=1000.0))
@@ -39,9 +39,6 @@ class TestSlopes:
         assert grades(slope_stiffness(fly(surface, "proxy", stiffness_n_per_m=1000.0))) == ["ok"]
         coupled = fly(surface, penalty, stiffness_n_per_m=1000.0, safety=Safety(coupling="auto"))
         assert grades(slope_stiffness(coupled)) == ["ok"]
-
-    def test_steep_surface_is_smoothed_and_not_softened(self):
-        """Slope 9.4 makes 90,000 N/m of 1000: a stable law would have 44 N/m on level ground."""
         surface = shape(lambda x, y: 0.03 * np.sin(2 * np.pi * x / 0.02), 256)
         [found] = slope_stiffness(fly(surface, "penalty-gradient", stiffness_n_per_m=1000.0))
         assert found.verdict == "unsafe"
@@ -67,13 +64,10 @@ class TestSlopes:
         """Waves of slope 0.8, which a hand climbs, and of 6.3, which it does not."""
         assert of(cliffs(fly(waves(amplitude_m))), "a wall").verdict == verdict
 
-    def test_steeper_walls_hold_a_hand_up_for_longer(self):
+    def test_walls_and_friction_hold_a_hand_up(self):
         """A share of the surface would fall, as a steeper wall has less area."""
         gentle, steep, upright = (of(cliffs(fly(blocks(run))), "a wall").value for run in (12, 4, 1))
         assert gentle == 0 < steep < upright
-
-    def test_friction_makes_walls_of_slopes(self):
-        """Up slope 1.57, no push suffices against a friction of 0.7."""
         wave = waves(0.005)
         rough = HapticSurface(
             wave.relief, np.zeros(wave.height_m.shape, np.int32), (material(static_friction=0.7, dynamic_friction=0.7),)
@@ -83,7 +77,7 @@ class TestSlopes:
         assert climbable(fly(rough)) == pytest.approx((2 - 0.7) / (1 + 2 * 0.7))
         assert climbable(fly(wave)) == 2
 
-    def test_sudden_force_is_what_the_law_does_and_not_a_formula(self):
+    def test_slopes_take_the_greater_side_and_the_force_of_the_law(self):
         """A penalty of 1000 N/m at 0.25 m/s and 1 kHz grows by 0.25 N a tick times the slope, a proxy by 0.25 N."""
         stroke = {"stiffness_n_per_m": 1000.0, "speed_m_per_s": 0.25}
         penalty = of(cliffs(fly(half_slope(5.0), "penalty", **stroke)), "too sudden")
@@ -91,6 +85,10 @@ class TestSlopes:
         assert (penalty.verdict, proxy.verdict, proxy.value) == ("warn", "ok", 0)
         assert float(re.search(r"up to ([\d.]+) N in a tick", proxy.note)[1]) < 0.5
         assert [cliff.of for cliff in cliffs(fly(half_slope(1.0), "grey-level"))] == ["a wall", "too sudden"]
+        step = HapticSurface.from_heights(np.array([[0, 0, 0.01, 0.01]], np.float32), 0.04)
+        np.testing.assert_allclose(slopes(step.relief), [[0, 1, 1, 0]], rtol=1e-6)
+        assert slopes(Relief(np.zeros((1, 1), np.float32), (0.1, 0.1))).tolist() == [[0]]
+        assert "relief.slope" not in of(cliffs(fly(waves(0.02), slope=1.5)), "a wall").cure, "gentle enough already"
 
     def test_wall_is_cured_by_slope_then_rounding_then_height(self):
         surface = waves(0.02)
@@ -109,12 +107,6 @@ class TestSlopes:
         both = of(cliffs(fly(surface, of_parts=True)), "a wall")
         assert both.cure.endswith(", or lower parts (`height_m` under `parts:`)")
         assert [change.key for change in both.changes] == ["workspace.smooth_m"]
-
-    def test_slopes_take_the_greater_side(self):
-        step = HapticSurface.from_heights(np.array([[0, 0, 0.01, 0.01]], np.float32), 0.04)
-        np.testing.assert_allclose(slopes(step.relief), [[0, 1, 1, 0]], rtol=1e-6)
-        assert slopes(Relief(np.zeros((1, 1), np.float32), (0.1, 0.1))).tolist() == [[0]]
-        assert "relief.slope" not in of(cliffs(fly(waves(0.02), slope=1.5)), "a wall").cure, "gentle enough already"
 
 
 class TestClipping:

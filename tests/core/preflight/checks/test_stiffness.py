@@ -37,16 +37,13 @@ class TestStiffness:
         flight = fly(level(), **changes)
         assert flight.ceilings[0].limit_n_per_m == pytest.approx(limit)
 
-    def test_friction_limit_has_the_margin(self):
+    def test_lowest_ceiling_is_after_the_margin(self):
         """2 f / resolution is 2000 N/m, of which the guard leaves 1600."""
         coarse = {"safety": Safety(friction_n=0.02), "resolution_m": 2e-5}
         for stiffness, verdict in ((1600.0, "ok"), (1601.0, "warn"), (2001.0, "unsafe")):
             found, *_ = law_stiffness(fly(level(), stiffness_n_per_m=stiffness, **coarse))
             assert (found.verdict, found.bound) == (verdict, pytest.approx(1600))
             assert found.source.startswith("Abbott")
-
-    def test_lowest_ceiling_is_after_the_margin(self):
-        """3300 N/m by friction leave 2640; the specification of the device, 3000 N/m, has no margin."""
         coarse = {"safety": Safety(friction_n=0.033), "resolution_m": 2e-5, "max_stiffness_n_per_m": 3000.0}
         left = [ceiling.most_n_per_m for ceiling in fly(level(), **coarse).ceilings]
         assert left == pytest.approx([2400, 2640, 3000])
@@ -61,20 +58,18 @@ class TestStiffness:
     def test_max_force_is_the_lesser_of_device_and_option(self, asked: float | None, given_n: float):
         assert fly(level(), safety=Safety(max_force_n=asked)).max_force_n == given_n
 
-    def test_stiffness_cure_passes(self):
+    def test_stiffness_cure_passes_and_coupling_lowers_the_stiffness(self):
         flight = fly(level(), stiffness_n_per_m=20_000.0)
         verdicts = list(law_stiffness(flight))
         assert grades(verdicts) == ["unsafe", "unsafe"]
         for verdict in verdicts:
             softer = fly(level(), stiffness_n_per_m=value_in_cure(verdict, "render.stiffness_n_per_m"))
             assert next(each for each in law_stiffness(softer) if each.source == verdict.source).verdict == "ok"
-
-    def test_coupling_lowers_the_stiffness_at_the_device(self):
         flight = fly(level(), stiffness_n_per_m=20_000.0, safety=Safety(coupling="auto"))
         assert grades(law_stiffness(flight)) == ["ok", "ok"]
         assert flight.felt_n_per_m(1600.0) == pytest.approx(800)
 
-    def test_stiff_material_is_named_and_cured_in_the_library(self):
+    def test_stiff_materials_are_named_and_textures_clean_below(self):
         surface = surface_with_materials(material("soft"), material("hard", stiffness_n_per_m=5000.0))
         [unfitted, *_] = law_stiffness(fly(surface))
         assert unfitted.cure == "`materials.fit: device`"
@@ -85,8 +80,6 @@ class TestStiffness:
         verdicts = list(material_stiffness(flight))
         assert [(verdict.of, verdict.verdict) for verdict in verdicts] == [("soft", "ok"), ("hard", "unsafe")]
         assert value_in_cure(verdicts[1], "stiffness_n_per_m") == 3200
-
-    def test_texture_is_clean_up_to_900_n_per_m(self):
         rough = {"texture": "stochastic", "roughness_m": 1e-4}
         made_of = [material(f"{each:g}", **rough, stiffness_n_per_m=each) for each in (900.0, 950.0, 5000.0)]
         clean, buzzes, unsafe = material_stiffness(fly(surface_with_materials(*made_of)))
@@ -101,14 +94,11 @@ class TestStiffness:
         [found] = law_damping(flight)
         assert (found.verdict, found.bound) == (verdict, pytest.approx(1.0))
 
-    def test_damping_bound_falls_with_delay(self):
+    def test_damping_bound_falls_with_delay_and_stiffness(self):
         """b > K T (1 + 2 d) / 2 + B, with b 2 N s/m, K 1000 N/m and d 1."""
         for stiffness, safety, bound in ((1000.0, Safety(delay_ticks=1), 0.5), (6000.0, Safety(), 0)):
             [found] = law_damping(fly(level(), "penalty-gradient", stiffness_n_per_m=stiffness, safety=safety))
             assert found.bound == pytest.approx(bound)
-
-    def test_damping_bound_follows_the_stiffness_of_each_place(self):
-        """b is 2 N s/m: 500 N/m leave 1.75 of it, 3000 N/m leave 0.5."""
         soft, hard = {"stiffness_n_per_m": 500.0}, {"stiffness_n_per_m": 3000.0}
         pair = material("soft", damping_n_s_per_m=1.6, **soft), material("hard", damping_n_s_per_m=0.4, **hard)
         assert grades(law_damping(fly(surface_with_materials(*pair)))) == ["ok"]

@@ -78,7 +78,7 @@ def test_old_file_without_frames_is_read(tmp_path: Path, suffix: str):
     assert np.isnan(found.frame).all()
 
 
-def test_frame_in_nc_file_is_read_by_other_programs(tmp_path: Path):
+def test_nc_and_old_npz_files_are_read(tmp_path: Path):
     """Frame numbers beyond float32, and invalid ones."""
     rows = some().rows.copy()
     rows[:, 16] = 0, 2**24 + 1, np.nan, np.inf, -7
@@ -86,9 +86,6 @@ def test_frame_in_nc_file_is_read_by_other_programs(tmp_path: Path):
     with netcdf_file(tmp_path / "stroke.nc", mmap=False, maskandscale=True) as file:
         assert file.variables["frame"][:].tolist() == [0, 2**24 + 1, None, None, None]
     assert np.array_equal(Recording.load(tmp_path / "stroke.nc").frame[:2], rows[:2, 16])
-
-
-def test_old_npz_file_is_read(tmp_path: Path):
     arrays = {name: getattr(some(), name) for name in ("time_s", "position_m", "velocity_m_per_s", "force_n")}
     np.savez(tmp_path / "old.npz", **arrays, stopped="", not_finite=2, limited=3)
     recording = Recording.load(tmp_path / "old.npz")
@@ -97,7 +94,7 @@ def test_old_npz_file_is_read(tmp_path: Path):
     assert recording.about == About()
 
 
-def test_figures_of_a_recording_are_exact():
+def test_figures_of_a_recording_are_exact_and_its_shape_is_checked():
     force = np.array([[0, 0, 0], [0, 3, 4], [0, 0, 1], [0, 0, 0]], float)
     position = np.array([[0, 0, 0], [0, 0, 0], [0, 1, 1], [0, 1, 3]], float)
     flags = np.array([0, TickFlag.FORCE_LIMITED | TickFlag.TOUCHING, TickFlag.NOT_FINITE, TickFlag.NOT_FINITE])
@@ -114,9 +111,6 @@ def test_figures_of_a_recording_are_exact():
         "force_limited": 1,
         "not_finite": 2,
     }
-
-
-def test_recording_of_wrong_shape_is_refused():
     with pytest.raises(OutputError, match=r"\(n, 17\)"):
         Recording(np.zeros((3, 10)))
     parts = {"time_s": np.zeros(3), "position_m": np.zeros((3, 3)), "velocity_m_per_s": np.zeros((3, 3))}
@@ -150,16 +144,13 @@ def test_decompression_bomb_is_not_unpacked(tmp_path: Path):
         tracemalloc.stop()
 
 
-def test_archive_without_a_needed_array_names_it(tmp_path: Path):
+def test_archive_is_read_by_its_needed_entries_alone(tmp_path: Path):
     np.savez(tmp_path / "a.npz", time_s=np.zeros(3), stopped="")
     assert "it holds no position_m, velocity_m_per_s, force_n" in refusal(tmp_path / "a.npz")
     some().save(tmp_path / "a.npz")
     with np.load(tmp_path / "a.npz") as held:
         np.savez(tmp_path / "b.npz", **{name: held[name] for name in held if name != "stopped"})
     assert "it holds no stopped" in refusal(tmp_path / "b.npz")
-
-
-def test_archive_entries_of_other_names_are_not_read(tmp_path: Path):
     some().save(tmp_path / "a.npz")
     with np.load(tmp_path / "a.npz") as held:
         np.savez(tmp_path / "b.npz", **held, more=np.array([{}], object))

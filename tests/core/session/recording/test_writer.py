@@ -42,7 +42,7 @@ def test_writer_makes_appended_ticks_readable_at_once(tmp_path: Path):
     assert "tangible-images" in about.software
 
 
-def test_file_has_names_units_and_flags_for_other_programs(tmp_path: Path):
+def test_file_has_names_units_flags_and_offsets_for_other_programs(tmp_path: Path):
     with Writer(tmp_path / "stroke.nc", About("falcon")) as writer:
         writer.append(ROWS)
     with netcdf_file(tmp_path / "stroke.nc", mmap=False) as file:
@@ -53,17 +53,13 @@ def test_file_has_names_units_and_flags_for_other_programs(tmp_path: Path):
         flags = file.variables["flags"]
         assert dict(zip(flags.flag_meanings.decode().split(), flags.flag_masks, strict=True))["force_limited"] == 2
         assert np.array_equal(file.variables["fz_n"][:], ROWS[:, 13])
-
-
-def test_header_has_the_offset_of_each_variable():
-    """scipy uses the first offset and then the sizes; other readers use all offsets."""
     head = tick_file.header(About())
     following = [head.rindex(netcdf.integer(len(name)) + name.encode()) for name in TICK_COLUMNS[1:]] + [len(head)]
     begins = [int.from_bytes(head[at - 8 : at], "big") for at in following]
     assert begins == [len(head) + tick_file.RECORD.fields[name][1] for name in TICK_COLUMNS]
 
 
-def test_tick_takes_96_bytes_with_little_loss(tmp_path: Path):
+def test_ticks_take_96_bytes_and_the_reason_of_the_end_is_stored(tmp_path: Path):
     """Inputs of a law are exact, even after ten days; proxies are within 4 nm, forces within 0.3 uN."""
     rows = np.random.default_rng(0).uniform(-1, 1, (1000, 17)) * ([0.01, 1e-3] + [0.125] * 9 + [8] * 3 + [0, 0, 0])
     rows[:, 0] += 864_000
@@ -79,10 +75,6 @@ def test_tick_takes_96_bytes_with_little_loss(tmp_path: Path):
     assert not lost[[0, 2, 3, 4, 5, 6, 7]].any()
     assert lost[8:11].max() < 4e-9
     assert lost[11:14].max() < 3e-7
-
-
-def test_writer_stores_the_reason_of_the_end(tmp_path: Path):
-    path = tmp_path / "stroke.nc"
     writer = Writer(path)
     writer.close("é" * 200)
     writer.close("again")

@@ -42,13 +42,10 @@ def test_parts_of_another_picture_are_not_written_meanwhile(stripes: Path):
     assert {path.name for path in found.write()} == {"parts.png", "parts-numbered.png", "stripes.yaml"}
 
 
-def test_heights_are_whole_tenths_of_a_millimetre_below_the_top(stripes: Path):
+def test_parts_have_heights_of_whole_tenths_in_their_units(stripes: Path):
     found = parts_of(stripes, overrides=["texture.segments=5"], smallest_mm=2.0)
     heights_mm = sorted(1000 * (each.height_m or 0.0) for each in found.listed)
     assert heights_mm == pytest.approx([0.0, 1.0, 2.1, 3.1, 4.2])  # of 0, 1.05, 2.1, 3.15 and 4.2
-
-
-def test_file_and_list_say_sizes_in_their_units(stripes: Path):
     (stripes / "here").mkdir()
     words = ("parts", "../stripes.png", "--out", "..", "--method", "histogram", "--set", "texture.segments=5")
     done = tangible(*words, "--smallest", 2, cwd=stripes / "here")
@@ -60,7 +57,6 @@ def test_file_and_list_say_sizes_in_their_units(stripes: Path):
     rows = [line.split() for line in done.stdout.splitlines() if re.match(r"\s*[1-5]\s", line)]
     assert rows[-1][-2] == "3.8"  # 6 of 160 columns, in percent
     assert sorted(row[-1] for row in rows) == ["0.0", "1.0", "2.1", "3.1", "4.2"]
-
     (stripes / "parts-numbered.png").unlink()
     again = tangible("parts", "../stripes.yaml", cwd=stripes / "here")
     assert again.returncode == 0, again.stderr

@@ -34,7 +34,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_unsafe_file_is_fixed_and_keeps_the_users_text(folder: Path):
+def test_unsafe_file_is_fixed_unless_there_is_no_cure(folder: Path):
     asked = "preflight", "p.yaml", "--seconds", 0.05
     assert tangible(*asked, cwd=folder).returncode == 1
     done = tangible(*asked, "--fix", "kept/fixed.yaml", "--set", "workspace.width_m=0.06", cwd=folder)
@@ -52,23 +52,6 @@ def test_unsafe_file_is_fixed_and_keeps_the_users_text(folder: Path):
     assert fixed.scene.files.photo.resolve() == folder / "mine.png"
     assert fixed.preflight(loop=Loop(seconds=0.01)).safe
     assert (folder / "p.yaml").read_text() == STEEP
-
-
-def test_safe_file_is_written_unchanged(folder: Path):
-    calm = (
-        STEEP.replace(", fit: never", "")
-        .replace("  smooth_m: 0\n", "")
-        .replace("0.02 ", "0.004 ")
-        .replace("penalty-gradient", "proxy")
-    )
-    (folder / "p.yaml").write_text(calm)
-    done = tangible("preflight", "p.yaml", "--seconds", 0.05, "--fix", "fixed.yaml", cwd=folder)
-    assert done.stdout.startswith("Written: fixed.yaml; nothing had to change\n\n")
-    assert (folder / "fixed.yaml").read_text() == calm
-
-
-def test_file_without_cure_is_not_written(folder: Path):
-    """A wall of a material that no key of the file softens, on a loop so slow that it holds none."""
     (folder / "hard.yaml").write_text(
         "hard: {stiffness_n_per_m: 3000, damping_n_s_per_m: 0, static_friction: 0, dynamic_friction: 0, "
         "texture: smooth}\n"
@@ -83,6 +66,19 @@ def test_file_without_cure_is_not_written(folder: Path):
     assert "on mock: Unsafe, because " in done.stdout
     assert done.stdout.startswith("Nothing was written: no cure is enough")
     assert not (folder / "fixed.yaml").exists()
+
+
+def test_safe_file_is_written_unchanged(folder: Path):
+    calm = (
+        STEEP.replace(", fit: never", "")
+        .replace("  smooth_m: 0\n", "")
+        .replace("0.02 ", "0.004 ")
+        .replace("penalty-gradient", "proxy")
+    )
+    (folder / "p.yaml").write_text(calm)
+    done = tangible("preflight", "p.yaml", "--seconds", 0.05, "--fix", "fixed.yaml", cwd=folder)
+    assert done.stdout.startswith("Written: fixed.yaml; nothing had to change\n\n")
+    assert (folder / "fixed.yaml").read_text() == calm
 
 
 def test_existing_file_is_overwritten_only_with_force(folder: Path):

@@ -66,7 +66,7 @@ def test_picture_divided_into_parts_gives_files_that_run(folder: Path):
     assert wall < vase, "the vase stands before the wall"
 
 
-def test_existing_file_without_force_is_kept(folder: Path):
+def test_existing_file_and_picture_are_kept(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     before = {name: (folder / name).read_bytes() for name in HERE}
     again = tangible("parts", "still.png", "--count", 2, cwd=folder)
@@ -78,9 +78,6 @@ def test_existing_file_without_force_is_kept(folder: Path):
     (folder / "parts.png").rename(folder / "elsewhere.png")
     kept = tangible("parts", "still.png", cwd=folder)
     assert "parts-numbered.png: is there already" in kept.stderr and not (folder / "parts.png").exists()
-
-
-def test_picture_itself_is_never_overwritten(folder: Path):
     (folder / "still.png").rename(folder / "parts.png")
     before = (folder / "parts.png").read_bytes()
     done = tangible("parts", "parts.png", "--force", cwd=folder)

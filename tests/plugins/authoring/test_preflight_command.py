@@ -36,7 +36,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_preflight_safe_file_exits_with_0(folder: Path):
+def test_safe_file_exits_with_0_and_no_device_is_opened(folder: Path, monkeypatch: pytest.MonkeyPatch):
     short = tangible("preflight", "p.yaml", "--seconds", 0.1, cwd=folder).stdout.splitlines()
     assert not [line for line in short if line.startswith("ok")]
     assert re.search(r"\d\d ok \(--verbose lists them\)", short[-1])
@@ -47,6 +47,8 @@ def test_preflight_safe_file_exits_with_0(folder: Path):
     assert {verdict.split()[0] for verdict in verdicts} <= GRADES | {"cure:"}
     assert " 700 N/m <= 2400 N/m; 80 % of 3000 N/m; Colgate & Schenkel 1997" in done.stdout
     assert summary.endswith(" 0 unsafe")
+    monkeypatch.setattr(Mock, "open", lambda self: pytest.fail("opened"))
+    preflight(folder / "p.yaml", seconds=0.01, as_json=True, no_cache=True)
 
 
 def test_preflight_unsafe_file_exits_with_1_and_json_has_all(folder: Path):
@@ -68,12 +70,7 @@ def test_preflight_unsafe_file_exits_with_1_and_json_has_all(folder: Path):
     assert all("render.stiffness_n_per_m: " in each["cure"] for each in unsafe if each["check"] == "stiffness")
 
 
-def test_preflight_device_is_never_opened(folder: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(Mock, "open", lambda self: pytest.fail("opened"))
-    preflight(folder / "p.yaml", seconds=0.01, as_json=True, no_cache=True)
-
-
-def test_survey_law_with_nan_force_is_refused():
+def test_survey_measures_a_law_without_stiffness_and_refuses_nan():
     """Bounds of NaN would give cures that are not values: `render.stiffness_n_per_m: nan`."""
 
     class Broken(PlainTouch):
@@ -86,12 +83,9 @@ def test_survey_law_with_nan_force_is_refused():
     with pytest.raises(BrokenMethod, match="not finite at 4 of 16 places"):
         survey(surface, Broken(), Proxy(), Mock(), loop=Loop(seconds=0.01))
 
-
-def test_survey_law_without_stated_stiffness_is_measured():
     class Spring(PlainTouch):
         def force(self, state: HapticState) -> Force:
             return Force(0.0, 0.0, 350.0 * max(0.0, 0.01 - state.position_m[2]))
 
-    surface = HapticSurface.from_heights(np.full((4, 4), 0.01, np.float32))
     flight = survey(surface, Spring(), Proxy(), Mock(), loop=Loop(seconds=0.01))
     assert flight.stiffness_n_per_m == pytest.approx(350)

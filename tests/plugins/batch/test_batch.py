@@ -109,6 +109,19 @@ class TestScenes:
         same = Pipeline(scene, depth=Luminance(), workspace={"width_m": 0.06}, cached=False).relief
         assert found.digest() == same.digest()
 
+    def test_scene_with_a_truth_has_the_figures_of_its_disparity(self, archive: Path):
+        depth = np.linspace(1, 9, 24 * 32).reshape(24, 32)
+        np.save(archive / "found.npy", depth)
+        for number, off in enumerate((1.5, np.nan)):  # without any truth no figure is finite, and JSON has no NaN
+            np.save(archive / "truth.npy", depth + off)
+            scene = "{photo: archive/p0.png, disparity: archive/found.npy, truth: archive/truth.npy}"
+            (archive.parent / "mine.yaml").write_text(f"scene: {scene}\nwant: relief\n")
+            (archive / "rows.csv").write_text("id,workspace.width_m\none,0.05\n")
+            done = tangible("batch", "mine.yaml", "--over", archive / "rows.csv", cwd=archive.parent)
+            assert done.returncode == 0, done.stderr
+            figures = rows_in(archive.parent / "out/mine-batch")[number]["figures"]["disparity"]
+            assert figures["average_px"] == (None if number else pytest.approx(1.5))
+
     def test_second_batch_makes_again_what_has_changed(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
         out, tally = archive.parent / "out/mine-batch", list[int]()
 
@@ -333,19 +346,6 @@ class TestScenes:
         assert self.run(archive.parent).returncode == 0
         assert read_entry(archive.parent / "out/mine-batch/scenes/p2/relief.npz").record.height_m.shape == (32, 24)
 
-    def test_scene_with_a_truth_has_the_figures_of_its_disparity(self, archive: Path):
-        depth = np.linspace(1, 9, 24 * 32).reshape(24, 32)
-        np.save(archive / "found.npy", depth)
-        for number, off in enumerate((1.5, np.nan)):  # without any truth no figure is finite, and JSON has no NaN
-            np.save(archive / "truth.npy", depth + off)
-            scene = "{photo: archive/p0.png, disparity: archive/found.npy, truth: archive/truth.npy}"
-            (archive.parent / "mine.yaml").write_text(f"scene: {scene}\nwant: relief\n")
-            (archive / "rows.csv").write_text("id,workspace.width_m\none,0.05\n")
-            done = tangible("batch", "mine.yaml", "--over", archive / "rows.csv", cwd=archive.parent)
-            assert done.returncode == 0, done.stderr
-            figures = rows_in(archive.parent / "out/mine-batch")[number]["figures"]["disparity"]
-            assert figures["average_px"] == (None if number else pytest.approx(1.5))
-
     @pytest.mark.parametrize("name", ['Ä "quoted" one', "two\nlines", "b\udcff"])
     def test_picture_with_any_name_is_made(self, archive: Path, name: str):
         for path in archive.iterdir():
@@ -370,14 +370,12 @@ class TestScenes:
         assert self.run(archive.parent).returncode == 1
         assert "the ink is dry" in rows_in(out)[-1]["error"]
 
-    def test_second_batch_in_the_same_folder_is_refused(self, archive: Path):
+    def test_second_batch_or_one_without_the_extra_is_refused(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
         with JsonLines(archive.parent / "out/mine-batch/rows.jsonl", alone=True) as file:
             file.add_row({"id": "other"})
             done = self.run(archive.parent)
         assert done.returncode == 2 and "another program" in done.stderr
         assert len(rows_in(archive.parent / "out/mine-batch")) == 1
-
-    def test_batch_without_the_extra_is_refused_before_the_work(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr(extra, "find_spec", lambda name: None)
         done = self.run(archive.parent)
         assert done.returncode == 2 and "pip install" in done.stderr

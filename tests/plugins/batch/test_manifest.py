@@ -1,4 +1,4 @@
-"""Scenes of folders, globs and tables: their names, their files, and what a cell changes."""
+"""The scenes of a batch and their cards: the picture before its product, lit from the upper left."""
 
 from datetime import datetime
 from pathlib import Path
@@ -10,7 +10,9 @@ import pytest
 import tifffile
 from PIL import Image
 
+from tangible_batch.job import CARD, write_card
 from tangible_batch.manifest import find_rows, rows_from, setting_file
+from tangible_core import Pipeline
 from tangible_core.errors import BatchError
 from tangible_core.files.yaml.source import parse_override
 from videos import greys
@@ -47,16 +49,13 @@ def test_folder_is_searched_to_its_depth_and_scenes_are_named_by_their_place(tmp
     assert list(scenes(tmp_path)) == ["a/deep/one", "a/one", "two"]
 
 
-def test_row_without_a_name_has_its_number_and_a_cell_of_zero_counts(tmp_path: Path):
+def test_rows_and_pictures_of_a_shell_are_named_in_order(tmp_path: Path):
     rows = [{"depth.smoothing_px": 0, "want": None}, {"id": "own", "want": ""}, {"want": "relief"}]
     assert [tuple(row) for row in rows_from(rows, tmp_path)] == [
         ("0", ("depth.smoothing_px=0",)),
         ("own", ()),
         ("2", ("want=relief",)),
     ]
-
-
-def test_pictures_of_a_shell_are_in_order_and_named_from_the_folder_that_holds_all(tmp_path: Path):
     touch(tmp_path, "a/two.png", "a/one_left.png", "a/one_right.png", "b/c/film.png")
     given = [str(tmp_path / name) for name in ("b/c/film.png", "a/two.png", "a/one_right.png", "a/one_left.png")]
     assert [(row.id, len(row.sets)) for row in find_rows(given)] == [("a/one", 2), ("a/two", 1), ("b/c/film", 1)]
@@ -81,14 +80,11 @@ def test_files_left_out_of_a_folder_are_named(tmp_path: Path, caplog: pytest.Log
     assert "left out: ._a.png, 0.txt, 1.txt, 2.txt, 3.txt and 7 more" in caplog.text
 
 
-def test_table_of_a_german_spreadsheet_is_read(tmp_path: Path):
+def test_table_is_read_or_refused_with_its_name(tmp_path: Path):
     text = "id;scene.photo;workspace.width_m;title\r\nwide;a.png;0,1;Ein Krug, blau\r\n"
     (tmp_path / "rows.csv").write_text(text, encoding="utf-8-sig")
     photo = f'scene.photo="{tmp_path / "a.png"}"'
     assert scenes(tmp_path / "rows.csv") == {"wide": (photo, "workspace.width_m=0.1", "title=Ein Krug, blau")}
-
-
-def test_damaged_table_is_refused_with_its_name(tmp_path: Path):
     (tmp_path / "rows.csv").write_text('id,title\na,"one\nb,two\n')
     with pytest.raises(BatchError, match=r"rows\.csv: line 3"):
         scenes(tmp_path / "rows.csv")
@@ -101,9 +97,6 @@ def test_damaged_table_is_refused_with_its_name(tmp_path: Path):
         path.write_bytes(data)
         with pytest.raises(BatchError, match=r"rows\.parquet: is not a Parquet file"):
             scenes(path)
-
-
-def test_parquet_gives_all_rows_and_names_the_column_of_a_value_that_no_file_can_hold(tmp_path: Path):
     wide = [0.05 if number % 2 else None for number in range(5000)]
     pq.write_table(pa.table({"workspace.width_m": wide, "title": ["ä"] * 5000}), tmp_path / "rows.parquet")
     found = [tuple(row) for row in find_rows(str(tmp_path / "rows.parquet"))]
@@ -136,3 +129,35 @@ def test_files_are_felt_as_what_their_first_bytes_say(tmp_path: Path):
     Image.new("L", (5, 4)).save(tmp_path / "both.jps", "JPEG")
     keys = {name: sets[0].partition("=")[0] for name, sets in scenes(tmp_path).items()}
     assert keys == {"alps": "scene.height", "cat": "scene.photo", "dog": "scene.photo", "both": "scene.stereo"}
+
+
+@pytest.mark.parametrize("want", ["parts", "relief"])
+def test_card_shows_the_picture_and_then_the_parts_or_the_relief(tmp_path: Path, want: str):
+    labels = np.repeat([[0, 1]], 40, 0).repeat(40, 1).astype(np.uint8)
+    Image.fromarray(labels).save(tmp_path / "parts.png")
+    Image.fromarray(np.full((40, 80, 3), (200, 30, 30), np.uint8)).save(tmp_path / "red.png")
+    text = "scene: {photo: red.png, segments: parts.png}\nheights: {by: given}\n"
+    (tmp_path / "mine.yaml").write_text(f"{text}want: {want}\n")
+    write_card(Pipeline.from_yaml(tmp_path / "mine.yaml"), tmp_path)
+    with Image.open(tmp_path / CARD) as drawn:
+        pixels = np.asarray(drawn).astype(int)
+    assert np.ptp(pixels[40, 80]) > 100  # red: the picture
+    left, right = pixels[40, 200], pixels[40, 280]
+    assert np.ptp(left) < 10 and np.ptp(right) < 10
+    assert (right[0] > 240 and left[0] < 15) == (want == "parts")
+
+
+@pytest.mark.parametrize(("right", "down"), [(0.0, 0.0), (0.5, 0.0), (-0.3, 0.0), (0.0, 0.5), (0.2, -0.4)])
+def test_slope_is_as_bright_as_its_angle_to_the_light(tmp_path: Path, right: float, down: float):
+    """The relief is 0.04 m wide, of 160 cells or 640, and rises so much to the right and downwards."""
+    normal, light = np.array([-right, -down, 1.0]), np.array([-1.0, -1.0, 1.2])
+    expected = 255 * max(0.0, normal @ light / np.linalg.norm(normal) / np.linalg.norm(light))
+    for cells in (160, 640):
+        y, x = np.mgrid[:cells, :cells] * 0.04 / cells
+        np.save(tmp_path / "slope.npy", (right * x + down * y).astype(np.float32))
+        height_m = float(np.ptp(right * x + down * y)) or 0.01
+        space = f"{{width_m: 0.04, relief_m: {height_m}, smooth_m: 0}}"
+        (tmp_path / "mine.yaml").write_text(f"scene: {{height: slope.npy}}\nwant: relief\nworkspace: {space}\n")
+        write_card(Pipeline.from_yaml(tmp_path / "mine.yaml"), tmp_path)
+        with Image.open(tmp_path / CARD) as drawn:
+            assert int(np.asarray(drawn)[80, 80, 0]) == pytest.approx(expected, abs=3)

@@ -127,11 +127,14 @@ def test_file_of_the_user_stays(tmp_path: Path, content: bytes) -> None:
     assert own.read_bytes() == content
 
 
-def test_damaged_file_is_told_from_a_right_one(tmp_path: Path) -> None:
+def test_only_a_checked_address_and_a_right_file_are_taken(tmp_path: Path) -> None:
     new = network(tmp_path)
     assert new.state == "absent"
     new.path.write_bytes(CONTENT[:-1] + b"?")
     assert new.state == "damaged"
+    for facts in ({"source": "http://x/net.onnx"}, {"source": "https://x/net.onnx", "sha256": ""}, {"source": ""}):
+        with pytest.raises(FetchError, match="not downloaded"):
+            add_network(network(tmp_path / "models", **facts))
 
 
 def test_download_goes_on_where_it_stopped(tmp_path: Path, server: tuple[str, list[str | None]]) -> None:
@@ -155,19 +158,13 @@ def test_without_a_connection_one_sentence(tmp_path: Path, monkeypatch: pytest.M
     assert list(new.path.parent.iterdir()) == []
 
 
-def test_only_a_checked_address_is_fetched(tmp_path: Path) -> None:
-    for facts in ({"source": "http://x/net.onnx"}, {"source": "https://x/net.onnx", "sha256": ""}, {"source": ""}):
-        with pytest.raises(FetchError, match="not downloaded"):
-            add_network(network(tmp_path / "models", **facts))
-
-
 def test_full_disk_is_told(tmp_path: Path) -> None:
     (tmp_path / "models").write_text("a file where the folder should be")
     with pytest.raises(OutputError, match="cannot be written"):
         add_network(network(tmp_path / "models"), wheel(tmp_path / "p.whl"))
 
 
-def test_task_stands_for_its_recommended_networks(models: Path) -> None:
+def test_task_stands_for_networks_whose_cards_say_where_they_come_from(models: Path) -> None:
     assert [chosen_network.name for chosen_network in chosen_networks(["faces", "figure"])] == [
         "face-finder",
         "face-points",
@@ -175,9 +172,6 @@ def test_task_stands_for_its_recommended_networks(models: Path) -> None:
     ]
     with pytest.raises(ConfigError, match="did you mean"):
         chosen_networks(["figur"])
-
-
-def test_every_card_says_where_it_comes_from_and_how_it_may_be_used(models: Path) -> None:
     for known in known_networks().values():
         card = known.card
         assert card.licence and card.improves and card.title

@@ -31,11 +31,9 @@ def bright_square(shape: tuple[int, int] = (120, 160)) -> np.ndarray:
 
 
 class TestMaps:
-    def test_without_networks_nothing_is_seen(self, models: Path) -> None:
+    def test_without_networks_or_maps_nothing_is_seen(self, models: Path) -> None:
         seen = look(bright_square())
         assert (seen.figure, seen.borders, seen.faces_px) == (None, None, None)
-
-    def test_network_without_a_map_is_refused(self, models: Path) -> None:
         output = helper.make_tensor_value_info("same", TensorProto.FLOAT, [1, 3, "h", "w"])
         inputs = [helper.make_tensor_value_info("picture", TensorProto.FLOAT, [1, 3, "h", "w"])]
         graph = helper.make_graph([helper.make_node("Relu", ["picture"], ["same"])], "same", inputs, [output])

@@ -1,20 +1,30 @@
-"""Single panels: if a case fails, a figure of a sheet, such as a force or a slope, is drawn at a false value."""
+"""Panels, numbered parts and sheets: if a case fails, a figure is wrong, or a part has the wrong number."""
 
 from dataclasses import replace
+from io import BytesIO
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver, QuiverKey
+from PIL import Image
 
-from tangible_core.data import Calibration, DisparityMap, HapticSurface, PartMap, Relief, Views
+from tangible_core import Pipeline, Scene, show
+from tangible_core.data import Calibration, DisparityMap, HapticSurface, PartMap, Relief, SegmentMap, Views
 from tangible_core.materials.assignment import library
+from tangible_core.parts import find_parts
+from tangible_core.scene.workspace import Workspace
 from tangible_core.session import Recording
+from tangible_depth import Luminance
+from tangible_legibility.cells import largest_disc
+from tangible_report import Sheet
 from tangible_report.commands import materials
 from tangible_report.drawing.sheet import scene_aspect
+from tangible_report.numbered_parts import LONGEST_PX, SHORTEST_PX, Before, Drawn, _coarse, numbered_parts
 from tangible_report.panels import draw_disparity, draw_force_map, draw_force_time, draw_relief, relief, segments
 from tangible_report.panels.views import _camera
+from tangible_texture import Gradient
 
 
 @pytest.fixture
@@ -92,12 +102,10 @@ class TestRelief:
 
 
 class TestSegments:
-    def test_parts_are_near_by_their_mean_height_whatever_their_size(self):
+    def test_parts_of_the_legend_are_near_by_their_mean_height(self):
         labels = np.int32([[0, 0, 0, 0], [0, 0, 0, 1], [2, 2, 2, 2]])
         surface = HapticSurface.from_heights(np.array([0.002, 0.003, 0.001])[labels], 0.08, labels)
         assert segments._near_to_far(PartMap(labels, (0, 1, 2)), surface) == [1, 0, 2]
-
-    def test_entries_of_the_legend_are_short(self):
         assert segments._entries([*"aaabbbb"]) == ["1, 2, 3: a", "4, 5, 6, ...: b"]
 
     @pytest.mark.parametrize(("count", "last"), [(20, "t, 5 %"), (21, "and 2 more")])
@@ -133,3 +141,92 @@ class TestMaterials:
 def test_baseline_is_in_the_unit_of_its_size(baseline_m: float, text: str):
     picture = np.zeros((4, 6), np.uint8)
     assert _camera(Views(picture, picture, Calibration(995.0, baseline_m))) == f", f 995 px, {text}"
+
+
+def draw(picture: np.ndarray, labels: np.ndarray, names: tuple[str, ...] = ()) -> np.ndarray:
+    parts = find_parts(SegmentMap(labels.astype(np.int32)))
+    return np.asarray(Image.open(BytesIO(numbered_parts(picture, parts, names))))
+
+
+def halves(rows: int, columns: int) -> tuple[np.ndarray, np.ndarray]:
+    labels = (np.arange(columns) * 2 // columns) * np.ones((rows, 1), int)
+    return np.full((rows, columns, 3), 127, np.uint8), labels
+
+
+@pytest.mark.parametrize("size", [(80, 100), pytest.param((3000, 4000), marks=pytest.mark.whole)])
+def test_numbers_have_the_same_share_of_any_picture(size: tuple[int, int]):
+    shown = draw(*halves(*size))
+    longer = max(shown.shape)
+    assert SHORTEST_PX <= longer <= LONGEST_PX and shown.shape[1] / shown.shape[0] == pytest.approx(size[1] / size[0])
+    left = (shown[:, : shown.shape[1] * 2 // 5] != 127).any(axis=2)
+    heights = np.flatnonzero(left.any(axis=1))
+    assert 1 / 60 < np.ptp(heights) / longer < 1 / 15, "the number 0 in the middle of the left half"
+    assert heights.mean() / shown.shape[0] == pytest.approx(0.5, abs=0.02)
+
+
+def test_borders_are_visible_and_coarse_grids_are_of_middles():
+    picture, labels = halves(600, 800)
+    for grey in (0, 255):
+        row = draw(np.full_like(picture, grey), labels)[5]
+        middle = len(row) // 2
+        assert {0, 255} <= set(row[middle - 10 : middle + 10].ravel().tolist())
+        assert (row[: middle - 20] == grey).all()
+    assert _coarse(np.arange(12, dtype=np.int32)[None], 4).tolist() == [[1, 4, 7, 10]]
+
+
+def test_names_and_numbers_are_written_where_there_is_room():
+    picture, labels = halves(600, 800)
+    labels[:30, :30] = 2  # a part too small for its name
+    plain, named = draw(picture, labels), draw(picture, labels, ("corner of the wall", "helmet", ""))
+
+    def count_ink(shown: np.ndarray, columns: slice) -> int:
+        return int((shown[:, columns] == 0).all(axis=2).sum())
+
+    left, right = slice(100, plain.shape[1] // 2 - 40), slice(plain.shape[1] // 2 + 40, None)
+    assert count_ink(named, left) > 3 * count_ink(plain, left), "1 helmet"
+    assert count_ink(named, right) == count_ink(plain, right), "no name, its number alone"
+    assert (named[:60, :60] == plain[:60, :60]).all(), "its number alone"
+    bar = np.zeros((20, 60), bool)
+    bar[3:8, 10:51] = True
+    disc = largest_disc(bar)
+    assert disc is not None
+    assert (disc.column, disc.row) == (30, 5)
+
+
+def parts(*rows: list[int]) -> PartMap:
+    labels = np.int32(rows)
+    return PartMap(labels, tuple(range(int(labels.max()) + 1)))
+
+
+def test_parts_are_the_same_that_cover_most_of_each_other():
+    drawn = Drawn(np.int32([[0, 0, 0, 1]]))
+    assert drawn.before(parts([0, 0, 0, 1])) == (Before(0, 0), Before(1, 1))
+    assert drawn.before(parts([0, 0, 1, 2])) == (Before(0, 0), Before(None, 0), Before(1, 1))
+    assert drawn.before(parts([0, 0, 0, 0])) == (Before(0, 0),)
+    assert Drawn(np.int32([[1, 1]])).before(parts([1, 1])) == (Before(None, 0), Before(1, 1))
+    assert Drawn(np.int32([[0, 0, 1, 1]])).before(parts([0], [0], [1], [1])) is None
+
+
+@pytest.fixture
+def pipeline() -> Pipeline:
+    picture = np.zeros((24, 32, 3), np.uint8)
+    picture[:, 16:] = 255
+    return Pipeline(
+        Scene.photo(picture), depth=Luminance(), texture=Gradient(), workspace=Workspace(width_m=0.04), cached=False
+    )
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+def test_export_to_sheet_writes_a_file_of_its_format(pipeline, tmp_path, ending):
+    done = pipeline.export(tmp_path, [Sheet(format=ending)])
+    [exported] = done.exports
+    assert exported.outcome.outcome == "ran"
+    assert [path.suffix for path in exported.files] == [f".{ending}"]
+
+
+def test_sheet_and_show_draw_what_the_exporter_draws(pipeline, tmp_path):
+    [path] = pipeline.export(tmp_path, ["sheet"]).files["sheet"]
+    described = Image.open(path).text["Description"]
+    assert all(each in described for each in ("Input", "Segments and their materials", "Relief"))
+    axes = show(pipeline.relief)
+    assert axes.get_title() == Sheet().show(pipeline.relief).get_title() != ""

@@ -102,13 +102,11 @@ class TestFigures:
 
 
 class TestLayout:
-    def test_layout_of_two_cells_fills_a_row(self) -> None:
+    def test_layout_fills_rows_and_leaves_room_for_text(self) -> None:
         cell = Cell(aspect=2.0, left_in=0.5, right_in=0.5, bottom_in=0.3, top_in=0.4)
         boxes, width_in, height_in = arrange([cell, cell], 12.0)
         np.testing.assert_allclose(boxes, [(0.5, 0.4, 5.0, 2.5), (6.5, 0.4, 5.0, 2.5)])
         assert (width_in, height_in) == (pytest.approx(12.0), pytest.approx(3.2))
-
-    def test_layout_of_a_narrow_cell_has_room_for_its_text(self) -> None:
         narrow = Cell(0.1, 0.0, 0.0, 0.0, 0.0, least_in=3.0)
         boxes, _, _ = arrange([narrow, narrow], 12.0)
         assert boxes[1].left_in >= 3.0
@@ -131,8 +129,6 @@ class TestPoints:
     def test_points_are_the_cells_centres_at_their_heights(self) -> None:
         points_m = cell_points(Relief(np.float32([[1, 2]]), (0.4, 0.1)))
         np.testing.assert_allclose(points_m, [[[-0.1, 0, 1], [0.1, 0, 2]]])
-
-    def test_heights_under_points_are_those_of_cells(self) -> None:
         relief = Relief(np.float32([[1, 2], [3, 4]]), (0.2, 0.2))
         points_m = np.array([[-0.05, 0.05, 9], [0.05, 0.05, 0], [-0.05, -0.05, 0], [0.099, -0.099, 0], [0.2, 0, 0]])
         np.testing.assert_array_equal(heights_under(relief, points_m), [1, 2, 3, 4, NAN])
@@ -232,14 +228,12 @@ def adding(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
 class TestAddedPanels:
     """Panels of plugins, by the moment `tangible_panels`."""
 
-    def test_added_panel_is_drawn_last_with_its_products(self, adding: Any, draw_figure_of: Any) -> None:
+    def test_added_panels_are_drawn_last_with_their_products(self, adding: Any, draw_figure_of: Any) -> None:
         adding(Panel(histogram, {"relief"}, {"recording"}, aspect=1.5))
         run = whole_run()
         assert panel_headlines(draw_figure_of(**run))["h"] == "Heights, felt"
         assert panel_headlines(draw_figure_of(relief=run["relief"]))["b"] == "Heights, unfelt"
         assert len(panel_headlines(draw_figure_of(views=run["views"]))) == 1
-
-    def test_added_panels_may_be_many(self, adding: Any, draw_figure_of: Any) -> None:
         adding(*[Panel(histogram, {"relief"}, aspect=1.5)] * 26)
         found = panel_headlines(draw_figure_of(relief=whole_run()["relief"]))
         assert list(found) == [*"abcdefghijklmnopqrstuvwxyz", "aa"]
@@ -285,7 +279,9 @@ class TestSheet:
         with pytest.raises(PictureError, match="truth"):
             draw_sheet(tmp_path / "sheet.png", disparity=disparity, truth=np.zeros((3, 2), np.float32))
 
-    def test_sheet_of_relative_nearness_has_no_error_panel(self, draw_figure_of: Callable[..., Figure]) -> None:
+    def test_sheet_is_drawn_with_truth_everywhere_or_thousands_of_segments(
+        self, draw_figure_of: Callable[..., Figure]
+    ) -> None:
         disparity = DisparityMap(np.float32([[0.0, 0.25], [0.5, 1.0]]), unit="relative")
         figure = draw_figure_of(disparity=disparity, truth=np.zeros((3, 2), np.float32))
         assert panel_headlines(figure) == {"a": "Relative nearness"}
@@ -294,8 +290,6 @@ class TestSheet:
         assert axes.images[0].get_clim() == pytest.approx(np.percentile([0, 0.25, 0.5, 1], (0.5, 99.5)))
         assert [bar.get_ylabel() for bar in axes.child_axes] == ["nearness, 0 far to 1 near"]
         assert axes.get_xlabel() == "known everywhere"
-
-    def test_sheet_with_truth_everywhere_is_drawn(self, draw_figure_of: Callable[..., Figure]) -> None:
         estimate = np.full(SHAPE, 8.0, np.float32)
         estimate[:, :6], estimate[:, 6:9], estimate[:, 9:12] = 9.5, 18.0, NAN
         figure = draw_figure_of(disparity=DisparityMap(estimate), truth=np.full(SHAPE, 8.0, np.float32))
@@ -306,8 +300,6 @@ class TestSheet:
         assert np.array_equal(np.ma.getmaskarray(error), np.isnan(estimate))
         np.testing.assert_array_equal(error.compressed(), np.abs(estimate - 8)[np.isfinite(estimate)])
         assert figure.axes[1].images[1].get_clim() == (0, 4)
-
-    def test_sheet_of_thousands_of_segments_is_drawn(self, draw_figure_of: Callable[..., Figure]) -> None:
         labels = np.arange(2400, dtype=np.int32).reshape(SHAPE)
         figure = draw_figure_of(views=Views(np.zeros(SHAPE, np.uint8)), segments=SegmentMap(labels))
         assert panel_headlines(figure) == {"a": "Input", "b": "Segments"}
@@ -344,18 +336,15 @@ class TestSheet:
         np.testing.assert_allclose(force.get_xydata(), np.c_[hand.time_s, np.linalg.norm(hand.force_n, axis=1)])
         np.testing.assert_allclose(tip.get_xydata(), np.c_[hand.time_s, 1000 * hand.position_m[:, 2]])
 
-    def test_sheet_leaves_out_an_empty_recording(self, tmp_path: Path) -> None:
+    def test_sheet_leaves_out_what_nothing_touched(self, tmp_path: Path) -> None:
         surface = HapticSurface.from_heights(np.zeros((5, 5)))
         recording = Recording(np.empty((0, 17)))
         draw_sheet(tmp_path / "a.png", surface=surface, recording=recording)
         draw_sheet(tmp_path / "b.png", surface=surface)
         assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
-
-    def test_force_map_without_contact_reports_it(self) -> None:
         rows = record().rows.copy()
         rows[:, 11:14] = 0
         recording = Recording(rows)
-        surface = HapticSurface.from_heights(np.zeros((5, 5)))
         assert headlines({"relief": surface.relief, "recording": recording})["b"] == "Path, never in contact"
 
 

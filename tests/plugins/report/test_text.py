@@ -47,7 +47,7 @@ def items(text: str) -> list[str]:
     return [line for line in text.splitlines() if line.startswith("- ")]
 
 
-def test_text_with_named_parts_describes_the_surface(tmp_path: Path):
+def test_text_describes_named_or_simplified_parts(tmp_path: Path):
     merged = np.where(LABELS < 2, 0, 3).astype(np.int32)
     texts, notes = write_texts(work("ciel", "", "île", "eau", simplified=merged), Text(), tmp_path)
     assert texts.keys() == {".txt", ".html"}
@@ -55,6 +55,12 @@ def test_text_with_named_parts_describes_the_surface(tmp_path: Path):
     assert "Le long du bord inférieur" in items(texts[".txt"])[0]
     assert '<html lang="fr">' in texts[".html"]
     assert notes == []
+    texts, notes = write_texts(work(simplified=merged), Text(), tmp_path)
+    assert [item[:11] for item in items(texts[".txt"])] == ["- partie 4.", "- partie 1."]
+    assert notes == ["no part has a name, so parts are described by number; `tangible parts` shows them for naming"]
+    texts, notes = write_texts(work(simplified=None), Text(), tmp_path)
+    assert items(texts[".txt"]) == [] and "<ul>" not in texts[".html"] and notes == []
+    assert "4 matières" in texts[".txt"]
 
 
 def test_text_counts_the_people_that_networks_see_in_front(tmp_path: Path):
@@ -71,17 +77,7 @@ def test_text_counts_the_people_that_networks_see_in_front(tmp_path: Path):
             assert bool(says) == ("in front" in text)
 
 
-def test_text_without_names_describes_the_simplified_parts(tmp_path: Path):
-    merged = np.where(LABELS < 2, 0, 3).astype(np.int32)
-    texts, notes = write_texts(work(simplified=merged), Text(), tmp_path)
-    assert [item[:11] for item in items(texts[".txt"])] == ["- partie 4.", "- partie 1."]
-    assert notes == ["no part has a name, so parts are described by number; `tangible parts` shows them for naming"]
-    texts, notes = write_texts(work(simplified=None), Text(), tmp_path)
-    assert items(texts[".txt"]) == [] and "<ul>" not in texts[".html"] and notes == []
-    assert "4 matières" in texts[".txt"]
-
-
-def test_text_is_in_the_language_of_the_pipeline_by_default(tmp_path: Path):
+def test_text_is_in_the_language_of_the_pipeline_and_exported(tmp_path: Path):
     names = "ciel", "lac", "île", "eau"
     texts, _ = write_texts(work(*names), Text(language="de"), tmp_path)
     assert "- eau. Am unteren Rand entlang." in texts[".txt"]
@@ -90,6 +86,18 @@ def test_text_is_in_the_language_of_the_pipeline_by_default(tmp_path: Path):
     assert "- eau. Along the bottom." in texts[".txt"]
     assert '<html lang="en">' in texts[".html"] and '<h1><span lang="pt-BR" dir="auto">Le lac</span>' in texts[".html"]
     assert notes == ["described in English: there are no words for the language 'pt-BR'; there are for en, de and fr"]
+    picture = np.repeat(np.linspace(0, 255, 64).astype(np.uint8)[:, None], 96, axis=1)
+    scene = Scene.photo(picture, segments=np.repeat(np.arange(2), 32)[:, None].repeat(96, axis=1))
+    pipeline = Pipeline(
+        scene, depth=Luminance(), workspace=Workspace(width_m=0.08), title="Rampe", language="de",
+        parts={1: "oben", 2: "unten"},
+    )  # fmt: skip
+    export = pipeline.export(tmp_path, [Text(width_m=0.24)])
+    [[text, _]] = [each.files for each in export.exports]
+    lines = text.read_text().splitlines()
+    assert lines[0] == "Rampe"
+    assert lines[2].startswith("Eine Fläche, 240 mm breit und 160 mm lang")
+    assert [item[:9] for item in items(text.read_text())] == ["- unten. ", "- oben. A"]
 
 
 def test_braille_has_the_lines_and_pages_of_embossers(tmp_path: Path):
@@ -116,18 +124,3 @@ def test_name_without_braille_is_refused_for_braille_only(tmp_path: Path):
     assert "湖" in write_texts(given, Text(), tmp_path)[0][".txt"]
     with pytest.raises(BrailleError, match="'湖'"):
         write_texts(given, Text(braille=True), tmp_path)
-
-
-def test_pipeline_exports_text(tmp_path: Path):
-    picture = np.repeat(np.linspace(0, 255, 64).astype(np.uint8)[:, None], 96, axis=1)
-    scene = Scene.photo(picture, segments=np.repeat(np.arange(2), 32)[:, None].repeat(96, axis=1))
-    pipeline = Pipeline(
-        scene, depth=Luminance(), workspace=Workspace(width_m=0.08), title="Rampe", language="de",
-        parts={1: "oben", 2: "unten"},
-    )  # fmt: skip
-    export = pipeline.export(tmp_path, [Text(width_m=0.24)])
-    [[text, _]] = [each.files for each in export.exports]
-    lines = text.read_text().splitlines()
-    assert lines[0] == "Rampe"
-    assert lines[2].startswith("Eine Fläche, 240 mm breit und 160 mm lang")
-    assert [item[:9] for item in items(text.read_text())] == ["- unten. ", "- oben. A"]

@@ -35,7 +35,7 @@ def clocks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(state_frame, "time", SimpleNamespace(time=lambda: 1000.0))
 
 
-def test_frame_has_every_number_of_the_tick_in_its_place() -> None:
+def test_frame_has_every_number_of_the_tick_or_of_none() -> None:
     frame = newest_frame(servo(tick(flags=3)), 41, framing.RUNNING, OtherLaw(OTHER))
     assert frame is not None
     kind, status, flags, seq, tag, overruns, sample_ms, *numbers, late_us = framing.STATE_FRAME.unpack(frame)
@@ -43,27 +43,21 @@ def test_frame_has_every_number_of_the_tick_in_its_place() -> None:
     assert sample_ms == 999_500.0  # the tick came half a second ago
     assert tuple(numbers) == (*HAND, *PROXY, *FORCE, *VELOCITY, *OTHER)
     assert late_us == 250
-
-
-def test_frame_of_a_blind_comparison_hides_the_proxy_alone() -> None:
-    frame = newest_frame(servo(tick()), 0, 0, OtherLaw(OTHER, blind=True))
-    assert frame is not None
-    numbers = framing.STATE_FRAME.unpack(frame)[7:-1]
-    assert all(map(math.isnan, numbers[3:6]))
-    assert (*numbers[:3], *numbers[6:]) == (*HAND, *FORCE, *VELOCITY, *OTHER)
-
-
-def test_bits_of_a_beacon_are_not_sent_and_the_number_of_a_frame_begins_anew() -> None:
-    frame = newest_frame(servo(tick(flags=framing.FLAG_BITS + 1 + 5)), 2**32 + 6, 0)
-    assert frame is not None
-    _, _, flags, seq, *_ = framing.STATE_FRAME.unpack(frame)
-    assert (flags, seq) == (5, 6)
-
-
-def test_frame_without_a_loop_has_the_time_and_no_force() -> None:
     kind, status, flags, seq, tag, overruns, sample_ms, *numbers, late_us = framing.STATE_FRAME.unpack(
         frame_without_loop(2**32 + 3, framing.HOLDING)
     )
     assert (kind, status, flags, seq, tag, overruns) == (framing.STATE, framing.HOLDING, 0, 3, 0, 0)
     assert (sample_ms, late_us) == (1_000_000.0, 0)
     assert all(map(math.isnan, numbers[3:6])) and not any(numbers[6:])
+
+
+def test_frame_hides_the_proxy_and_bits_that_nobody_may_see() -> None:
+    frame = newest_frame(servo(tick()), 0, 0, OtherLaw(OTHER, blind=True))
+    assert frame is not None
+    numbers = framing.STATE_FRAME.unpack(frame)[7:-1]
+    assert all(map(math.isnan, numbers[3:6]))
+    assert (*numbers[:3], *numbers[6:]) == (*HAND, *FORCE, *VELOCITY, *OTHER)
+    frame = newest_frame(servo(tick(flags=framing.FLAG_BITS + 1 + 5)), 2**32 + 6, 0)
+    assert frame is not None
+    _, _, flags, seq, *_ = framing.STATE_FRAME.unpack(frame)
+    assert (flags, seq) == (5, 6)

@@ -23,7 +23,7 @@ def still_life(names: tuple[str, ...] = ("wall", "", "cup")) -> HapticSurface:
     return replace(HapticSurface.from_heights(height_m, 0.08, LABELS, (STONE, WOOD, GLASS)), names=names)
 
 
-def test_facts_are_sorted_from_near_to_far():
+def test_facts_are_sorted_from_near_to_far_on_any_grid():
     cup, table, wall = facts(still_life())
     assert [each.number for each in (cup, table, wall)] == [2, 1, 0]
     assert (cup.name, table.name, wall.name) == ("cup", "", "wall")
@@ -38,9 +38,6 @@ def test_facts_are_sorted_from_near_to_far():
     swapped = np.array([1, 0, 2])[LABELS]
     cup, _, _ = facts(replace(still_life(), labels=swapped.astype(np.int32)))
     assert (cup.number, cup.neighbours) == (2, (1, 0))
-
-
-def test_facts_of_parts_on_another_grid_are_known():
     surface = replace(still_life(), names=None)
     coarse = PartMap(np.where(LABELS[::4, ::4] == 2, 5, 3).astype(np.int32), tuple(range(7)))
     cup, rest = facts(surface, parts=coarse, names=("", "", "", " table ", "", "cup"))
@@ -57,18 +54,19 @@ def test_facts_of_parts_on_another_grid_are_known():
     ]
 
 
-def test_facts_of_a_part_in_pieces_have_its_whole_extent_and_median():
+def test_facts_have_the_extent_height_and_material_of_parts():
     labels = np.int32([[1, 0, 0, 0, 1, 0]]).repeat(3, 0)
     height_m = np.where(labels == 1, np.array([[1], [1], [7]]) * 1e-3, 0)
     part, _ = facts(HapticSurface.from_heights(height_m, 0.06, labels))
     assert part.size_m == pytest.approx((0.05, 0.03))
     assert part.height_m == pytest.approx(0.001)
-
-
-def test_facts_of_coarse_parts_have_the_heights_at_the_middles_of_their_cells():
     surface = HapticSurface.from_heights(np.arange(4.0)[None].repeat(2, 0) * 1e-3, 0.04)
     right, left = facts(surface, parts=PartMap(np.int32([[0, 1]]), (0, 1)))
     assert (left.height_m, right.height_m) == pytest.approx((0.001, 0.003))
+    bare = replace(still_life(), materials=None)
+    assert {fact.material for fact in facts(bare)} == {""}
+    of_segments = MaterialMap((GLASS, GLASS, WOOD), ("", "", ""))
+    assert [fact.material for fact in facts(bare, of_segments)] == ["wood", "glass", "glass"]
 
 
 def told(number: int, name: str = "", share: float = 0.2, height_m: float = 0.0, beside: tuple[int, ...] = ()):
@@ -79,7 +77,7 @@ def lines_of(*parts: PartFacts) -> list[str]:
     return [*describe_at_length(HapticSurface.from_heights(np.zeros((4, 4))), "x", "en", parts)[5:]]
 
 
-def test_description_has_words_for_shares():
+def test_description_has_words_for_shares_and_four_neighbours():
     sizes = {
         0.5: "More than half of the picture (50 %)",
         0.25: "A large part of the picture (25 %)",
@@ -89,25 +87,12 @@ def test_description_has_words_for_shares():
     }
     for share, says in sizes.items():
         assert lines_of(told(1, "Who?", share)) == [f"- Who? {says}, 10 mm wide and 20 mm long."]
-
-
-def test_description_of_the_ground_has_no_height():
     assert [", 0." in line for line in lines_of(told(0, height_m=4.9e-5), told(1, height_m=5.1e-5))] == [False, True]
-
-
-def test_description_names_four_neighbours():
     line = lines_of(told(0, beside=(5, 4, 3, 2, 1)), *map(told, range(1, 6)))[0]
     assert line.endswith("Beside it: part 6, part 5, part 4, part 3.")
 
 
-def test_facts_use_materials_that_the_surface_lacks():
-    bare = replace(still_life(), materials=None)
-    assert {fact.material for fact in facts(bare)} == {""}
-    of_segments = MaterialMap((GLASS, GLASS, WOOD), ("", "", ""))
-    assert [fact.material for fact in facts(bare, of_segments)] == ["wood", "glass", "glass"]
-
-
-def test_description_has_exactly_these_lines():
+def test_description_has_exactly_these_lines_and_a_heading():
     found = describe_at_length(still_life(), "Still life", "en", facts(still_life()))
     assert tuple(line.replace("\u00a0", " ") for line in found) == (
         "Still life",
@@ -123,9 +108,6 @@ def test_description_has_exactly_these_lines():
         "- wall. Along the top. More than half of the picture (51 %), 80 mm wide and 36 mm long. "
         "Feels like stone. Beside it: part 2, cup.",
     )
-
-
-def test_description_without_a_title_has_a_heading():
     assert describe_at_length(still_life(), " ", "en", facts(still_life()))[0].strip()
 
 

@@ -40,19 +40,12 @@ def test_sentence_names_high_and_low_places(height: np.ndarray, says: str):
     assert says in describe(surface(height), "it")
 
 
-def test_sentence_is_the_same_for_a_surface_far_above_its_base():
+def test_sentence_is_of_slopes_along_cells_and_their_share():
     assert describe(surface(100 + 10 * X), "it") == describe(surface(10 * X), "it")
-
-
-def test_sentence_takes_slopes_along_the_sides_of_cells():
-    """Six in a hundred on cells four times as long as wide; and one and a half on a grid of every other cell."""
     oblong = Relief((np.arange(80) * 6e-5 * np.ones((20, 1))).astype(np.float32), (0.08, 0.08))
     assert "; hardly any of it is flat" in describe(HapticSurface(oblong), "it")
     fine = HapticSurface.from_heights(np.arange(600) * 1.5e-5 * np.ones((4, 1)), 0.6)
     assert "; nearly all of it is flat" in describe(fine, "it")
-
-
-def test_sentence_says_everywhere_else_of_more_than_half_alone():
     row, column = np.indices((60, 80))
     height = np.where(X < 0.1, 10, np.where((row + column) % 3, 5, 0))
     assert "highest on the left" in describe(surface(height), "it")
@@ -96,7 +89,7 @@ def in_parts(names: tuple[str, ...], *materials: str) -> HapticSurface:
     return replace(surface(height, *materials, labels=labels), names=names)
 
 
-def test_sentence_lists_named_parts_from_near_to_far():
+def test_sentence_lists_named_and_nearest_parts():
     found = in_parts(("wall", "", "cup\n"), "stone", "wood", "glass")
     assert describe(found, "it").endswith(
         " Its parts, from near to far, are cup\\n (on the right, halfway down, 4.3 mm high, feels like glass), "
@@ -111,9 +104,6 @@ def test_sentence_lists_named_parts_from_near_to_far():
         "are cup (on the right, halfway down, 4.3 mm high) and 2 that have no name."
     )
     assert "It has 3 materials" in describe(in_parts(("", "", ""), "stone", "wood", "glass"), "it")
-
-
-def test_sentence_on_many_parts_lists_the_nearest():
     labels = np.repeat(np.arange(30, dtype=np.int32), 160).reshape(60, 80)
     many = replace(surface(labels / 10.0, labels=labels), names=tuple(f"step {each}" for each in range(30)))
     said = describe(many, "it")

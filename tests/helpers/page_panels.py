@@ -16,6 +16,13 @@ EVERYTHING = """() => {
   for (const each of document.querySelectorAll("[role=tabpanel]")) each.hidden = false;
   for (const each of document.querySelectorAll("details")) each.open = true;
 }"""
+SPY = """
+window.heard = [];
+new MutationObserver((seen) => {
+  for (const each of seen) if (each.target.closest?.("#said, #alerted")) heard.push(each.target.textContent);
+}).observe(document, { childList: true, subtree: true });
+"""
+"""Keeps in `heard` what a screen reader is told."""
 
 
 def wait_for_force(page: "Page") -> None:

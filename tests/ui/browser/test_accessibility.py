@@ -63,7 +63,7 @@ def focus(page: "Page") -> str:
 
 
 class TestSeen:
-    @pytest.mark.parametrize("locale", ["en-GB", "de-DE"])
+    @pytest.mark.parametrize("locale", [pytest.param("en-GB", marks=pytest.mark.whole), "de-DE"])
     def test_page_with_results_has_no_violations_by_axe_and_fits_every_size(self, show: Show, locale: str):
         """Every panel is open, with verdicts, cures, files, decisions and a refusal."""
         page = show(locale=locale)
@@ -86,7 +86,7 @@ class TestSeen:
         assert axe_finds(page, within=("#palette",)) == []
         page.keyboard.press("Control+k")
         page.evaluate("document.querySelector('#left').scrollTo(0, 0)")  # a heading that sticks covers what is below it
-        assert violations(page, colours=locale == "en-GB") == []
+        assert violations(page, colours=locale == "de-DE") == []
         if locale == "de-DE":
             assert_fits_every_size(page, "#terrain", "#left", "#right", "#bottom")
 

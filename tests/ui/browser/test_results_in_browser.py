@@ -9,19 +9,12 @@ from zipfile import ZipFile
 import pytest
 
 from browser_tabs import OpenPage
-from page_panels import open_panel, wait_for_force
+from page_panels import SPY, open_panel, wait_for_force
 from sessions import small_scene, striped_scene
 from waiting import until
 
 if TYPE_CHECKING:
     from playwright.sync_api import Download, Page
-
-SPY = """
-window.heard = [];
-new MutationObserver((seen) => {
-  for (const each of seen) if (each.target.closest?.("#said, #alerted")) heard.push(each.target.textContent);
-}).observe(document, { childList: true, subtree: true });
-"""
 
 
 @pytest.fixture

@@ -260,8 +260,6 @@ class TestStop:
         assert feeling.running
         assert feeling.loop_end() is None
 
-    def test_stop_while_a_loop_starts_ends_it(self, feeling: Feeling) -> None:
+    def test_stop_while_a_loop_starts_or_a_device_is_homed_ends_it(self, feeling: Feeling) -> None:
         assert self.stops(feeling, feeling.start) == [None]
-
-    def test_stop_while_a_device_is_homed_kills_its_process(self, feeling: Feeling) -> None:
         assert self.stops(feeling, lambda: feeling.feel(loop_input(feeling, Failing(opens="late")))) == [None]

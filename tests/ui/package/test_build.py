@@ -192,7 +192,7 @@ class TestBundler:
 class TestPage:
     """The page as it is built in this tree."""
 
-    def test_page_is_within_its_size_limit(self):
+    def test_page_is_small_and_runs_alone_under_its_policy(self):
         page = built_page()
         first = fetched_first(page)
         size = sum(len(gzip.compress((page / name).read_bytes(), 9)) for name in first)
@@ -200,17 +200,11 @@ class TestPage:
         sent = {"send.js", "study.js"}  # which `export --to page` and `study run --page` read
         later = {DIGEST.sub("", path.name) for path in page.glob("*.js") if path.name not in first} - sent
         assert LATER - {"chunk.js"} <= later <= LATER, "what comes when it is opened"
-
-    def test_page_requests_nothing_from_other_machines(self):
         text = "".join(
             path.read_text("utf-8") for path in built_page().iterdir() if path.suffix in (".js", ".css", ".html")
         )
         assert set(re.findall(r"(?:https?|wss?)://[\w.-]+[^\s\"'`)\\]*", text)) <= NAMES
         assert not re.search(r"""["'(]//[\w-]+\.\w""", text)
-
-    def test_page_runs_under_its_strict_policy(self):
-        """`script-src 'self'`: no script within the page, and nothing that makes code of text."""
-        page = built_page()
         assert not re.search(r"<script(?![^>]*\bsrc=)|\son\w+=|<style", page.joinpath("index.html").read_text("utf-8"))
         for script in page.glob("*.js"):
             assert not re.search(r"\beval\(|\bnew Function\(", script.read_text("utf-8"))

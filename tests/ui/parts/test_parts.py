@@ -71,11 +71,9 @@ class TestLabels:
         path.write_bytes(b"no picture")
         assert not is_ours(path, "mine.yaml")
 
-    def test_label_file_with_too_many_labels_is_refused(self) -> None:
+    def test_label_upload_is_unpacked_unless_it_has_too_many(self, tmp_path: Path) -> None:
         with pytest.raises(ConfigError, match="5000 parts, and at most 4096"):
             as_png(np.arange(5000, dtype=np.int32).reshape(50, 100), "mine.yaml")
-
-    def test_upload_of_labels_is_unpacked(self, tmp_path: Path) -> None:
         path = tmp_path / "sent"
         noise = np.random.default_rng(0).integers(0, 2**16, (600, 800), np.uint16)
         for labels, level in ((drawn(), 9), (noise, 0)):
@@ -100,14 +98,12 @@ class TestLabels:
 
 
 class TestNumbers:
-    def test_parts_are_numbered_by_their_first_pixels(self) -> None:
+    def test_parts_are_numbered_by_their_first_pixels_and_largest_piece(self) -> None:
         numbers = np.array([[0, 0, 1], [0, 1, 1], [2, 2, 1]], np.int32)
         told = [{"label": 7, "name": "wall"}, {"label": 3, "height_m": 0.002, "name": ""}, {"label": 5, "name": None}]
         choices, found = number_parts(told, [7, 3, 5], numbers)
         assert choices == {0: {"name": "wall"}, 1: {"height_m": 0.002}, 2: {}}
         assert found == {"7": [0], "3": [1], "5": [2]}
-
-    def test_label_in_pieces_names_the_largest_piece(self) -> None:
         numbers = np.array([[0, 1, 2, 2, 1, 3]], np.int32)
         told = [{"label": 7, "name": "leaf", "material": "wood"}, {"label": 8, "name": " Leaf 2"}]
         choices, found = number_parts(told, [7, 8, 7, 7], numbers)
@@ -131,26 +127,21 @@ class TestText:
     def said(self, text: str, path: Path, parts: dict[int, Any], **heights: Any) -> str:
         return document_with_parts(text, path, path.parent / "parts.png", parts, heights or None, {"title": None})
 
-    def test_document_gets_a_line_for_each_part(self, tmp_path: Path) -> None:
+    def test_document_gets_a_line_for_each_part_and_keeps_comments(self, tmp_path: Path) -> None:
         parts = {0: {"name": "wall"}, 2: {"name": "hat", "height_m": 0.0042, "material": "glass"}, 3: {}}
         found = self.said(TEXT, tmp_path / "mine.yaml", parts, by="given")
         assert found == TEXT.replace("photo: mine.png", "photo: mine.png, segments: parts.png") + (
             "heights: {by: given}\nparts:\n  1: wall\n  3: {name: hat, height_m: 4.2 mm, material: glass}\n"
         )
-
-    def test_document_keeps_comments_next_to_parts(self, tmp_path: Path) -> None:
         text = "scene: {photo: a.png}\nparts:\n  1: wall  # grey\n  2: hat\n  5: gone\n# the end\n"
         found = self.said(text, tmp_path / "mine.yaml", {0: {"name": "wall"}, 1: {"name": "cap"}, 2: {"name": "bag"}})
         assert "  1: wall  # grey\n  2: cap\n  3: bag\n# the end\n" in found
 
-    def test_part_names_survive_writing_and_reading(self, tmp_path: Path) -> None:
+    def test_parts_and_built_in_scenes_survive_writing_and_reading(self, tmp_path: Path) -> None:
         path = tmp_path / "mine.yaml"
         for name in ("a: b", '"', "\\", "# no comment", "- x", "{}", "null", "007", "é ✂ 𝄞", "a\nb", "\x07", " a "):
             found = self.said(TEXT, path, {0: {"name": name}, 1: {"name": name + "x", "height_m": 0.001}})
             assert read_values(found, path)["parts"] == {"1": name, "2": {"name": name + "x", "height_m": "1 mm"}}
-
-    def test_document_of_a_built_in_scene_names_its_files(self, tmp_path: Path) -> None:
-        path = tmp_path / "mine.yaml"
         scene = read_values(self.said("scene: builtin/motorcycle\n", path, {}), path)["scene"]
         assert Path(scene["left"]).is_file()
         assert (scene["focal_px"], scene["segments"]) == (994.978, "parts.png")

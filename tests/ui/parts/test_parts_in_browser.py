@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from browser_tabs import OpenPage
-from page_panels import bring, wait_for_force
+from page_panels import SPY, bring, wait_for_force
 from tangible_core.parts import PartChoice, find_parts
 from tangible_core.pipeline.config.parsing import load_config
 from tangible_core.plugins.registry import default_registry
@@ -23,12 +23,6 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 240, 180
 RELIEF = "workspace: {width_m: 0.08, relief_m: 0.006}\nrender: {use: penalty, stiffness_n_per_m: 400}\n"
-SPY = """
-window.heard = [];
-new MutationObserver((seen) => {
-  for (const each of seen) if (each.target.closest?.("#said, #alerted")) heard.push(each.target.textContent);
-}).observe(document, { childList: true, subtree: true });
-"""
 
 
 @pytest.fixture

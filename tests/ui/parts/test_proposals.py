@@ -100,14 +100,12 @@ class TestProposals:
         assert overlap(place(box, mask), inside) > 0.95
         assert all(side.any() for side in (mask[0], mask[-1], mask[:, 0], mask[:, -1])), "the box just holds it"
 
-    def test_region_of_a_lower_level_is_a_piece_of_that_of_a_higher_one(self) -> None:
+    def test_strokes_take_regions_of_every_level(self) -> None:
         picture, inside = two_things()
         tree = Hierarchy().tree(picture)
         sizes = [place(*propose_region(tree, STROKE[1:2], 3, level)).sum() for level in (0.05, 0.6, 1.0)]
         assert sizes[0] < 0.5 * inside.sum()
         assert sizes[0] < sizes[1] < sizes[2] == picture[..., 0].size
-
-    def test_stroke_over_two_regions_takes_both(self) -> None:
         labels = np.zeros((20, 30), np.int32)
         labels[:, 10:20], labels[:, 20:] = 1, 2
         tree = SegmentTree(labels, np.array([[0, 1], [2, 3]], np.int32), np.float32([0.4, 0.8]))
@@ -152,14 +150,12 @@ class TestProposals:
         points = np.array([[100.0, 100.0], [140.0, 120.0]])
         assert proposals._window((*SHAPE, 3), points, 10, within) == window
 
-    def test_window_ends_with_the_picture_and_has_a_pixel_at_least(self) -> None:
+    def test_window_and_rim_end_with_the_picture(self) -> None:
         """A click of 10 pixels: 5, 0.4 of 10 and 20 to each side."""
         assert proposals._window((*SHAPE, 3), np.array([[5.0, 230.0]]), 10, None) == (0, 201, 34, 39)
         assert proposals._window((*SHAPE, 3), np.array([[315.0, 4.0]]), 10, None) == (286, 0, 34, 33)
         inside = [10.2, 20.2, 10.8, 20.8]
         assert proposals._window((*SHAPE, 3), np.array([[10.5, 20.5]]), 1, inside) == (10, 20, 1, 1)
-
-    def test_rim_is_where_the_picture_goes_on_and_the_stroke_does_not_cross(self) -> None:
         for window, sides in (
             ((0, 0, 320, 240), [False, False, False, False]),
             ((0, 100, 320, 140), [True, False, False, False]),
@@ -187,12 +183,10 @@ class TestProposals:
         assert found[0, 0]
         assert found[0, -1]
 
-    def test_runs_encode_the_mask(self) -> None:
+    def test_runs_and_strokes_of_a_mask_are_encoded_and_thinned(self) -> None:
         for mask in (np.array([[True, False], [False, True]]), np.array([[False, True, True]]), np.ones((2, 2), bool)):
             inside = np.repeat(np.arange(len(runs(mask))) % 2, runs(mask))
             np.testing.assert_array_equal(inside.reshape(mask.shape), mask)
-
-    def test_stroke_of_too_many_points_is_thinned_between_its_ends(self) -> None:
         most = [[float(each % 300), each / 100] for each in range(proposals.MAX_POINTS)]
         np.testing.assert_array_equal(as_points(most, (*SHAPE, 3)), most)
         many = [[each / 100, 0.0] for each in range(2 * proposals.MAX_POINTS - 1)]
@@ -253,7 +247,7 @@ class TestSnapping:
         outline = np.array([[50.0, 20.0], [150.0, 20.0], [150.0, 280.0], [50.0, 280.0]])
         assert (snap(picture, outline, 1000.0)[:, 0].max() > 500) == moves
 
-    def test_places_are_a_pixel_apart_and_farther_on_a_long_outline(self) -> None:
+    def test_places_and_normals_are_those_of_the_outline(self) -> None:
         square = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
         side, zero, ten = np.arange(10.0), np.zeros(10), np.full(10, 10.0)
         round_it = np.concatenate([np.c_[side, zero], np.c_[ten, side], np.c_[10 - side, ten], np.c_[zero, 10 - side]])
@@ -261,15 +255,13 @@ class TestSnapping:
         assert outlines._resample(75 * square) == pytest.approx(  # 3000 pixels, of which 1500 places
             2 * outlines._resample(37.5 * square)
         )
-
-    def test_normals_of_a_circle_point_to_its_middle(self) -> None:
         angle = 0.1 + np.arange(24) * np.pi / 12
         circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
         assert outlines._normals([40.0, 30.0] + 9 * circle) == pytest.approx(-circle)
         lopsided = np.array([[0.0, 0.0], [5.0, 0.0], [9.0, 1.0], [9.0, 7.0], [4.0, 8.0], [0.0, 3.0], [-1.0, 1.0]])
         assert np.hypot(*outlines._normals(lopsided).T) == pytest.approx(np.ones(7))
 
-    def test_edge_of_a_picture_is_steepest_where_it_is(self) -> None:
+    def test_edges_are_steepest_where_they_are_and_the_cheapest_path_bends_there(self) -> None:
         """It lies between columns 29 and 30, 9.5 pixels from the places, from row 20 on; smoothed by known sigmas."""
         picture = np.zeros((60, 60, 3), np.uint8)
         picture[20:, 30:] = 255
@@ -290,9 +282,6 @@ class TestSnapping:
         along = np.exp(-np.square(np.arange(-6, 7)) / (2 * 1.5**2))
         shares = np.cumsum(along / along.sum())
         assert found[9:22, at] == pytest.approx(shares, abs=0.01)
-
-    def test_cheapest_path_weighs_its_bends_against_its_costs(self) -> None:
-        """A step aside and one back cost 0.12 each, and neighbours differ by two steps at most."""
 
         def beside(row: int, column: int, straight: float) -> list[int]:
             cost = np.ones((9, 9), np.float32)

@@ -95,7 +95,7 @@ class TestWhoIsLetIn:
             with Address.again(memory) as other:
                 assert len(other.key) * 6 >= 128
 
-    def test_host_of_another_name_is_refused(self, page: PageServer) -> None:
+    def test_hosts_and_origins_of_others_are_refused(self, page: PageServer) -> None:
         for host in ("evil.example", "127.0.0.1", "127.0.0.1:1", "", None):
             for path in ("/", with_key("/scene/abc/a.f32")):
                 answer = page.ask(path, host=host)
@@ -103,14 +103,17 @@ class TestWhoIsLetIn:
                 assert answer.status == 400 or answer.headers["content-security-policy"]  # h11 itself refuses no host
             with handshake(page, host or "x") as raw:
                 assert raw.recv(100).startswith(b"HTTP/1.1 403")
-
-    def test_every_name_of_this_machine_is_served(self, page: PageServer) -> None:
         for name in ("127.0.0.1", "localhost", "LocalHost", "[::1]"):
             host = f"{name}:{page.port}"
             assert page.ask("/", host=host).status == 200
             for origin in (f"http://{host}", f"http://{page.host}"):
                 assert page.ask(with_key("/stop"), "POST", b"", host=host, origin=origin).status == 204
             assert page.ask("/", host=name).status == 403
+        for origin in (None, "null", "http://evil.example", f"https://{page.host}", f"http://{page.host}.evil"):
+            for method, path in (("PUT", f"/upload/{NAMES['batch']}/a.png"), ("POST", "/stop")):
+                assert page.ask(with_key(path), method, b"x", origin=origin).text == "another page may not do that"
+            with pytest.raises(InvalidStatus, match="403"):
+                page.tab(origin=origin)
 
     def test_port_that_addresses_leave_out_is_optional(self) -> None:
         class Port80(socket.socket):
@@ -120,13 +123,6 @@ class TestWhoIsLetIn:
         with Port80() as listening:
             hosts = Address(listening, "").hosts
         assert hosts == {f"{name}{port}" for name in ("127.0.0.1", "localhost", "[::1]") for port in ("", ":80")}
-
-    def test_origin_of_another_page_is_refused(self, page: PageServer) -> None:
-        for origin in (None, "null", "http://evil.example", f"https://{page.host}", f"http://{page.host}.evil"):
-            for method, path in (("PUT", f"/upload/{NAMES['batch']}/a.png"), ("POST", "/stop")):
-                assert page.ask(with_key(path), method, b"x", origin=origin).text == "another page may not do that"
-            with pytest.raises(InvalidStatus, match="403"):
-                page.tab(origin=origin)
 
     @pytest.mark.parametrize(
         ("path", "status", "cached"),
@@ -184,13 +180,11 @@ class TestWhoIsLetIn:
             assert page.ask(f"/export/export-1/{quote(name)}").status == 403
             assert page.ask(with_key(f"/scene/export-1/{quote(name)}")).status == 404
 
-    def test_other_http_methods_are_refused(self, page: PageServer) -> None:
+    def test_other_methods_and_large_uploads_are_refused(self, page: PageServer) -> None:
         for method in ("POST", "DELETE", "PUT", "OPTIONS", "TRACE"):
             assert page.ask(with_key("/scene/abc/a"), method).status == 405
             assert page.ask("/", method).status == 405
         assert page.ask(with_key("/stop")).status == 404
-
-    def test_upload_that_is_too_large_is_refused_before_it_is_sent(self, page: PageServer) -> None:
         answer = page.ask(with_key(f"/upload/{NAMES['batch']}/a.png"), "PUT", content_length=str(MAX_BYTES + 1))
         assert (answer.status, "holds more than" in answer.text) == (413, True)
 

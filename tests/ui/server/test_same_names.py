@@ -55,7 +55,7 @@ def page() -> dict[str, Any]:
 
 
 class TestFrames:
-    def test_constants_are_those_of_the_page(self) -> None:
+    def test_frames_are_read_as_they_were_written_with_equal_constants(self) -> None:
         said = page()["constants"]
         names = ("VERSION", "STATE", "POINTER", "ACK", "RELEASE", "TAGS")
         assert {name: said[name] for name in names} == {name: getattr(wire, name) for name in names}
@@ -63,8 +63,6 @@ class TestFrames:
         assert said["FLAGS"] == {flag.name: int(flag) for flag in TickFlag}
         sizes = {name: getattr(wire, f"{name}_FRAME").size for name in ("STATE", "POINTER", "ACK", "RELEASE")}
         assert {name: said[f"{name}_BYTES"] for name in sizes} == sizes
-
-    def test_state_frame_is_read_as_it_was_written(self) -> None:
         read = page()["read"]
         _, status, flags, seq, tag, overruns, sample_ms = SAID
         assert [read[name] for name in ("status", "flags", "seq", "tag", "overruns", "sampleMs", "lateUs")] == [
@@ -74,8 +72,6 @@ class TestFrames:
         assert [part for name in names for part in read[name]] == list(VECTORS)
         assert page()["short"] is None
         assert page()["other"] is None
-
-    def test_frames_of_the_page_are_read(self) -> None:
         kind, buttons, tag, sent_ms, *hand = wire.POINTER_FRAME.unpack(bytes.fromhex(page()["pointer"]))
         assert (kind, buttons, tag, hand) == (wire.POINTER, 3, wire.TAGS, [0.5, -0.25, 0.125])
         assert sent_ms > 1.6e12
@@ -104,23 +100,17 @@ def page_sources() -> str:
 
 
 class TestNames:
-    def test_requests_of_the_page_exist(self) -> None:
+    def test_requests_and_events_of_the_page_and_the_server_are_the_same(self) -> None:
         asked = set(re.findall(r"\bask(?:<[^(]*>)?\(\s*[\"'](\w+)[\"']", page_sources()))
         assert len(asked) > 20
         assert asked <= ANSWERED
-
-    def test_requests_of_the_server_are_used_by_the_page(self) -> None:
         written = set(re.findall(r"[\"'](\w+)[\"']", page_sources()))
         assert written >= ANSWERED
-
-    def test_event_names_are_those_of_the_page(self) -> None:
         here = sources(UI.parent / "tangible_ui", ".py") + sources(WEB / "tangible_web", ".py")
         there = (WEB / "kit/server/messages.ts").read_text(encoding="utf-8")
         told = set(re.findall(r"(?:\btell|\bEvent)\(\s*\"(\w+)\"", here) + re.findall(r"\"event\": \"(\w+)\"", here))
         body = there[there.index("export interface Events") :]
         assert told - {"answer", "refused"} == set(re.findall(r"^  (\w+): Said\b", body, re.M)) - OF_THE_PAGE
-
-    def test_code_of_a_wrong_key_is_the_page_s(self) -> None:
         assert f"WRONG_KEY = {WRONG_KEY};" in (WEB / "kit/server/connection.ts").read_text(encoding="utf-8")
 
 
@@ -135,14 +125,12 @@ def topics(package: str) -> set[str]:
     return {path.stem for path in Path(package).parent.glob("*.py")} - {"__init__", "table"}
 
 
-def test_topic_module_is_loaded_without_a_list() -> None:
+def test_topics_are_loaded_without_a_list_under_free_names() -> None:
     modules = {each.__module__.rpartition(".")[2] for each in REQUESTS.values()}
     assert modules == topics(requests.__file__)
     assert {each.do.__module__.rpartition(".")[2] for each in JOBS.values()} - {"table"} == topics(jobs.__file__)
     assert not REQUESTS.keys() & PAGE_JOBS
 
-
-def test_request_or_job_of_a_taken_name_is_refused() -> None:
     async def make() -> None: ...
 
     with pytest.raises(ValueError, match="two requests named make"):

@@ -35,7 +35,7 @@ def test_pipeline_file_counts_alone_and_two_are_refused(worker_state: WorkerStat
         begin(worker_state, files=[tmp_path / "mine.png", tmp_path / "mine.txt"])
 
 
-def test_picture_that_was_changed_is_read_again_and_others_are_not(worker_state: WorkerState, tmp_path: Path) -> None:
+def test_pictures_and_documents_are_read_again_where_they_changed(worker_state: WorkerState, tmp_path: Path) -> None:
     path = small_scene(tmp_path).with_name("mine.yaml")
     for number, grey in enumerate((10, 200)):
         Image.fromarray(np.full((24, 32), grey, np.uint8)).save(tmp_path / "mine.bmp")  # always of the same size
@@ -44,11 +44,6 @@ def test_picture_that_was_changed_is_read_again_and_others_are_not(worker_state:
         scene = worker_state.pipeline.scene
         assert scene.views is not None and scene.views.left[0, 0] == grey, number
         assert worker_state.make_pipeline(text.replace("400", "500"), path, []).scene is scene
-
-
-def test_document_is_parsed_again_with_other_changes_of_the_command_line(
-    worker_state: WorkerState, tmp_path: Path
-) -> None:
     path = small_scene(tmp_path)
     for relief_m in (0.001, 0.002):
         config = worker_state.read_config(TEXT, path, [f"workspace.relief_m={relief_m}"])

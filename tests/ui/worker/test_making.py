@@ -82,6 +82,15 @@ def test_make_with_another_law_makes_the_touch_alone(worker_state: WorkerState, 
     assert not events(worker_state, "scene")
 
 
+def test_make_without_a_law_shows_and_keeps_the_surface(worker_state: WorkerState, scene: Path):
+    with pytest.raises(ConfigError, match="`render:` is missing"):
+        make(worker_state, TEXT.replace("render:", "# render:"), scene)
+    assert events(worker_state, "scene")
+    forget(worker_state)
+    make(worker_state, TEXT.replace("render: {use: penalty, stiffness_n_per_m: 400}", "render: proxy"), scene)
+    assert {told["product"] for told in events(worker_state, "stage")} == {"touch"}
+
+
 def test_make_of_depth_or_texture_alone_is_shown(worker_state: WorkerState, scene: Path):
     assert make(worker_state, TEXT, scene, "materials") is None
     (shown,) = events(worker_state, "scene")
@@ -112,15 +121,6 @@ def test_make_that_fails_leaves_the_last_good_pipeline(worker_state: WorkerState
     assert "gone.png" in refused["refusal"]
     forget(worker_state)
     make(worker_state, TEXT, scene)
-    assert {told["product"] for told in events(worker_state, "stage")} == {"touch"}
-
-
-def test_make_without_a_law_shows_and_keeps_the_surface(worker_state: WorkerState, scene: Path):
-    with pytest.raises(ConfigError, match="`render:` is missing"):
-        make(worker_state, TEXT.replace("render:", "# render:"), scene)
-    assert events(worker_state, "scene")
-    forget(worker_state)
-    make(worker_state, TEXT.replace("render: {use: penalty, stiffness_n_per_m: 400}", "render: proxy"), scene)
     assert {told["product"] for told in events(worker_state, "stage")} == {"touch"}
 
 

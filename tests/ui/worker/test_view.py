@@ -56,17 +56,13 @@ def blocks(values: np.ndarray, step: int) -> np.ndarray:
 
 
 class TestLevels:
-    def test_level_of_values_is_the_mean_of_the_finest(self):
+    def test_levels_are_means_or_middles_of_blocks(self):
         values = RANDOM.random((37, 50)).astype(np.float32)
         for level, found in enumerate(files.means(values, 5)):
             np.testing.assert_allclose(found, blocks(values, 2**level), rtol=1e-6)
             assert found.dtype == np.float32
-
-    def test_coarsest_level_is_small_and_no_smaller_than_needed(self):
         for shape, count in (((1, 1), 1), ((480, 640), 1), ((4200, 4300), 4), ((1, 70_000), 6), ((600, 601), 2)):
             assert files.count_levels(shape) == count
-
-    def test_level_of_labels_is_the_middle_one_of_each_block(self):
         labels = RANDOM.integers(0, 9, (13, 21)).astype(np.int32)
         coarse = files.middles(labels, 3)[2]
         assert coarse.shape == (4, 6)
@@ -113,7 +109,7 @@ class TestShow:
             show(seen(np.zeros((3, 4))), tmp_path)
         assert list(tmp_path.iterdir()) == []
 
-    def test_view_with_many_labels_and_few_materials_is_written(self, tmp_path: Path):
+    def test_views_are_as_wide_as_drawn_and_with_few_materials_of_many_labels(self, tmp_path: Path):
         labels = np.arange(65_000, dtype=np.int32).reshape(250, 260)
         about = show(seen(np.zeros((250, 260)), labels=labels, materials=(WOOD, ICE) * 32_500), tmp_path)
         assert about["labels"] == 65_000
@@ -122,8 +118,6 @@ class TestShow:
             more = show(seen(np.zeros((250, 260)), labels=labels + up), tmp_path)
             assert more["label_bytes"] == size
             np.testing.assert_array_equal(array(tmp_path, more, "labels-0.u", kind), labels + up)
-
-    def test_layer_and_picture_are_drawn_as_wide_as_they_are(self, tmp_path: Path):
         layer = Layer.of(np.arange(12.0).reshape(3, 4), "px", (1.0, 9.0))
         grey = np.repeat([[0.0, 0.5, 1.0]], 8, 0).repeat(8, 1)
         about = show(seen(np.zeros((3, 4)), layers={"disparity": layer}, picture=grey), tmp_path)
@@ -156,14 +150,12 @@ class TestShow:
 
 
 class TestLayer:
-    def test_layer_spans_most_of_its_values(self):
+    def test_layer_spans_most_of_its_values_and_is_reduced(self):
         values = np.linspace(0, 100, 2001, dtype=np.float32).reshape(3, 667)
         values[0, 0] = np.nan
         layer = Layer.of(values, "px")
         assert (layer.low, layer.high) == pytest.approx((0.55, 99.5), abs=0.02)
         np.testing.assert_array_equal(layer.values, values)
-
-    def test_layer_that_is_large_is_reduced_and_an_empty_one_works(self):
         assert Layer.of(np.ones((2000, 2000)), "px").values.shape == (1000, 1000)
         nothing = Layer.of(np.full((2, 2), np.nan), "px")
         assert (nothing.low, nothing.high) == (0, 0)
@@ -196,12 +188,16 @@ class TestSee:
         }
         np.testing.assert_array_equal(found.relief.height_m, pipeline.surface.height_m)
 
-    def test_depth_that_the_relief_is_not_made_of_is_no_layer(self):
+    def test_views_without_depth_or_with_other_sizes_have_no_layer(self, pair: Scene):
         pipeline = Pipeline(Scene.photo(np.eye(40)), depth="luminance", relief="edges", cached=False)
         assert pipeline.make("disparity") is not None
         assert make_view(pipeline, "surface").layers == {}
+        for truth, span in ((np.full((48, 64), np.nan), (0.0, 0.0)), (np.ones((24, 32)), None), (None, None)):
+            there = replace(pair, truth=None if truth is None else truth.astype(np.float32))
+            found = make_view(Pipeline(there, cached=False), "disparity").layers.get("error")
+            assert (None if found is None else (found.low, found.high)) == span
 
-    def test_segments_are_viewed_flat_without_a_depth(self):
+    def test_segments_are_viewed_flat_with_their_certainty(self):
         picture = np.zeros((40, 60), np.uint8)
         picture[:, 30:] = np.random.default_rng(1).integers(0, 255, (40, 30))
         pipeline = of_photo(picture)
@@ -210,8 +206,6 @@ class TestSee:
         assert (found.shows, found.relief.height_m.max()) == ("segments", 0)
         assert not is_at_hand(pipeline.engine, "relief")
         np.testing.assert_array_equal(found.labels, pipeline.segments.labels)
-
-    def test_certainty_of_segments_spans_all_shares_and_is_left_out_where_all_are_certain(self):
         picture = np.random.default_rng(1).integers(0, 255, (40, 60)).astype(np.uint8)
         pipeline = of_photo(picture)
         pipeline.make("segments")
@@ -220,12 +214,6 @@ class TestSee:
         np.testing.assert_array_equal(layer.values, pipeline.segments.confidence)
         given = Pipeline(Scene.photo(picture, segments=np.zeros((40, 60), np.int32)), cached=False)
         assert make_view(given, "segments").layers == {}
-
-    def test_error_is_shown_only_against_a_truth_of_the_same_size(self, pair: Scene):
-        for truth, span in ((np.full((48, 64), np.nan), (0.0, 0.0)), (np.ones((24, 32)), None), (None, None)):
-            there = replace(pair, truth=None if truth is None else truth.astype(np.float32))
-            found = make_view(Pipeline(there, cached=False), "disparity").layers.get("error")
-            assert (None if found is None else (found.low, found.high)) == span
 
     def test_materials_of_a_view_are_limited_to_the_device(self):
         segments = np.repeat([[0, 1]], 8, 0).repeat(8, 1).astype(np.int32)
@@ -245,7 +233,7 @@ class TestTexture:
         labels[20:] = 1  # the near rows
         return show(seen(np.zeros((30, 40)), labels=labels, materials=(WOOD, ICE)), worker_state.folder)["digest"]
 
-    def test_texture_patch_is_what_a_law_renders(self, worker_state: WorkerState, digest: str):
+    def test_texture_patch_is_what_a_law_renders_and_flat_beyond(self, worker_state: WorkerState, digest: str):
         found = textures.texture_patch(worker_state, digest, -0.004, 0.011, 0.01, 25)
         heights = np.fromfile(worker_state.folder / digest / found["file"], "<f4").reshape(25, 25)
         table = compile_textures((WOOD, ICE))
@@ -255,8 +243,6 @@ class TestTexture:
             assert heights[row, column] == pytest.approx(wanted, abs=1e-10)
         assert np.abs(heights[:, :20]).max() > 1e-5
         assert not heights[:, 23:].any()
-
-    def test_texture_patch_is_flat_beyond_the_rim_and_without_materials(self, worker_state: WorkerState, digest: str):
         found = textures.texture_patch(worker_state, digest, -0.04, 0.03, 0.01, 8)
         heights = np.fromfile(worker_state.folder / digest / found["file"], "<f4").reshape(8, 8)
         assert not heights[:4].any() and not heights[:, :4].any() and heights[4:, 4:].any()
@@ -286,7 +272,7 @@ class TestWindow:
         path.write_bytes(np.arange(7 * 11, dtype="<u2").tobytes())
         return path
 
-    def test_window_is_the_rectangle(self, path: Path, monkeypatch: pytest.MonkeyPatch):
+    def test_window_is_the_rectangle_within_the_file(self, path: Path, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr(routes, "MAX_ITEMS", 12)
         whole = np.arange(77).reshape(7, 11)
         for row, column in ((2, 5), (0, 0), (0, 7), (4, 0), (4, 7)):
@@ -294,8 +280,6 @@ class TestWindow:
             np.testing.assert_array_equal(found, whole[row : row + 3, column : column + 4])
         with pytest.raises(ValueError, match="no such window"):
             read_window(path, ASKED | {"columns": 5})
-
-    def test_window_beyond_the_file_is_refused(self, path: Path):
         for wrong in ({"row": 5}, {"column": 8}, {"row": -1}, {"column": -1}, {"rows": 0}, {"bytes": 0}, {"of": 10**9}):
             with pytest.raises(ValueError, match="no such window"):
                 read_window(path, ASKED | wrong)

@@ -50,25 +50,20 @@ class TestContainer:
         assert entry[0] in SCRIPTS
         assert "--wait" in words
 
-    def test_only_the_volume_is_written_to(self):
+    def test_images_have_stages_and_write_to_the_volume_alone(self):
         settings = dict(stages()["exhibition"])
         folders = dict(word.split("=", 1) for word in shlex.split(settings["ENV"]) if word.startswith("XDG_"))
         assert folders == {f"XDG_{each}_HOME": settings["VOLUME"] for each in ("CACHE", "CONFIG", "DATA", "STATE")}
-
-    def test_images_have_a_version_and_stages_exist(self):
         bases = [words.split()[0] for name, words in instructions() if name == "FROM"]
         assert all(base in stages() or re.search(r":\d", base) for base in bases)
 
 
-def test_development_container_is_a_stage_of_the_container_file():
+def test_development_container_and_desktop_entry_are_declared():
     container = json.loads((ROOT / ".devcontainer/devcontainer.json").read_text("utf-8"))
     folder = ROOT / ".devcontainer"
     assert (folder / container["build"]["dockerfile"]).resolve() == DEPLOY / "Containerfile"
     assert (folder / container["build"]["context"]).resolve() == ROOT
     assert container["build"]["target"] in stages()
-
-
-def test_desktop_entry_starts_the_page_for_types_that_are_declared():
     desktop = ConfigParser(interpolation=None, delimiters="=")
     desktop.optionxform = str  # pyright: ignore[reportAttributeAccessIssue]
     desktop.read(DEPLOY / "tangible-images.desktop", "utf-8")

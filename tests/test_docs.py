@@ -93,7 +93,9 @@ def test_files_of_a_page_are_valid(tmp_path: Path, page: str, number: int):
         parse_config(scene + text, tmp_path / "p.yaml", default_registry())
 
 
-def test_recordings_page_reads_and_writes_recordings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_recordings_page_reads_writes_and_names_every_column(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    page = HOW_TO.joinpath("recordings.md").read_text("utf-8")
+    assert all(f"`{name}`" in page for name in TICK_COLUMNS)
     blocks = re.findall(r"```python\n(.*?)```", HOW_TO.joinpath("recordings.md").read_text("utf-8"), re.DOTALL)
     write, *read = sorted(blocks, key=lambda block: "Writer" not in block)
     monkeypatch.chdir(tmp_path)
@@ -102,11 +104,6 @@ def test_recordings_page_reads_and_writes_recordings(tmp_path: Path, monkeypatch
     assert len(run) == 2
     for block in run:
         exec(block, {})
-
-
-def test_recordings_page_names_every_column():
-    page = HOW_TO.joinpath("recordings.md").read_text("utf-8")
-    assert all(f"`{name}`" in page for name in TICK_COLUMNS)
 
 
 @pytest.mark.whole

@@ -76,7 +76,7 @@ def test_hostile_maps_and_pictures_are_refused(refused, folder: Path):
     assert "89 mega" in refused("run", "p.yaml", "--set", "scene={photo: e.tif}")
 
 
-def test_hostile_recordings_are_refused(refused, folder: Path):
+def test_hostile_recordings_and_results_are_refused(refused, folder: Path):
     npz_bomb(folder / "a.npz", time_s=(60_000_000,), position_m=(60_000_000, 3))
     npz(folder / "b.npz", zipfile.ZIP_LZMA, time_s=npy_header((1,)) + bytes(8))
     (folder / "c.csv").write_text(TICKS + "x" * 1_000_000 + ",0" * 10 + "\n")
@@ -85,9 +85,6 @@ def test_hostile_recordings_are_refused(refused, folder: Path):
     os.mkfifo(folder / "pipe.nc")
     for name in ("a.npz", "b.npz", "c.csv", "d.csv", "zero.csv", "pipe.nc"):
         assert refused("replay", name, "p.yaml").startswith(f"{name}: ")
-
-
-def test_hostile_results_are_refused(refused, folder: Path):
     (folder / "a.jsonl").write_text("[" * 100_000 + "]" * 100_000 + "\n")
     (folder / "b.jsonl").write_text('{"key": ' + "9" * 5000 + "}\n")
     (folder / "zero.jsonl").symlink_to("/dev/zero")

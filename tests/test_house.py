@@ -60,16 +60,12 @@ def run(*words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([sys.executable, *words], cwd=ROOT, capture_output=True, text=True, check=False)
 
 
-def test_rooms_of_tests_have_a_budget_of_five_minutes():
+def test_names_of_rooms_have_a_budget_and_are_not_hidden():
     budget = json.loads((ROOT / "tests" / "budget.json").read_text("utf-8"))
     rooms = {path.parent.relative_to(ROOT).parts for path in ROOT.joinpath("tests").rglob("test_*.py")}
     names = {"/".join(parts[:3] if parts[1:2] in (("core",), ("plugins",)) else parts[:2]) for parts in rooms}
     assert names <= budget.keys()
     assert sum(budget.values()) <= 660  # what they took, and a fifth
-
-
-def test_names_of_rooms_are_not_hidden_by_files_of_the_same_name():
-    """`from tangible_core.testing import checks` is a function, whatever was imported before."""
     for stub in ROOT.joinpath("tangible_core").rglob("__init__.pyi"):
         room = ".".join(stub.parent.relative_to(ROOT).parts)
         names = {
@@ -83,14 +79,11 @@ def test_names_of_rooms_are_not_hidden_by_files_of_the_same_name():
             assert not isinstance(getattr(import_module(room), name), ModuleType), f"{room}.{name} is the file"
 
 
-def test_files_import_only_from_the_floors_below():
+def test_imports_are_of_the_floors_below_and_the_rooms_that_are_named():
     ran = run(
         "-c", "from importlinter.cli import lint_imports; raise SystemExit(lint_imports(no_cache=True, no_logo=True))"
     )
     assert ran.returncode == 0, ran.stdout + ran.stderr
-
-
-def test_plugins_import_from_the_rooms_that_the_contributing_page_names():
     page = (ROOT / "CONTRIBUTING.md").read_text("utf-8").partition("A plugin imports from")[2].partition("\n\n")[0]
     rooms = {f"tangible_core.{name}" for name in re.findall(r"`([a-z._]+)`", page.partition(":\n")[2])}
     assert {"tangible_core", *rooms} == set(modules_for_plugins())
@@ -124,25 +117,18 @@ def test_folders_of_tests_mirror_rooms(tests: str, house: Path):
         assert {Path(path.stem.removeprefix("test_")) for path in folder.glob("test_*.py")} <= rooms
 
 
-def test_tests_lie_in_the_folder_of_their_house():
+def test_tests_lie_in_their_house_and_no_text_advises_to_delete_kernels():
     there = {path.relative_to(ROOT / "tests").parts[0] for path in ROOT.joinpath("tests").rglob("test_*.py")}
     assert {name for name in there if not name.endswith(".py")} == {"benchmarks", "core", "plugins", "ui"}
     assert not list(ROOT.joinpath("tests/plugins").glob("test_*.py"))
-
-
-def test_texts_never_advise_to_delete_compiled_kernels():
     texts = [*ROOT.glob("*.md"), *ROOT.joinpath("docs").rglob("*.md")]
     texts += [path for each in (ROOT / "tangible_core", ROOT / "plugins") for path in each.rglob("*.py")]
     assert [path for path in texts if "__pycache__" in path.read_text()] == []
 
 
 @pytest.mark.parametrize("moment", MOMENTS)
-def test_hooks_are_documented(moment):
+def test_hooks_are_documented_and_called_somewhere(moment):
     assert len(getattr(hooks.Specs, moment).__doc__ or "") > 20
-
-
-@pytest.mark.parametrize("moment", MOMENTS)
-def test_hooks_are_called_somewhere(moment):
     houses = [ROOT.joinpath("tangible_core"), REPORT]
     rooms = [path for house in houses for path in house.rglob("*.py") if "observers" not in path.parts]
     assert any(f'"{moment}"' in path.read_text() for path in rooms), f"nothing in the core or the report calls {moment}"
@@ -177,17 +163,11 @@ def registered():
     return {(kind, target) for kind in KIND_NAMES for target in groups.get(f"tangible.{kind}", {}).values()}
 
 
-def test_concrete_methods_are_registered():
+def test_methods_live_in_their_family_in_the_file_named_after_them():
     assert sorted(concrete_methods()) == sorted(registered())
-
-
-def test_methods_live_in_their_family():
     for kind, target in registered():
         homes = (PACKAGES[kind], REPORT, SEND) if kind == "export" else (PACKAGES[kind],)
         assert target.partition(".")[0] in {home.name for home in homes}, f"{target} is registered as {kind}"
-
-
-def test_methods_are_in_the_file_named_after_them():
     for _, target in registered():
         module, _, cls = target.partition(":")
         assert module.rpartition(".")[2].replace("_", "") == cls.lower(), target
@@ -208,16 +188,13 @@ def test_methods_are_final_and_inherit_from_interfaces_alone(kind):
             assert interfaces <= {KINDS[kind], *capabilities}, listing.target
 
 
-def test_installed_methods_are_those_of_the_project():
+def test_methods_and_names_that_are_installed_are_those_of_the_project():
     ours = {
         (listing.kind, listing.target)
         for listing in default_registry().listings
         if listing.distribution == "tangible-images"
     }
     assert ours == registered()
-
-
-def test_fixed_names_resolve():
     for name in tangible_core.__all__:
         value = getattr(tangible_core, name)
         assert name in (getattr(value, "__name__", ""), "hookimpl")

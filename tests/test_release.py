@@ -39,37 +39,30 @@ def group(name: str) -> list[str]:
     ]
 
 
-def test_citation_names_the_version_and_the_licence():
+def test_citation_and_dependency_groups_are_those_of_the_project():
     citation = dict(
         line.split(": ", 1) for line in (ROOT / "CITATION.cff").read_text("utf-8").splitlines() if ": " in line
     )
     assert PROJECT["project"]["version"] == citation["version"]
     assert PROJECT["project"]["license"] == citation["license"]
-
-
-def test_dependency_group_dev_is_the_extra_dev():
     extras = PROJECT["project"]["optional-dependencies"]
     own = [extra for extra in extras["dev"] if not extra.startswith("tangible-images[")]
     assert sorted(group("dev")) == sorted([*own, *extras["docs"]])
 
 
 class TestLock:
-    def test_every_package_has_a_digest_and_no_address(self):
+    def test_direct_dependencies_are_locked_by_digest_to_their_versions(self):
         entries = re.split(r"\n(?=\S)", LOCKED.strip())
         for entry in (each for each in entries if not each.startswith("#")):
             assert re.match(r"[\w.-]+==[\w.!+]+( ; [^/:\\]+)? \\\n( +--hash=sha256:[0-9a-f]{64}( \\\n|$))+$", entry), (
                 entry
             )
-
-    def test_every_direct_dependency_is_locked(self):
         extras = PROJECT["project"]["optional-dependencies"]
         wanted = [*PROJECT["project"]["dependencies"], *group("dev")]
         wanted += (
             need for name, needs in extras.items() if name not in ("dev", "torch", "peers", "falcon") for need in needs
         )
         assert {name_of(each) for each in wanted} - versions(LOCKED).keys() == set(), "run .ci/lock"
-
-    def test_locked_versions_are_those_of_the_constraints(self):
         locked = {
             name_of(name): version for name, version in re.findall(r"^([\w.-]+)==([\w.!+]+)", LOCKED, re.MULTILINE)
         }

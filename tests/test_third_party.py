@@ -72,14 +72,10 @@ def test_third_party_plugin_is_listed(environment, tmp_path):
 
 
 @pytest.mark.whole
-def test_third_party_plugin_conforms(environment, tmp_path):
+def test_third_party_plugin_and_its_tests_pass(environment, tmp_path):
     ran = environment.run("check", "depth", "acme-blocks", cwd=tmp_path)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert "0 failed" in ran.stdout
-
-
-@pytest.mark.whole
-def test_third_party_tests_pass(environment, tmp_path):
     folders = [example / "tests" for example in EXAMPLES]
     command = [environment.python, "-m", "pytest", "-v", "-p", "no:cacheprovider", *folders]
     ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
@@ -99,16 +95,12 @@ def test_third_party_force_law_and_device_work_together(environment, tmp_path):
 
 
 @pytest.mark.whole
-def test_third_party_exporter_exports_a_pipeline(environment, tmp_path):
+def test_third_party_exporter_method_and_observer_take_part(environment, tmp_path):
     tmp_path.joinpath("map.yaml").write_text("scene: {height: map.npy}\nexport: [acme-contours]\n")
     np.save(tmp_path / "map.npy", np.hypot(*np.indices((12, 20))))
     ran = environment.run("export", "map.yaml", "--out", "out", cwd=tmp_path)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert 'width="80.000mm" height="48.000mm"' in tmp_path.joinpath("out/map.svg").read_text()
-
-
-@pytest.mark.whole
-def test_third_party_method_and_observer_take_part_in_a_pipeline(environment, tmp_path):
     diary = tmp_path / "diary.txt"
     ran = environment.run("run", EXAMPLE / "blocks.yaml", "--out", "out", cwd=tmp_path, ACME_DIARY=str(diary))
     assert ran.returncode == 0, ran.stdout + ran.stderr

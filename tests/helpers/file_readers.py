@@ -9,6 +9,7 @@ import zlib
 from collections.abc import Callable
 from dataclasses import asdict
 from functools import cache
+from importlib import import_module
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -88,34 +89,19 @@ def _pfm(folder: Path) -> None:
     standard_sets.put_pfm(folder / "big.pfm", MAP, ">")
 
 
-def _picture(path: Path) -> object:
-    from tangible_core.scene.formats.pictures import read_picture
-
-    return read_picture(path, reduce=True)
-
-
-def _map(path: Path) -> object:
-    from tangible_core.scene.formats.pictures import read_map
-
-    return read_map(path)
+def _reader(module: str, function: str, **options: Any) -> Callable[[Path], object]:
+    """Return the reader of that name, whose module is imported when a file is read."""
+    return lambda path: getattr(import_module(module), function)(path, **options)
 
 
-def _labels(path: Path) -> object:
-    from tangible_core.scene.formats.pictures import read_labels
-
-    return read_labels(path)
+_picture = _reader("tangible_core.scene.formats.pictures", "read_picture", reduce=True)
+_map = _reader("tangible_core.scene.formats.pictures", "read_map")
 
 
 def _truth(path: Path) -> object:
     from tangible_core.scene.formats.pictures import read_truth
 
     return read_truth(path, "sintel" if "sintel" in path.name else 256.0)
-
-
-def _pair(path: Path) -> object:
-    from tangible_core.scene.formats.pairs import read_pair
-
-    return read_pair(path)
 
 
 def _photo(path: Path) -> object:
@@ -222,12 +208,6 @@ def _make_ground(folder: Path) -> None:
     (folder / "d.asc").write_text("ncols 3\nnrows 2\nxllcorner 10\nyllcorner 60\ncellsize 0.001\n1 2 3\n4 5 6\n")
 
 
-def _ground(path: Path) -> object:
-    from tangible_core.scene.formats.ground import read_ground
-
-    return read_ground(path)
-
-
 def _heights(path: Path) -> object:
     from tangible_core import Scene
 
@@ -298,12 +278,6 @@ felt:
   grain_m: 0.002
   source: {static_friction: measured, others: guess}
 """
-
-
-def _materials(path: Path) -> object:
-    from tangible_core.materials.assignment import load_library
-
-    return load_library(path)
 
 
 def _make_recordings(folder: Path) -> None:
@@ -514,12 +488,6 @@ def _network(path: Path) -> object:
         return Onnx(model=path.with_suffix(".onnx")).estimate(Views(COLOURS, COLOURS[:, ::-1]))
 
 
-def _network_inputs(path: Path) -> object:
-    from tangible_networks.onnx_file import read_inputs
-
-    return read_inputs(path)
-
-
 CARD = """\
 title: My network
 file: mine.onnx
@@ -528,12 +496,6 @@ sha256: ""
 input: {left: l, right: r, order: rgb, white: 1, mean: [0.485, 0.456, 0.406], std: [1, 1, 1], size_px: [48, 64]}
 output: {name: disparity, means: disparity-px, confidence: sure}
 """
-
-
-def _card(path: Path) -> object:
-    from tangible_networks.card import read_card
-
-    return read_card(path)
 
 
 def _make_cache(folder: Path) -> None:
@@ -568,12 +530,6 @@ def _device(path: Path) -> object:
 
     with patch.dict(os.environ, TANGIBLE_CONFIG_DIR=str(path.parent.parent)):
         return load_calibration("falcon", "", Calibration)
-
-
-def _firmware(path: Path) -> object:
-    from tangible_devices.falcon.usb.image import read_image
-
-    return read_image(path)
 
 
 FIRMWARE = np.array([0x08AA, *[0] * 8, 0, 0, 2, 0, 64, 1, 2, 3, 0, 80, 1, 2, 3, 0], "<u2").tobytes()
@@ -750,8 +706,11 @@ READERS = {
         _picture,
     ),
     "avif": Reader(_all(_image("a.avif", COLOURS), _image("b.avif", GREY)), _picture),
-    "ground": Reader(_make_ground, _ground),
-    "labels": Reader(_all(_image("a.png", LABELS), _palette("b.png"), lambda f: np.save(f / "c.npy", LABELS)), _labels),
+    "ground": Reader(_make_ground, _reader("tangible_core.scene.formats.ground", "read_ground")),
+    "labels": Reader(
+        _all(_image("a.png", LABELS), _palette("b.png"), lambda f: np.save(f / "c.npy", LABELS)),
+        _reader("tangible_core.scene.formats.pictures", "read_labels"),
+    ),
     "truth": Reader(_all(_image("kitti.png", DEEP), _image("sintel.png", COLOURS), _pfm), _truth),
     "large-picture": Reader(
         _all(
@@ -767,7 +726,7 @@ READERS = {
             lambda folder: phone_photos.write_mpo(folder / "pair.mpo", [COLOURS, COLOURS // 2], 0x020002),
             _image("both.png", np.hstack([COLOURS, COLOURS])),
         ),
-        _pair,
+        _reader("tangible_core.scene.formats.pairs", "read_pair"),
     ),
     "phone-photo": Reader(_make_phone, _photo),
     "cameras-of-a-rig": Reader(_make_rigs, _rig, "[!r]*.*", text=True),
@@ -776,7 +735,9 @@ READERS = {
     "heights-metadata": Reader(_make_heights, _heights, "*.json", text=True),
     "pipeline": Reader(_make_pipelines, _pipeline, "*.yaml", text=True),
     "pipeline-edited": Reader(_make_pipelines, _edits, "*.yaml", text=True),
-    "materials": Reader(_bytes("library.yaml", MATERIALS), _materials, text=True),
+    "materials": Reader(
+        _bytes("library.yaml", MATERIALS), _reader("tangible_core.materials.assignment", "load_library"), text=True
+    ),
     "recording": Reader(_make_recordings, _recording),
     "recording-csv": Reader(_make_recordings, _recording, "*.csv", text=True),
     "stroke": Reader(_bytes("s.csv", STROKE), _stroke, text=True),
@@ -797,14 +758,14 @@ READERS = {
     "kit": Reader(_make_kits, _kits, "*.p*"),
     "video": Reader(_make_videos, _video),
     "network": Reader(_make_networks, _network, "*.onnx"),
-    "network-inputs": Reader(_make_networks, _network_inputs, "*.onnx"),
-    "network-card": Reader(_bytes("card.yaml", CARD), _card, text=True),
+    "network-inputs": Reader(_make_networks, _reader("tangible_networks.onnx_file", "read_inputs"), "*.onnx"),
+    "network-card": Reader(_bytes("card.yaml", CARD), _reader("tangible_networks.card", "read_card"), text=True),
     "cache": Reader(_make_cache, _cache, "*.npz"),
     "cache-members": Reader(_members(_make_cache, f"{'1' * 32}.npz"), _packed(_cache, f"{'1' * 32}.npz"), text=True),
     "recording-members": Reader(_members(_make_recordings, "*.npz"), _packed(_recording, "stroke.npz")),
     "study-folder": Reader(_make_study_folder, _study_folder, "out/**/*.*s*", text=True),
     "device-calibration": Reader(_make_device, _device, "*.json", text=True),
-    "firmware": Reader(_bytes("firmware.bin", FIRMWARE), _firmware),
+    "firmware": Reader(_bytes("firmware.bin", FIRMWARE), _reader("tangible_devices.falcon.usb.image", "read_image")),
     "draft": Reader(_bytes("draft.json", json.dumps({"text": "scene: x\n", "path": "/tmp/p.yaml"})), _draft, text=True),
     "request": Reader(
         _all(*(_bytes(name, json.dumps(request)) for name, request in REQUESTS.items())), _request, text=True

@@ -22,20 +22,26 @@ def picture_texts(scene: Scene, registry: Registry) -> tuple[PictureText, ...]:
     if scene.views is None or scene.kind.likely in (PictureKind.photograph, PictureKind.text):
         return scene.texts
     identity, marks = networks_identity(registry, "text"), find_marks(scene.views.left)
-    return (*scene.texts, *(_read(read_function(registry), identity, marks) if identity else texts_in(marks)))
+    return (*scene.texts, *_read(read_function(registry) if identity else None, identity, marks))
 
 
 @lru_cache(maxsize=2)
-def _read(read: Callable[..., tuple[PictureText, ...]], identity: str, marks: Marks) -> tuple[PictureText, ...]:
-    return tuple(read(marks.picture, texts_in(marks)))
+def _read(read: Callable[..., tuple[PictureText, ...]] | None, identity: str, marks: Marks) -> tuple[PictureText, ...]:
+    texts = texts_in(marks)
+    return texts if read is None else tuple(read(marks.picture, texts))
 
 
 def _tie(engine: Engine, texts: Sequence[PictureText]) -> list[tuple[PictureText, int | None]]:
     """Return the texts, the highest last, with the label of the part that each names, or None."""
     views, parts, labels = engine.scene.views, engine.make_on_grid("parts"), (None,) * len(texts)
     if views is not None and isinstance(parts, PartMap):
-        labels = tie_texts(find_marks(views.left).lines.centre, texts, parts.labels)
+        labels = _tied_labels(find_marks(views.left), tuple(texts), parts)
     return sorted(zip(texts, labels, strict=True), key=lambda pair: pair[0].box[3] - pair[0].box[1])
+
+
+@lru_cache(maxsize=2)
+def _tied_labels(marks: Marks, texts: tuple[PictureText, ...], parts: PartMap) -> tuple[int | None, ...]:
+    return tuple(tie_texts(marks.lines.centre, texts, parts.labels))
 
 
 def read_labels(config: PipelineConfig, registry: Registry) -> tuple[str, dict[int, str]]:

@@ -55,13 +55,13 @@ def where(files: Sequence[Path]) -> str:
 def export_summary(scene: str, done: Export) -> str:
     """Return what a scene was exported as, and which exports failed; a warning tells what fingers cannot read."""
     written = [export.name for export in done.exports if export.files]
-    simple = [export.name for export in done.exports if export.files and made_simpler(export.made)]
+    simple = any(made_simpler(export.made) for export in done.exports if export.files)
     failed = [export.name for export in done.exports if not export.files]
     if not written:
         return f"Nothing of {scene} was written."
     return (
         f"{scene} is written as {_typed(written)}"
-        f"{f'; parts are simplified in {_typed(simple)}' if simple else ''}"
+        f"{'; parts are simplified' if simple else ''}"
         f"{f'; {_typed(failed)} could not be written' if failed else ''}."
     )
 

@@ -186,6 +186,9 @@ class Exporter(Method):
     """The medium by whose rules legibility is checked before writing; None for files that are not touched."""
     shows_texts: ClassVar[bool] = False
     """True if it writes what `Work.texts` say, where they have been read."""
+    describes: ClassVar[bool] = False
+    """True for words about the other files of an export: without a width of its own, it has that of the first solid
+    beside it, else of the first page for swell paper, and it has the slopes of that."""
     limits_slopes: ClassVar[bool] = True
     """False for what is made of plastic or pins, where no hand is held up by a wall: unless the pipeline file sets
     `relief.slope`, cliffs of the relief stay upright."""

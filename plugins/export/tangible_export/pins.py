@@ -81,6 +81,7 @@ class Pins(Exporter, Previewing):
         if self.display in HEXADECIMAL:
             texts[".hex"] = formats.hexadecimal(pins)
         note(log, f"{columns} x {rows} of {array.columns} x {array.rows} pins; {100 * (pins > 0).mean():.0f} % are up")
+        note(log, f"{len(labels)} parts, simplified for this display; other files may have more")
         return _write_files(stem, self._name, formats.png(pins, array.levels), texts)
 
     def preview(self, work: Work) -> UInt8[np.ndarray, "h w"]:

@@ -27,10 +27,12 @@ class Text(Exporter):
     """A description of the surface in words: plain text, an accessible page of HTML and, on request, braille.
 
     The description has the size and heights of the whole surface and then of each part, from near to far. The parts
-    are those of the surface if one of them has a name; otherwise, the parts that fingers can read.
+    are those of the surface if one of them has a name; otherwise, the parts that fingers can read. Next to a page for
+    swell paper or a solid in the same export, it has the parts and the size of that, and the heights of the solid.
     """
 
     needs: ClassVar[tuple[str, ...]] = ("surface", "simplified", "materials")
+    describes: ClassVar[bool] = True
 
     language: Language | None = None
     """Language of the description; null for that of the pipeline, or English if the description does not exist in it.
@@ -38,7 +40,8 @@ class Text(Exporter):
     materials: bool = True
     """Name the material of each part; false for paper and prints, which have no materials."""
     width_m: Annotated[float, Field(ge=0.001, le=10, allow_inf_nan=False)] | None = None
-    """Width of the whole picture in the description, such as that on a page; null for that of the workspace."""
+    """Width of the whole picture in the description; null for that of the solid, else of the page for swell paper, in
+    the same export, and for that of the workspace without these."""
     braille: bool | BrailleChoice = False
     """Write NAME.brf too: uncontracted braille in the characters that embossers accept; `{grade: 2}` contracts it."""
     cells: Annotated[int, Field(ge=10, le=200)] = 40

@@ -128,6 +128,8 @@ class PipelineConfig(BaseModel):
 
     path: Annotated[Path | None, Unchecked()] = None
     """The file that the configuration stands in; None for a configuration that was made in Python."""
+    felt_widths_m: Annotated[tuple[float, ...], Unchecked()] = ()
+    """The widths of the whole picture for which parts are simplified, the least first; () for its own."""
     measured: Annotated[MeasuredSize | None, Unchecked()] = None
     """The size of the scene's heights according to their file."""
     source: Annotated[Source | None, Unchecked()] = Field(default=None, repr=False)
@@ -140,12 +142,12 @@ class PipelineConfig(BaseModel):
     @property
     def by_parts(self) -> bool:
         """True where each part has a material, and labels of the surface are numbers of parts."""
-        return self.parts is not None or self.heights is not None or self.simplify is not None
+        return self.parts is not None or self.heights is not None or self.felt_parts == "simplified"
 
     @property
     def felt_parts(self) -> Literal["parts", "simplified"]:
         """The product whose parts relief, materials and labels are made of, where anything is by parts."""
-        return "parts" if self.simplify is None else "simplified"
+        return "parts" if self.simplify is None and not self.felt_widths_m else "simplified"
 
     @property
     def choices(self) -> dict[int, PartChoice]:

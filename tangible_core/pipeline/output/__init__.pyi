@@ -1,9 +1,8 @@
+from .export_engines import ExportEngines as ExportEngines
 from .export_folder import read_list as read_list
 from .export_result import Exported as Exported
 from .exporting import export_title as export_title
 from .exporting import work_for as work_for
-from .legible import drawn_width_m as drawn_width_m
-from .legible import with_width as with_width
 from .run_folder import default_name as default_name
 from .run_folder import make_writable as make_writable
 from .runs import about as about

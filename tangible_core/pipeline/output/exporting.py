@@ -5,7 +5,7 @@ import logging
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from threading import Event
 from time import perf_counter
@@ -46,9 +46,10 @@ from ..engine.hooked import has_figure, networks_identity
 from ..engine.planning import REQUESTED, with_notes
 from ..engine.stage import Progress, StageEvent, ignore_event
 from ..part_names import title_and_rest
+from .export_engines import ExportEngines
 from .export_folder import check_writable, check_written, move
 from .export_result import Export, Exported
-from .legible import drawn_parts, drawn_width_m, judge_products, names_of_parts, with_exporter_cures, with_width
+from .legible import drawn_parts, judge_products, names_of_parts, with_exporter_cures
 from .run_folder import default_name, relative_source
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -106,11 +107,8 @@ def export(
     """Write the files of each exporter into a folder; one that fails does not stop the others."""
     stem = export_stem(engine.config, engine.scene)
     check_writable(folder)
-    run, results, names = (
-        _ExportRun(engine, folder, force, cut, progress or ignore_event),
-        list[Exported](),
-        Counter[str](),
-    )
+    run = _ExportRun(ExportEngines(engine, exporters), folder, force, cut, progress or ignore_event)
+    results, names = list[Exported](), Counter[str]()
     with sole_writer(folder / stem), stoppable(stop):
         for exporter in exporters:
             names[exporter.name] += 1
@@ -120,24 +118,22 @@ def export(
 
 
 @final
+@dataclass(frozen=True)
 class _ExportRun:
     """The state of one call of `export`, whose exporters share their products."""
 
-    def __init__(self, engine: Engine, folder: Path, force: bool, cut: bool, progress: Progress) -> None:
-        self.engine = engine
-        self.folder = folder
-        self.force = force
-        self.cut = cut
-        self.progress = progress
-        self.source = relative_source(engine.config.path, folder)
-        config = engine.config
-        self.upright_slope = config.relief.slope if "slope" in config.relief.model_fields_set else 0.0
-        """The slope limit for exporters that need none."""
-        self.engines = {(config.size.width_m, config.relief.slope): engine}
+    engines: ExportEngines
+    folder: Path
+    force: bool
+    cut: bool
+    progress: Progress
+    told: set[str] = field(default_factory=set[str])
+    """What was said of parts that are left out: one exporter says it, as all have the same parts."""
 
     def export(self, name: str, stem: str, exporter: NamedMethod[Exporter]) -> Exported:
         outcomes, product, seconds = Outcomes(), f"{PREFIX}{name}", 0.0
         files, legible, notes, place = (), None, list[Note](), None
+        plugins = self.engines.engine.registry.plugins
 
         def listen(stage: StageEvent) -> None:
             if stage.outcome is not None:
@@ -145,14 +141,14 @@ class _ExportRun:
             self.progress(stage)
 
         try:
-            engine = self._engine(exporter)
+            engine = self.engines.engine_for(exporter)
             with engine.watching(listen):
                 work = work_for(engine, exporter.method, cut=self.cut)
                 legible = legible_for(engine, exporter)
-                dropped = _dropped(engine, exporter, legible)
+                dropped = self._dropped(engine, exporter, legible)
             check_stopped()
             self.progress(StageEvent(product, exporter.name))
-            hooks.tell(self.engine.registry.plugins, "tangible_stage_started", product=product, method=exporter.name)
+            hooks.tell(plugins, "tangible_stage_started", product=product, method=exporter.name)
             start = perf_counter()
             with temporary_folder(self.folder / "export") as place, collect_notes() as notes:
                 files = self._write(exporter, work, place / stem)
@@ -168,32 +164,26 @@ class _ExportRun:
                 why = why.replace(str(place), str(self.folder))
         outcome = Outcome(product, kind, why, exporter.name, seconds, tuple(notes))
         self.progress(StageEvent(product, exporter.name, outcome))
-        hooks.tell(self.engine.registry.plugins, "tangible_stage_finished", outcome=outcome)
+        hooks.tell(plugins, "tangible_stage_finished", outcome=outcome)
         return Exported(name, outcome, files, outcomes, legible if kind == "ran" else None)
 
-    def _engine(self, exporter: NamedMethod[Exporter]) -> Engine:
-        """Return the engine for the width at which this exporter writes, and for its slopes."""
-        width_m = drawn_width_m(self.engine, exporter)
-        slope = self.engine.config.relief.slope if exporter.method.limits_slopes else self.upright_slope
-        if (width_m, slope) not in self.engines:
-            self.engines[width_m, slope] = _with_slope(with_width(self.engine, width_m), slope)
-        engine = self.engines[width_m, slope]
-        for other in self.engines.values():
-            engine.adopt(other)
-        return engine
+    def _dropped(self, engine: Engine, exporter: NamedMethod[Exporter], legible: Legibility | None) -> list[Note]:
+        """Return notes on what these files lack of a drawing, unless the verdict says it, or an earlier exporter."""
+        said, felt = "" if legible is None or legible.readable else legible.sentence, engine.config.felt_parts
+        if legible is None and exporter.method.needs and engine.scene.kind.likely != PictureKind.photograph:
+            products = {felt} & _inputs(engine, exporter.method)
+            legible = judge_products(engine, "force", felt, products, exporter.method.shows_texts)
+        verdicts = [verdict for verdict in legible or () if verdict.check in LOSSES and verdict.verdict != "ok"]
+        new = [verdict for verdict in verdicts if verdict.says not in said and verdict.says not in self.told]
+        self.told.update(verdict.says for verdict in verdicts if verdict.check == "kept parts")
+        return [Note(verdict.says, "warning") for verdict in new]
 
     def _write(self, exporter: NamedMethod[Exporter], work: Work, stem: Path) -> tuple[Path, ...]:
         outputs = exporter.method.write(work, stem)
         check_stopped()
         paths = check_written(outputs, stem, _full_name(exporter.method))
-        return move(paths, self.folder, self.source, exporter.name, self.force)
-
-
-def _with_slope(engine: Engine, slope: float) -> Engine:
-    relief = engine.config.relief
-    if relief.slope == slope:
-        return engine
-    return engine.with_config(engine.config.with_values(relief=relief.model_copy(update={"slope": slope})))
+        source = relative_source(self.engines.engine.config.path, self.folder)
+        return move(paths, self.folder, source, exporter.name, self.force)
 
 
 def _full_name(exporter: Exporter) -> str:
@@ -231,12 +221,13 @@ def legible_for(engine: Engine, exporter: NamedMethod[Exporter]) -> Legibility |
     medium = exporter.method.medium
     if medium is None:
         return None
-    products = set[str]().union(*map(engine.all_inputs, exporter.method.needs))
-    return with_exporter_cures(
-        engine,
-        exporter,
-        judge_products(engine, medium, drawn_parts(engine, exporter), products, exporter.method.shows_texts),
-    )
+    products, shows_texts = _inputs(engine, exporter.method), exporter.method.shows_texts
+    verdicts = judge_products(engine, medium, drawn_parts(engine, exporter), products, shows_texts)
+    return with_exporter_cures(engine, exporter, verdicts)
+
+
+def _inputs(engine: Engine, exporter: Exporter) -> set[str]:
+    return set[str]().union(*map(engine.all_inputs, exporter.needs))
 
 
 def _illegible(name: str, legible: Legibility | None) -> list[Note]:
@@ -244,16 +235,6 @@ def _illegible(name: str, legible: Legibility | None) -> list[Note]:
         return []
     log.warning("%s: %s", name, legible.sentence)
     return [Note(legible.sentence, "warning")]
-
-
-def _dropped(engine: Engine, exporter: NamedMethod[Exporter], legible: Legibility | None) -> list[Note]:
-    """Return notes on the parts and texts of a drawing that these files lack, unless the verdict says them."""
-    said, felt = "" if legible is None or legible.readable else legible.sentence, engine.config.felt_parts
-    if legible is None and exporter.method.needs and engine.scene.kind.likely != PictureKind.photograph:
-        products = {felt} & set[str]().union(*map(engine.all_inputs, exporter.method.needs))
-        legible = judge_products(engine, "force", felt, products, exporter.method.shows_texts)
-    verdicts = [verdict for verdict in legible or () if verdict.check in LOSSES and verdict.verdict != "ok"]
-    return [Note(verdict.says, "warning") for verdict in verdicts if verdict.says not in said]
 
 
 def export_title(config: PipelineConfig, scene: Scene) -> str:

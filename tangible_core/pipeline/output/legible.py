@@ -58,14 +58,13 @@ def drawn_parts(engine: Engine, exporter: NamedMethod[Exporter] | None) -> Liter
     return "simplified" if "simplified" in needs else engine.config.felt_parts
 
 
-def drawn_width_m(engine: Engine, exporter: NamedMethod[Exporter] | None) -> float:
-    """Return the width of the whole picture in the files of an exporter; that of the workspace without one."""
+def drawn_width_m(engine: Engine, *exporters: NamedMethod[Exporter] | None) -> float:
+    """Return the width of the whole picture in the files of the first exporter that has one, else the workspace's."""
     # Solids of maps at a scale have this scale, so that they fit together.
     to_scale = engine.config.workspace.scale is not None
-    if exporter is None or (to_scale and exporter.method.medium == "print"):
-        return engine.config.size.width_m
-    width_m = exporter.method.picture_width_m(_aspect(engine))
-    return engine.config.size.width_m if width_m is None else width_m
+    methods = (each.method for each in exporters if each and not (to_scale and each.method.medium == "print"))
+    widths_m = (method.picture_width_m(_aspect(engine)) for method in methods)
+    return next((width_m for width_m in widths_m if width_m is not None), engine.config.size.width_m)
 
 
 def with_exporter_cures(engine: Engine, exporter: NamedMethod[Exporter], verdicts: Legibility) -> Legibility:

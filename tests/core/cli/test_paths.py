@@ -91,7 +91,10 @@ def run_summary(products: dict[str, Any], figures: Any, outcomes: Any = ()) -> s
 
 
 def export_summary(written: str, failed: str) -> str:
-    done = [SimpleNamespace(name=name, files=("x",) * (name in written), made=()) for name in written + failed]
+    done = [
+        SimpleNamespace(name=name, files=("x",) * (name in written), made=SIMPLER * (name == "b"))
+        for name in written + failed
+    ]
     return sentences.export_summary("dot.png", cast(Any, SimpleNamespace(exports=done)))
 
 
@@ -113,7 +116,7 @@ def check_summary(results: tuple[bool, ...]) -> str:
         (run_summary({"surface": "it", "touch": 1}, FORCE), ("80 x 40 mm, 12.5 mm high", "5.0 s", "up to 2.0 N")),
         (run_summary({"surface": "it"}, {}), ("done", "80 x 40 mm, 12.5 mm high")),
         (run_summary({"relief": 1}, {}, SIMPLER), ("simplified", "relief is made")),
-        (export_summary("abc", ""), ("written as `a`, `b`, `c`.",)),
+        (export_summary("abc", ""), ("written as `a`, `b`, `c`; parts are simplified.",)),
         (export_summary("a", "bc"), ("written as `a`; `b`, `c` could not be written.",)),
         (export_summary("", "a"), ("Nothing of dot.png",)),
         (plan_summary("rr"), ("make a and b.",)),

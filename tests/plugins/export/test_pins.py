@@ -174,7 +174,11 @@ def test_pins_note_names_part_without_a_pin(tmp_path):
         files = Pins().write(labels_work(labels, ("left", "right", "speck")), tmp_path / "map")
     [svg] = [file for file in files if file.suffix == ".svg"]
     assert [layer.get("aria-label") for layer in ElementTree.parse(svg).getroot()[1:]] == ["left", "right"]
-    assert notes == ["too small for a pin: speck", "60 x 40 of 96 x 40 pins; 1 % are up"]
+    size, count = (
+        "60 x 40 of 96 x 40 pins; 1 % are up",
+        "2 parts, simplified for this display; other files may have more",
+    )
+    assert notes == ["too small for a pin: speck", size, count]
 
 
 FLAT = np.zeros((40, 60), np.int32)

@@ -34,7 +34,8 @@ class SimplifiedStage(OfPartsStage):
     def key(self) -> str:
         names = sorted(self.config.part_names.items())
         code = self.code(legibility_point(self.context.registry, "simplify").module)
-        return f"{code} {self.config.size.width_m} {self._choice!r} {names} {self.grid.key}"
+        widths_m = self.config.felt_widths_m or self.config.size.width_m
+        return f"{code} {widths_m} {self._choice!r} {names} {self.grid.key}"
 
     def make(self, inputs: Inputs) -> PartMap:
         parts: PartMap = inputs["parts"]
@@ -42,8 +43,11 @@ class SimplifiedStage(OfPartsStage):
         picture = self.grid.views.left if self.grid.views else None
         simplify = simplify_function(self.context.registry)
         front = {"front": inputs["figure"].front_parts(parts)} if "figure" in self.needs else {}
-        return simplify(parts, self.config.size.width_m, self._choice, names, picture, **front)
+        widths_m = self.config.felt_widths_m or (self.config.size.width_m,)
+        for width_m in widths_m:  # a thin end that is short on one is long on a wider one
+            parts = simplify(parts, width_m, self._choice, names, picture, **front)
+        return parts
 
     @property
     def in_outcomes(self) -> bool:
-        return self.config.simplify is not None
+        return self.config.felt_parts == self.product

@@ -192,7 +192,7 @@ class TestWork:
 
     def test_legibility_is_judged_at_the_width_of_the_files(self, tmp_path: Path):
         thing = pipeline(**SAID)
-        small, large = thing.export(tmp_path, [Fingers(width_m=0.01), Fingers(width_m=0.16)]).exports
+        (small, large) = (thing.export(tmp_path, [Fingers(width_m=each)]).exports[0] for each in (0.01, 0.16))
         assert (small.legible.readable, [note.kind for note in small.outcome.notes]) == (False, ["warning"])
         assert (large.legible.readable, large.outcome.notes) == (True, ())
         assert Feeling(thing).legible("swell", 0.16).readable

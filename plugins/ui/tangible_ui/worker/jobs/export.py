@@ -11,7 +11,7 @@ from zipfile import ZIP_DEFLATED, ZipFile
 from tangible_core.data import digest_of
 from tangible_core.errors import ConfigError
 from tangible_core.files.yaml import json_in_yaml
-from tangible_core.pipeline.output import Exported, drawn_width_m, read_list, with_width, work_for
+from tangible_core.pipeline.output import Exported, ExportEngines, read_list, work_for
 from tangible_core.plugins import Previewing, silently
 
 from ..state import WorkerState
@@ -58,13 +58,14 @@ def export_preview(
         return none
     if any(plan_data(pipeline, text, product)["slow"] for product in exporter.method.needs):
         return {**none, "waits": True}
-    width_m = drawn_width_m(pipeline.engine, exporter)
+    engine = ExportEngines(pipeline.engine, [exporter]).engine_for(exporter)
     with silently():
-        picture = exporter.method.preview(work_for(with_width(pipeline.engine, width_m), exporter.method))
+        picture = exporter.method.preview(work_for(engine, exporter.method))
     at = f"{PREVIEW}{digest_of((picture,))}"
     leave(state.folder / at, "the preview", lambda part: write_whole(picture, part / "picture.png"))
     sweep(state.folder, f"{PREVIEW}*", KEPT_PREVIEWS)
     rows, columns = picture.shape
+    width_m = engine.config.size.width_m
     return {"file": f"{at}/picture.png", "waits": False, "columns": columns, "rows": rows, "width_m": width_m}
 
 

@@ -1,4 +1,4 @@
-"""The form of results on a terminal, and as JSON."""
+"""The form of results on a terminal, and as JSON. Commands import this at once: rich is imported when it prints."""
 
 from __future__ import annotations
 
@@ -8,17 +8,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
-from rich.markup import escape
-from rich.measure import Measurement
-from rich.padding import Padding
-from rich.table import Table
-from rich.text import Text
-
 from ..runtime.standard_output import stream
 from ..translation import localise, localise_marked
 
 if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
     from ..data import Outcome
     from ..preflight import Verdict
     from ..session import PartFelt
@@ -35,6 +32,8 @@ def print_json(value: Any) -> None:
 
 def console(**options: Any) -> Console:
     """Return a console on the program's own standard output, as wide as the terminal if it is one."""
+    from rich.console import Console
+
     own = stream()
     if own is not None and own.isatty() and "COLUMNS" not in os.environ:
         options["width"] = os.get_terminal_size(own.fileno()).columns or None
@@ -49,6 +48,9 @@ def flush() -> None:
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | None = None, named: int = 0) -> None:
     """Print a table without frames, or an entry a row on a narrow terminal. named: columns of names to type."""
+    from rich.table import Table
+    from rich.text import Text
+
     headings, title = [localise(each) for each in headings], title and localise_marked(title)
     grid = Table(title=title, title_justify="left", box=None, pad_edge=False, header_style="bold")
     for heading in headings:
@@ -67,6 +69,8 @@ def table(headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | N
 
 def is_narrow(terminal: Console, grid: Table) -> bool:
     """Return True if a table would break words, or squeeze most of its text into a few letters a line."""
+    from rich.measure import Measurement
+
     wanted = Measurement.get(terminal, terminal.options.update(max_width=WIDEST), grid)
     return wanted.minimum > terminal.width or wanted.maximum > MAX_FOLDS * terminal.width
 
@@ -77,6 +81,9 @@ MAX_FOLDS = 3  # of a table's unfolded width to that of the terminal
 
 def entries(terminal: Console, headings: Sequence[str], rows: Iterable[Sequence[str | Text]]) -> None:
     """Print each row as lines of `heading: cell` below its first cell."""
+    from rich.padding import Padding
+    from rich.text import Text
+
     for first, *others in rows:
         terminal.print(first, style="bold", highlight=False)
         for heading, cell in zip(headings[1:], others, strict=True):
@@ -87,6 +94,9 @@ def entries(terminal: Console, headings: Sequence[str], rows: Iterable[Sequence[
 
 def entry(head: str, text: str) -> None:
     """Print a name and an indented text below it, both without marks."""
+    from rich.padding import Padding
+    from rich.text import Text
+
     terminal = console(highlight=False)
     terminal.print(Text(head, style="bold"))
     terminal.print(Padding(Text(localise(text)), (0, 0, 0, 4)))
@@ -159,6 +169,13 @@ def verdict_line(verdict: Verdict, colours: Mapping[str, str], widths: tuple[int
     return f"[{colours[verdict.verdict]}]{name:<{grade}}[/] {topic:<{check}} {escape(text + cure)}"
 
 
+def escape(text: str) -> str:
+    """Return a text in which nothing is one of rich's marks."""
+    from rich import markup
+
+    return markup.escape(text)
+
+
 def as_rows(rows: Iterable[Outcome]) -> list[dict[str, Any]]:
     """Return outcomes as plain values."""
     return [asdict(row) for row in rows]
@@ -181,4 +198,6 @@ def plain(text: str) -> None:
 
 def note(text: str) -> None:
     """Print a line for people on standard error, apart from the results."""
+    from rich.console import Console
+
     Console(stderr=True, highlight=False, soft_wrap=True).print(localise(text), markup=False)

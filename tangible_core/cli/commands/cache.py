@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from .. import show
 from ..options import Json, ask, is_listing
 
 app: typer.Typer = typer.Typer(name="cache", rich_markup_mode=None, add_completion=False)
@@ -20,7 +21,6 @@ def cache(context: typer.Context, as_json: Json = False) -> None:
     if not is_listing("cache", context.invoked_subcommand, as_json):
         return
     from ...pipeline.engine.cache import Cache
-    from .. import show
 
     results = Cache()
     count, size = results.size()
@@ -40,7 +40,6 @@ def clear(yes: Annotated[bool, typer.Option("--yes", "-y", help="Do not ask.")] 
     On a terminal it asks first; without one, --yes is needed.
     """
     from ...pipeline.engine.cache import Cache
-    from .. import show
 
     results = Cache()
     count, size = results.size()

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .. import completing
+from ...errors import ConfigError, OutputError
+from ...files.paths import without_folders
+from .. import completing, sentences, show
 from ..options import FAILED, MISTAKE, ConfigOrPictures, Json, NoCache, Sets, Verbose, is_quiet, named_language
 from .run import default_place, open_pipeline
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from ...pipeline.output.export_result import Export, Exported
 
 
@@ -50,7 +51,6 @@ def export(
     Exit 2 if an exporter cannot write this, 1 if one failed; the others still write their files.
     """
     from ...pipeline.starter import are_pictures
-    from .. import show
 
     names = [name.strip() for text in to or [] for name in text.split(",") if name.strip()]
     if names == [CSV]:
@@ -75,7 +75,6 @@ def export(
 
 
 def _as_csv(files: Sequence[Path], folder: Path, force: bool) -> Path:
-    from ...errors import ConfigError, OutputError
     from ...session import Recording
 
     if len(files) > 1:
@@ -88,8 +87,6 @@ def _as_csv(files: Sequence[Path], folder: Path, force: bool) -> Path:
 
 
 def _print_recording(place: Path, as_json: bool) -> None:
-    from .. import show
-
     if as_json:
         show.print_json({"files": [str(place)]})
     elif not is_quiet():
@@ -102,9 +99,6 @@ def _code(exports: Sequence[Exported]) -> int:
 
 
 def _print(scene: str, done: Export, verbose: bool) -> None:
-    from ...files.paths import without_folders
-    from .. import sentences, show
-
     show.sentence(sentences.export_summary(without_folders(scene), done))
     if verbose:
         show.outcomes(done.outcomes)

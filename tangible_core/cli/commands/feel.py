@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import logging
+import math
 import sys
+import time
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ...errors import PictureError, check_positive
+from .. import sentences, show
 from ..options import FAILED, Json, NoCache, Record, Sets, Verbose, Yes, is_quiet
 from .run import configured_device, open_pipeline
 
@@ -46,16 +52,9 @@ def feel(
     Several files are felt in turn on the device of the first; none may have another device. If the depth map is
     unreliable, the command asks first.
     """
-    import logging
-    import math
-    import time
-    from dataclasses import asdict
-
     from ... import session
-    from ...errors import check_positive
     from ...pipeline.feeling import Feeling
     from ...servo import OVER
-    from .. import sentences, show
 
     check_positive("--each", each)
     pipeline, *then = (open_pipeline(config, sets or [], not no_cache) for config in configs)
@@ -126,7 +125,6 @@ def feel(
 
 def _warn_if_alone(device: HapticDevice | None) -> None:
     from ...plugins.interfaces import Attended
-    from .. import show
 
     if isinstance(device, Attended) and (why := device.unattended()):
         show.note(why)
@@ -138,8 +136,6 @@ def _text(value: Any) -> str:
 
 def confirm_doubts(pipeline: Pipeline, yes: bool) -> None:
     """Make the touch; if its notes doubt that it is worth feeling, ask, unless `--yes` was given. Raises: Exit."""
-    from ...errors import PictureError
-
     pipeline.make("touch")
     doubts = "; ".join(doubt.text.partition(":")[0] for doubt in pipeline.outcomes.doubts)
     if yes or not doubts:

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
+from collections.abc import Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ...plugins.registry import KIND_NAMES
-from .. import completing
+from ...errors import ConfigError, UnknownName
+from ...plugins.hooks import tell
+from ...plugins.registry import KIND_NAMES, Listing, default_registry
+from ...runtime import standard_output
+from ...translation import localise
+from .. import completing, sentences, show
 from ..options import FAILED, Json, is_listing
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from ...metrics.measured import Measured
-    from ...plugins.registry import Listing
     from ...testing import CheckResult
 
 COLUMNS = ("kind", "name", "origin", "summary")
@@ -41,9 +44,6 @@ Name = Annotated[
 
 
 def _kind_and_name(kind: str, name: str | None) -> tuple[str, str]:
-    from ...errors import ConfigError, UnknownName
-    from ...plugins.registry import default_registry
-
     if name is not None:
         return kind, name
     named = {listing.kind for listing in default_registry().listings if listing.name == kind}
@@ -67,32 +67,25 @@ def plugins(context: typer.Context, as_json: Json = False) -> None:
     """
     if not is_listing("plugins", context.invoked_subcommand, as_json):
         return
-    import json
-
-    from rich.markup import escape
-
-    from ...plugins.hooks import tell
-    from ...plugins.registry import default_registry
-    from ...runtime.standard_output import stream
-    from ...translation import localise
-    from .. import show
 
     registry = default_registry()
     listings = (*registry.listings, *chain.from_iterable(tell(registry.plugins, "tangible_listings")))
     rows = [{column: getattr(listing, column) for column in (*COLUMNS, "target")} for listing in listings]
     if as_json:
-        print(json.dumps(rows, indent=2, ensure_ascii=False), file=stream())
+        print(json.dumps(rows, indent=2, ensure_ascii=False), file=standard_output.stream())
         return
-    if (own := stream()) is not None and own.isatty():
+    if (own := standard_output.stream()) is not None and own.isatty():
         origins = ["" if listing.distribution == OURS else f" ({listing.origin})" for listing in listings]
-        cells = [(row["kind"], row["name"], escape(row["summary"]) + by) for row, by in zip(rows, origins, strict=True)]
+        cells = [
+            (row["kind"], row["name"], show.escape(row["summary"]) + by) for row, by in zip(rows, origins, strict=True)
+        ]
         show.table(("kind", "name", "summary"), cells, named=2)
         return
     lines = [{column: localise(column) for column in COLUMNS}, *rows]
     widths = [max(len(row[column]) for row in lines) for column in COLUMNS[:-1]]
     for row in lines:
         cells = (row[column].ljust(width) for column, width in zip(COLUMNS, widths, strict=False))
-        print(*cells, localise(row["summary"]), sep="  ", file=stream())
+        print(*cells, localise(row["summary"]), sep="  ", file=standard_output.stream())
 
 
 @app.command("show")
@@ -105,9 +98,6 @@ def show_one(kind: Kind, name: Name = None, as_json: Json = False) -> None:
 
     from ...data.options import describe_options
     from ...metrics.measured import load_measured
-    from ...plugins.registry import default_registry
-    from ...translation import localise
-    from .. import show
 
     registry, (kind, name) = default_registry(), _kind_and_name(kind, name)
     listing, cls = registry.find(kind, name), registry.load(kind, name)
@@ -169,10 +159,7 @@ def check(kind: Kind, name: Name = None, as_json: Json = False) -> None:
 
     Exit 1 if a check fails that the method does not declare to fail, or passes that it declares to fail.
     """
-    from rich.markup import escape
-
     from ...testing import run_checks
-    from .. import sentences, show
 
     kind, name = _kind_and_name(kind, name)
     results = list(run_checks(kind, name))
@@ -181,7 +168,7 @@ def check(kind: Kind, name: Name = None, as_json: Json = False) -> None:
     else:
         rows = [
             (one.name, GRADES[one.passed, bool(why := one.expected_failure)],
-             escape(f"{why} ({one.message})" if why and not one.passed else one.message))
+             show.escape(f"{why} ({one.message})" if why and not one.passed else one.message))
             for one in results
         ]  # fmt: skip
         show.sentence(sentences.check_summary(f"{kind} method {name}", results))

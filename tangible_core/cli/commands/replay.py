@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ...errors import MAX_IN_LINE, shown
+from .. import sentences, show
 from ..options import Config, Json, NoCache, Record, Sets
 from .run import open_pipeline
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from ...session import BeaconFelt, PartFelt, Recording
 
 
@@ -30,9 +33,6 @@ def replay(
 
     The recorded states go through the pipeline's force law, and the forces are compared.
     """
-    from dataclasses import replace
-    from time import perf_counter
-
     from ... import session
     from ...pipeline.feeling import Feeling
 
@@ -81,8 +81,6 @@ def _print(
     law: str,
 ) -> None:
     from ... import session
-    from ...errors import MAX_IN_LINE, shown
-    from .. import sentences, show
 
     if as_json:
         recorded: dict[str, Any] = {"device": before.about.device, "renderer": before.about.renderer}

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from ...errors import ConfigError
+from ...plugins.registry import default_registry
+from .. import sentences, show
 from ..options import ConfigOrPictures, Json, NoCache, Sets, Verbose, is_quiet
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
     from ...pipeline.config.methods import NamedMethod
     from ...pipeline.output.runs import Run
     from ...pipeline.pipeline import Pipeline
@@ -37,8 +40,6 @@ def demo(
     from ...pipeline.config.parsing import parse_config
     from ...pipeline.engine.cache import Cache
     from ...pipeline.pipeline import Pipeline
-    from ...plugins.registry import default_registry
-    from .. import show
 
     text = files("tangible_core").joinpath("demo.yaml").read_text(encoding="utf-8")
     config = parse_config(text, DEMO, default_registry())
@@ -76,8 +77,6 @@ def run(
 
     A simulated device feels the surface; a real one is never moved: see `feel`.
     """
-    from .. import show
-
     pipeline = open_pipeline(config, sets or [], not no_cache)
     done = pipeline.run(out or default_place(config[0], config[1:]), seconds=seconds, sheet=sheet)
     _print(done, as_json, verbose)
@@ -95,9 +94,6 @@ def plan(config: ConfigOrPictures, sets: Sets = None, as_json: Json = False, no_
 
     Exit 2 if `run` would refuse.
     """
-    from ...errors import ConfigError
-    from .. import sentences, show
-
     plan = open_pipeline(config, sets or [], not no_cache).plan()
     if as_json:
         show.print_json(show.as_rows(plan.steps))
@@ -112,13 +108,10 @@ def plan(config: ConfigOrPictures, sets: Sets = None, as_json: Json = False, no_
 
 def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bool) -> Pipeline:
     """Open the pipeline of a file, or of pictures without one; cached: with the user's cache."""
-    from ...errors import ConfigError
     from ...pipeline.engine.cache import Cache
     from ...pipeline.pipeline import Pipeline, load_pipeline
     from ...pipeline.starter import are_pictures, not_pictures, suited_config
-    from ...plugins.registry import default_registry
     from ...scene.formats.kinds import is_binary
-    from .. import show
 
     files = [config] if isinstance(config, Path) else config
     if are_pictures(files):
@@ -151,8 +144,6 @@ OTHER_FILES = frozenset((".eps", ".ai", ".psd", ".doc", ".docx", ".odt", ".pptx"
 
 def configured_device(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
     """Return the configured device with its name. Raises: ConfigError if there is none."""
-    from dataclasses import replace
-
     device, felt = pipeline.config.device, pipeline.config.felt_device
     if device is None or felt is None:
         raise pipeline.config.missing("device")
@@ -162,7 +153,6 @@ def configured_device(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
 def default_place(source: Path, others: Sequence[Path] = ()) -> Path:
     """Return the folder for results if the user named none. others: a right view, which stands beside the source."""
     from ...pipeline.output.run_folder import default_folder, default_name
-    from .. import show
 
     first = default_name(source, *others)
     folder = default_folder(source, name=first)
@@ -174,8 +164,6 @@ def default_place(source: Path, others: Sequence[Path] = ()) -> Path:
 
 
 def _print(run: Run, as_json: bool, verbose: bool) -> None:
-    from .. import sentences, show
-
     if as_json:
         show.print_json({**run.document(), "files": [str(path) for path in run.files]})
         return
@@ -203,7 +191,6 @@ def _print(run: Run, as_json: bool, verbose: bool) -> None:
 def _check_complete(run: Run) -> None:
     """Report a simulated touch that stopped early. Raises: KeyboardInterrupt if Ctrl-C stopped it."""
     from ...session import INTERRUPTED
-    from .. import show
 
     if run.recording is None or not run.recording.stopped:
         return

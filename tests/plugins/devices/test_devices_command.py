@@ -71,7 +71,7 @@ class Arm(HapticDevice, Serviceable, Adjustable):
 def registry(install, monkeypatch: pytest.MonkeyPatch) -> Registry:
     install("arms", {"tangible.device": {"arm": "arm_module:Arm", "lost": "no_module:Lost"}}, arm_module=ARM)
     registry = Registry()
-    monkeypatch.setattr("tangible_core.plugins.registry.default_registry", lambda: registry)
+    monkeypatch.setattr("tangible_devices.commands.devices.default_registry", lambda: registry)
     return registry
 
 

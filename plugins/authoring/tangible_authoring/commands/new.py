@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from tangible_core.cli import is_quiet
+from tangible_core.cli import is_quiet, show
+from tangible_core.errors import OutputError
 
 from .schema import write_beside
 
@@ -27,8 +28,6 @@ def new(
     Its values suit these pictures, and comments say what they mean. Editors complete and check it by the schema that
     is written next to it.
     """
-    from tangible_core.cli import show
-    from tangible_core.errors import OutputError
     from tangible_core.files import write_text
     from tangible_core.pipeline import are_pictures, not_pictures
     from tangible_core.pipeline.config import json_schema

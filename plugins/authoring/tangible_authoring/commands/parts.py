@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangible_core.cli import Json, NoCache, Sets, completing, is_quiet
+from tangible_core.cli import Json, NoCache, Sets, completing, is_quiet, show
+from tangible_core.errors import ConfigError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
     from tangible_report.numbered_parts import Before
 
     from ..listed_parts import ListedPart
@@ -65,7 +65,6 @@ def _divide(
     as_json: bool,
     no_cache: bool,
 ) -> None:
-    from tangible_core.cli import show
     from tangible_core.pipeline.engine import Cache
 
     from ..first_parts import check_free, files_beside, first_parts
@@ -112,9 +111,6 @@ def _list(
     as_json: bool,
     no_cache: bool,
 ) -> None:
-    from tangible_core.cli import show
-    from tangible_core.errors import ConfigError
-
     from ..first_parts import NUMBERED
     from ..renumbering import draw_numbers
 
@@ -148,20 +144,17 @@ def _summary(name: str, parts: int) -> str:
 
 
 def _print(parts: Sequence[ListedPart], before: Sequence[Before] | None = None) -> None:
-    from rich.markup import escape
-
-    from tangible_core.cli import show
     from tangible_core.data import shown_number
 
     rows = [
         (
             str(shown_number(part.number)),
             *([] if was is None else ["new" if was.number is None else str(shown_number(was.number))]),
-            escape(part.name),
+            show.escape(part.name),
             part.place,
             f"{100 * part.share:.1f}",
             "" if part.height_m is None else f"{1000 * part.height_m:.1f}",
-            escape(part.material),
+            show.escape(part.material),
         )
         for part, was in _with_earlier(parts, before)
     ]

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tangible_core.cli import FAILED, Config, Json, NoCache, Sets, Verbose, configured_device, open_pipeline
+from tangible_core.cli import FAILED, Config, Json, NoCache, Sets, Verbose, configured_device, open_pipeline, show
+from tangible_core.errors import OutputError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from tangible_core.preflight import Flight, Hand, Loop, Preflight
 
     from ..fixing import Fixed
@@ -41,7 +42,6 @@ def preflight(
     With --fix, the cures are tried, and a file with the necessary ones is written; if they are not enough, no file is,
     and the exit is 1.
     """
-    from tangible_core.errors import OutputError
     from tangible_core.files import without_folders
     from tangible_core.pipeline import Feeling
     from tangible_core.preflight import Hand, Loop, judge
@@ -68,7 +68,6 @@ def _fix(
     config: Path, sets: Sequence[str], hand: Hand, loop: Loop, out: Path, with_cache: bool, as_json: bool
 ) -> tuple[Flight, Preflight, dict[str, Any]]:
     """Try the cures and write the file if they are enough; return the state after them, and the file and changes."""
-    from tangible_core.cli import show
     from tangible_core.files import write_text
 
     from ..fixing import fix
@@ -95,19 +94,11 @@ def _heading_of_fix(out: Path, result: Fixed) -> str:
 
 
 def _print(scene: str, device: str, verdicts: Preflight, verbose: bool) -> None:
-    from rich.markup import escape
-
-    from tangible_core.cli import show
-
-    sentence = f"[{COLOURS[verdicts.grade]}]{escape(verdicts.sentence)}[/]"
-    show.verdicts(f"{escape(scene)} on {escape(device)}: {sentence}", verdicts, COLOURS, WIDTHS, verbose)
+    sentence = f"[{COLOURS[verdicts.grade]}]{show.escape(verdicts.sentence)}[/]"
+    show.verdicts(f"{show.escape(scene)} on {show.escape(device)}: {sentence}", verdicts, COLOURS, WIDTHS, verbose)
 
 
 def _print_json(scene: str, device: str, flight: Flight, verdicts: Preflight, changes: Mapping[str, Any]) -> None:
-    from dataclasses import asdict
-
-    from tangible_core.cli import show
-
     head = {"scene": scene, "device": device, "sentence": verdicts.sentence, "grade": verdicts.grade}
     rows = [
         {**asdict(verdict), "changes": {change.key: change.value for change in verdict.changes}} for verdict in verdicts
@@ -116,8 +107,6 @@ def _print_json(scene: str, device: str, flight: Flight, verdicts: Preflight, ch
 
 
 def _figures(flight: Flight) -> dict[str, Any]:
-    from dataclasses import asdict
-
     from tangible_core.preflight import PERCENTILES
 
     late, cost = flight.lateness, flight.cost

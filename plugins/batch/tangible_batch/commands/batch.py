@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangible_core.cli import FAILED, Json, Sets, completing, is_quiet
+from tangible_core.cli import FAILED, Json, Sets, completing, is_quiet, show
+from tangible_core.errors import ConfigError, check_positive
+from tangible_core.plugins import hooks
+from tangible_core.plugins.registry import default_registry
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from ..job import Row
     from ..running import Tally
 
@@ -61,8 +64,6 @@ def batch(
     Each scene becomes a row, even if it fails. An interrupted batch continues where it stopped. Exit 1 if a scene
     failed.
     """
-    from tangible_core.cli import show
-    from tangible_core.errors import check_positive
     from tangible_core.pipeline.config import with_overrides
     from tangible_core.pipeline.output import default_name
 
@@ -97,7 +98,6 @@ def batch(
 
 def _divide(files: Sequence[Path], over: Sequence[str]) -> tuple[Path, str, list[str]]:
     """Return the pipeline file, its text, and what it runs over: a shell makes many words of `--over *.jpg`."""
-    from tangible_core.errors import ConfigError
     from tangible_core.files.yaml import read_text
     from tangible_core.pipeline import are_pictures
     from tangible_core.pipeline.starter import starter
@@ -115,8 +115,6 @@ def _show_progress(rows: Iterator[Row], tally: Tally, name: str) -> Iterator[Row
     """Yield the rows; meanwhile, show how many are done and how long the rest will take."""
     from tangible_core.cli import approximately
     from tangible_core.data import Outcome
-    from tangible_core.plugins import hooks
-    from tangible_core.plugins.registry import default_registry
 
     plugins, since_s = default_registry().plugins, monotonic()
     try:
@@ -132,10 +130,6 @@ def _show_progress(rows: Iterator[Row], tally: Tally, name: str) -> Iterator[Row
 
 
 def _print(tally: Tally, files: Sequence[str], as_json: bool) -> None:
-    from dataclasses import asdict
-
-    from tangible_core.cli import show
-
     if as_json:
         show.print_json({**asdict(tally), "files": files})
     elif not is_quiet():

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from tangible_core.cli import FAILED, Json, Sets, is_quiet
+from tangible_core.cli import FAILED, Json, Sets, is_quiet, show
+from tangible_core.errors import ArgumentError, ConfigError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from ..config.reading import Comparison
 
 
@@ -64,11 +65,6 @@ def compare(
     All methods are measured on the same scenes. An interrupted comparison continues where it stopped. Exit 1 if a
     method failed on every scene.
     """
-    from dataclasses import replace
-
-    from tangible_core.cli import show
-    from tangible_core.errors import ArgumentError
-
     from ..comparing import ROWS, read_comparison
     from ..comparing import compare as run_comparison
     from ..config.reading import errors_only, shorten
@@ -118,8 +114,6 @@ def _is_set(config: Path) -> bool:
 
 
 def _check_options(config: Path, folder: Path | None, table: str | None, json: bool) -> None:
-    from tangible_core.errors import ConfigError
-
     if folder is not None and not _is_set(config):
         raise ConfigError(f"--folder: is the folder of a standard set, and {config} is not one; leave it out")
     if table is not None and json:
@@ -128,8 +122,6 @@ def _check_options(config: Path, folder: Path | None, table: str | None, json: b
 
 def _read(configs: Sequence[Path], folder: Path | None, sets: Sequence[str]) -> Comparison:
     """Read a comparison file or a shipped one, or write one for a standard set or for methods."""
-    from dataclasses import replace
-
     from tangible_core.plugins.registry import default_registry
 
     from ..config.reading import comparison_of_methods, comparison_of_set, load_comparison, parse_comparison, preset

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tangible_core.cli import FAILED, Json, completing, is_listing, listing
+from tangible_core.cli import FAILED, Json, completing, is_listing, listing, show
 from tangible_core.errors import ConfigError, DeviceError, TangibleError
+from tangible_core.plugins.registry import default_registry
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from tangible_core.data import Finding
     from tangible_core.plugins import Adjustable
 
@@ -36,11 +36,6 @@ def devices(context: typer.Context, as_json: Json = False) -> None:
     if not is_listing("devices", context.invoked_subcommand, as_json):
         return
 
-    from rich.markup import escape
-
-    from tangible_core.cli import show
-    from tangible_core.plugins.registry import default_registry
-
     from ..installed import installed_devices
 
     rows = [asdict(device) for device in installed_devices(default_registry())]
@@ -48,7 +43,7 @@ def devices(context: typer.Context, as_json: Json = False) -> None:
         show.print_json(rows)
         return
     show.sentence(_devices_summary(rows))
-    cells = [(row["name"], *map(escape, cell)) for row in rows for cell in _cells(row)]
+    cells = [(row["name"], *map(show.escape, cell)) for row in rows for cell in _cells(row)]
     show.table(("device", "connected", "serial", "where", "to do"), cells)
 
 
@@ -67,10 +62,6 @@ def doctor(
 
     Checks permissions, drivers, firmware. Exit 1 if a check fails, or if one of a named device cannot be made.
     """
-
-    from tangible_core.cli import show
-    from tangible_core.plugins.registry import default_registry
-
     if name is None and sets:
         raise ConfigError("--set: name the device that has this option")
     names = [name] if name else [entry.name for entry in default_registry().listings if entry.kind == "device"]
@@ -88,8 +79,6 @@ def doctor(
 @app.command()
 def home(name: Device, sets: DeviceSets = None) -> None:
     """Guide your hand until the device knows its position."""
-    from tangible_core.cli import show
-
     _adjustable(name, sets or []).home(show.note)
     show.say(f"{name} is homed")
 
@@ -100,8 +89,6 @@ def calibrate(name: Device, sets: DeviceSets = None) -> None:
 
     The calibration is saved under its serial number.
     """
-    from tangible_core.cli import show
-
     from ..device_calibrations import save_calibration
 
     serial, values = _adjustable(name, sets or []).calibrate(_ask)
@@ -121,9 +108,6 @@ def stress(
 
     No force is given. Rate, and percentiles of the time of one cycle.
     """
-    from tangible_core.cli import show
-    from tangible_core.plugins.registry import default_registry
-
     from ..installed import make_device, stress_device
 
     if not 0 < seconds <= 3600:
@@ -140,7 +124,6 @@ def stress(
 
 def _adjustable(name: str, sets: Sequence[str]) -> Adjustable:
     from tangible_core.plugins import Adjustable
-    from tangible_core.plugins.registry import default_registry
 
     from ..installed import make_device
 
@@ -162,7 +145,6 @@ def _cells(row: dict[str, Any]) -> list[tuple[str, str, str, str]]:
 
 def _findings(name: str, sets: Sequence[str], is_request: bool) -> Sequence[Finding]:
     from tangible_core.data import Finding
-    from tangible_core.plugins.registry import default_registry
 
     from ..installed import examine_device
 
@@ -175,12 +157,8 @@ def _findings(name: str, sets: Sequence[str], is_request: bool) -> Sequence[Find
 
 
 def _print_findings(results: dict[str, Sequence[Finding]]) -> None:
-    from rich.markup import escape
-
-    from tangible_core.cli import show
-
     rows = [
-        (name, finding.check, f"[{COLOURS[finding.verdict]}]{finding.verdict}[/]", escape(finding.says))
+        (name, finding.check, f"[{COLOURS[finding.verdict]}]{finding.verdict}[/]", show.escape(finding.says))
         for name, findings in results.items()
         for finding in findings
     ]
@@ -188,13 +166,11 @@ def _print_findings(results: dict[str, Sequence[Finding]]) -> None:
     for name, findings in results.items():
         for finding in findings:
             if finding.verdict == "failed" and finding.cure:
-                show.say(f"\n[bold]{name}, {escape(finding.check)}[/]")
+                show.say(f"\n[bold]{name}, {show.escape(finding.check)}[/]")
                 show.plain(finding.cure)
 
 
 def _ask(text: str) -> str:
-    from tangible_core.cli import show
-
     show.note(text)
     try:
         return input("> ").strip()

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangible_core.cli import FAILED, Json, ask, is_listing
+from tangible_core.cli import FAILED, Json, ask, is_listing, show
+from tangible_core.errors import ConfigError
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
-
     from ..card import Card
     from ..fetching import Progress
     from ..store import KnownNetwork
@@ -35,7 +35,6 @@ def networks(context: typer.Context, as_json: Json = False) -> None:
     """
     if not is_listing("networks", context.invoked_subcommand, as_json):
         return
-    from tangible_core.cli import show
 
     from ..store import known_networks, models_folder
 
@@ -78,9 +77,6 @@ def add(
 
     Example: tangible networks add figure borders faces
     """
-    from tangible_core.cli import show
-    from tangible_core.errors import ConfigError
-
     from ..fetching import add_network
     from ..store import chosen_networks
 
@@ -111,8 +107,6 @@ def add(
 @app.command()
 def remove(names: Names, as_json: Json = False) -> None:
     """Delete networks. Results that were made with them stay."""
-    from tangible_core.cli import show
-
     from ..fetching import remove_network
     from ..store import chosen_networks
 
@@ -128,8 +122,6 @@ def remove(names: Names, as_json: Json = False) -> None:
 @app.command()
 def check(as_json: Json = False) -> None:
     """Check that each network that is here is the file of its card. Exit code 1 if one is not."""
-    from tangible_core.cli import show
-
     from ..store import known_networks
 
     present = [network for network in known_networks().values() if network.state != "absent"]

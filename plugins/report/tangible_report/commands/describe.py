@@ -1,6 +1,8 @@
 """The command `describe`: the surface in words, on the terminal."""
 
 from tangible_core.cli import ConfigOrPictures, NoCache, Sets, open_pipeline, plain
+from tangible_core.errors import ConfigError
+from tangible_core.translation import language
 
 
 def describe(config: ConfigOrPictures, sets: Sets = None, no_cache: NoCache = False) -> None:
@@ -10,9 +12,6 @@ def describe(config: ConfigOrPictures, sets: Sets = None, no_cache: NoCache = Fa
     """
     from pathlib import Path
     from tempfile import TemporaryDirectory
-
-    from tangible_core.errors import ConfigError
-    from tangible_core.translation import language
 
     pipeline = open_pipeline(config, [f"export.text.language={language()}", *(sets or [])], not no_cache)
     with TemporaryDirectory() as folder:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangible_core.cli import Json, completing
+from tangible_core.cli import Json, completing, show
 from tangible_core.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -35,9 +36,7 @@ def materials(context: typer.Context, library: Library = None, as_json: Json = F
         if library or as_json:
             raise ConfigError(f"materials: write the options after {context.invoked_subcommand!r}")
         return
-    from dataclasses import asdict
 
-    from tangible_core.cli import show
     from tangible_core.materials import load_library
 
     materials = load_library(library)
@@ -83,9 +82,6 @@ def show_one(
 
     Each value with its unit and its source, and its texture.
     """
-    from dataclasses import asdict
-
-    from tangible_core.cli import show
     from tangible_core.materials import VALUES, find, load_library, value_sources
 
     material = find(name, load_library(library))

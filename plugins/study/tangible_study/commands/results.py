@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangible_core.cli import Json, is_quiet
+from tangible_core.cli import Json, is_quiet, show
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from ..analysis.analysing import Analysis
     from ..simulation.power import Need
 
@@ -73,8 +72,6 @@ def simulate(
 
 
 def _report(analysis: Analysis, out: Path, as_json: bool) -> None:
-    from tangible_core.cli import show
-
     from ..analysis.analysing import counts
     from ..analysis.files import write_results
 
@@ -92,15 +89,11 @@ def _report(analysis: Analysis, out: Path, as_json: bool) -> None:
 
 
 def _announce(comparison: str, repetitions: int) -> None:
-    from tangible_core.cli import show
-
     if not is_quiet():
         show.note(f"{comparison}: trying {repetitions} repetitions")
 
 
 def _print_needs(needs: Sequence[Need], as_json: bool) -> None:
-    from tangible_core.cli import show
-
     if as_json:
         show.print_json([need._asdict() for need in needs])
         return

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangible_core.cli import Json, is_quiet
+from tangible_core.cli import Json, is_quiet, show
 from tangible_core.errors import ConfigError
+from tangible_core.translation import translate
 
 from .results import analyse, simulate
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from contextlib import ExitStack
-
     from tangible_web.hand import Hand
 
     from ..design import Study
@@ -43,8 +43,6 @@ def check(file: StudyPath, device: Device = None, sets: DeviceSets = None, as_js
 
     No device is opened. Exit 2 if anything is wrong.
     """
-    from tangible_core.cli import show
-
     from ..session.order import StudyCourse
 
     stimuli = _open(file, device, sets)
@@ -86,8 +84,6 @@ def run(
     """
     from contextlib import ExitStack
 
-    from tangible_core.cli import show
-
     from ..desks.desk import ParticipantLeft
     from ..session.running import begin
 
@@ -112,8 +108,6 @@ def run(
 
 
 def _terminal(design: Study) -> Desk:
-    from tangible_core.translation import translate
-
     from ..desks.desk import Terminal
 
     return Terminal(sys.stdin, _print, lambda text: translate(text, design.language))
@@ -131,9 +125,6 @@ def _own_hand(sets: list[str] | None) -> Hand:
 def _open_page(design: Study, hand: Hand | None, stack: ExitStack) -> Desk:
     """Serve the page until the stack ends, and open it in the browser."""
     import webbrowser
-
-    from tangible_core.cli import show
-    from tangible_core.translation import translate
 
     from ..desks.page import Page
 
@@ -158,7 +149,6 @@ def _open(file: Path, device: str | None, sets: list[str] | None, hand: Hand | N
 
 def _progress(stimuli: Stimuli) -> Callable[[int], None]:
     """Return a function that prints how many surfaces are made, without their names."""
-    from tangible_core.cli import show
 
     def count(number: int) -> None:
         if not is_quiet():

@@ -13,7 +13,7 @@ from ..data import Material, MaterialMap, PartMap, SegmentMap
 from ..data.part_words import label_of_number, missing_number, name_part, shown_number
 from ..data.pictures import to_grey
 from ..errors import MaterialError, did_you_mean, quoted
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from .files import parse_materials, read_materials
 from .rules import Choice, MaterialRule, apply_rules, map_noun, segment_parts
 
@@ -101,8 +101,6 @@ def relative_roughness(segments: SegmentMap | PartMap, picture: np.ndarray) -> F
 
 
 def _local_mean(values: Float64[np.ndarray, "h w"], side: int) -> Float64[np.ndarray, "h w"]:
-    import cv2
-
     with plain_opencv():
         mean: Any = cv2.blur(values, (side, side), borderType=cv2.BORDER_REFLECT)
     return mean

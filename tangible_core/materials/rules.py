@@ -14,7 +14,7 @@ from ..data.part_words import check_number, label_of_number, missing_number, nam
 from ..data.pictures import to_rgb8
 from ..data.quantities import Quantities
 from ..errors import MaterialError, quoted
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 
 log: logging.Logger = logging.getLogger(__name__)
 
@@ -64,8 +64,6 @@ def colour_names(lab: Float[np.ndarray, "n 3"]) -> UInt8[np.ndarray, " n"]:
 @cache
 def _names() -> UInt8[np.ndarray, " n"]:
     """Return the name of each cell of the RGB cube, from its middle."""
-    import cv2
-
     steps = (np.arange(1 << _BITS, dtype=np.float32) + 0.5) / (1 << _BITS)
     cube = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1).reshape(1, -1, 3)
     with plain_opencv():

@@ -6,7 +6,7 @@ from jaxtyping import Float64, Int64
 from ..data import PartMap
 from ..data.part_words import name_part, shown_number
 from ..data.pictures import to_rgb8
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from ..scene.scaling import reduced_shape
 from .find import part_sizes, reduced_parts
 from .heights import PartHeights
@@ -104,8 +104,6 @@ def _ends(pairs: Neighbours, pair: int, sign: float) -> tuple[int, int]:
 
 
 def _mean_colours(parts: PartMap, sizes: Int64[np.ndarray, "n"], picture: np.ndarray) -> Float64[np.ndarray, "n 3"]:
-    import cv2
-
     labels = parts.labels
     with plain_opencv():
         small = cv2.resize(to_rgb8(picture), labels.shape[::-1], interpolation=cv2.INTER_AREA)

@@ -13,7 +13,7 @@ from ..data.part_words import name_part
 from ..data.pictures import check_same_shape, to_grey
 from ..data.views import PartMap, border_pixels
 from ..errors import GeometryError
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from ..scene.scaling import felt_factor, reduce_views
 from .heights import HeightChoice
 
@@ -89,8 +89,6 @@ def _profile(distance_m: Float32[np.ndarray, "h w"], round_m: float) -> Float32[
 
 def _detail(picture: np.ndarray, width_m: float) -> Float32[np.ndarray, "h w"]:
     """Return light and dark at a scale that a fingertip feels, from -1 to 1; 0 for a picture of one shade."""
-    import cv2
-
     rows, columns = picture.shape[:2]
     # No finer than needed, so that a picture of more pixels gives the same detail.
     grey = to_grey(reduce_views(Views(picture), felt_factor(columns, width_m, FINEST_M / 3)).left)

@@ -23,7 +23,7 @@ from ..files.yaml.source import plain_tree
 from ..parts import find_parts
 from ..plugins.interfaces import DepthEstimator
 from ..plugins.registry import Registry, default_registry
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from ..scene.formats.height_maps import read_heights_metadata
 from ..scene.formats.kinds import file_kind
 from ..scene.formats.pairs import holds_two_views
@@ -251,8 +251,6 @@ def _choose_photo_relief(scene: Scene) -> str:
 
 def _slope(values: Float32[np.ndarray, "h w"], smooth_mm: float) -> float:
     """Return the slope that the steepest twentieth of a relief of 1 mm exceeds."""
-    import cv2
-
     longer = max(values.shape)
     scale = min(1.0, CELLS / longer)
     rows, columns = (max(1, round(side * scale)) for side in values.shape)

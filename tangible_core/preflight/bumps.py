@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from ..data import Relief
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from ..scene.geometry import resample
 
 FELT = ((3.2e-3, 29e-6), (10e-3, 130e-6))
@@ -45,8 +45,6 @@ def _response(width_m: float, band_m: float, sides: int) -> float:
 
 def feature_m(relief: Relief, width_m: float) -> float:
     """Return the height or depth of the greatest feature about this wide: exact for a long Gaussian ridge."""
-    import cv2
-
     # A sine of amplitude a and wavelength L counts as a (exp(-u/8) - exp(-2u)) / 0.447, u = (2 pi width / L)^2: at most
     # 1.74 a, at L = 5.2 widths. The point-symmetric continuation beyond the borders gives a plane no feature.
     relief = reduce_relief(relief, width_m / PER_WIDTH)

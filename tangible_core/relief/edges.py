@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float32, Int32, UInt8
 
 from ..data import Relief, Views
 from ..data.views import border_pixels
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from ..scene import geometry, scaling
 from ..scene.workspace import FeltSize
 from .choice import ReliefChoice
@@ -41,8 +41,6 @@ def edge_relief(
     borders: Float32[np.ndarray, "h w"] | None = None,
 ) -> Relief:
     """Make the relief of the left view's edges: raised lines on low steps from dark to light, pixels square."""
-    import cv2
-
     extent_m = geometry.surface_extent(views.shape, size.width_m)
     small = reduce_to_cells(views, size.width_m)
     pitch_m = size.width_m / small.shape[1]
@@ -90,8 +88,6 @@ def _lines(at_edge: Bool[np.ndarray, "h w"], off: float, pitch_m: float) -> Floa
 
 
 def _edges(lab: Float32[np.ndarray, "h w 3"], sigma: float) -> Bool[np.ndarray, "h w"]:
-    import cv2
-
     smooth = cv2.GaussianBlur(lab, (0, 0), max(sigma, 0.3), borderType=cv2.BORDER_REPLICATE)
     across, along = (
         cv2.Sobel(smooth, cv2.CV_32F, *order, scale=sigma / 8, borderType=cv2.BORDER_REPLICATE)
@@ -111,8 +107,6 @@ def _edges(lab: Float32[np.ndarray, "h w 3"], sigma: float) -> Bool[np.ndarray, 
 
 def _long(edges: UInt8[np.ndarray, "h w"], sigma: float) -> Bool[np.ndarray, "h w"]:
     """Return the cells of lines that are not 0, without the short ones. sigma: of the blur, cells."""
-    import cv2
-
     _, pieces, about, _ = cv2.connectedComponentsWithStats(edges, connectivity=8)
     long: np.ndarray = np.asarray(about)[:, cv2.CC_STAT_AREA] >= LONG * sigma
     long[0] = False

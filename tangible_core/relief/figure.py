@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float32
 from ..data import DisparityMap, Figure, Relief, Views
 from ..data.figure import IS_FIGURE
 from ..data.pictures import to_grey
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from ..scene import geometry, scaling
 from ..scene.workspace import FeltSize
 from .choice import ReliefChoice
@@ -42,8 +42,6 @@ def figure_relief(
     views: Views, sight: Figure, size: FeltSize, choice: ReliefChoice, disparity: DisparityMap | None = None
 ) -> Relief:
     """Make the relief of what networks see in the left view, pixels square. Raises: GeometryError without depth."""
-    import cv2
-
     rows, columns = views.shape
     small = scaling.reduce_views(Views(views.left), scaling.felt_factor(columns, size.width_m, CELL_M)).left
     shape: tuple[int, int] = small.shape[:2]
@@ -90,7 +88,6 @@ def _shares(
 
 def _rounding(figure: Bool[np.ndarray, "r c"], pitch_m: float) -> Float32[np.ndarray, "r c"]:
     """Return a figure's height, 0 at its rim to 1: a parabola, whose slope is bounded; 1 all over a board."""
-    import cv2
     from scipy.ndimage import distance_transform_edt
 
     from_rim = np.minimum(np.asarray(distance_transform_edt(figure)) * (pitch_m / ROUNDING_M), 1)
@@ -163,6 +160,4 @@ def _add_face(
 
 
 def _blur(values: Float32[np.ndarray, "r c"], sigma: float) -> Float32[np.ndarray, "r c"]:
-    import cv2
-
     return np.asarray(cv2.GaussianBlur(values, (0, 0), max(sigma, 0.1), borderType=cv2.BORDER_REPLICATE))

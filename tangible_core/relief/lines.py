@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float32, Int32
 
 from ..data import Relief, Views
 from ..drawing import Areas, find_areas, find_marks
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from ..scene import geometry, scaling
 from ..scene.workspace import FeltSize
 from .choice import ReliefChoice
@@ -79,7 +79,5 @@ def _neighbours(labels: Int32[np.ndarray, "h w"], count: int) -> Bool[np.ndarray
 
 
 def _enlarge(values: Float32[np.ndarray, "r c"], shape: tuple[int, int]) -> Float32[np.ndarray, "h w"]:
-    import cv2
-
     with plain_opencv():
         return np.asarray(cv2.resize(values, shape[::-1], interpolation=cv2.INTER_LINEAR), np.float32)

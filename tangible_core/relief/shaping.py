@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float32, Float64
 
 from ..data import Calibration, DisparityMap, Relief
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from ..scene import geometry, scaling
 from ..scene.geometry import ValueRange
 from ..scene.workspace import FeltSize
@@ -77,8 +77,6 @@ def _on_cells(nearness: Float32[np.ndarray, "h w"], width_m: float, cell_m: floa
 
 def _without_grain(height_m: Float32[np.ndarray, "h w"], pitch_m: float, grain_m: float) -> Float32[np.ndarray, "h w"]:
     """Flatten noise lower than GRAIN_HIGH_M in windows of this radius, and keep steps."""
-    import cv2
-
     # The guided filter with itself as guide, its coefficients found on a half as fine grid (He & Sun 2015).
     shape = scaling.reduced_shape(height_m.shape, 2)
     with plain_opencv():
@@ -90,8 +88,6 @@ def _without_grain(height_m: Float32[np.ndarray, "h w"], pitch_m: float, grain_m
 def _accent(
     height_m: Float32[np.ndarray, "h w"], pitch_m: float, most_m: float, relief_m: float
 ) -> Float32[np.ndarray, "h w"]:
-    import cv2
-
     shape = scaling.reduced_shape(height_m.shape, 4)
     sigma = ACCENT_REACH_M / (pitch_m * height_m.shape[1] / shape[1])
     with plain_opencv():
@@ -102,8 +98,6 @@ def _accent(
 
 
 def _enlarge(values: Float32[np.ndarray, "r c"], shape: tuple[int, int]) -> Float32[np.ndarray, "h w"]:
-    import cv2
-
     if values.shape == shape:
         return values
     with plain_opencv():
@@ -133,8 +127,6 @@ def relief_tones(nearness: Float32[np.ndarray, "h w"], share: float) -> Float64[
 
 def apply_tones(nearness: Float32[np.ndarray, "h w"], tones: Float64[np.ndarray, "n"]) -> Float32[np.ndarray, "h w"]:
     """Return the heights of these values of nearness, 0 to 1, interpolated between the places of the map."""
-    import cv2
-
     place = nearness * np.float32(BINS)
     below = np.minimum(np.floor(place), np.float32(BINS - 1))
     place -= below
@@ -161,8 +153,6 @@ Map = Float32[np.ndarray, "h w"]
 
 def filter_coefficients(values: Map, radius: float, deviation: float) -> tuple[Map, Map]:
     """Return two maps: the filtered map is the first times the values plus the second (He et al., PAMI 2013)."""
-    import cv2
-
     side = 2 * max(1, round(radius)) + 1
 
     def mean(values: np.ndarray) -> np.ndarray:

@@ -5,6 +5,7 @@ from .child_process import import_from as import_from
 from .child_process import pipe_end as pipe_end
 from .child_process import place as place
 from .failure_log import where_kept as where_kept
+from .opencv import cv2 as cv2
 from .opencv import plain_opencv as plain_opencv
 from .signals import ENDING as ENDING
 from .standard_output import stream as stream

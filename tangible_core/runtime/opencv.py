@@ -1,12 +1,27 @@
-"""OpenCV with the same arithmetic on every processor, with limited threads, and without messages."""
+"""OpenCV, imported when a name of `cv2` is first used, with the same arithmetic on every processor and few threads.
+
+Its import takes longer than to list methods or to plan a run. Blocks here also limit its threads and its messages.
+"""
 
 import os
 from collections.abc import Generator
 from contextlib import contextmanager
 from threading import Lock
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .threads import limiters
+
+if TYPE_CHECKING:
+    import cv2 as cv2
+else:
+
+    class _OnFirstUse:
+        def __getattr__(self, name: str) -> Any:
+            import cv2
+
+            return getattr(cv2, name)
+
+    cv2 = _OnFirstUse()
 
 _LOCK = Lock()
 # The open blocks: the greatest number of threads, and True for one without code for special processors.
@@ -28,8 +43,6 @@ def plain_opencv() -> Generator[None]:
     switches with it, is switched for one thread only: so the block must be inside the thread that calls OpenCV, and
     OpenCV has no threads of its own meanwhile, some of which would use IPP. A Gaussian takes 15 % longer.
     """
-    import cv2
-
     ipp = cv2.ipp.useIPP()
     try:
         with opencv_at_most(1, plain=True):
@@ -42,19 +55,17 @@ def plain_opencv() -> Generator[None]:
 def opencv_at_most(threads: int, plain: bool = False) -> Generator[None]:
     """Limit the threads of OpenCV in this block, for the whole process. plain: as in `plain_opencv`."""
     global _before
-    import cv2
-
     with _LOCK:
         if not _blocks:
             _before = cv2.useOptimized(), cv2.getNumThreads()
         _blocks.append((threads, plain))
-        _switch(cv2)
+        _switch()
     try:
         yield
     finally:
         with _LOCK:
             _blocks.remove((threads, plain))
-            _switch(cv2)
+            _switch()
 
 
 @contextmanager
@@ -65,8 +76,6 @@ def silent_opencv() -> Generator[None]:
     (OPENCV_FFMPEG_LOGLEVEL) is kept.
     """
     global _silent, _log_level
-    import cv2
-
     logging: Any = cv2.utils.logging
     with _LOCK:
         if not _silent:
@@ -86,7 +95,7 @@ def silent_opencv() -> Generator[None]:
 limiters.append(opencv_at_most)
 
 
-def _switch(cv2: Any) -> None:
+def _switch() -> None:
     """Set OpenCV to the strictest setting of all open blocks."""
     is_optimised, threads = _before
     cv2.setUseOptimized(is_optimised and not any(plain for _, plain in _blocks))

@@ -7,7 +7,7 @@ from jaxtyping import Float, Float32, Float64, Int, Shaped
 
 from ..data import Calibration, DisparityMap, Relief
 from ..errors import GeometryError
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 
 # Treatment of unknown places: `fill` takes the farther neighbour in the row, `cut` goes down to the base plane.
 Holes = Literal["fill", "cut"]
@@ -266,8 +266,6 @@ def smooth(relief: Relief, sigma_m: float) -> Relief:
     sigmas = sigma_m / relief.pitch_m[0], sigma_m / relief.pitch_m[1]
     if max(sigmas) < 0.1:  # a pixel's own size hides it
         return relief
-    import cv2
-
     with plain_opencv():
         heights = cv2.GaussianBlur(
             relief.height_m, (0, 0), max(sigmas[0], 1e-3), sigmaY=max(sigmas[1], 1e-3), borderType=cv2.BORDER_REPLICATE

@@ -11,7 +11,7 @@ from ..data import Calibration, Record, Views
 from ..data.arguments import named_fields
 from ..data.records import as_read_only
 from ..errors import GeometryError, PictureError, quoted
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 
 Distortion = Literal["radial-tangential", "equidistant"]
 COEFFICIENTS: dict[Distortion, tuple[int, ...]] = {"radial-tangential": (0, 4, 5, 8, 12, 14), "equidistant": (0, 4)}
@@ -145,8 +145,6 @@ def undistort_points(
     points_px: Float64[np.ndarray, "n 2"], lens: Camera, axes: np.ndarray, camera: np.ndarray
 ) -> Float64[np.ndarray, "n 2"]:
     """Return points of a raw picture as the camera without distortion, with these axes, sees them; NaN behind it."""
-    import cv2
-
     undo: Any = cv2.fisheye.undistortPoints if lens.model == "equidistant" else cv2.undistortPoints
     flat = undo(points_px[:, None], lens.matrix, _coefficients(lens))[:, 0]
     rays = np.einsum("nj,ij->ni", np.column_stack([flat, np.ones(len(flat))]), axes)
@@ -158,16 +156,12 @@ def undistort_points(
 def _places(
     lens: Camera, axes: np.ndarray, camera: np.ndarray, size: tuple[int, int]
 ) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
-    import cv2
-
     find: Any = cv2.fisheye.initUndistortRectifyMap if lens.model == "equidistant" else cv2.initUndistortRectifyMap
     with plain_opencv():
         return find(lens.matrix, _coefficients(lens), axes, camera, size, cv2.CV_32FC1)
 
 
 def _warp(picture: np.ndarray, columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    import cv2
-
     if picture.dtype.name not in ("uint8", "uint16", "float32", "float64"):
         picture = picture.astype(np.float32)
     with plain_opencv():

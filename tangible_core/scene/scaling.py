@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int32
 
 from ..data import DisparityMap, PartMap, SegmentMap, Views
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 
 
 def felt_factor(columns: int, width_m: float, finest_m: float) -> float:
@@ -89,8 +89,6 @@ def on_grid(disparity: DisparityMap, shape: tuple[int, int]) -> DisparityMap:
 
 def enlarged_segments(segments: SegmentMap, shape: tuple[int, int]) -> SegmentMap:
     """Enlarge the segments of a reduced picture to (h, w), by the nearest pixel, in the same order of labels."""
-    import cv2
-
     if segments.labels.shape == shape:
         return segments
     with plain_opencv():
@@ -104,14 +102,10 @@ def enlarged_parts(parts: PartMap, shape: tuple[int, int]) -> PartMap:
 
 
 def _nearest(labels: Int32[np.ndarray, "h w"], shape: tuple[int, int]) -> Int32[np.ndarray, "r c"]:
-    import cv2
-
     return np.asarray(cv2.resize(labels, shape[::-1], interpolation=cv2.INTER_NEAREST_EXACT), np.int32)
 
 
 def _mean(picture: np.ndarray, rows: int, columns: int) -> np.ndarray:
-    import cv2
-
     if picture.dtype == np.bool_:
         picture = picture.astype(np.uint8) * np.uint8(255)
     elif picture.dtype.itemsize not in (1, 2, 4) or picture.dtype == np.float16:
@@ -121,8 +115,6 @@ def _mean(picture: np.ndarray, rows: int, columns: int) -> np.ndarray:
 
 
 def _resize(values: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
-    import cv2
-
     size = shape[1], shape[0]
     with plain_opencv():
         linear = np.asarray(cv2.resize(values, size, interpolation=cv2.INTER_LINEAR))

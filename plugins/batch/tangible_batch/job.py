@@ -23,7 +23,7 @@ from tangible_core.pipeline import Pipeline
 from tangible_core.pipeline.config import parse_config
 from tangible_core.pipeline.engine import Cache, write_record
 from tangible_core.plugins.registry import default_registry
-from tangible_core.runtime import limited_threads, plain_opencv
+from tangible_core.runtime import cv2, limited_threads, plain_opencv
 
 log = logging.getLogger(__name__)
 Row = dict[str, Any]
@@ -220,8 +220,6 @@ def _grey(values: np.ndarray) -> UInt8[np.ndarray, "r c 3"]:
 
 
 def _resize(picture: np.ndarray) -> np.ndarray:
-    import cv2
-
     scale = SIDE_PX / max(picture.shape[:2])
     size = tuple(max(1, round(side * scale)) for side in picture.shape[1::-1])
     with plain_opencv():

@@ -11,7 +11,7 @@ from tangible_core.data import DisparityMap, Views, to_rgb
 from tangible_core.drawing import PictureKind, noise_level, picture_kind
 from tangible_core.errors import PictureError
 from tangible_core.plugins import DepthEstimator, note
-from tangible_core.runtime import plain_opencv
+from tangible_core.runtime import cv2, plain_opencv
 
 log: logging.Logger = logging.getLogger(__name__)
 CELLS = 40_000  # largest number of cells on which regions are found
@@ -112,7 +112,6 @@ def _confidence(score: Float64[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]
 
 
 def _regions(colours: Float32[np.ndarray, "h w 3"]) -> Int32[np.ndarray, "h w"]:
-    import cv2
     from skimage.segmentation import felzenszwalb
 
     with plain_opencv():
@@ -123,8 +122,6 @@ def _regions(colours: Float32[np.ndarray, "h w 3"]) -> Int32[np.ndarray, "h w"]:
 
 def _has_plain_ground(colours: Float32[np.ndarray, "h w 3"]) -> bool:
     """Return True if a smooth ground of more than MAX_GROUND reaches all four rims of the picture."""
-    import cv2
-
     with plain_opencv():
         small, near = _reduce(colours, GROUND_CELLS), np.ones((3, 3), np.uint8)
         change = (cv2.dilate(small, near) - cv2.erode(small, near)).reshape(small.shape).max(axis=2)
@@ -136,8 +133,6 @@ def _has_plain_ground(colours: Float32[np.ndarray, "h w 3"]) -> bool:
 
 
 def _reduce(colours: Float32[np.ndarray, "h w 3"], cells: int) -> Float32[np.ndarray, "r c 3"]:
-    import cv2
-
     rows, columns = colours.shape[:2]
     scale = min(1.0, (cells / (rows * columns)) ** 0.5)
     size = max(1, round(columns * scale)), max(1, round(rows * scale))

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from tangible_core.data import DisparityMap, Views, to_grey
 from tangible_core.plugins import DepthEstimator
-from tangible_core.runtime import plain_opencv
+from tangible_core.runtime import cv2, plain_opencv
 
 
 class Luminance(DepthEstimator):
@@ -38,7 +38,6 @@ class Luminance(DepthEstimator):
 
 def _guided_filter(grey: Float64[np.ndarray, "h w"], radius_px: int, contrast: float) -> Float64[np.ndarray, "h w"]:
     """Apply the guided filter with guide = input: in each window out = a grey + b, a = var / (var + contrast^2)."""
-    import cv2
 
     def mean(values: np.ndarray) -> np.ndarray:
         return cv2.blur(values, (side, side), borderType=cv2.BORDER_REPLICATE)

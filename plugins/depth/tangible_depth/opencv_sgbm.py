@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from tangible_core.data import DisparityMap, Views, to_grey
 from tangible_core.errors import PictureError
 from tangible_core.plugins import DepthEstimator, Skippable
+from tangible_core.runtime import cv2
 from tangible_core.scene import fill_rows
 
 
@@ -110,8 +111,6 @@ class OpenCVSGBM(DepthEstimator, Skippable):
         self, left: UInt8[np.ndarray, "h w"], right: UInt8[np.ndarray, "h w"], low: int, count: int
     ) -> Float32[np.ndarray, "h w"]:
         """Run OpenCV for `count` disparities from `low`, in pixels; unknown ones are below `low`."""
-        import cv2
-
         block = self.block_px
         before, after = (
             max(low + count, 0),
@@ -152,8 +151,6 @@ def _eight_bits(left: np.ndarray, right: np.ndarray) -> list[UInt8[np.ndarray, "
 
 def _has_texture(grey: UInt8[np.ndarray, "h w"], block_px: int) -> Bool[np.ndarray, "h w"]:
     """Test each pixel for a change along the rows within its block, of at least 3 px."""
-    import cv2
-
     change = np.zeros(grey.shape, np.uint8)
     change[:, 1:] = grey[:, 1:] != grey[:, :-1]
     side = max(block_px, 3)

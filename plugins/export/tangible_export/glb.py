@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float32, UInt8
 
 from tangible_core.data import Work
+from tangible_core.runtime import cv2
 
 from .solid.exporter import SolidExporter
 
@@ -53,8 +54,6 @@ def as_glb(solid: "Solid", layout: "Layout", title: str, picture: np.ndarray | N
     look: dict[str, Any] = {"metallicFactor": 0, "roughnessFactor": 0.9}
     attributes, more = {"POSITION": 0}, dict[str, Any]()
     if picture is not None:
-        import cv2
-
         texture, places = _texture(picture, layout, solid)
         _, jpeg = cv2.imencode(".jpg", texture[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 90])
         parts += [
@@ -103,8 +102,6 @@ def _texture(
     picture: np.ndarray, layout: "Layout", solid: "Solid"
 ) -> tuple[UInt8[np.ndarray, "h w 3"], Float32[np.ndarray, "n 2"]]:
     """Return the picture in a grey rim, and the texture coordinates of each vertex, 0..1 from the upper left."""
-    import cv2
-
     from tangible_core.data import to_rgb8
 
     colours = _shrink(to_rgb8(picture), layout)
@@ -119,8 +116,6 @@ def _texture(
 
 def _shrink(colours: UInt8[np.ndarray, "h w 3"], layout: "Layout") -> UInt8[np.ndarray, "h2 w2 3"]:
     """Shrink the picture so that the texture of the whole plate has no side longer than `MAX_PX`."""
-    import cv2
-
     sides = zip(colours.shape[1::-1], layout.picture_m, layout.size_m, strict=True)
     scale = min(1.0, *((MAX_PX - 4) * own_m / (px * whole_m) for px, own_m, whole_m in sides))
     rows, columns = (max(1, int(scale * px)) for px in colours.shape[:2])

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from tangible_core.data import DisparityMap, Views
-from tangible_core.runtime import plain_opencv
+from tangible_core.runtime import cv2, plain_opencv
 
 from .card import Means, NetworkInput
 
@@ -102,8 +102,6 @@ def restore_size(output: np.ndarray, fit: Fit, shape: tuple[int, int], channel: 
 
 def resize(values: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
     """Resize bilinearly, or by averaging to a smaller size; return the same array if it has this size."""
-    import cv2
-
     if values.shape[:2] == shape:
         return values
     shrinks = shape[0] * shape[1] < values.shape[0] * values.shape[1]

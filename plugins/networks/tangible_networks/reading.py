@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from tangible_core.data import PictureText, to_rgb
-from tangible_core.runtime import plain_opencv
+from tangible_core.runtime import cv2, plain_opencv
 
 from .fitting import Colours, fit_size, tensor
 from .onnx_file import read_metadata
@@ -70,8 +70,6 @@ def _letters(path: Path, changed_ns: int) -> tuple[str, ...]:
 
 def _upright_row(colours: Colours, text: PictureText) -> Float32[np.ndarray, "48 columns 3"]:
     """Return a text turned so that it is read from left to right, in the height that the network takes."""
-    import cv2
-
     rows, columns = colours.shape[:2]
     left, top, right, bottom = text.box * np.array([columns, rows, columns, rows])
     turn = np.radians(text.direction_deg)

@@ -30,7 +30,7 @@ from tangible_core.errors import BrokenMethod, ConfigError, shown
 from tangible_core.files import content_digest
 from tangible_core.pipeline.engine import Cache
 from tangible_core.provenance.versions import of_imported
-from tangible_core.runtime import command, pipe_end
+from tangible_core.runtime import command, cv2, pipe_end
 from tangible_core.runtime.system import exit_with_parent
 
 from .card import Runtime
@@ -158,8 +158,6 @@ def _load(model: Path, changed_ns: int, size: int, runtime: Runtime) -> Network:
 
 class _OpenCV:
     def __init__(self, model: Path) -> None:
-        import cv2
-
         self._net: Any
         if model.suffix == TFLITE:  # the new engine of OpenCV 5 gives the first output alone
             self._net = cv2.dnn.readNetFromTFLite(str(model), engine=cv2.dnn.ENGINE_CLASSIC)

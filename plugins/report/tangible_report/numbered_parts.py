@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Int32, UInt8
 
 from tangible_core.data import PartMap, digest_of, shown_number, to_rgb8
-from tangible_core.runtime import plain_opencv
+from tangible_core.runtime import cv2, plain_opencv
 from tangible_legibility.cells import Disc, largest_disc, resampled
 
 if TYPE_CHECKING:
@@ -118,8 +118,6 @@ def _resize(
     picture: UInt8[np.ndarray, "h w 3"], labels: Int32[np.ndarray, "h w"]
 ) -> tuple[UInt8[np.ndarray, "r c 3"], Int32[np.ndarray, "r c"]]:
     """Return both at the drawn size, as new arrays."""
-    import cv2
-
     longer = max(labels.shape)
     scale = -(-SHORTEST_PX // longer) if longer < SHORTEST_PX else min(1.0, LONGEST_PX / longer)
     rows, columns = (max(1, round(scale * side)) for side in labels.shape)
@@ -131,8 +129,6 @@ def _resize(
 
 def _draw_borders(canvas: UInt8[np.ndarray, "h w 3"], labels: Int32[np.ndarray, "h w"], width_px: int) -> None:
     """Draw dark lines with light ones on both sides, which are visible on any picture."""
-    import cv2
-
     border = np.zeros(labels.shape, np.uint8)
     border[:, 1:] |= labels[:, 1:] != labels[:, :-1]
     border[1:] |= labels[1:] != labels[:-1]

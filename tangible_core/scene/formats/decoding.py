@@ -16,7 +16,7 @@ from ...errors import PictureError, TangibleError, shown
 from ...files import arrays
 from ...files.paths import what_is_missing
 from ...files.reading import TOO_MANY_PIXELS, TooLargeError, check_size, read_bytes
-from ...runtime.opencv import silent_opencv
+from ...runtime.opencv import cv2, silent_opencv
 from .grids import GRIDS, read_grid
 from .heif import is_heif, read_heif
 from .kinds import ASC, JPEG, JPEG_2000, NPY, VIDEOS, ZIP
@@ -279,8 +279,6 @@ def upright(values: np.ndarray, orientation: int) -> np.ndarray:
 
 def _decode_with_opencv(path: Path, data: bytes) -> np.ndarray:
     """Decode a PNG; OpenCV has no limit on sizes, and another idea of which header counts than Pillow."""
-    import cv2
-
     check_size((*png_size(data), 4), 2)
     try:
         with silent_opencv():  # the error below reports the fault in one line

@@ -20,7 +20,7 @@ from jaxtyping import Float32
 
 from ...data.pictures import size_in_words, to_grey
 from ...errors import PictureError, shown
-from ...runtime.opencv import plain_opencv
+from ...runtime.opencv import cv2, plain_opencv
 from .decoding import content_bytes, decode, look_at, orientation, upright
 from .heif import heif_depth, is_heif
 from .kinds import JPEG
@@ -80,8 +80,6 @@ def _heic_depth(data: bytes) -> tuple[Float32[np.ndarray, "h w"], PhoneDepth] | 
 def _nearness(
     path: Path, turned: Float32[np.ndarray, "rows columns"], depth: PhoneDepth, shape: tuple[int, int], notify: Notify
 ) -> Float32[np.ndarray, "h w"]:
-    import cv2
-
     grey = np.ascontiguousarray(turned)
     notify(
         f"{path.name} holds a depth map of {size_in_words(grey)} ({depth.kind}), which is used; "

@@ -14,7 +14,7 @@ from pydantic import Field
 
 from ...data.pictures import check_finite, check_picture, opaque
 from ...errors import PictureError
-from ...runtime.opencv import plain_opencv
+from ...runtime.opencv import cv2, plain_opencv
 from .decoding import content_bytes, decode_values
 from .kinds import JPEG
 from .multi_picture import Notify, ignore
@@ -183,8 +183,6 @@ def distinct_colours(count: int) -> UInt8[np.ndarray, "n 3"]:
 
     Source: Gonzalez, Clustering to minimize the maximum intercluster distance (1985).
     """
-    import cv2
-
     steps = np.rint(np.linspace(0, 255, STEPS)).astype(np.uint8)
     colours = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1).reshape(-1, 3)
     with plain_opencv():

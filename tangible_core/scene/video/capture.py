@@ -15,7 +15,7 @@ from ...data import Views
 from ...data.pictures import size_in_words, to_rgb8
 from ...errors import PictureError
 from ...files.reading import TooLargeError, check_size
-from ...runtime.opencv import silent_opencv
+from ...runtime.opencv import cv2, silent_opencv
 from ...runtime.system.processes import processors
 from ...runtime.threads import thread_limit
 from ..formats.decoding import absent
@@ -37,8 +37,6 @@ OpenCamera = Callable[[int, float | None], Capture]
 
 def open_file(path: Path) -> Capture:
     """Open a video file. Raises: PictureError for one without frames, or with frames that are too large."""
-    import cv2
-
     _check_is_file(path)
     with silent_opencv():
         # OpenCV's readers other than FFmpeg take the digits in a name for the numbers of pictures.
@@ -55,8 +53,6 @@ def open_file(path: Path) -> Capture:
 
 def open_camera(number: int, fps: float | None) -> Capture:
     """Open a camera by its number; check `isOpened` afterwards."""
-    import cv2
-
     with silent_opencv():
         capture = cv2.VideoCapture(number)
         if fps is not None:
@@ -72,8 +68,6 @@ def grab(capture: Capture) -> bool:
 
 def retrieve(capture: Capture, name: object) -> UInt8[np.ndarray, "h w 3"] | None:
     """Return the grabbed frame in RGB; None if it is damaged. Raises: PictureError if it is too large."""
-    import cv2
-
     with silent_opencv():
         is_whole, picture = capture.retrieve()
     if not is_whole or picture.size == 0:
@@ -87,24 +81,18 @@ def retrieve(capture: Capture, name: object) -> UInt8[np.ndarray, "h w 3"] | Non
 
 def stated_fps(capture: Capture) -> float | None:
     """Return the frames a second that a file or a camera states; None for an implausible rate."""
-    import cv2
-
     fps = capture.get(cv2.CAP_PROP_FPS)
     return fps if isfinite(fps) and MIN_FPS <= fps <= MAX_FPS else None
 
 
 def stated_count(capture: Capture) -> int | None:
     """Return the number of frames that a file states; None if it states none."""
-    import cv2
-
     count = capture.get(cv2.CAP_PROP_FRAME_COUNT)
     return int(count) if isfinite(count) and 0 < count < 1e9 else None
 
 
 def position_s(capture: Capture) -> float:
     """Return the time stamp of the grabbed frame; any number if the file has none."""
-    import cv2
-
     return capture.get(cv2.CAP_PROP_POS_MSEC) / 1000
 
 

@@ -13,7 +13,7 @@ from jaxtyping import Float64, Int32, UInt8
 from ...data import Record
 from ...data.pictures import is_one_colour, to_grey
 from ...errors import PictureError
-from ...runtime.opencv import plain_opencv
+from ...runtime.opencv import cv2, plain_opencv
 from ...scene.formats.pictures import read_picture
 from ...scene.scene import Scene
 
@@ -206,8 +206,6 @@ def texture_mosaic(
 
 def smooth_scene(segments: int = 14, shape: Shape = (512, 512), seed: int = 0, noise: float = 6.0) -> KnownSegments:
     """Return curvy regions of one grey each under a gradient of light, blurred, with noise of `noise` grey levels."""
-    import cv2
-
     random = np.random.default_rng(seed)
     labels = in_order(curvy_regions(shape, segments, random))
     greys: np.ndarray = random.permutation(np.linspace(30, 225, segments))

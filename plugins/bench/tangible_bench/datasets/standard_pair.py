@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float32
 
 from tangible_core.data import Calibration, Record, Views, size_in_words
 from tangible_core.errors import ConfigError, PictureError
-from tangible_core.runtime import plain_opencv
+from tangible_core.runtime import cv2, plain_opencv
 from tangible_core.scene import Scene, SceneFiles
 from tangible_core.scene.formats import TruthScale, read_map
 
@@ -43,8 +43,6 @@ def shrink_mask(mask: Bool[np.ndarray, "h w"], by: int) -> Bool[np.ndarray, "r c
 
 
 def _mean(picture: np.ndarray, by: int) -> np.ndarray:
-    import cv2
-
     rows, columns = (max(1, side // by) for side in picture.shape[:2])
     whole = np.ascontiguousarray(picture[: rows * by, : columns * by])
     with plain_opencv():

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float64, UInt8
 
 from tangible_core.data import full_scale
-from tangible_core.runtime import plain_opencv
+from tangible_core.runtime import cv2, plain_opencv
 from tangible_core.testing.synthetic import KnownSegments, in_order
 
 Bytes = UInt8[np.ndarray, "..."]
@@ -53,8 +53,6 @@ def jpeg(picture: np.ndarray, quality: float) -> Bytes:
 
 def blur(picture: np.ndarray, sigma_px: float) -> Bytes:
     """Blur with a Gaussian of this standard deviation, reflected at the borders."""
-    import cv2
-
     with plain_opencv():
         return round_levels(cv2.GaussianBlur(grey_levels(picture), (0, 0), sigma_px, borderType=cv2.BORDER_REFLECT))
 
@@ -116,8 +114,6 @@ def _from_centre(shape: tuple[int, int]) -> Places:
 
 def _sample(scene: KnownSegments, places: Places, blur_px: float = 0.0) -> KnownSegments:
     """Sample a scene at places from its centre: the picture bicubic, mirrored at the border; labels the nearest."""
-    import cv2
-
     h, w = scene.labels.shape
     rows, columns = places + (np.reshape((h, w), (2, 1, 1)) - 1) / 2
     values = grey_levels(scene.picture).astype(np.float32)

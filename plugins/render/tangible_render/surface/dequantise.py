@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float32, UInt8
 from pydantic import Field
 
-from tangible_core.runtime import plain_opencv
+from tangible_core.runtime import cv2, plain_opencv
 
 Filter = Literal["auto", "never"] | Annotated[float, Field(gt=0, le=64)]
 
@@ -66,8 +66,6 @@ def _low_pass(values: Float32[np.ndarray, "h w"], sigma: float) -> Float32[np.nd
 
 
 def _gauss(values: Float32[np.ndarray, "h w"], sigma: float) -> Float32[np.ndarray, "h w"]:
-    import cv2
-
     reach = int(np.ceil(4 * sigma))
     frame = np.pad(values, reach, mode="reflect", reflect_type="odd")
     with plain_opencv():

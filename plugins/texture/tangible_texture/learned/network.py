@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float32, Float64
 
 from tangible_core.compiled import in_turns
-from tangible_core.runtime import plain_opencv
+from tangible_core.runtime import cv2, plain_opencv
 
 from ..clusters.planes import add_planes, combine_planes
 from ..features.cells import window_means
@@ -76,8 +76,6 @@ def learned_values(features: Features) -> Window | None:
 
 
 def _reduce(narrow: Window, numbers: list[int], shape: tuple[int, int]) -> Float32[np.ndarray, "k n"]:
-    import cv2
-
     planes, means = narrow.planes.reshape(-1, *narrow.shape), np.empty((len(numbers), *shape), np.float32)
 
     @plain_opencv()

@@ -108,8 +108,6 @@ def tensors(brightness: Float32[np.ndarray, "h w"], shares: Mapping[str, Float32
 
 
 def _add_windows(planes: Float32[np.ndarray, "d h w"], result: Float32[np.ndarray, "levels 3 h w"]) -> None:
-    import cv2
-
     for level in range(LEVELS):
         if level:
             size = (planes.shape[2] + 1) // 2, (planes.shape[1] + 1) // 2

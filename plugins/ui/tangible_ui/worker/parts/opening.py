@@ -13,6 +13,7 @@ from tangible_core.pipeline import Pipeline
 from tangible_core.pipeline.config import PipelineConfig
 from tangible_core.pipeline.engine import config_heights, divide_segments, is_at_hand
 from tangible_core.plugins import Hierarchical
+from tangible_core.runtime import cv2
 from tangible_core.scene import Scene
 
 from ..state import WorkerState
@@ -106,8 +107,6 @@ def _parts(pipeline: Pipeline) -> PartMap:
 
 def _places(parts: PartMap) -> list[tuple[int, int]]:
     """Return column and row of a pixel well inside each part: of a sample, the farthest from all borders."""
-    import cv2
-
     step = max(1, round((parts.labels.size / MAX_LOOKED_AT) ** 0.5))
     labels = np.pad(parts.labels[::step, ::step], 1, constant_values=-1)
     inside = (~border_pixels(labels)).view(np.uint8)

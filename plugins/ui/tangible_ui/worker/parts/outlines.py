@@ -3,6 +3,8 @@
 import numpy as np
 from jaxtyping import Float32, Float64, Int, UInt8
 
+from tangible_core.runtime import cv2
+
 MAX_PLACES = 1500
 MAX_STEPS = 24  # maximum number of steps to either side of it
 MAX_REACH_PX = 400.0
@@ -48,8 +50,6 @@ def _edges(
     picture: np.ndarray, places: np.ndarray, normals: np.ndarray, away: np.ndarray
 ) -> Float32[np.ndarray, "m k"]:
     """Return the gradient across the outline, at each place and distance; 1 is the steepest here."""
-    import cv2
-
     step = float(away[1] - away[0])
     wide = np.concatenate([[away[0] - step], away, [away[-1] + step]])
     grid = (places[:, None] + normals[:, None] * wide[None, :, None]).astype(np.float32)

@@ -8,6 +8,7 @@ from jaxtyping import Bool, Float64, UInt8
 
 from tangible_core.data import SegmentTree
 from tangible_core.errors import ConfigError
+from tangible_core.runtime import cv2
 
 Kind = Literal["regions", "grabcut", "watershed"]
 MAX_POINTS = 2000
@@ -47,8 +48,6 @@ def propose(
     within: Sequence[float] | None = None,
 ) -> tuple[Window, Bool[np.ndarray, "r c"]]:
     """Return a part by GrabCut (Rother et al. 2004) or a watershed (Meyer 1992), as its bounding box and mask there."""
-    import cv2
-
     width_px = float(np.clip(width_px, 1, max(picture.shape)))
     window = _window(picture.shape, points, width_px, within)
     whole = window.of(picture)
@@ -123,8 +122,6 @@ def _window(shape: tuple[int, ...], points: np.ndarray, width_px: float, within:
 
 def _draw_stroke(points: np.ndarray, width_px: float, window: Window, size: tuple[int, int]) -> Bool[np.ndarray, "r c"]:
     """Draw the stroke on a grid of this size over the window."""
-    import cv2
-
     scale = np.array(size) / [window.columns, window.rows]
     places = np.floor((points - [window.x, window.y] + 0.5) * scale).astype(np.int32)
     canvas = np.zeros(size[::-1], np.uint8)
@@ -143,8 +140,6 @@ def _rim(window: Window, stroke: np.ndarray, shape: tuple[int, ...]) -> Bool[np.
 
 
 def _segment(small: np.ndarray, stroke: np.ndarray, rim: np.ndarray, width: float, kind: Kind) -> np.ndarray:
-    import cv2
-
     if stroke.all():
         return stroke
     if kind == "watershed":
@@ -163,8 +158,6 @@ def _segment(small: np.ndarray, stroke: np.ndarray, rim: np.ndarray, width: floa
 
 def _watershed(picture: np.ndarray, inside: np.ndarray, outside: np.ndarray) -> Bool[np.ndarray, "r c"]:
     """Return what is nearer to the inside than to the outside, the picture's edges being steep."""
-    import cv2
-
     markers = np.zeros(inside.shape, np.int32)
     markers[outside], markers[inside] = OUTSIDE, PART
     wider = (cv2.copyMakeBorder(array, 1, 1, 1, 1, cv2.BORDER_REPLICATE) for array in (picture, markers))
@@ -173,8 +166,6 @@ def _watershed(picture: np.ndarray, inside: np.ndarray, outside: np.ndarray) -> 
 
 def _keep_connected(mask: Bool[np.ndarray, "r c"], stroke: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "r c"]:
     """Keep what is connected to the stroke, without specks at its border and small holes."""
-    import cv2
-
     smooth = np.asarray(cv2.medianBlur(mask.astype(np.uint8), 3)).astype(np.bool_) | stroke
     _, pieces = cv2.connectedComponents(smooth.astype(np.uint8), connectivity=4)
     part = np.isin(pieces, np.unique(pieces[stroke]))
@@ -185,8 +176,6 @@ def _keep_connected(mask: Bool[np.ndarray, "r c"], stroke: Bool[np.ndarray, "r c
 
 def _refine_border(whole: np.ndarray, mask: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "h w"]:
     """Return the mask at the picture's own size: a watershed along its border, between sure inside and sure outside."""
-    import cv2
-
     rows, columns = whole.shape[:2]
     cells = mask.astype(np.uint8)
     sure, ring = cv2.erode(cells, np.ones((3, 3), np.uint8)), cv2.dilate(cells, np.ones((3, 3), np.uint8))
@@ -206,8 +195,6 @@ def _refine_block(
     whole: np.ndarray, state: np.ndarray, fine: np.ndarray, ends: tuple[np.ndarray, np.ndarray], block: tuple[int, int]
 ) -> None:
     """Refine one block, with a rim of cells around it so that blocks fit together."""
-    import cv2
-
     inner = [(at, min(at + BLOCK, n)) for at, n in zip(block, state.shape, strict=True)]
     outer = [(max(0, low - 2), min(n, high + 2)) for (low, high), n in zip(inner, state.shape, strict=True)]
     (y0, y1), (x0, x1) = ((int(e[low]), int(e[high])) for e, (low, high) in zip(ends, outer, strict=True))

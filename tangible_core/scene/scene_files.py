@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from ..data import Calibration
 from ..data.quantities import Quantities
-from ..errors import PictureError, did_you_mean, quoted
+from ..errors import did_you_mean, quoted
 from .formats.pictures import NonFinite, TruthScale
 from .scene_options import VideoLayout
 
@@ -262,7 +262,7 @@ class SceneReader(Quantities, ABC):
 
 
 def builtin_files(name: str) -> SceneFiles:
-    """Return the files of a builtin scene, with absolute paths. Raises: PictureError without scikit-image."""
+    """Return the files of a builtin scene, with absolute paths."""
     files, folder = BUILTINS[name], scikit_image_data()
     return files.model_copy(update={part: folder / path for part, path in files if isinstance(path, Path)})
 
@@ -272,8 +272,7 @@ def scikit_image_data() -> Path:
     from importlib.util import find_spec
 
     spec = find_spec("skimage")
-    if spec is None or not spec.submodule_search_locations:
-        raise PictureError("builtin scenes come inside scikit-image, which is not installed: pip install scikit-image")
+    assert spec is not None and spec.submodule_search_locations is not None
     return Path(spec.submodule_search_locations[0]) / "data"
 
 

@@ -10,9 +10,8 @@ from jaxtyping import UInt8
 from pydantic import Field
 
 from tangible_core.data import PartMap, Work
-from tangible_core.errors import BrokenMethod, PictureError
+from tangible_core.errors import PictureError
 from tangible_core.plugins import Exporter, Medium, Previewing
-from tangible_core.plugins.failures import missing_package
 
 from .braille import BrailleChoice, in_grade
 from .paper.sheet import Page, check_readable, sheet_for
@@ -64,7 +63,7 @@ class Swell(Exporter, Previewing):
         braille, the names of the parts and a scale bar.
 
         Raises: PictureError where there are no parts, or a page could not be read; GeometryError where it has no room;
-        BrailleError for a title or a name that has no braille; BrokenMethod without shapely.
+        BrailleError for a title or a name that has no braille.
         """
         pages = self._pages(work)
         from .paper.lettering import words
@@ -96,13 +95,9 @@ class Swell(Exporter, Previewing):
         return np.where(ink, 0, 255).astype(np.uint8)
 
     def _pages(self, work: Work) -> "list[Drawing]":
-        try:
-            from .paper.opening import open_parts
-            from .paper.page import drawn_lines, drawn_pages
-        except ImportError as error:
-            if missing_package(error) not in (None, "shapely"):
-                raise
-            raise BrokenMethod(f"pages need shapely ({error}); pip install shapely") from error
+        from .paper.opening import open_parts
+        from .paper.page import drawn_lines, drawn_pages
+
         work = replace(work, language=in_grade(work.language, self.braille.grade))
         if work.kind == "text":
             raise PictureError(

@@ -19,7 +19,6 @@ from tangible_core.plugins import HapticDevice, Link, Serviceable
 if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection
 
-INSTALL = "pip install websockets"
 START = "start Haply Hub or the Haply Inverse Service, or give its address with option uri"
 MAX_BYTES = 1 << 22
 # Problems by the status flags that the service reports as false; a missing flag is not a problem.
@@ -62,7 +61,7 @@ class Haply(HapticDevice, Serviceable):
         )
 
     def open(self) -> Link:
-        """Connect to the arm. Raises: DeviceAbsent if service, arm or websockets is missing; DeviceError on failure."""
+        """Connect to the arm. Raises: DeviceAbsent if service or arm is missing; DeviceError on failure."""
         session = Session(self.uri, self.timeout_s)
         return HaplyLink(session, session.choose(self.device_id), self.centre_m, self.max_force_n)
 
@@ -104,7 +103,7 @@ class Session:
     """A connection to the service. Commands lapse when none are sent; a force of zero keeps the session alive."""
 
     def __init__(self, uri: str, timeout_s: float) -> None:
-        """Connect. Raises: DeviceAbsent if websockets or the service is missing, DeviceError for another server."""
+        """Connect. Raises: DeviceAbsent if the service is missing, DeviceError for another server."""
         self.uri = uri
         self._timeout_s = timeout_s
         self._open = ExitStack()
@@ -226,11 +225,9 @@ class HaplyLink(Link):
 
 
 def _connect(until: ExitStack, uri: str, timeout_s: float) -> "ClientConnection":
-    try:
-        from websockets.exceptions import WebSocketException
-        from websockets.sync.client import connect
-    except ImportError as error:
-        raise DeviceAbsent(f"device haply needs websockets ({error}); {INSTALL}") from error
+    from websockets.exceptions import WebSocketException
+    from websockets.sync.client import connect
+
     try:  # no proxy, compression or pings: the service is on this machine, and answers a thousand times a second
         connection = connect(
             uri,

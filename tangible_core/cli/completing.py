@@ -6,6 +6,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, cast
 
+from ..errors import TangibleError
+from ..plugins.registry import KIND_NAMES, default_registry
+
 
 def methods(ctx: Any, incomplete: str) -> list[tuple[str, str]]:
     """Return the methods of the kind that was typed before, with their summaries."""
@@ -25,8 +28,6 @@ def exporters(incomplete: str) -> list[tuple[str, str]]:
 
 def kinds(incomplete: str) -> list[str]:
     """Return the kinds of methods."""
-    from ..plugins.registry import KIND_NAMES
-
     return _matching(KIND_NAMES, incomplete)
 
 
@@ -47,7 +48,6 @@ def scenes(incomplete: str) -> list[str]:
 def keys(ctx: Any, incomplete: str) -> list[str]:
     """Return the keys that `--set` accepts; after `use=`, the methods; for a standard set named before, its pairs."""
     from ..pipeline.config.model import KEYS, STAGES
-    from ..plugins.registry import default_registry
 
     if incomplete.startswith("export."):
         return _exporter_keys(incomplete)
@@ -61,7 +61,6 @@ def keys(ctx: Any, incomplete: str) -> list[str]:
 
 def _scene_keys(words: Sequence[str], incomplete: str) -> list[str]:
     """Return the keys of scene readers; after `=`, the values that a reader suggests by earlier words of `--set`."""
-    from ..errors import TangibleError
     from ..files.yaml.source import parse_source, plain
     from ..pipeline.config.scene_readers import find_scene_reader, scene_readers
 
@@ -82,9 +81,6 @@ def _scene_keys(words: Sequence[str], incomplete: str) -> list[str]:
 
 def _exporter_keys(incomplete: str) -> list[str]:
     """Return `export.NAME.` for each exporter; after a name, its options, which imports this exporter alone."""
-    from ..errors import TangibleError
-    from ..plugins.registry import default_registry
-
     names = default_registry().names("export")
     name, dot, _ = incomplete.removeprefix("export.").partition(".")
     if not dot or name not in names:
@@ -97,8 +93,6 @@ def _exporter_keys(incomplete: str) -> list[str]:
 
 
 def _installed_methods(kind: str | None, incomplete: str) -> list[tuple[str, str]]:
-    from ..plugins.registry import default_registry
-
     listings = [listing for listing in default_registry().listings if kind in (None, listing.kind)]
     return [(listing.name, listing.summary) for listing in listings if listing.name.startswith(incomplete)]
 

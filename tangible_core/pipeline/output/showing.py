@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from ...data import MaterialMap
+from ...data import MaterialMap, Record
 from ...data.outcome import html_table
 from ...errors import BrokenMethod, OutputError
 from ...plugins.interfaces import Drawing, Exporter
@@ -23,8 +23,6 @@ from ..feel_options import Felt
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from ...data import Record
 
 log: logging.Logger = logging.getLogger(__name__)
 

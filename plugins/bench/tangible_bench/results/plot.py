@@ -1,22 +1,23 @@
 """The plot: error over run time, a panel for each measure, with the Pareto front; and a curve, if the task has one."""
 # matplotlib keywords have no types.
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from matplotlib import style
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from tangible_core.files import atomic_write
+from tangible_report.style import INK, OKABE_ITO, STYLE
 
+from ..tasks.task import Curve
+from .summary import Line
 from .table import Results
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from ..tasks.task import Curve
-    from .summary import Line
 
 # Marker shapes. Eight shapes times eight colours tell 64 methods apart, even in grey print.
 MARKERS = "osD^vPX*"
@@ -28,12 +29,6 @@ DPI = 150
 
 def draw_plot(path: Path, results: Results) -> bool:
     """Draw the means over all scenes as a PNG; return False if no method has a mean. Raises: OutputError."""
-    from matplotlib import style
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    from tangible_report.style import STYLE
-
     with_time = [line for line in results.means() if math.isfinite(line.seconds)]
     measures = [measure for measure in results.task.plot_measures if results.on_front(with_time, measure)]
     if not measures:
@@ -56,10 +51,6 @@ def draw_plot(path: Path, results: Results) -> bool:
 
 
 def _draw_panel(axes: Axes, results: Results, with_time: list[Line], measure: str) -> None:
-    from matplotlib.ticker import LogLocator, NullFormatter
-
-    from tangible_report.style import INK
-
     for index, line in _by_name(with_time):
         x, y = _point(results, line, measure)
         axes.plot(x, y, markersize=7, zorder=3, linestyle="", label=line.method, **_look(index))
@@ -111,8 +102,6 @@ def _point(results: Results, line: Line, measure: str) -> tuple[float, float]:
 
 
 def _look(index: int) -> dict[str, Any]:
-    from tangible_report.style import OKABE_ITO
-
     return {"color": OKABE_ITO[index % len(OKABE_ITO)], "marker": MARKERS[index // 8 % 8], **EDGE}
 
 

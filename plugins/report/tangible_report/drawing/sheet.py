@@ -1,16 +1,20 @@
 """The sheet of a run: panels for its products, and those that plugins add."""
 
-from __future__ import annotations
-
 import logging
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import count, product
 from pathlib import Path
 from string import ascii_lowercase
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib import style
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from matplotlib.ticker import FuncFormatter, ScalarFormatter
 
 from tangible_core.data import (
     PRODUCTS,
@@ -32,14 +36,10 @@ from tangible_core.translation import LANGUAGES, translate
 from tangible_legibility.words.languages import language_of, spoken_language
 
 from ..description import describe
+from ..panels import PANELS, draw_segments
+from ..style import STYLE
 from .files import describe_sheet, writer
-from .layout import Cell, arrange
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from .layout import Box
+from .layout import Box, Cell, arrange
 
 log = logging.getLogger(__name__)
 
@@ -87,8 +87,6 @@ def draw_sheet(
     and names. others: further products by name, for panels of plugins. Panels without data are left out.
     Raises: OutputError for another suffix or a file that cannot be written, PictureError for sizes that differ.
     """
-    from ..panels import PANELS, draw_segments
-
     products = {
         "views": views,
         "truth": truth if disparity is not None and disparity.unit == "px" else None,
@@ -108,10 +106,6 @@ def draw_sheet(
 
 def write_sheet(path: Path, run: Mapping[str, Any], title: str, panels: Sequence[Panel], language: str = "en") -> str:
     """Draw panels in the report's style, whole or not at all, and return their description. Raises: as `draw_sheet`."""
-    from matplotlib import style
-
-    from ..style import STYLE
-
     write = writer(path)
     with style.context(STYLE, after_reset=True):
         figure = draw_figure(run, title, panels)
@@ -128,8 +122,6 @@ def write_sheet(path: Path, run: Mapping[str, Any], title: str, panels: Sequence
 
 def draw_figure(run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> Figure:
     """Draw the panels whose products exist, lettered in reading order. Raises: OutputError if there are none."""
-    from matplotlib.figure import Figure
-
     panels = [panel for panel in panels if run.keys() >= set(panel.needs)]
     if not panels:
         raise OutputError(f"{title}: there is nothing to draw; request a product that can be drawn")
@@ -156,10 +148,6 @@ def draw_figure(run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> 
 
 def _translate(figure: Figure, language: str) -> None:
     """Put headlines, captions, legends and numbers into a language; the title is the user's."""
-    from matplotlib.axis import Axis
-    from matplotlib.text import Text
-    from matplotlib.ticker import FuncFormatter, ScalarFormatter
-
     if language == LANGUAGES[0]:
         return
     for text in figure.findobj(Text):
@@ -236,11 +224,6 @@ def show(product: Record, axes: Axes | None = None, **others: Any) -> Axes:
     axes: by default those of a new pyplot figure. others: other products that the panel can show too, by name.
     Raises: OutputError for a product that has no picture, such as materials without segments.
     """
-    from matplotlib import style
-
-    from ..panels import PANELS
-    from ..style import STYLE
-
     name = PANEL_OF.get(type(product))
     if name is None:
         names = ", ".join(record.__name__ for record in PANEL_OF)

@@ -1,22 +1,22 @@
 """The files of an analysis: a table for programs, one for a paper, and plots."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib import style
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from tangible_core.files import atomic_write, sole_writer, write_text
+from tangible_report.drawing.files import writer
+from tangible_report.style import INK, OKABE_ITO, STYLE
 
 from ..measures.rows import ALL, Result, Row, as_record
 from ..trials import MISSING
 from .analysing import Analysis, counts, sentences
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 HEADINGS = ("measure", "condition", "compared with", "value", "95 % interval", "chance", "p", "trials")
 
@@ -92,12 +92,6 @@ MARKERS = "osD^vPX*"
 
 def draw(folder: Path, result: Result) -> list[Path]:
     """Draw a result as PNG and SVG, with what was found as its description; return the paths. Raises: OutputError."""
-    from matplotlib import style
-    from matplotlib.figure import Figure
-
-    from tangible_report.drawing.files import writer
-    from tangible_report.style import STYLE
-
     paths = [folder / f"{result.comparison}{suffix}" for suffix in (".png", ".svg")]
     with style.context(STYLE):
         figure = Figure(figsize=SIZE_IN, dpi=150, layout="constrained")
@@ -117,8 +111,6 @@ def draw(folder: Path, result: Result) -> list[Path]:
 
 def _draw_curves(axes: Axes, result: Result) -> None:
     """Draw the share of answers at each level and the fitted functions; with several participants, thin and paler."""
-    from tangible_report.style import OKABE_ITO
-
     conditions = list(dict.fromkeys(key.partition("/")[2] for key in result.curves))
     alone = len(result.participants) == 1
     for key, curve in result.curves.items():
@@ -144,8 +136,6 @@ def _draw_curves(axes: Axes, result: Result) -> None:
 
 
 def _draw_figures(axes: Axes, result: Result) -> None:
-    from tangible_report.style import INK, OKABE_ITO
-
     rows = result.of_all(result.main)
     for place, row in enumerate(rows):
         single = [

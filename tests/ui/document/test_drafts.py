@@ -171,7 +171,7 @@ def text(number: int) -> Text:
 def steps(texts: Texts, now: Text, *, back: bool) -> list[str]:
     """The texts of all steps in one direction."""
     found: list[str] = []
-    while (other := texts.before() if back else texts.after()) is not None:
+    while (other := texts.next(back=back)) is not None:
         texts.step(now, back=back)
         now = other
         found.append(now.text)
@@ -189,13 +189,13 @@ def edited(count: int) -> Texts:
 def test_steps_are_undone_in_their_order_and_stay_bounded():
     texts = edited(4)
     assert steps(texts, text(3), back=True) == [text(number).text for number in (2, 1, 0)]
-    assert (texts.can_undo, texts.can_redo) == (False, True)
+    assert (texts.next(back=True), texts.next(back=False)) == (None, text(1))
     assert texts.all == [text(number).text for number in (3, 2, 1)]
     assert steps(texts, text(0), back=False) == [text(number).text for number in (1, 2, 3)]
-    assert (texts.can_undo, texts.can_redo) == (True, False)
+    assert (texts.next(back=True), texts.next(back=False)) == (text(2), None)
     texts.step(text(3), back=True)
     texts.leave(text(2))
-    assert (texts.after(), texts.before()) == (None, text(2))
+    assert (texts.next(back=False), texts.next(back=True)) == (None, text(2))
     texts = edited(4)
     texts.step(text(3), back=True)
     texts.rewrite({text(number).text: f"moved {number}\n" for number in (0, 3)})

@@ -231,7 +231,7 @@ async def test_recordings_are_made_one_after_the_other(
             self.path, self.recording = path, True
             ended.append(notify)
 
-    monkeypatch.setattr("tangible_ui.requests.records.Recorder", Recorder)
+    monkeypatch.setattr("tangible_ui.requests.feeling.Recorder", Recorder)
     felt = SimpleNamespace(law="penalty", device_name="mouse", materials="")
     session.feeling = Mock(Feeling, servo=SimpleNamespace(running=True), loop_input=felt)
     path = await ask("record")

@@ -92,7 +92,7 @@ async def take(session: Session, text: Text) -> dict[str, Any]:
 
 async def _step(session: Session, *, back: bool, apply: bool) -> dict[str, Any] | None:
     async with session.document.texts.lock:
-        text = session.document.texts.before() if back else session.document.texts.after()
+        text = session.document.texts.next(back=back)
         if text is None:
             return None
         result = await _check(session, text)
@@ -116,7 +116,8 @@ def _publish(session: Session, text: Text, document: dict[str, Any]) -> dict[str
     session.document.text, session.document.path = text
     session.document.digest = document["digest"]
     session.begin(session.document.drafts.keep(text))
-    document |= {"can_undo": session.document.texts.can_undo, "can_redo": session.document.texts.can_redo}
+    texts = session.document.texts
+    document |= {"can_undo": bool(texts.next(back=True)), "can_redo": bool(texts.next(back=False))}
     session.tabs.tell("document", **document)
     return document
 

@@ -58,7 +58,9 @@ async def long_job(session: Session, job: str, needs: str, sets: list[str], **ar
             session.begin(_kill_if_still_running(session, earlier))
         return await _request_job(session, job, number, {**document, **arguments})
     except Exception as error:
-        outcome = "failed" if _is_wanted(session, number, error) else "stopped"
+        # Somebody still waits for the newest job, and hears of a failure that no stop explains.
+        is_reported = number == session.long_jobs.newest or not isinstance(error, Stopped | WorkerKilled)
+        outcome = "failed" if is_reported else "stopped"
         message = {"want": arguments.get("want", job), "outcome": outcome, "why": str(error), "seconds": 0.0}
         session.tabs.tell("made", digest=digest, **message)
         if outcome == "stopped":
@@ -80,11 +82,6 @@ async def _request_job(session: Session, job: str, number: int, arguments: dict[
             if not session.long_jobs.was_killed or number != session.long_jobs.newest:
                 raise
             session.long_jobs.was_killed = False
-
-
-def _is_wanted(session: Session, number: int, error: Exception) -> bool:
-    """Return True if somebody still waits for the job, so that its failure is reported."""
-    return number == session.long_jobs.newest or not isinstance(error, Stopped | WorkerKilled)
 
 
 async def _kill_if_still_running(session: Session, numbers: set[int]) -> None:

@@ -42,7 +42,8 @@ def serve(files: list[Path], sets: list[str], address: Address) -> None:
         app = application(lambda: lifetime.session, address.key, address.hosts, lifetime.lifespan)
         server = Server(settings(app), lifetime.asked_to_end)
         server.run(sockets=[address.listening])
-    lifetime.raise_if_failed()
+    if lifetime.failure is not None:
+        raise lifetime.failure
     for number in server.signals[:1]:
         signal.raise_signal(number)
 
@@ -84,7 +85,8 @@ class Served:
     def __init__(self, folder: Path, channel: str, files: list[Path], sets: list[str]) -> None:
         self._folder, self._channel, self._files, self._sets = folder, channel, files, sets
         self._session: Session | None = None
-        self._failure: Exception | None = None
+        self.failure: Exception | None = None
+        """The error that kept it from starting."""
 
     @property
     def session(self) -> Session:
@@ -97,11 +99,6 @@ class Served:
         if self._session is not None:
             self._session.feeling.cut()
 
-    def raise_if_failed(self) -> None:
-        """Raise the error that kept it from starting."""
-        if self._failure is not None:
-            raise self._failure
-
     @asynccontextmanager
     async def lifespan(self, _: Any) -> AsyncGenerator[None]:
         """Start slow things at once; at the end leave no force, no process and no file."""
@@ -110,7 +107,7 @@ class Served:
         try:
             self._session = session = Session(self._folder, Feeling(self._channel), self._sets)
         except Exception as error:
-            self._failure = error
+            self.failure = error
             raise
 
         def tell(**payload: str) -> None:
@@ -155,5 +152,6 @@ async def watch(session: Session) -> None:
         if (end := session.feeling.loop_end()) is not None:
             session.tabs.tell("loop", running=False, why=end.why, lost=end.is_lost)
         if why := session.laws.comparison.loop_end():
-            log.warning("%s is no longer computed beside the law that is felt: %s", session.laws.shown_name, why)
+            shown_name = session.laws.names[1 - session.laws.acting]
+            log.warning("%s is no longer computed beside the law that is felt: %s", shown_name, why)
         await asyncio.sleep(KEEP_S)

@@ -39,16 +39,6 @@ class Texts:
         self._after: list[Text] = []
 
     @property
-    def can_undo(self) -> bool:
-        """True if there is a text to undo to."""
-        return bool(self._before)
-
-    @property
-    def can_redo(self) -> bool:
-        """True if there is a text to redo."""
-        return bool(self._after)
-
-    @property
     def all(self) -> list[str]:
         """All texts of the history."""
         return [text.text for text in (*self._before, *self._after)]
@@ -65,22 +55,16 @@ class Texts:
             self._before.append(now)
         self._after.clear()
 
-    def before(self) -> Text | None:
-        """Return the text of one step back."""
-        return self._before[-1] if self._before else None
-
-    def after(self) -> Text | None:
-        """Return the text that was undone last."""
-        return self._after[-1] if self._after else None
+    def next(self, *, back: bool) -> Text | None:
+        """Return the text of one step back, or the one that was undone last; None at the end."""
+        texts = self._before if back else self._after
+        return texts[-1] if texts else None
 
     def step(self, now: Text, *, back: bool) -> None:
-        """Move this text to the other side of the history, after a step to `before` or `after`."""
-        if back:
-            self._after.append(now)
-            self._before.pop()
-        else:
-            self._before.append(now)
-            self._after.pop()
+        """Move this text to the other side of the history, after a step to `next`."""
+        gone, back_again = (self._before, self._after) if back else (self._after, self._before)
+        back_again.append(now)
+        gone.pop()
 
 
 class Draft(NamedTuple):

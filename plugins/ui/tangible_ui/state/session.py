@@ -17,7 +17,6 @@ from ..feeling.feeling import Feeling, LoopInput
 from ..feeling.recorder import Recorder
 from ..user_data import user_folder
 from ..worker import Worker
-from ..worker.messages import Event
 from .document import Document
 from .tabs import Tabs
 from .uploads import UploadStore
@@ -53,11 +52,6 @@ class Laws:
     def other_law(self) -> OtherLaw:
         """Return what frames show of the second law."""
         return ALONE if self.other is None else OtherLaw(self.comparison.force_n)
-
-    @property
-    def shown_name(self) -> str:
-        """The name of the law that does not act."""
-        return self.names[1 - self.acting]
 
     def message(self) -> dict[str, Any]:
         """Return the message `laws`: what pages may know."""
@@ -156,7 +150,7 @@ class Session:
         self.laws: Laws = Laws(ComparisonLoop(f"{feeling.channel}-beside"))
         self.panel_folders: dict[str, Path] = {}
         """Folders of the ES modules of plugins' panels, by name of the panel."""
-        self.worker: Worker = Worker(folder, self._hear)
+        self.worker: Worker = Worker(folder, lambda event: self.tabs.tell(event.event, **event.payload))
         self._tasks: set[asyncio.Task[Any]] = set()
 
     def felt_sets(self) -> list[str]:
@@ -215,9 +209,6 @@ class Session:
 
     async def _say_failure(self, error: BaseException) -> None:
         self.tabs.tell("error", text=await describe_error(error))
-
-    def _hear(self, event: Event) -> None:
-        self.tabs.tell(event.event, **event.payload)
 
     async def close(self) -> None:
         """End force, worker and recording; a failure of one does not keep the others."""

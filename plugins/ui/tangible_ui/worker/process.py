@@ -78,17 +78,12 @@ def answer(state: Any, ask: JobRequest) -> JobResult | JobFailure:
     from .jobs import JOBS
 
     try:
-        keep_folder(state)
+        if not state.folder.is_dir():  # the folder for pages is temporary, and the system may have removed it
+            state.folder.mkdir(parents=True, exist_ok=True)
+            state.shown_digest = ""
         return JobResult(ask.number, JOBS[ask.job].do(state, **ask.arguments))
     except BaseException as error:  # noqa: BLE001 - whatever a plugin raises is for the page to say
         return JobFailure(ask.number, full(error) or sendable(error))
-
-
-def keep_folder(state: Any) -> None:
-    """Make the folder for pages anew if it is gone: it is temporary, and the system may have removed it."""
-    if not state.folder.is_dir():
-        state.folder.mkdir(parents=True, exist_ok=True)
-        state.shown_digest = ""
 
 
 def full(error: BaseException) -> OutputError | None:

@@ -1,8 +1,10 @@
-"""Requests to fetch networks, in a process of its own: no edit of the document ends it."""
+"""Requests about what is installed: networks, fetched in a process that no edit of the document ends, and panels."""
 
 import asyncio
 import json
 from asyncio.subprocess import PIPE
+from pathlib import Path
+from typing import Any
 
 from tangible_core.errors import ConfigError
 from tangible_core.runtime import command
@@ -53,3 +55,12 @@ async def _fetch(session: Session, start: "asyncio.Future[asyncio.subprocess.Pro
         if batch:
             session.uploads.drop(batch)
         session.tabs.tell("fetching", name="", done=0, whole=0, why=why)
+
+
+@request()
+async def panels(session: Session, tab: Tab | None) -> list[dict[str, Any]]:
+    """List the panels of plugins: name, titles by language, address of the ES module, task."""
+    all_panels = await session.worker.quick("panels")
+    modules = {panel["name"]: Path(panel["module"]) for panel in all_panels}
+    session.panel_folders = {name: module.parent for name, module in modules.items()}
+    return [{**panel, "module": f"/panels/{panel['name']}/{modules[panel['name']].name}"} for panel in all_panels]

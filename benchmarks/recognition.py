@@ -25,8 +25,7 @@ from tangible_core import Pipeline, Scene
 from tangible_core.data import Figure as Seen
 from tangible_core.data import HapticSurface
 from tangible_depth import Luminance, SemiGlobal
-from tangible_networks.faces import LOWEST_SCORE, find_faces
-from tangible_networks.seeing import look, look_for_figure
+from tangible_networks.seeing import LOWEST_SCORE, find_faces, look, look_for_figure
 from tangible_networks.store import known_networks, networks_here
 from tangible_render import Proxy
 from tangible_texture import Hierarchy

@@ -17,7 +17,7 @@ from skimage import data
 from tangible_core import HapticSurface, Pipeline, Scene, load_method
 from tangible_core.data import Calibration, DisparityMap, Relief
 from tangible_core.preflight import Hand, Loop, Settings, judge, survey
-from tangible_core.preflight.strokes import stroke
+from tangible_core.preflight.probes import stroke
 from tangible_core.relief import ReliefChoice, relief_scale, shape_relief
 from tangible_core.scene.geometry import make_relief, smooth
 from tangible_core.scene.workspace import FeltSize, Workspace

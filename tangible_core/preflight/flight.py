@@ -24,8 +24,7 @@ from ..servo.guard.safety import (
     stiffness_limit_n_per_m,
 )
 from ..servo.guard.stiffness import find_stiffness
-from .probes import Probes, probe
-from .strokes import Strokes, stroke
+from .probes import Probes, Strokes, probe, stroke
 from .timing import TICKS, Lateness, TickCost, measure_lateness, measure_ticks
 
 PASSIVE = "Colgate & Schenkel 1997: 2 b / (T (1 + 2 d))"

@@ -2,8 +2,7 @@
 
 import lazy_loader  # pyright: ignore[reportMissingTypeStubs]
 
-# a file of this room has the same name: the last to be imported would win
-from .guard_summary import guard_summary as guard_summary
+# files of this room have the same names: the last to be imported would win
 from .parts_felt import parts_felt as parts_felt
 from .tracking_error import tracking_error as tracking_error
 

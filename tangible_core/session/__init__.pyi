@@ -1,4 +1,3 @@
-from .guard_summary import guard_summary as guard_summary
 from .kiosk import Slot as Slot
 from .kiosk import run_kiosk as run_kiosk
 from .live import RingDrain as RingDrain
@@ -23,6 +22,7 @@ from .recording import Recording as Recording
 from .recording import failure as failure
 from .recording.files import SUFFIXES as SUFFIXES
 from .recording.files import check_record_path as check_record_path
+from .recording.recording import guard_summary as guard_summary
 from .recording.replay import compare_recordings as compare_recordings
 from .recording.replay import compare_replay as compare_replay
 from .recording.replay import replay as replay

@@ -18,7 +18,7 @@ from ..servo import OVER, Beacon, Safety
 from ..servo.beacon import BeaconMemory
 from ..servo.guard.stiffness import find_stiffness
 from ..servo.reports import brief_report
-from ..servo.ticks.python_tick import GuardedForce, guard_touch
+from ..servo.ticks.loop import GuardedForce, guard_touch
 from .live import REPORT_EVERY_S, ignore
 from .recording import INTERRUPTED, STOPPED, Recording
 from .recording.replay import proxy_reader

@@ -16,8 +16,8 @@ from tangible_devices.falcon.simulator.falcons import simulated_falcon, syntheti
 from tangible_devices.falcon.simulator.faults import Fault
 from tangible_devices.falcon.simulator.processor import Processor
 from tangible_devices.falcon.usb.port import Port, open_port
-from tangible_devices.hand import VirtualHand
 from tangible_devices.paths import press, walk
+from tangible_devices.simulated import VirtualHand
 
 
 class StillHand:

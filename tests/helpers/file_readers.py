@@ -311,27 +311,26 @@ def _stroke(path: Path) -> object:
 
 
 def _make_run(folder: Path) -> None:
-    from tangible_core.pipeline.output.run_folder import Manifest
+    from tangible_core.pipeline.output.result_folders import Manifest
 
     Manifest("../p.yaml", {"config.yaml": "0" * 32, "outcomes.json": "1" * 32}).write(folder)
     (folder / "outcomes.json").write_text(json.dumps({"outcomes": [{"product": "relief", "outcome": "ran"}]}))
 
 
 def _run(path: Path) -> object:
-    from tangible_core.pipeline.output import run_folder
+    from tangible_core.pipeline.output.result_folders import _own, default_folder, read_manifest
 
-    return run_folder.read_manifest(path.parent), run_folder._own(path.parent), run_folder.default_folder(path)
+    return read_manifest(path.parent), _own(path.parent), default_folder(path)
 
 
 def _make_exports(folder: Path) -> None:
-    from tangible_core.pipeline.output import export_folder
+    from tangible_core.pipeline.output.result_folders import LISTED, Listed, _write_list
 
-    listed = {"a.stl": export_folder.Listed("p.yaml", "stl", "0" * 32)}
-    export_folder._write_list(folder / export_folder.LISTED, listed)
+    _write_list(folder / LISTED, {"a.stl": Listed("p.yaml", "stl", "0" * 32)})
 
 
 def _exports(path: Path) -> object:
-    from tangible_core.pipeline.output.export_folder import read_list
+    from tangible_core.pipeline.output.result_folders import read_list
 
     return [each == listed for each in read_list(path.parent).values() for listed in [each]]
 

@@ -11,8 +11,7 @@ from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import DeviceSpec, Material
 from tangible_core.preflight.flight import Flight, Hand, Settings
-from tangible_core.preflight.probes import probe
-from tangible_core.preflight.strokes import stroke
+from tangible_core.preflight.probes import probe, stroke
 from tangible_core.preflight.timing import Lateness, TickCost
 from tangible_core.preflight.verdict import Verdict
 from tangible_core.scene.workspace import Workspace

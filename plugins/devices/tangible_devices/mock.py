@@ -11,9 +11,8 @@ from pydantic import Field, model_validator
 from tangible_core.data import DeviceSpec, Force, HapticState, Vector
 from tangible_core.plugins import HapticDevice, Link, Scripted
 
-from .hand import MovingHand, VirtualHand
 from .paths import DRAWN, Stroke, path_size, read_csv, walk
-from .simulated import LIKE_A_FALCON, SimulatedLink
+from .simulated import LIKE_A_FALCON, MovingHand, SimulatedLink, VirtualHand
 
 Height = Annotated[float, Field(ge=-1, le=1)]
 Size = Annotated[float, Field(ge=1e-6, le=1)]

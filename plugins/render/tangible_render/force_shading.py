@@ -10,7 +10,7 @@ from tangible_core.data import HapticSurface
 from tangible_core.plugins import ForceRenderer, Touch
 from tangible_core.scene import normals
 
-from .effects.material_table import stiffness_table
+from .effects.effects_table import stiffness_table
 
 
 class ForceShading(ForceRenderer):

@@ -9,7 +9,7 @@ from tangible_core.compiled import CompiledTouch
 from tangible_core.data import HapticSurface
 from tangible_core.plugins import ForceRenderer, Touch
 
-from .effects.material_table import stiffness_table
+from .effects.effects_table import stiffness_table
 from .surface.coefficients import spline_surface
 from .surface.dequantise import Filter
 

@@ -12,8 +12,7 @@ from tangible_core.errors import ConfigError, check_positive
 from tangible_core.plugins import Film, Filming, ForceRenderer, Touch
 from tangible_render.haptic_textures.table import bristle_stiffness
 
-from .effects.effects_table import split_textures
-from .effects.material_table import material_table
+from .effects.effects_table import material_table, split_textures
 from .surface.coefficients import spline_surface, tile_bounds
 from .surface.dequantise import Filter
 

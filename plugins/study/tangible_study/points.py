@@ -10,14 +10,14 @@ QUESTIONS = ("rougher", "higher", "same", "different", "equal", "name", "rating"
 GROUP = "tangible.procedure"
 # Our own procedures below `procedures/`, which no other package can replace.
 OURS = {
-    "constant": "pairs:Constant",
-    "2afc": "pairs:TwoAfc",
-    "oddity": "pairs:Oddity",
-    "same-different": "pairs:SameDifferent",
+    "constant": "listed:Constant",
+    "2afc": "listed:TwoAfc",
+    "oddity": "listed:Oddity",
+    "same-different": "listed:SameDifferent",
     "quest": "quest:Quest",
-    "adjustment": "pairs:Adjustment",
-    "naming": "single:Naming",
-    "rating": "single:Rating",
+    "adjustment": "listed:Adjustment",
+    "naming": "listed:Naming",
+    "rating": "listed:Rating",
 }
 
 

@@ -152,7 +152,7 @@ def configured_device(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
 
 def default_place(source: Path, others: Sequence[Path] = ()) -> Path:
     """Return the folder for results if the user named none. others: a right view, which stands beside the source."""
-    from ...pipeline.output.run_folder import default_folder, default_name
+    from ...pipeline.output.result_folders import default_folder, default_name
 
     first = default_name(source, *others)
     folder = default_folder(source, name=first)

@@ -1,9 +1,9 @@
 from .export_engines import ExportEngines as ExportEngines
-from .export_folder import read_list as read_list
 from .export_result import Exported as Exported
 from .exporting import export_title as export_title
 from .exporting import work_for as work_for
-from .run_folder import default_name as default_name
-from .run_folder import make_writable as make_writable
+from .result_folders import default_name as default_name
+from .result_folders import make_writable as make_writable
+from .result_folders import read_list as read_list
 from .runs import about as about
 from .runs import join_descriptions as join_descriptions

@@ -47,10 +47,9 @@ from ..engine.planning import REQUESTED, with_notes
 from ..engine.stage import Progress, StageEvent, ignore_event
 from ..part_names import title_and_rest
 from .export_engines import ExportEngines
-from .export_folder import check_writable, check_written, move
 from .export_result import Export, Exported
 from .legible import drawn_parts, judge_products, names_of_parts, with_exporter_cures
-from .run_folder import default_name, relative_source
+from .result_folders import check_writable, check_written, default_name, move, relative_source
 
 log: logging.Logger = logging.getLogger(__name__)
 

@@ -37,7 +37,7 @@ from ..engine.cache import write_record
 from ..engine.engine import Engine
 from ..engine.warm_up import FELT, warm_up
 from .parts_text import part_heights, to_correct
-from .run_folder import CONFIG, GUESSED, MANIFEST, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewriting
+from .result_folders import CONFIG, GUESSED, MANIFEST, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewriting
 from .showing import can_draw, drawing, png_html
 
 Sheet = Literal["png", "svg", "pdf"]

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..flight import Flight
-from ..strokes import SIDEWAYS
+from ..probes import SIDEWAYS
 from ..verdict import FEW, Change, Cure, Verdict, check_bound, under
 from .cures import COUPLE, FIT, SOFTEST_N_PER_M, flatten, gentler, join_cures, round_off, slopes, soften
 from .stiffness import TOO_STIFF

@@ -6,12 +6,12 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from ...compiled.touch import FRAME, CompiledLink, CompiledTouch, motion_array
-from ...data import TICK_COLUMNS, HapticState, TickFlag
+from ...compiled.touch import FRAME, RISE_M, CompiledLink, CompiledTouch, motion_array
+from ...data import TICK_COLUMNS, Force, HapticState, TickFlag
 from ...plugins.interfaces import Link, Touch
 from ...runtime.system.timers import now_ns
+from ..guard import layout
 from ..ring import COUNT, LEAD_NS, MARKS, NEXT_NS, PERIOD_NS, PREVIOUS_NS, SPINS, START_NS, STOP, SWAP, Ring
-from .python_tick import guard_touch, hold_force
 from .schedule import begin_tick, going
 
 SECOND_NS = 1_000_000_000
@@ -21,6 +21,10 @@ Limits = tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]
 """Settings and memory of a guard, and the arrays of a `BeaconMemory`."""
 Timed = Callable[[int, int], None]  # (at_ns, late_ns): does one tick, which began at at_ns, late_ns late
 FAR = HapticState((0.0, 0.0, 1.0))  # a place in free air, above any surface
+# (state, seconds since the state before) -> the allowed force, and the sum of its `TickFlag`s.
+GuardedForce = Callable[[HapticState, float], tuple[Force, int]]
+# (seconds since the tick before) -> the force of a tick without a fresh state, and its flags.
+HeldForce = Callable[[float], tuple[Force, int]]
 
 
 class Loop(NamedTuple):
@@ -164,3 +168,42 @@ def _begin(header: np.ndarray) -> tuple[int, int]:
     while at_ns < due_ns:
         at_ns = now_ns()
     return at_ns, int(begin_tick(header, at_ns))
+
+
+def guard_touch(
+    touch: Touch, settings: np.ndarray, memory: np.ndarray, beacon: tuple[np.ndarray, ...] | None = None
+) -> GuardedForce:
+    """Return a function that asks the touch for its force and passes on what the guard allows."""
+    from ..guard import guard
+
+    couple, allow = cast(Any, guard).couple, cast(Any, guard).guard
+    moving = motion_array(touch)
+    pull: Any = None
+    if beacon is not None:
+        from .. import beacon_kernels
+
+        pull = cast(Any, beacon_kernels).pull
+
+    def allowed_force(state: HapticState, period_s: float) -> tuple[Force, int]:
+        device = *state.position_m, *state.velocity_m_per_s
+        x, y, z, vx, vy, vz = couple(settings, memory, period_s, *device)
+        law_force = touch.force(HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons))
+        memory[layout.RISE_M] = moving[RISE_M]
+        flags = 0 if beacon is None else pull(*beacon, memory, period_s, x, y, vx, vy, state.buttons)
+        fx, fy, fz, guard_flags = allow(settings, memory, period_s, *device, *law_force)
+        return Force(fx, fy, fz), flags | guard_flags
+
+    return allowed_force
+
+
+def hold_force(settings: np.ndarray, memory: np.ndarray) -> HeldForce:
+    """Return a function that passes on the last force of the same guard, and zero from `stale_s` on."""
+    from ..guard import guard
+
+    wait = cast(Any, guard).wait
+
+    def held_force(period_s: float) -> tuple[Force, int]:
+        fx, fy, fz, flags = wait(settings, memory, period_s)
+        return Force(fx, fy, fz), flags
+
+    return held_force

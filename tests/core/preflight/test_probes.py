@@ -10,7 +10,7 @@ from tangible_core import HapticSurface, load_method
 from tangible_core.data import Relief
 from tangible_core.preflight.bumps import feature_m, reduce_relief, threshold_m
 from tangible_core.preflight.checks.slopes import cliffs
-from tangible_core.preflight.strokes import DAMPING_N_S_PER_M, LINES, MAX_TICKS, SIDEWAYS, stroke
+from tangible_core.preflight.probes import DAMPING_N_S_PER_M, LINES, MAX_TICKS, SIDEWAYS, stroke
 
 
 class TestSprings:

@@ -10,7 +10,7 @@ from flights import level
 from tangible_core import HapticSurface, Pipeline, Scene, load_method, load_pipeline
 from tangible_core.errors import ConfigError
 from tangible_core.preflight import Hand, Loop, Preflight, Settings, survey, timing
-from tangible_core.preflight.strokes import LINES, _ways
+from tangible_core.preflight.probes import LINES, _ways
 from tangible_core.scene.scene_files import BUILTINS
 from tangible_depth import Luminance, SemiGlobal
 from tangible_devices import Mock

@@ -13,7 +13,7 @@ from tangible_core.plugins.registry import load_method
 from tangible_core.servo import Beacon, Safety, beacon_to
 from tangible_core.servo.beacon import BRAKED_FROM, MAX_N, PULL_N, RAMP_S, SOFT_M, BeaconMemory, BeaconState
 from tangible_core.servo.guard import layout
-from tangible_core.servo.ticks.python_tick import GuardedForce, guard_touch
+from tangible_core.servo.ticks.loop import GuardedForce, guard_touch
 
 
 def potential(memory: BeaconMemory, places_m: np.ndarray) -> np.ndarray:

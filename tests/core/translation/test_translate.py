@@ -10,8 +10,7 @@ from english import english_of
 from tangible_core.errors import UnknownMethod
 from tangible_core.translation import language, language_of_environment, localise, translate
 from tangible_core.translation.catalogue import Catalogue, Numerals, Template, parse
-from tangible_core.translation.chosen import set_language
-from tangible_core.translation.translate import localise_marked
+from tangible_core.translation.translate import localise_marked, set_language
 from tangible_legibility import sizes
 
 PO = """

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from tangible_core.data import Force, HapticState, HapticSurface
 from tangible_core.errors import DeviceError, OptionError
 from tangible_core.plugins.interfaces import Link, Touch
-from tangible_devices.hand import MovingHand, VirtualHand, free_motion
 from tangible_devices.mock import Mock
+from tangible_devices.simulated import MovingHand, VirtualHand, free_motion
 from tangible_render.penalty_gradient import PenaltyGradient
 
 GROUND_M = 1 / 128  # exact in float32

@@ -8,17 +8,14 @@ import onnx
 import pytest
 from onnx import TensorProto, helper, numpy_helper
 
-import tangible_networks.faces as faces
 import tangible_networks.seeing as seeing
 from onnx_models import mono
 from tangible_core.data import PictureText
 from tangible_core.errors import ConfigError
 from tangible_networks.card import Card
-from tangible_networks.faces import ANCHORS, find_faces
-from tangible_networks.hed import BLOCKS, hed_to_onnx
-from tangible_networks.onnx_writing import network, node
+from tangible_networks.hed import BLOCKS, hed_to_onnx, network, node
 from tangible_networks.reading import read_texts
-from tangible_networks.seeing import look
+from tangible_networks.seeing import ANCHORS, find_faces, look
 from tangible_networks.store import KnownNetwork
 
 FACES = [KnownNetwork(name, Card(output={"means": "faces"}), Path(name)) for name in ("finder", "points")]
@@ -112,7 +109,7 @@ class TestFaces:
             return [boxes[None], scores[None]]
 
         answer.asked = False
-        monkeypatch.setattr(faces, "run", answer)
+        monkeypatch.setattr(seeing, "run", answer)
         (points,) = find_faces(np.zeros((*shape, 3), np.float32), *FACES)
         assert np.allclose(points[0, :2], centre, atol=1e-3)
         assert np.allclose(points[-1, :2], centre + 60 * 75 / 192 * right, atol=1e-3), "turned and scaled as the face"
@@ -124,7 +121,7 @@ class TestFaces:
                 return [np.zeros((1, 1404)), np.array([-1.0])]
             return [np.full((1, 896, 16), 20.0), np.full((1, 896), 20.0)]
 
-        monkeypatch.setattr(faces, "run", answer)
+        monkeypatch.setattr(seeing, "run", answer)
         assert find_faces(np.zeros((64, 64, 3), np.float32), *FACES).shape == (0, 468, 3)
 
 

@@ -17,8 +17,7 @@ from tangible_core.materials.assignment import library
 from tangible_core.plugins.interfaces import ForceRenderer, PlainTouch, Touch
 from tangible_core.plugins.registry import load_method
 from tangible_core.testing.synthetic.scenes import ramp, waves
-from tangible_render.effects.effects_table import effects_table
-from tangible_render.effects.material_table import material_table
+from tangible_render.effects.effects_table import effects_table, material_table
 from tangible_render.haptic_textures import compile_textures
 from tangible_render.haptic_textures.heights import texture_height
 from tangible_render.haptic_textures.table import STIFFNESS

@@ -22,8 +22,8 @@ from tangible_report import Sheet
 from tangible_report.commands import materials
 from tangible_report.drawing.sheet import scene_aspect
 from tangible_report.numbered_parts import LONGEST_PX, SHORTEST_PX, Before, Drawn, _coarse, numbered_parts
-from tangible_report.panels import draw_disparity, draw_force_map, draw_force_time, draw_relief, relief, segments
-from tangible_report.panels.views import _camera
+from tangible_report.panels import draw_disparity, draw_force_map, draw_force_time, draw_relief, pictures, relief
+from tangible_report.panels.pictures import _camera
 from tangible_texture import Gradient
 
 
@@ -105,14 +105,14 @@ class TestSegments:
     def test_parts_of_the_legend_are_near_by_their_mean_height(self):
         labels = np.int32([[0, 0, 0, 0], [0, 0, 0, 1], [2, 2, 2, 2]])
         surface = HapticSurface.from_heights(np.array([0.002, 0.003, 0.001])[labels], 0.08, labels)
-        assert segments._near_to_far(PartMap(labels, (0, 1, 2)), surface) == [1, 0, 2]
-        assert segments._entries([*"aaabbbb"]) == ["1, 2, 3: a", "4, 5, 6, ...: b"]
+        assert pictures._near_to_far(PartMap(labels, (0, 1, 2)), surface) == [1, 0, 2]
+        assert pictures._entries([*"aaabbbb"]) == ["1, 2, 3: a", "4, 5, 6, ...: b"]
 
     @pytest.mark.parametrize(("count", "last"), [(20, "t, 5 %"), (21, "and 2 more")])
     def test_legend_has_as_many_entries_as_lines_have_room(self, axes: Axes, count: int, last: str):
         """3.4 inches have 20 lines."""
         entries = [chr(97 + number) for number in range(count)]
-        segments._draw_legend(axes, entries, np.full(count, 0.05))
+        pictures._draw_legend(axes, entries, np.full(count, 0.05))
         legend = axes.get_legend()
         assert legend is not None
         texts = [text.get_text() for text in legend.get_texts()]

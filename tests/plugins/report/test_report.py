@@ -39,8 +39,7 @@ from tangible_core.session import Recording
 from tangible_report.drawing.layout import Cell, arrange
 from tangible_report.drawing.sheet import WIDTH_IN, draw_figure, draw_sheet
 from tangible_report.panels import PANELS
-from tangible_report.panels.force import heights_under, round_number, spread
-from tangible_report.panels.relief import cell_points
+from tangible_report.panels.relief import cell_points, heights_under, round_number, spread
 from tangible_report.style import colours
 
 NAN = np.nan

@@ -112,7 +112,7 @@ def test_procedure_of_another_package_runs_a_study(tmp_path: Path, monkeypatch: 
     )
     monkeypatch.syspath_prepend(tmp_path / "site")
     assert load_procedure("acme-staircase").__name__ == "Staircase"
-    assert load_procedure("oddity").__module__ == "tangible_study.procedures.pairs", "ours are not replaced"
+    assert load_procedure("oddity").__module__ == "tangible_study.procedures.listed", "ours are not replaced"
     file = load_study(example / "study.yaml")
     assert len(file.recipes()) == 6
     sys.modules.pop("acme_staircase", None)

@@ -9,7 +9,7 @@ import pytest
 
 from tangible_core.errors import ResultsError
 from tangible_study.procedures import Stimulus, Trial, score
-from tangible_study.procedures.pairs import Adjustment
+from tangible_study.procedures.listed import Adjustment
 from tangible_study.session.order import StudyCourse, comparison_order, latin_square, replay
 from tangible_study.study_file import StudyFile, parse_study
 from tangible_study.trials import Answer

@@ -13,7 +13,7 @@ from PIL import Image
 
 from sessions import TEXT, SmallSession, striped_scene
 from tangible_core.errors import ConfigError, TangibleError
-from tangible_core.pipeline.output.export_folder import LISTED
+from tangible_core.pipeline.output.result_folders import LISTED
 from tangible_export.stl import Stl
 from waiting import LONGEST_S
 

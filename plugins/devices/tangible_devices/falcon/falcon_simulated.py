@@ -9,8 +9,8 @@ from pydantic import Field
 from tangible_core.data import DeviceSpec
 from tangible_core.plugins import HapticDevice, Link, Scripted
 
-from ..hand import VirtualHand
 from ..paths import DRAWN, path_size, walk
+from ..simulated import VirtualHand
 from .calibration import Calibration
 from .falcon import Falcon
 from .simulator.faults import Fault

@@ -68,7 +68,7 @@ class SolidExporter(Exporter, Previewing):
 
     def preview(self, work: Work) -> UInt8[np.ndarray, "h w"]:
         """Return the solid, of coarser triangles, in light from the upper left. Raises: as `write`."""
-        from .shading import COARSE_M, coarse_work, shaded
+        from .making import COARSE_M, coarse_work, shaded
 
         return shaded(self._make(coarse_work(work), COARSE_M)[0])
 

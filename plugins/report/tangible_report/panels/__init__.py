@@ -2,10 +2,8 @@
 
 from tangible_core.plugins import Panel as Panel
 
-from .force import draw_force_map, draw_force_time
-from .relief import draw_relief
-from .segments import draw_parts, draw_segments
-from .views import draw_disparity, draw_disparity_error, draw_views
+from .pictures import draw_disparity, draw_disparity_error, draw_parts, draw_segments, draw_views
+from .relief import draw_force_map, draw_force_time, draw_relief
 
 PANELS = (
     Panel(draw_views, {"views"}, least_in=2.2),

@@ -10,7 +10,7 @@ from ..design import Comparison, Stimulus, Trial
 from ..extra import need
 from ..measures.functions import Function
 from ..questions import load_question
-from .pairs import odd_one, standard_among_levels
+from .listed import odd_one, standard_among_levels
 from .procedure import (
     Cell,
     Course,

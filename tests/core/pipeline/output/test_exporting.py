@@ -20,10 +20,10 @@ from tangible_core.parts import reduced_parts
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.working_grid import parts_on_grid
 from tangible_core.pipeline.feeling import Feeling
-from tangible_core.pipeline.output import export_folder
-from tangible_core.pipeline.output.export_folder import move, read_list
+from tangible_core.pipeline.output import result_folders
 from tangible_core.pipeline.output.exporting import MAX_STEM_BYTES, export_stem
 from tangible_core.pipeline.output.parts_text import part_heights
+from tangible_core.pipeline.output.result_folders import move, read_list
 from tangible_core.plugins import DepthEstimator, Exporter, Segmenter, Work
 from tangible_core.plugins.registry import default_registry
 
@@ -361,7 +361,7 @@ class TestFailures:
 
     def test_full_disk_at_the_list_leaves_no_file(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         """A file that no list names would be in the way of the next export."""
-        monkeypatch.setattr(export_folder, "write_text", lambda path, text: refuse(path))
+        monkeypatch.setattr(result_folders, "write_text", lambda path, text: refuse(path))
         (one,) = pipeline(**SAID).export(tmp_path, [Report()]).exports
         assert (one.outcome.outcome, list(tmp_path.iterdir())) == ("refused", [])
 

@@ -17,8 +17,7 @@ from tangible_core import Pipeline, Scene
 from tangible_core.data.products import Product
 from tangible_core.errors import ConfigError, OutputError
 from tangible_core.pipeline.output import runs
-from tangible_core.pipeline.output.export_folder import move
-from tangible_core.pipeline.output.run_folder import NAMES, default_folder, read_manifest, rewriting
+from tangible_core.pipeline.output.result_folders import NAMES, default_folder, move, read_manifest, rewriting
 from tangible_core.pipeline.output.runs import _figures
 from tangible_devices import Mock
 from tangible_render import Penalty

@@ -7,7 +7,7 @@ from tangible_core.data import DeviceSpec, Force, HapticState, TickFlag
 from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.servo.guard.guard import couple, guard, wait
 from tangible_core.servo.guard.safety import Coupling, Safety
-from tangible_core.servo.ticks.python_tick import guard_touch
+from tangible_core.servo.ticks.loop import guard_touch
 
 SPEC = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)
 BARE = {"ramp_s": 0, "passivity": "off"}

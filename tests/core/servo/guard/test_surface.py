@@ -11,7 +11,7 @@ from tangible_core.data import DeviceSpec, HapticState, TickFlag
 from tangible_core.servo.guard import layout as at
 from tangible_core.servo.guard.guard import guard, restart
 from tangible_core.servo.guard.safety import SURFACE_M_PER_S, Coupling, Safety
-from tangible_core.servo.ticks.python_tick import guard_touch
+from tangible_core.servo.ticks.loop import guard_touch
 from tangible_core.session import run_simulated
 
 SPEC = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)

@@ -16,8 +16,7 @@ from tangible_core.relief.shaping import STRAIGHT
 from tangible_core.scene.geometry import ValueRange
 from tangible_core.session.film import ByClock, FrameMaker, Player, Reliefs, Steady
 from tangible_core.session.film.player import STOPPING_S
-from tangible_core.session.film.reliefs import ADAPTS_S, Scale
-from tangible_core.session.film.steady import GATE_PX, MAX_DOUBTS, MAX_MISSING
+from tangible_core.session.film.reliefs import ADAPTS_S, GATE_PX, MAX_DOUBTS, MAX_MISSING, Scale
 from waiting import until
 
 BOX = np.full((8, 12), 20.0)

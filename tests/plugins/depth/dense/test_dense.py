@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from tangible_depth.dense.confidence import OF_FILLED, OF_MATCHED, probability
-from tangible_depth.dense.edges import sharpen_edges
-from tangible_depth.dense.refinement import reconcile
+from tangible_depth.dense.refinement import reconcile, sharpen_edges
 from tangible_depth.dense.span import UNKNOWN
 from tangible_depth.opencv_sgbm import left_right_confidence
 

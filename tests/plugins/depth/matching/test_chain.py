@@ -10,10 +10,9 @@ from hypothesis.extra.numpy import arrays
 
 from tangible_core.compiled import threads
 from tangible_depth.dense.confidence import confidence, flat_pixels
-from tangible_depth.dense.edges import median
 from tangible_depth.dense.filling.eight_directions import fill_from_eight_directions
 from tangible_depth.dense.filling.four_directions import GEODESIC, choose_of_four, fill_from_four_directions
-from tangible_depth.dense.refinement import DenseMatches, enlarge, to_disparity_map
+from tangible_depth.dense.refinement import DenseMatches, enlarge, median, to_disparity_map
 from tangible_depth.dense.span import UNKNOWN
 from tangible_depth.dense.speckles import Specks, remove_speckles, remove_specks
 from tangible_depth.sgm.strips import equiangular

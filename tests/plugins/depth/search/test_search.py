@@ -13,10 +13,19 @@ from tangible_depth.dense.confidence import flat_pixels
 from tangible_depth.dense.span import UNKNOWN, Span
 from tangible_depth.search import bands
 from tangible_depth.search import disparity_range as module
-from tangible_depth.search.bands import COUNT, FINE_WIDTH, HIGH_PX, RADIUS, TALL, Bands, match_bands
+from tangible_depth.search.bands import (
+    COUNT,
+    FEWEST_LANES,
+    FINE_WIDTH,
+    HIGH_PX,
+    RADIUS,
+    TALL,
+    Bands,
+    match_bands,
+    sweep_columns,
+)
 from tangible_depth.search.disparity_range import FIRST_WIDTH, RangeEstimate, find_disparity_range, find_range
 from tangible_depth.search.pairs import Pair, grey_pair
-from tangible_depth.search.sparse_sweep import FEWEST_LANES, sweep_columns
 from tangible_depth.sgm.costs import BLOCK, SHARP, census
 
 PAIR = Pair.of(*np.zeros((2, 8, 500), np.uint8))

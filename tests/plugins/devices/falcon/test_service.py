@@ -11,7 +11,7 @@ from tangible_core.data import NO_FORCE, Finding, Force, HapticState, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
 from tangible_core.plugins.interfaces import Link
 from tangible_devices.device_calibrations import save_calibration
-from tangible_devices.falcon import measuring
+from tangible_devices.falcon import service
 from tangible_devices.falcon.calibration import Calibration
 from tangible_devices.falcon.falcon import Falcon
 from tangible_devices.falcon.kernels import kinematics
@@ -132,14 +132,14 @@ class TestMeasuring:
             ([(0, 0, 0), (0, -0.03, 0), (-0.02, -0.03, 0), (-0.02, -0.03, 0.04)], ("-y", "-x", "z")),
         ):
             grip = Grip(moves)
-            assert measuring.measure_axes(grip, grip.ask()) == axes
+            assert service.measure_axes(grip, grip.ask()) == axes
         for moves, words in (
             ([(0, 0, 0), (0.003, 0, 0)], "did not move"),
             ([(0, 0, 0), (0.03, 0, 0), (0, 0, 0), (0, 0, 0.03)], "went along one axis"),
         ):
             grip = Grip(moves)
             with pytest.raises(DeviceError, match=words):
-                measuring.measure_axes(grip, grip.ask())
+                service.measure_axes(grip, grip.ask())
 
     def test_measured_offsets_make_arms_equal_on_the_axis(self):
         """A device whose second arm stands 1.5 degrees farther than its offset says."""
@@ -147,7 +147,7 @@ class TestMeasuring:
         read = [arm - math.radians(error) for arm, error in zip(true, (0.0, 1.5, 0.0), strict=True)]
         x, y, z, *_ = kinematics.forward(*read, 0.0, 0.0, 0.08)
         grip = Grip([(x, y, z - kinematics.CENTRE_M)])
-        top, right, left = measuring.measure_offsets(grip, grip.ask(), (35.0, 35.0, 35.0))
+        top, right, left = service.measure_offsets(grip, grip.ask(), (35.0, 35.0, 35.0))
         assert (right - top, right - left) == pytest.approx((1.5, 1.5), abs=1e-6)
         assert (top + right + left) / 3 == pytest.approx(35.0)
 
@@ -156,21 +156,21 @@ class TestMeasuring:
         """Motors that give `true` times the commanded force carry 2 N with 2 N / true more; their own load cancels."""
         grip = Grip([])
         grip.strength = true
-        counts = measuring.measure_strength(grip, grip.ask({"grams": str(2000 / 9.80665)}), 10_000.0)
+        counts = service.measure_strength(grip, grip.ask({"grams": str(2000 / 9.80665)}), 10_000.0)
         assert counts == pytest.approx(10_000 / true, rel=0.02)
         assert grip.held == NO_FORCE
         assert max(grip.forces) < 10
 
     def test_measured_strength_without_weight_is_unchanged(self):
         grip = Grip([])
-        assert measuring.measure_strength(grip, grip.ask(), 9000.0) == 9000.0
+        assert service.measure_strength(grip, grip.ask(), 9000.0) == 9000.0
         assert not grip.forces
 
     @pytest.mark.parametrize("grams", ["heavy", "5", "nan", "10000"])
     def test_measured_strength_of_invalid_weight_is_refused(self, grams: str):
         grip = Grip([])
         with pytest.raises(DeviceError, match="is not a weight"):
-            measuring.measure_strength(grip, grip.ask({"grams": grams}), 9000.0)
+            service.measure_strength(grip, grip.ask({"grams": grams}), 9000.0)
 
 
 class TestKept:

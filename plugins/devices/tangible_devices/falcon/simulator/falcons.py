@@ -6,8 +6,8 @@ from typing import final
 import numpy as np
 from jaxtyping import Float64
 
-from ...hand import VirtualHand
 from ...paths import Stroke
+from ...simulated import VirtualHand
 from ..calibration import Calibration
 from ..usb.image import KEY, RESERVED_WORDS
 from .body import PERIOD_S, Body

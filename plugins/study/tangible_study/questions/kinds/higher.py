@@ -1,6 +1,6 @@
 """Which of two intervals was higher."""
 
-from ..more import More
+from ..question import More
 
 
 class Higher(More):

@@ -1,6 +1,6 @@
 """Which of two intervals was rougher."""
 
-from ..more import More
+from ..question import More
 
 
 class Rougher(More):

@@ -6,8 +6,7 @@ import pytest
 from tangible_depth.dense.filling.candidates import geodesic_candidates
 from tangible_depth.dense.filling.eight_directions import fill_from_eight_directions
 from tangible_depth.dense.filling.four_directions import fill_from_four_directions
-from tangible_depth.dense.filling.gaps import fill_gaps
-from tangible_depth.dense.filling.planes import fit_planes
+from tangible_depth.dense.filling.gaps import fill_gaps, fit_planes
 from tangible_depth.dense.span import UNKNOWN
 
 SHAPE = (80, 96)

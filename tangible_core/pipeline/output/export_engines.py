@@ -22,10 +22,9 @@ class ExportEngines:
 
     @cached_property
     def _common(self) -> Engine:
-        """The engine of all but pins, which have room for few parts.
+        """The engine of all but pins: where one of several simplifies parts, this is done once, for each width.
 
-        Where one of several exporters simplifies parts, they are simplified once, for each width at which fingers feel
-        parts. Words and the like simplify them only if none has a name.
+        Words and the like simplify parts only if none has a name.
         """
         sharing, config = [each for each in self.exporters if each.method.medium != "pins"], self.engine.config
         felt = [each for each in sharing if each.method.medium is not None]
@@ -34,9 +33,8 @@ class ExportEngines:
             return self.engine
         engine = self.engine.with_config(config.with_values(felt_widths_m=(config.size.width_m,)))
         of_parts = [each for each in felt if any("simplified" in engine.all_inputs(need) for need in each.method.needs)]
-        if widths_m := sorted({*filter(None, map(self._width_m, of_parts))}):
-            engine = engine.with_config(config.with_values(felt_widths_m=tuple(widths_m)))
-        return engine
+        widths_m = tuple(sorted({*filter(None, map(self._width_m, of_parts))}))
+        return engine.with_config(config.with_values(felt_widths_m=widths_m)) if widths_m else engine
 
     def engine_for(self, exporter: NamedMethod[Exporter]) -> Engine:
         """Return the engine for the width at which this exporter writes, and for its slopes."""

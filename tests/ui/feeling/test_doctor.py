@@ -14,7 +14,7 @@ from tangible_core.servo import Servo
 from tangible_ui.feeling.choice import Choice
 from tangible_ui.feeling.comparison import HIGHEST_M, ComparisonLoop
 from tangible_ui.requests.devices import LATE_US, figures
-from tangible_ui.worker.jobs import devices as mapping
+from tangible_ui.worker.jobs import installed as mapping
 from tangible_ui.worker.state import WorkerState
 from tangible_web.framing import BUTTON_BITS
 

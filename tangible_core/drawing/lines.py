@@ -1,4 +1,4 @@
-"""The lines of a drawing: their centre lines and widths, without letters and specks."""
+"""The lines of a drawing: their centre lines, widths and dashes, without letters and specks."""
 # scikit-image has no types.
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float32
 
 from ..runtime.opencv import plain_opencv
+from .dashes import DashedLine, find_dashes
 from .ink import Ink
 
 # The least length of a line, as a share of the longer side; what is shorter is a speck.
@@ -17,9 +18,11 @@ MIN_LONG = 1 / 60
 class Lines(NamedTuple):
     """Lines on the grid of the ink."""
 
-    mask: Bool[np.ndarray, "r c"]  # the strokes themselves
+    mask: Bool[np.ndarray, "r c"]  # the strokes themselves, and the gaps of dashed ones
     centre: Bool[np.ndarray, "r c"]  # their centre lines, one pixel wide; branches and junctions are kept
-    width_px: Float32[np.ndarray, "r c"]  # the width of the stroke at its centre line, px; 0 elsewhere
+    width_px: Float32[np.ndarray, "r c"]  # the width of the ink in its middle, px; 0 elsewhere, and so in gaps
+    solid: Bool[np.ndarray, "r c"]  # the centre lines without the dashed ones
+    dashed: tuple[DashedLine, ...]
 
     def share_near(self, distance_px: float) -> float:
         """Return the share of the length of the lines that lies nearer than this to another piece of a line."""
@@ -36,19 +39,28 @@ class Lines(NamedTuple):
 
 
 def find_lines(ink: Ink, letters: Bool[np.ndarray, "r c"]) -> Lines:
-    """Return the lines of ink without these letters and without specks."""
+    """Return the lines of ink without these letters and without specks, but with the dashes of dashed lines."""
     # Zhang & Suen, A fast parallel algorithm for thinning digital patterns, CACM 27, 1984.
     import cv2
     from skimage.morphology import skeletonize
 
+    dashed, dashes = find_dashes(ink, letters)
     with plain_opencv():
-        drawn = (ink.mask & ~letters).astype(np.uint8)
+        drawn = (ink.mask & ~letters & ~dashes).astype(np.uint8)
         drawn |= np.asarray(cv2.medianBlur(drawn, 3), np.uint8)  # fills pin holes, which would be loops
         _, pieces, about, _ = cv2.connectedComponentsWithStats(drawn, connectivity=8)
         sides = np.asarray(about, np.float64)[:, [cv2.CC_STAT_WIDTH, cv2.CC_STAT_HEIGHT]]
         long = np.hypot(sides[:, 0], sides[:, 1]) >= MIN_LONG * max(ink.mask.shape)
         long[0] = False
-        mask = long[np.asarray(pieces, np.int32)]
-        inside = np.asarray(cv2.distanceTransform(mask.astype(np.uint8), cv2.DIST_L2, 5), np.float32)
-    centre = np.asarray(skeletonize(mask), np.bool_)
-    return Lines(mask, centre, np.where(centre, np.maximum(2 * inside - 1, 1), 0).astype(np.float32))
+        strokes = long[np.asarray(pieces, np.int32)]
+        inked = strokes | dashes
+        inside = np.asarray(cv2.distanceTransform(inked.astype(np.uint8), cv2.DIST_L2, 5), np.float32)
+        mask, ways = inked.astype(np.uint8), np.zeros(inked.shape, np.uint8)
+        for line in dashed:
+            way = [np.rint(line.way).astype(np.int32)]
+            cv2.polylines(mask, way, isClosed=False, color=1, thickness=max(1, round(line.width_px)))
+            cv2.polylines(ways, way, isClosed=False, color=1)
+    middle = np.asarray(skeletonize(inked), np.bool_)
+    width = np.where(middle, np.maximum(2 * inside - 1, 1), 0).astype(np.float32)
+    solid = middle & strokes
+    return Lines(mask > 0, solid | (ways > 0), width, solid, dashed)

@@ -35,8 +35,9 @@ def line_relief(views: Views, size: FeltSize, choice: ReliefChoice, *, areas: bo
         top_m = AREAS * size.relief_m if lines.mask.any() else size.relief_m
         base_m = limit_slopes(top_m * levels[colour_areas.labels] / max(1, levels.max()), pitch_m, choice.slope)
     line_pitch_m = size.width_m / lines.mask.shape[1]
+    # Dashes are ridges as well. Gaps that their least width leaves are felt, if only as a rough line.
     # Slopes fall from the line's edge, so that all lines are of one height, however close; nothing is sunk.
-    ridges_m = _ridges(lines.centre, lines.width_px * line_pitch_m, line_pitch_m, size.relief_m, choice.slope)
+    ridges_m = _ridges(lines.width_px > 0, lines.width_px * line_pitch_m, line_pitch_m, size.relief_m, choice.slope)
     height_m = np.maximum(_enlarge(ridges_m, views.shape), _enlarge(base_m, views.shape))
     relief = Relief(np.maximum(height_m, np.float32(0)), geometry.surface_extent(views.shape, size.width_m))
     return geometry.smooth(relief, size.smooth_m), len(marks.texts.boxes)

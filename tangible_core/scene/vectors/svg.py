@@ -78,7 +78,7 @@ def read_svg(path: Path, data: bytes, notify: Notify = ignore) -> VectorPage:
     if labels is None:
         notify(f"{path.name} has more than {MAX_SHAPES} shapes, which is a texture: its parts are found by colour")
     else:
-        labels, names = _name_shapes(labels, shapes, known_texts, _leader_lines(labels, layers[1], shapes))
+        labels, names = _name_shapes(labels, shapes, known_texts, _leader_lines(labels, layers[2], shapes))
     loose = [text for text in known_texts if text.content not in names]
     title = find_label(root) or title_among(loose)
     if unused := [text.content for text in loose if text.content != title]:
@@ -165,17 +165,18 @@ def _numbers(pixels: UInt8[np.ndarray, "h w 4"], count: int) -> Int32[np.ndarray
 
 
 def _flat_styles(root: Element, shapes: list[Item], texts: list[Item]) -> list[dict[Element, str]]:
-    """Return the styles by which each shape is its number, from 1, as a colour: without strokes, and with them."""
+    """Return the styles by which each shape is its number as a colour: without strokes, with them, and undashed."""
     hidden = {text.element: HIDE for text in texts}
     hidden |= {element: HIDE for element, _, _ in walk(root) if local(element) == "image"}
-    fills, drawn = dict(hidden), dict(hidden)
+    fills, drawn, whole = dict(hidden), dict(hidden), dict(hidden)
     for number, shape in enumerate(shapes, 1):
         paint, none = f"#{number:06x}!important", "none!important"
         fill = f";fill:{paint if shape.filled else none};stroke:"
         fill = f";fill-rule:evenodd!important{fill}" if shape.outline else fill
         fills[shape.element] = fill + none
         drawn[shape.element] = fill + (paint if shape.stroked else none)
-    return [fills, drawn]
+        whole[shape.element] = drawn[shape.element] + ";stroke-dasharray:none!important"
+    return [fills, drawn, whole]
 
 
 def _labels(

@@ -25,7 +25,7 @@ from .marks.reading import read
 from .marks.svg import NO_DOTS, Area, Braille, Drawing, svg
 from .named_parts import LETTERS, MAX_NAMES, NamedParts, first_labels, group_by_name, key_letters
 from .opening import open_at
-from .sheet import CLEAR_MM, GAP_MM, LINE_MM, Page, Sheet
+from .sheet import CLEAR_MM, DOT_MM, GAP_MM, Page, Sheet
 from .smoothing import smooth_borders
 from .strokes import strokes_on
 from .texts import picture_box, place_texts
@@ -83,7 +83,7 @@ def drawn_lines(work: Work, picture: np.ndarray, sheet: Sheet, page: Page) -> li
     strokes = strokes_on(picture, blank.sheet)
     if not strokes:
         raise PictureError("the drawing has no lines; give `scene: {kind: photograph}` to outline its parts")
-    inked = shapely.union_all(strokes).buffer(LINE_MM / 2)
+    inked = shapely.union_all(strokes).buffer(DOT_MM / 2)
     texts = [text for text in work.texts if text.content]
     marks, entries = place_texts(texts, (), [picture_box(blank.sheet).difference(inked)], blank.sheet, work.language)
     drawing = replace(blank, description=shown_text(work.title), strokes=strokes, texts=(*blank.texts, *marks))
@@ -138,7 +138,7 @@ def _draw_readable(
                     for symbol in symbols
                 ]
             description = "; ".join(f"{symbol.letter} {symbol.group.name}" for symbol in symbols)
-            inked = shapely.union_all(strokes).buffer(LINE_MM / 2)
+            inked = shapely.union_all(strokes).buffer(DOT_MM / 2)
             free = [shape.difference(inked) for shape in shapes if not shape.is_empty]
             marks, entries = place_texts(texts, [symbol.letter for symbol in symbols], free, sheet, blank.language)
             inked = shapely.union_all([inked, *(around(mark.dots_mm) for mark in marks)])

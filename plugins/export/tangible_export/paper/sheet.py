@@ -11,6 +11,7 @@ Page = Literal["a4", "letter", "a3"]
 SIZES_MM: dict[Page, tuple[float, float]] = {"a4": (210, 297), "letter": (215.9, 279.4), "a3": (297, 420)}
 MARGIN_MM = 10.0  # margin on all sides, which printers leave white, and where a hand holds the sheet
 LINE_MM = 1.0  # width of outlines. A convention of ours, within the 0.5 to 1.5 mm that tactile graphics use.
+DASH_MM, DOT_MM = 6.0, 1.5  # length of a dash and width of a dot of a line. Conventions of ours
 HEAVY_MM = 1.5  # the most that tactile graphics use, for the figure
 GAP_MM = 3.2  # between marks that a finger tells apart. Source: tactilegraphics.org
 CLEAR_MM = GAP_MM + 0.2  # GAP_MM and two pixels of the measurement

@@ -1,16 +1,18 @@
-"""The lines of a drawing as strokes of one width on a page."""
+"""The lines of a drawing as strokes of one width on a page, dashed and dotted ones as dashes and dots."""
 # shapely has no types.
 # pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import shapely
 from jaxtyping import Bool, Float64
+from shapely.ops import substring
 
 from tangible_core.drawing import find_marks
 
-from .sheet import LINE_MM, Sheet
+from .sheet import CLEAR_MM, DASH_MM, DOT_MM, LINE_MM, Sheet
 from .smoothing import NEAR_MM, blur
 
 SPUR_MM = 3.0  # a shorter stroke with a free end is a spur of the thinning. A convention of ours
@@ -20,24 +22,49 @@ ALONG_MM, LONG_MM = 2.0, 6.0
 
 
 def strokes_on(picture: np.ndarray, sheet: Sheet, outlines: Any = None) -> tuple[Any, ...]:
-    """Return a drawing's strokes, in millimetres and apart from `outlines`."""
-    centre = find_marks(picture).lines.centre
-    rows, columns = centre.shape
-    to_mm = np.divide(sheet.picture_mm, (columns, rows))
-    lines = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(_links(centre))))
+    """Return a drawing's strokes and the dots of dotted ones, in millimetres and apart from `outlines`."""
+    found = find_marks(picture).lines
+    rows, columns = found.solid.shape
+
+    def to_page(at: Float64[np.ndarray, "n 2"], closed: bool) -> Any:
+        to_mm = np.divide(sheet.picture_mm, (columns, rows))
+        return _smooth((at + 0.5) * to_mm + (sheet.left_mm, sheet.top_mm), closed)
+
+    lines = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(_links(found.solid))))
     ends = shapely.get_coordinates([(line.boundary) for line in lines])
     places, uses = np.unique(ends, axis=0, return_counts=True)
     free = {tuple(place) for place, count in zip(places.tolist(), uses.tolist(), strict=True) if count == 1}
     strokes = list[Any]()
     for line in lines:
         at = shapely.get_coordinates(line)
-        stroke = _smooth((at + 0.5) * to_mm + (sheet.left_mm, sheet.top_mm), bool(line.is_closed))
+        stroke = to_page(at, bool(line.is_closed))
         alone = line.is_closed or (tuple(at[0]) in free and tuple(at[-1]) in free)
         if alone or stroke.length >= SPUR_MM or not {tuple(at[0]), tuple(at[-1])} & free:
             strokes.append(stroke)
-    if outlines is not None and strokes:
-        strokes = _apart(strokes, outlines)
+    outlines = shapely.LineString() if outlines is None else outlines
+    ways = [to_page(line.way, bool(np.allclose(line.way[0], line.way[-1]))) for line in found.dashed]
+    along = shapely.union_all(ways).buffer(LINE_MM)  # with dashes that touch a line
+    kept = [stroke for stroke in _apart(strokes, outlines) if not stroke.within(along)]
+    strokes = [*shapely.get_parts(shapely.line_merge(shapely.MultiLineString(kept)))]
+    # A dashed line keeps clear of those that it meets, so that a finger can follow these.
+    solid = shapely.union_all([*strokes, outlines]).buffer(LINE_MM)
+    for line, way in zip(found.dashed, ways, strict=True):
+        met = way.intersection(solid).buffer(CLEAR_MM + DOT_MM / 2)
+        for piece in _apart([way], outlines):
+            rest = shapely.difference(_dashes(piece, sorted(line.dots)), met)
+            strokes += [dash for dash in shapely.get_parts(rest) if not dash.is_empty]
     return tuple(strokes)
+
+
+def _dashes(way: Any, dots: Sequence[bool]) -> list[Any]:
+    """Return dashes and dots along a line, from end to end. dots: whether each of a period is a dot, in turn."""
+    half, length = np.where(dots, DOT_MM, LINE_MM) / 2, np.where(dots, 0, DASH_MM - LINE_MM)
+    steps, last = length + CLEAR_MM + half + np.roll(half, -1), 0 if way.is_closed else length[0]
+    count = max(int((way.length - last) / steps.sum()), int(way.is_closed))
+    starts = np.concatenate([[0], np.cumsum(np.tile(steps, count))])[: -1 if way.is_closed else None]
+    stretch = way.length / max(count * steps.sum() + last, NEAR_MM)
+    ends = starts + np.resize(length, starts.size)
+    return [substring(way, *(stretch * cut)) for cut in np.stack([starts, ends], axis=1)]
 
 
 def _links(centre: Bool[np.ndarray, "r c"]) -> Float64[np.ndarray, "n 2 2"]:

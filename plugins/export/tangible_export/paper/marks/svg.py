@@ -12,7 +12,7 @@ from jaxtyping import Float64
 from ...braille import DOT_DIAMETER_M
 from ..fills import DOT_MM as FILL_DOT_MM
 from ..fills import Fill
-from ..sheet import CORNER_MM, HEAVY_MM, LINE_MM, MARGIN_MM, Sheet
+from ..sheet import CORNER_MM, DOT_MM, HEAVY_MM, LINE_MM, MARGIN_MM, Sheet
 
 BLACK = "#000"
 BRAILLE_DOT_MM = 1000 * DOT_DIAMETER_M
@@ -51,6 +51,7 @@ class Drawing:
     figure: Any = None
     """The shape of the figure, whose outline is heavier; None without one."""
     strokes: tuple[Any, ...] = ()
+    """The lines of the picture, and as points the dots of dotted ones."""
 
 
 def svg(drawing: Drawing, colour: str = BLACK, over: Sequence[str] = ()) -> str:
@@ -99,7 +100,10 @@ def _outline(shape: Any, colour: str, width_mm: float) -> str:
 
 
 def _strokes(strokes: Iterable[Any], colour: str) -> Iterable[str]:
-    if lines := "".join(_line(shapely.get_coordinates(stroke)) for stroke in strokes):
+    dots = [shapely.get_coordinates(stroke)[0] for stroke in strokes if stroke.geom_type == "Point"]
+    if dots:
+        yield f'<g data-mark="line">{_discs(dots, DOT_MM)}</g>'
+    if lines := "".join(_line(shapely.get_coordinates(each)) for each in strokes if each.geom_type != "Point"):
         yield (
             f'<path data-mark="line" fill="none" stroke="{colour}" stroke-width="{LINE_MM:g}" stroke-linecap="round" '
             f'stroke-linejoin="round" d="{lines}"/>'

@@ -8,6 +8,7 @@ import re
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import process_time
@@ -48,7 +49,7 @@ def section() -> str:
         f"Drawings made by code: {COUNT} of each kind for kinds, {FEW} for all else; JPEG, noise, tint, blur, shadow "
         "and tilt. Weights and bounds were chosen on other contents and copies (`benchmarks/drawings_made.py`)."
     )
-    made = (_kinds, _areas, _lines, _texts, _labels, _page, _pages)
+    made = (_kinds, _areas, _lines, _dashed, _texts, _labels, _page, _pages)
     figures = [figure for make in made for figure in part(make.__name__.strip("_"), make)]
     return "\n".join([head, "", *judged(figures)])
 
@@ -143,6 +144,19 @@ def _lines() -> Iterator[Figure]:
         shares = f"{true / every:.3f}; {found / drawn:.3f}"
         name = f"lines on flat drawings with{'' if jpeg else 'out'} JPEG: true; found"
         yield Figure(name, ">= 0.95; >= 0.95", shares, min(true / every, found / drawn) >= 0.95)
+
+
+def _dashed() -> Iterator[Figure]:
+    shares = list[tuple[float, float]]()
+    for made in made_drawings("told", "dashed", FEW):
+        ways = [line.way for line in find_marks(made.picture).lines.dashed]
+        true, found = _centre(made), _centre(replace(made, lines=ways))
+        near = [cv2.dilate(one.astype(np.uint8), np.ones((5, 5))) > 0 for one in (true, found)]
+        shares.append((near[1][true].mean(), near[0][found].mean() if ways else 1.0))
+    for name, least, share in zip(("found", "true"), (0.8, 0.98), np.transpose(shares), strict=True):
+        error = share.std() / len(share) ** 0.5
+        measured = f"{share.mean():.3f} ± {error:.3f}"
+        yield Figure(f"length of dashed lines {name}", f">= {least}", measured, share.mean() >= least)
 
 
 def _centre(made: Made) -> np.ndarray:

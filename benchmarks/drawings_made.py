@@ -5,12 +5,15 @@ Half of the families of contents and of the ways of copying are for choosing, `"
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
+from itertools import cycle
 from typing import Any
 
 import cv2
 import numpy as np
+import shapely
 from matplotlib import font_manager
 from PIL import Image, ImageDraw, ImageFont
+from shapely.ops import substring
 
 FINER = 4  # the factor by which a picture is drawn larger before it is reduced, which smooths its edges
 SEEN = 0.9  # the share of a text from which on it is one; of others too much is painted over
@@ -292,6 +295,29 @@ def _geometry(paper: Paper) -> None:
         paper.text(letter + " " + _word(rng), corner[0] - 30, corner[1] + (8 if corner[1] > h / 2 else -34), 22, ink)
 
 
+def _dashed(paper: Paper) -> None:
+    rng, w, h, ink, ways = paper.rng, paper.width, paper.height, _ink(paper.rng), list[np.ndarray]()
+    _outlines(paper)  # solid lines and labels, which the others cross
+    for x in np.arange(0.03 * w, 0.3 * w, rng.uniform(9, 16)):  # a hatched and a stippled corner
+        paper.line(np.array([(x, 0.97 * h), (x + 0.06 * h, 0.9 * h)]), 1.5, ink)
+        for spot in rng.uniform((0.7 * w, 0.9 * h), (0.97 * w, 0.98 * h), (9, 2)):
+            paper.line(spot[None].repeat(2, axis=0), 2.5, ink)
+    for n in range(4):
+        width, turn, start = rng.uniform(1.5, 4), np.linspace(0, 2 * np.pi, 120), 0.0
+        at = np.stack([w * (0.08 + 0.13 * turn), h * (0.2 * (n + 1) + 0.06 * np.sin(rng.uniform(1, 3) * turn))], 1)
+        if paper.half == "told":
+            ring = _blob(rng, w / 2, h / 2, (0.15 + 0.1 * n) * min(w, h), 0.05)
+            at = ring if n % 2 else rng.uniform(0.06, 0.94, (2, 2)) * (w, h)
+        way, gap = shapely.LineString(at), rng.uniform(2.2, 4) * width
+        for dash in cycle([rng.choice([0, 2, 4, 6]) * width, *[0.0] * (rng.random() < 0.25)]):
+            if start + dash > way.length:
+                break
+            paper.line(shapely.get_coordinates(substring(way, start, start + dash)).repeat(2, axis=0), width, ink)
+            start += dash + gap
+        ways.append(at)
+    paper.made.lines[:] = ways
+
+
 def _page(columns: int) -> Callable[[Paper], None]:
     def draw(paper: Paper) -> None:
         rng, ink, size = paper.rng, _ink(paper.rng), paper.rng.uniform(13, 24)
@@ -382,7 +408,7 @@ def tilted(made: Made, degrees: float) -> Made:
 
 def made_drawings(half: str, kind: str, count: int, seed: int = 0) -> Iterator[Made]:
     """Yield drawings of a kind from the styles of a half."""
-    families, copies = FAMILIES[half][kind], list(COPIES[half].items())
+    families, copies = (_dashed,) if kind == "dashed" else FAMILIES[half][kind], list(COPIES[half].items())
     for number in range(count):
         rng = np.random.default_rng([seed, number, len(half), *map(ord, kind)])
         draw, (name, copy) = families[number % len(families)], copies[number // len(families) % len(copies)]

@@ -82,7 +82,7 @@ def measure_kind(picture: np.ndarray) -> Float64[np.ndarray, "n"]:
     import cv2
 
     colours = reduce_to_side(eight_bits(picture), SIDE)
-    ink = find_ink(colours, ripples=True)
+    ink = find_ink(colours, every=True)
     texts = find_texts(ink)
     noise = max(noise_level(colours), 0.5)
     with plain_opencv():

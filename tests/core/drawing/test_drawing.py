@@ -84,6 +84,43 @@ def test_lines_of_jpeg_are_no_ripples_beside_edges(quality):
     assert (centre & ~near).sum() < 20 and (centre & near).sum() > 300
 
 
+@pytest.mark.parametrize("degrees", [15, 30, 60, 90])
+@pytest.mark.parametrize("ground", [(255, 255, 255), (230, 200, 60)])
+def test_tip_of_an_area_is_not_a_line(degrees, ground):
+    picture = np.full((4 * 500, 4 * 700, 3), ground, np.uint8)
+    half = np.tan(np.radians(degrees / 2)) * 400
+    corners = [(100, 250), (500, 250 - half), (560, 250 + half)]
+    cv2.fillPoly(picture, [np.rint(np.array(corners) * 4).astype(np.int32)], (90, 60, 140))
+    picture = cv2.resize(picture, (700, 500), interpolation=cv2.INTER_AREA)
+    for copy in (picture, scanned(picture, noise=3, shadow=0), scanned(picture, noise=0, shadow=0, quality=75)):
+        assert not find_marks(copy).lines.centre.any()
+
+
+@pytest.mark.parametrize("width", [2, 3, 5])
+@pytest.mark.parametrize("area", [(20, 20, 20), (60, 40, 40)])
+def test_dark_lines_beside_dark_areas_are_found(width, area):
+    picture, drawn = np.full((500, 700, 3), 255, np.uint8), np.zeros((500, 700), np.uint8)
+    for target, colour in ((picture, (20, 20, 20)), (drawn, 1)):
+        cv2.line(target, (60, 225), (640, 225), colour, width)  # through both areas
+        cv2.line(target, (30, 30), (150, 160), colour, width)  # ends at a corner
+        x = 250 + 3 + width // 2  # two pixels off an area
+        cv2.line(target, (x, 90), (x, 460), colour, width)
+        for left in (150, 450):
+            cv2.rectangle(target, (left, 160), (left + 100, 290), area if target is picture else 0, -1)
+    centre = find_marks(picture).lines.centre
+    assert (centre & ~(cv2.dilate(drawn, np.ones((3, 3))) > 0)).sum() <= 20
+    near = cv2.dilate(centre.astype(np.uint8), np.ones((2 * width + 3, 2 * width + 3))) > 0
+    assert near[drawn > 0].mean() > 0.98
+
+
+def test_line_between_colours_is_darker_than_both_but_not_in_each_channel():
+    picture = np.full((400, 400, 3), (175, 40, 95), np.uint8)
+    picture[:, 200:] = 85, 165, 190
+    picture[:, 198:202] = 82, 40, 92
+    centre = find_marks(picture).lines.centre
+    assert centre[10:-10, 198:202].any(axis=1).all() and not centre[:, :196].any() and not centre[:, 204:].any()
+
+
 def test_kind_is_measured_on_all_ink_with_ripples(monkeypatch):
     picture = scanned(countries()[0], noise=0, shadow=0, quality=50)
     measures = measure_kind(picture)

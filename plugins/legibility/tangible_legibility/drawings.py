@@ -11,13 +11,15 @@ from jaxtyping import Bool
 from tangible_core.data import PartMap, border_pixels
 from tangible_core.drawing import DrawnPicture, Lines, PictureKind, find_marks
 from tangible_core.preflight import Verdict, check_bound
+from tangible_core.runtime import plain_opencv
 
 from .rules import GRAPHICS, OURS, Profile
-from .words.places import describe_part, describe_place, join_texts
+from .words.places import describe_part, describe_place, join_texts, millimetres
 
 MAX_LOST = 0.1  # share of the lines' length that may be lost before the picture is
 MAX_CLOSE = 0.3  # share of the lines' length that may lie too near to another line
 MAX_SILENT = 0.5  # share of the texts that may be lost before the picture is
+NOTICED_M = 0.006  # the least length of a lost line that is named, as of a stroke that outlines stand for
 # The least shares of the picture of a part that is named when it is lost, and without which the picture is lost.
 NOTICED, IMPORTANT = 0.001, 0.02
 
@@ -70,12 +72,39 @@ def _judge_lines(
         )  # fmt: skip
     elif lines.centre.any():
         away = True if parts is None else _away(lines.centre.shape, parts, gap_m / pitch_m)
-        share = float((lines.centre & away).sum() / lines.centre.sum())
-        yield check_bound(
-            *("kept lines", "the lines", share, "<=", MAX_LOST, "share", OURS),
-            says=f"{100 * share:.0f} % of the length of the drawing's lines is left out", worse="illegible",
+        lost = lines.centre & away
+        share = float(lost.sum() / lines.centre.sum())
+        pieces = [piece for piece in _pieces(lost) if piece[0] * pitch_m >= NOTICED_M]
+        texts = [
+            f"a line of {millimetres(length * pitch_m)} {describe_place(*at) or 'in the middle'}"
+            for length, at in pieces
+        ]
+        says = f"{100 * share:.0f} % of the length of the drawing's lines is left out"
+        verdict = check_bound(
+            *("kept lines", "the lines", share, "<=", 0.0 if pieces else MAX_LOST, "share", OURS),
+            says=f"{says}: {join_texts(texts)}" if texts else says,
             cure="`relief: lines` raises them, and a page for swell paper has them",
+            worse="illegible" if share > MAX_LOST else "warn",
         )  # fmt: skip
+        yield replace(verdict, at=tuple(at for _, at in pieces))
+
+
+def _pieces(centre: Bool[np.ndarray, "r c"]) -> list[tuple[float, tuple[float, float]]]:
+    """Return the length of each piece of centre lines, px, and its place as shares of the picture; longest first."""
+    import cv2
+    from scipy.ndimage import find_objects
+
+    with plain_opencv():
+        numbers = np.asarray(cv2.connectedComponents(centre.astype(np.uint8), connectivity=8)[1], np.int32)
+    pieces = list[tuple[float, tuple[float, float]]]()
+    for number, box in enumerate(find_objects(numbers), 1):
+        piece = numbers[box] == number
+        straight = (piece[1:] & piece[:-1]).sum() + (piece[:, 1:] & piece[:, :-1]).sum()
+        pixels = np.argwhere(piece) + [side.start for side in box]
+        row, column = pixels[np.hypot(*(pixels - pixels.mean(axis=0)).T).argmin()] + 0.5
+        length = straight + np.sqrt(2) * max(0, len(pixels) - 1 - straight)  # n pixels have n - 1 steps
+        pieces.append((float(length), (float(column / centre.shape[1]), float(row / centre.shape[0]))))
+    return sorted(pieces, reverse=True)
 
 
 def _away(shape: tuple[int, ...], parts: PartMap, reach: float) -> Bool[np.ndarray, "r c"]:

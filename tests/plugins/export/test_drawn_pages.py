@@ -1,5 +1,6 @@
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 import shapely
@@ -77,6 +78,23 @@ def test_lost_parts_and_texts_are_named():
     says = " ".join(each.says for each in found)
     assert "parts are left out (part 4 (lake) at the lower right; 2.9 % of the picture)" in says, says
     assert "texts are left out (2: at the lower left and sea at the upper right)" in says and not found.readable, says
+
+
+@pytest.mark.parametrize(("long_px", "grade"), [(0, "ok"), (16, "warn"), (120, "illegible")])
+def test_lost_lines_are_named_by_length_and_place(long_px, grade):
+    picture, labels = countries()
+    cv2.line(picture, (40, 10), (40, 350), (0, 0, 0), 2)
+    parts = PartMap(np.where(np.arange(480) < 40, 4, labels).astype(np.int32), (0, 1, 2, 3, 4))  # stands for the line
+    cv2.line(picture, (340, 330), (340 + long_px, 330), (0, 0, 0), 2 * (long_px > 0) or 1)
+    cv2.line(picture, (60, 20), (60 + long_px // 2, 20), (0, 0, 0), 2 * (long_px > 0) or 1)
+    found = legibility("pins", parts, 0.24, drawing=DrawnPicture(PictureKind.drawing, picture, False, parts))
+    [lines] = [verdict for verdict in found if verdict.check == "kept lines"]
+    assert lines.verdict == grade
+    if grade == "illegible":
+        assert lines.says.endswith(
+            "is left out: a line of 60 mm at the lower right and a line of 30 mm at the upper left"
+        )
+        np.testing.assert_allclose(lines.at, [(400 / 480, 330 / 360), (90 / 480, 20 / 360)], atol=0.01)
 
 
 LABELLED = replace(

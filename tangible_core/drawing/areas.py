@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float32, Int32, Int64
 
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from .ink import eight_bits, noise_level
 from .marks import find_marks
 
@@ -41,8 +41,6 @@ def find_areas(picture: np.ndarray) -> Areas:
     """Find the areas of one colour, the largest first in the palette."""
     # An edge lies where half of the change is done: each of its pixels is of the area nearby with the colour nearest to
     # its own, and a stroke of the nearest area. Light may change slowly over the picture.
-    import cv2
-
     colours = eight_bits(picture)
     noise, longer = noise_level(colours), max(colours.shape[:2])
     with plain_opencv():
@@ -97,8 +95,6 @@ def _divide_edges(
 ) -> Int32[np.ndarray, "h w"]:
     """Give each pixel of an edge the area nearby that is nearest in colour, and of a stroke the nearest one."""
     # A thin piece in the colour of an area nearby, such as a corner, is no stroke. `inside` is -1 outside of areas.
-    import cv2
-
     source, inside_mask = _nearest_place(inside >= 0), inside >= 0
     labels = inside.reshape(-1)[source]
     rows, columns = np.nonzero(~inside_mask)
@@ -125,8 +121,6 @@ def _divide_edges(
 
 def _nearest_place(mask: Bool[np.ndarray, "h w"]) -> Int64[np.ndarray, "h w"]:
     """Return for each pixel the nearest one of a mask that is not empty, by its place in the flat picture."""
-    import cv2
-
     with plain_opencv():
         _, nearest = cv2.distanceTransformWithLabels(
             (~mask).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL

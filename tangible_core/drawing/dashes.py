@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float64, Int32
 
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from .ink import Ink
 
 LONGEST = 1 / 12  # the greatest length of a dash, as a share of the longer side
@@ -54,8 +54,6 @@ class _Pieces(NamedTuple):
 
 def find_dashes(ink: Ink, letters: Bool[np.ndarray, "r c"]) -> tuple[tuple[DashedLine, ...], Bool[np.ndarray, "r c"]]:
     """Return the dashed lines in ink without these letters, and the mask of their dashes."""
-    import cv2
-
     with plain_opencv():
         found = np.asarray(cv2.connectedComponents((ink.mask & ~letters).astype(np.uint8), connectivity=8)[1], np.int32)
     pieces, lines = _find_pieces(found, ink.widest_px), list[DashedLine]()

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float32, UInt8
 
 from ..data.pictures import to_rgb8
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from .tips import find_tips
 
 MAX_SIDE = 1600  # the most pixels of a side at which ink is looked for
@@ -43,8 +43,6 @@ def eight_bits(picture: np.ndarray) -> UInt8[np.ndarray, "h w 3"]:
 
 def reduce_to_side(colours: UInt8[np.ndarray, "h w 3"], side: int) -> UInt8[np.ndarray, "r c 3"]:
     """Return the picture with no side longer than this, each pixel a mean over its area."""
-    import cv2
-
     factor = max(colours.shape[:2]) / side
     if factor <= 1:
         return colours
@@ -60,8 +58,6 @@ def find_ink(picture: np.ndarray, *, every: bool = False) -> Ink:
     """
     # A closing takes the ground from its lightest neighbours in each channel: shadows and coloured areas are grounds.
     # A line between two colours is darker than both of them, but not always in each channel.
-    import cv2
-
     colours = reduce_to_side(eight_bits(picture), MAX_SIDE)
     inverted = bool(np.median(colours.max(axis=2)) < 96)
     if inverted:
@@ -105,9 +101,8 @@ def _missing(ground: np.ndarray, calm: np.ndarray, noise: float) -> Float32[np.n
 
 def _ringing(colours: UInt8[np.ndarray, "r c 3"], ground: UInt8[np.ndarray, "r c 3"]) -> float:
     """Return by how much the range of 3 x 3 pixels beside edges exceeds that away from them, of 255; medians."""
-    # Only JPEG has ripples some pixels away from an edge, up to the end of a block, on areas that are flat elsewhere.
-    import cv2
 
+    # Only JPEG has ripples some pixels away from an edge, up to the end of a block, on areas that are flat elsewhere.
     def near(mask: np.ndarray, side: int) -> Bool[np.ndarray, "r c"]:
         return np.asarray(cv2.dilate(mask.astype(np.uint8), np.ones((side, side), np.uint8))) > 0
 
@@ -120,16 +115,12 @@ def _ringing(colours: UInt8[np.ndarray, "r c 3"], ground: UInt8[np.ndarray, "r c
 
 
 def _brightness(colours: UInt8[np.ndarray, "r c 3"]) -> UInt8[np.ndarray, "r c"]:
-    import cv2
-
     return np.asarray(cv2.cvtColor(colours, cv2.COLOR_RGB2GRAY), np.uint8)
 
 
 def noise_level(colours: UInt8[np.ndarray, "h w 3"]) -> float:
     """Return the standard deviation of the noise in flat areas, of 255: the median of small differences."""
     # Immerkaer, Fast noise variance estimation, CVIU 64, 1996: its mask, with a median in place of the mean.
-    import cv2
-
     mask = np.array([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], np.float32)
     with plain_opencv():
         change = np.asarray(cv2.filter2D(colours[..., 1].astype(np.float32), -1, mask))

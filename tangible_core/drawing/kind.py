@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from ..data import PartMap, PictureText
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from .ink import eight_bits, find_ink, noise_level, reduce_to_side
 from .text import find_texts
 
@@ -79,8 +79,6 @@ def measure_kind(picture: np.ndarray) -> Float64[np.ndarray, "n"]:
     colour; the noise; the shares at steps and of ink; the share of ink in letters, their number, the darkness of ink,
     and the share of ink in lines. Most are logarithms.
     """
-    import cv2
-
     colours = reduce_to_side(eight_bits(picture), SIDE)
     ink = find_ink(colours, every=True)
     texts = find_texts(ink)

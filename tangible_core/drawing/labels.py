@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float64, Int32
 
 from ..data import PictureText
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from .marks import Marks
 
 STEP_PX, WIDE_DEG = 3.0, 18.0  # the step along a leader line, px, and the greatest turn at a step, degrees
@@ -141,8 +141,6 @@ def _pointed_at(path: Float64[np.ndarray, "n 2"], boxes: Float64[np.ndarray, "m 
 
 def _paths(centre: Bool[np.ndarray, "r c"]) -> Iterator[Float64[np.ndarray, "n 2"]]:
     """Yield the ways from loose ends of lines on, as long as no turn is sharp; column and row."""
-    import cv2
-
     with plain_opencv():
         near = np.asarray(cv2.dilate(centre.astype(np.uint8), np.ones((3, 3), np.uint8))) > 0
         count = np.asarray(cv2.filter2D(centre.astype(np.uint8), -1, np.ones((3, 3)), borderType=0))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float32
 
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from .dashes import DashedLine, find_dashes
 from .ink import Ink
 
@@ -26,8 +26,6 @@ class Lines(NamedTuple):
 
     def share_near(self, distance_px: float) -> float:
         """Return the share of the length of the lines that lies nearer than this to another piece of a line."""
-        import cv2
-
         if not self.centre.any():
             return 0.0
         size = max(1, round(distance_px)) | 1
@@ -41,7 +39,6 @@ class Lines(NamedTuple):
 def find_lines(ink: Ink, letters: Bool[np.ndarray, "r c"]) -> Lines:
     """Return the lines of ink without these letters and without specks, but with the dashes of dashed lines."""
     # Zhang & Suen, A fast parallel algorithm for thinning digital patterns, CACM 27, 1984.
-    import cv2
     from skimage.morphology import skeletonize
 
     dashed, dashes = find_dashes(ink, letters)

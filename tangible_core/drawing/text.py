@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float64, Int32
 
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 from .ink import Ink
 
 # The least height of a letter, px, and the greatest, as a share of the longer side.
@@ -65,7 +65,6 @@ class Texts(NamedTuple):
 def find_texts(ink: Ink, apart: float = APART) -> Texts:
     """Find rows of letters in ink: pieces of like height next to each other, shaped and inked like letters."""
     # Rows may be tilted by some degrees, letters of a word may touch, and a letter may stand alone.
-    import cv2
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -137,8 +136,6 @@ def add_upward_texts(ink: Ink, level: Texts) -> Texts:
 
 def _is_uneven(own: Bool[np.ndarray, "r c"]) -> bool:
     """Return whether the pieces of ink differ in height; those of numbers above each other do not."""
-    import cv2
-
     with plain_opencv():
         pieces = cv2.connectedComponentsWithStats(own.astype(np.uint8))[2]
     high = np.asarray(pieces, np.float64)[1:, cv2.CC_STAT_HEIGHT]
@@ -186,8 +183,6 @@ def _measure_rows(
     second moments that a piece fills, the width of its stroke by its height, its holes, the step of the ground there,
     its darkness, and the strokes that a column and a row of its pixels cross.
     """
-    import cv2
-
     y, x = np.nonzero(pieces)
     of, count = pieces[y, x], len(boxes)
     size = np.maximum(np.bincount(of, minlength=count), 1)

@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 from jaxtyping import Bool, UInt8
 
-from ..runtime.opencv import plain_opencv
+from ..runtime.opencv import cv2, plain_opencv
 
 # The least length of a stroke by its width, and as a share of the longer side. The width of a corner of 20 degrees
 # doubles over 2.4 times the width, that of a stroke nowhere.
@@ -25,8 +25,6 @@ def find_tips(
 
     mask: true on ink. widest_px: the width beyond which a stroke is an area.
     """
-    import cv2
-
     with plain_opencv():
         rest = (mask & ~_strokes(mask, widest_px)).astype(np.uint8)
         pieces = np.asarray(cv2.connectedComponents(rest, connectivity=8)[1], np.int32)
@@ -42,7 +40,6 @@ def find_tips(
 
 def _strokes(mask: Bool[np.ndarray, "r c"], widest_px: int) -> Bool[np.ndarray, "r c"]:
     """Return the ink that keeps its width, to a factor of two, along a length."""
-    import cv2
 
     def opened(radius_px: float) -> Bool[np.ndarray, "r c"]:
         core = inside >= radius_px

@@ -5,15 +5,13 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float32, Int32, Int64
 
-from tangible_core.runtime import plain_opencv
+from tangible_core.runtime import cv2, plain_opencv
 
 Box = tuple[slice, slice]
 
 
 def nearest(mask: Bool[np.ndarray, "h w"]) -> tuple[Float32[np.ndarray, "h w"], Int64[np.ndarray, "h w"]]:
     """Return each cell's distance to the nearest cell of a mask, in cells to 2 %, and that cell's flat index."""
-    import cv2
-
     with plain_opencv():
         far, label = cv2.distanceTransformWithLabels(
             (~mask).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
@@ -46,8 +44,6 @@ Cells = Bool[np.ndarray, "h w"]
 
 def vote(labels: Labels, removed: Cells, voters: Cells, sigma: float) -> Labels:
     """Give removed cells the label of most voters around, by a Gaussian of sigma cells, or the nearest label."""
-    import cv2
-
     winners, best = fill(labels, removed), np.full(labels.shape, np.float32(FEW))
     margin = int(np.ceil(REACH * sigma))
     rows, columns = labels.shape
@@ -91,8 +87,6 @@ class Disc(NamedTuple):
 
 def largest_disc(part: Bool[np.ndarray, "h w"]) -> Disc | None:
     """Return the largest disc within a part and the picture; None for a part that is too small to be drawn."""
-    import cv2
-
     if not part.any():
         return None
     rows, columns = (np.flatnonzero(part.any(axis=axis)) for axis in (1, 0))

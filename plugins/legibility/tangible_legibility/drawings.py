@@ -11,7 +11,7 @@ from jaxtyping import Bool
 from tangible_core.data import PartMap, border_pixels
 from tangible_core.drawing import DrawnPicture, Lines, PictureKind, find_marks
 from tangible_core.preflight import Verdict, check_bound
-from tangible_core.runtime import plain_opencv
+from tangible_core.runtime import cv2, plain_opencv
 
 from .rules import GRAPHICS, OURS, Profile
 from .words.places import describe_part, describe_place, join_texts, millimetres
@@ -91,7 +91,6 @@ def _judge_lines(
 
 def _pieces(centre: Bool[np.ndarray, "r c"]) -> list[tuple[float, tuple[float, float]]]:
     """Return the length of each piece of centre lines, px, and its place as shares of the picture; longest first."""
-    import cv2
     from scipy.ndimage import find_objects
 
     with plain_opencv():

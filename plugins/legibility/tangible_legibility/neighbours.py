@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float64, Int64, Integer
 
 from tangible_core.data import Material, PartMap, Relief, border_pixels
 from tangible_core.errors import PictureError
-from tangible_core.runtime import plain_opencv
+from tangible_core.runtime import cv2, plain_opencv
 
 from .cells import resampled
 
@@ -37,8 +37,6 @@ def border_steps(relief: Relief, labels: Integer[np.ndarray, "h w"]) -> dict[str
 
 def felt_steps(relief: Relief) -> Bool[np.ndarray, "h w"]:
     """Find the cells at which a step can be felt, as in `border_steps`; the rim continues at its height."""
-    import cv2
-
     width, length = (2 * max(1, int(WITHIN_M / 2 / pitch + 1e-6)) + 1 for pitch in relief.pitch_m)
     across, along = (SKIN_M / pitch for pitch in relief.pitch_m)
     window = np.ones((length, width), np.uint8)
@@ -96,8 +94,6 @@ def show_on_pins(parts: PartMap, pitch_m: float) -> PinDisplay:
 
 
 def _share_of_borders(labels: np.ndarray, shown: np.ndarray, cell: float) -> float:
-    import cv2
-
     borders, pin_borders = _borders(labels), _borders(shown)
     if not borders.any():
         return 1.0

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int, Int32, UInt8
 
-from tangible_core.runtime import plain_opencv
+from tangible_core.runtime import cv2, plain_opencv
 
 from .cells import nearest
 
@@ -56,8 +56,6 @@ def measure(
     labels: Int32[np.ndarray, "h w"], pitch_m: float, gap_m: float, rims: Rims = WHOLE, *, quick: bool = False
 ) -> Widths:
     """Measure the widths of the parts, and find the places that are narrower than gap_m. quick: to 2 %."""
-    import cv2
-
     sides = _Sides.of(labels)
     pieces = sides.components(np.ones(labels.shape, np.bool_)) - 1
     count = int(pieces.max()) + 1
@@ -113,8 +111,6 @@ class _Sides(NamedTuple):
 
     def depth(self, rims: Rims, mask: int) -> Float32[np.ndarray, "r c"]:
         """Return half cells to the nearest border, at each point of the grid of half cells; 0 on a border."""
-        import cv2
-
         inside = self._draw(np.ones((len(self.upright), self.level.shape[1]), np.bool_), self.upright, self.level)
         inside[2:-1:2, 2:-1:2] = 1
         inside[0, :], inside[-1, :] = not rims.top, not rims.bottom
@@ -140,8 +136,6 @@ class _Sides(NamedTuple):
 
     def components(self, cells: Bool[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
         """Return the connected pieces of these cells, from 1 on; 0 elsewhere. No piece crosses a border."""
-        import cv2
-
         upright, level = cells[:, 1:] & cells[:, :-1] & self.upright, cells[1:] & cells[:-1] & self.level
         _, components = cv2.connectedComponents(self._draw(cells, upright, level), connectivity=4)
         return np.ascontiguousarray(components[1::2, 1::2])
@@ -219,8 +213,6 @@ def _ends(
     sides: _Sides, labels: Int32[np.ndarray, "h w"], count: int
 ) -> tuple[Int[np.ndarray, "m"], Float64[np.ndarray, "m 2"]]:
     """Count the sides on which each place is connected to the rest of its piece; return their middle as well."""
-    import cv2
-
     adjacent = np.zeros(labels.shape, np.int32)
     right, left, below, above = np.s_[:, 1:], np.s_[:, :-1], np.s_[1:], np.s_[:-1]
     for one, other, same in ((right, left, sides.upright), (below, above, sides.level)):

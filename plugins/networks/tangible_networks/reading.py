@@ -31,7 +31,7 @@ def read_texts(picture: np.ndarray, texts: Sequence[PictureText]) -> tuple[Pictu
         return tuple(texts)
     network, colours = networks[0], to_rgb(np.nan_to_num(picture))
     card, letters = network.card, _letters(network.path, network.path.stat().st_mtime_ns)
-    classes = list[Float32[np.ndarray, "steps classes"]]()
+    classes = list[np.ndarray]()
     for text in texts:
         row = _upright_row(colours, text)
         values = tensor(row, card.input, fit_size((row.shape[0], row.shape[1]), card.input, row.size))

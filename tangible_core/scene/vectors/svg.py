@@ -23,7 +23,7 @@ from ...drawing.labels import tie_texts, title_among
 from ...errors import PictureError, shown
 from ...files.reading import in_words
 from ...runtime.child_process import python
-from ...runtime.opencv import plain_opencv
+from ...runtime.opencv import cv2, plain_opencv
 from ..formats.multi_picture import Notify, ignore
 from .page import SIDE_PX, VectorPage, rank_labels
 from .tree import HIDE, Item, cut_off, find_items, find_label, local, walk, words_in
@@ -129,7 +129,6 @@ def _styled(root: Element, styles: Mapping[Element, str]) -> str:
 def _render(texts: Sequence[str]) -> list[UInt8[np.ndarray, "h w 4"]]:
     """Render documents, SIDE_PX long: the first as it is, the others in flat colours. Raises: ValueError."""
     # A process of its own does it, since the library ends it where memory is lacking, and a drawing may take hours.
-    import cv2
     import resvg_py
 
     matplotlib = find_spec("matplotlib")  # which has a font, the same on every system; it is not imported
@@ -184,7 +183,6 @@ def _labels(
 ) -> Int32[np.ndarray, "h w"]:
     """Return the number of the shape, from 1, that covers each pixel; 0 for the ground."""
     # A stroke is an area only where it is wide. Letters that are drawn as shapes go to what is around them.
-    import cv2
     from skimage.measure import label  # pyright: ignore[reportMissingTypeStubs, reportUnknownVariableType]
 
     labels, whole = _numbers(fills, len(shapes)), _numbers(drawn, len(shapes))

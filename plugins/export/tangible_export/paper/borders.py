@@ -1,13 +1,15 @@
 """Borders between parts as polygons, which share their lines to the bit."""
+# shapely has no types.
+# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
-from importlib import import_module
 from typing import Any
 
 import numpy as np
+import shapely
 from jaxtyping import Bool, Float64, Int32, Int64
 
 from tangible_core.data import PartMap, SegmentMap
-from tangible_core.errors import BrokenMethod, GeometryError
+from tangible_core.errors import GeometryError
 from tangible_core.parts import find_parts
 
 Sides = Int64[np.ndarray, "n"]
@@ -27,17 +29,17 @@ def shared_borders(parts: PartMap, width_m: float, tolerance_m: float) -> tuple[
     Parameters: tolerance_m >= 0; width_m, of the whole picture.
     Returns: shapely's polygons, in metres, in the frame of the surface: x to the right, y away from the user, origin in
     the middle. A part of several pieces, of a reduced map, is a multipolygon, and one without a pixel an empty polygon.
-    Raises: GeometryError if width_m is not positive or tolerance_m negative; BrokenMethod without shapely.
+    Raises: GeometryError if width_m is not positive or tolerance_m negative.
     Source: Visvalingam & Whyatt, Line generalisation by repeated elimination of points, 1993; for shared lines,
     `shapely.coverage_simplify`.
     """
     if not (0 < width_m < np.inf and 0 <= tolerance_m < np.inf):
         raise GeometryError(f"width_m and tolerance_m are lengths in metres, not {width_m} and {tolerance_m}")
-    shapely = _shapely()
     rows, columns = parts.labels.shape
     pieces = find_parts(SegmentMap(parts.labels))
     at, line, part = _rings(pieces)
-    polygons = shapely.polygons(shapely.linearrings(at, indices=line), indices=part)
+    rings: Any = shapely.linearrings(at, indices=line)
+    polygons: Any = shapely.polygons(rings, indices=part)
     if tolerance_m:
         polygons = shapely.coverage_simplify(polygons, tolerance_m * columns / width_m, simplify_boundary=False)
     middle, pitch_m = np.array([columns, rows]) / 2, width_m / columns * np.array([1, -1])
@@ -45,14 +47,7 @@ def shared_borders(parts: PartMap, width_m: float, tolerance_m: float) -> tuple[
     def in_metres(at: Float64[np.ndarray, "k 2"]) -> Float64[np.ndarray, "k 2"]:
         return (at - middle) * pitch_m
 
-    return _gather(shapely, shapely.transform(polygons, in_metres), np.asarray(pieces.segments), parts.count)
-
-
-def _shapely() -> Any:
-    try:
-        return import_module("shapely")
-    except ImportError as error:
-        raise BrokenMethod(f"borders as lines need shapely ({error}); pip install shapely") from error
+    return _gather(shapely.transform(polygons, in_metres), np.asarray(pieces.segments), parts.count)
 
 
 def _rings(parts: PartMap) -> tuple[Float64[np.ndarray, "k 2"], Int64[np.ndarray, "k"], Int64[np.ndarray, "m"]]:
@@ -117,15 +112,15 @@ def _meet(whole: Int32[np.ndarray, "r c"], row: Sides, column: Sides) -> Bool[np
     return np.count_nonzero(sides, axis=0) > 2
 
 
-def _gather(shapely: Any, polygons: Any, part: Sides, count: int) -> tuple[Any, ...]:
+def _gather(polygons: Any, part: Sides, count: int) -> tuple[Any, ...]:
     if np.array_equal(part, np.arange(count)):
         return tuple(polygons)
     order = np.argsort(part, kind="stable")
     pieces = np.split(polygons[order], np.searchsorted(part[order], np.arange(1, count)))
-    return tuple(_geometry(shapely, piece) for piece in pieces)
+    return tuple(_geometry(piece) for piece in pieces)
 
 
-def _geometry(shapely: Any, pieces: Any) -> Any:
+def _geometry(pieces: Any) -> Any:
     if not len(pieces):
         return shapely.Polygon()
     return pieces[0] if len(pieces) == 1 else shapely.multipolygons(pieces)

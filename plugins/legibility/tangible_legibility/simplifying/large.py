@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 from tangible_core.data import PartMap, SegmentMap, border_pixels, check_same_shape, to_rgb8
 from tangible_core.parts import find_parts
 from tangible_core.parts.neighbours import neighbours
-from tangible_core.runtime import plain_opencv
+from tangible_core.runtime import cv2, plain_opencv
 
 LIGHTNESS_IN_BYTES = (100 / 255, 1.0, 1.0)  # OpenCV's CIELAB in bytes -> CIELAB
 Each = Float[np.ndarray, "n"]
@@ -31,8 +31,6 @@ def large_parts(segments: SegmentMap, picture: np.ndarray, least_px: float, most
 
 def disc_widths(parts: PartMap) -> Each:
     """Return the diameter of the largest disc within each part, in pixels; the picture's rim is a border."""
-    import cv2
-
     inside = ~border_pixels(np.pad(parts.labels, 1, constant_values=-1))
     with plain_opencv():
         depth = cv2.distanceTransform(inside.view(np.uint8), cv2.DIST_L2, 5)[1:-1, 1:-1]
@@ -42,8 +40,6 @@ def disc_widths(parts: PartMap) -> Each:
 
 
 def _colours(picture: np.ndarray) -> UInt8[np.ndarray, "h w 3"]:
-    import cv2
-
     with plain_opencv():
         return cv2.cvtColor(to_rgb8(picture), cv2.COLOR_RGB2LAB).astype(np.uint8, copy=False)
 
@@ -140,8 +136,6 @@ def texture_kinds(
 def _mean_colours(
     picture: np.ndarray, kinds: Int32[np.ndarray, "h w"], size: Int64[np.ndarray, "k"]
 ) -> Float64[np.ndarray, "k 3"]:
-    import cv2
-
     with plain_opencv():
         small = cv2.resize(to_rgb8(picture), kinds.shape[::-1], interpolation=cv2.INTER_AREA)
         lab = np.asarray(cv2.cvtColor(small.astype(np.float32) / np.float32(255), cv2.COLOR_RGB2LAB))

@@ -8,6 +8,7 @@ from jaxtyping import Bool, Int32
 
 from tangible_core.data import SegmentMap
 from tangible_core.parts import SimplifyChoice
+from tangible_core.runtime import cv2
 
 from ..cells import Box, boxes, fill, vote
 from ..widths import ROUND_OFF, Rims, Widths, connected_pieces, measure, surroundings
@@ -103,8 +104,6 @@ class Opening(NamedTuple):
 
     def _merge_narrow(self, labels: Int32[np.ndarray, "h w"], wide: Widths) -> Bool[np.ndarray, "h w"]:
         """Merge each unnamed piece with a narrow place into its neighbour there, once; return its cells."""
-        import cv2
-
         merger_cells, partners = np.zeros(labels.shape, np.bool_), set[int]()
         places = connected_pieces(np.where(wide.narrow, wide.pieces + 1, 0).astype(np.int32))
         for place in wide.places:
@@ -122,8 +121,6 @@ class Opening(NamedTuple):
 
     def _merge_alike(self, labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
         """Merge neighbours most alike in colour until each piece is large enough; for parts all of which are small."""
-        import cv2
-
         shape = labels.shape
         blank = np.zeros((*shape, 3), np.uint8)
         picture = blank if self.picture is None else cv2.resize(self.picture, shape[::-1])
@@ -137,8 +134,6 @@ class Opening(NamedTuple):
 
     def _windows(self, changed: Bool[np.ndarray, "h w"]) -> list[Box]:
         """Return boxes around changes, with a margin of the larger bound; boxes that touch become one."""
-        import cv2
-
         margin = ceil(max(self.choice.gap_m, self.choice.part_m) / self.pitch_m)
         near, windows = changed, list[Box]()
         while True:

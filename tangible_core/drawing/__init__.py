@@ -2,6 +2,7 @@
 
 from .areas import Areas as Areas
 from .areas import find_areas as find_areas
+from .charts import bar_values as bar_values
 from .ink import Ink as Ink
 from .ink import find_ink as find_ink
 from .ink import noise_level as noise_level

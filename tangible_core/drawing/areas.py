@@ -18,7 +18,7 @@ NOISY = 3.5  # the same in standard deviations of the noise that a blur leaves
 SAME = 14.0  # the greatest difference of two areas of one colour, of 255
 # The side of a square as large as the least area, as a share of the longer side; less is a speck.
 MIN_SIDE = 1 / 110
-LEAST_PX = 9  # the least pixels of an area
+MIN_PX = 9  # the least pixels of an area
 # How far a pixel on an edge looks for the areas on both sides of the edge, px; a block of JPEG has 8.
 REACHES_PX = (3, 8, 14)
 # The difference to an area up to which a thin place is a piece of this area, and no stroke on it, of 255.
@@ -54,7 +54,7 @@ def find_areas(picture: np.ndarray) -> Areas:
         stroke = np.asarray(cv2.dilate(ink, np.ones((5, 5), np.uint8))) > 0
         inside: Bool[np.ndarray, "h w"] = (change <= max(ALIKE, NOISY * noise / sigma)) & ~stroke
         _, found, about, _ = cv2.connectedComponentsWithStats(np.asarray(inside, np.uint8), connectivity=4)
-        large = np.asarray(about, np.int64)[:, cv2.CC_STAT_AREA] >= max(LEAST_PX, (MIN_SIDE * longer) ** 2)
+        large = np.asarray(about, np.int64)[:, cv2.CC_STAT_AREA] >= max(MIN_PX, (MIN_SIDE * longer) ** 2)
     large[0] = False
     pieces = np.asarray(found, np.int32)
     if not large.any():
@@ -137,5 +137,5 @@ def _without_specks(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"
     from skimage.measure import label
 
     pieces = np.asarray(label(labels, background=-1, connectivity=1), np.int64)
-    large = (np.bincount(pieces.reshape(-1)) >= LEAST_PX)[pieces]
+    large = (np.bincount(pieces.reshape(-1)) >= MIN_PX)[pieces]
     return labels if large.all() or not large.any() else labels.reshape(-1)[_nearest_place(large)]

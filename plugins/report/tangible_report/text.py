@@ -74,12 +74,12 @@ class Text(Exporter):
         """Return the parts of the surface if one has a name; otherwise, the parts that fingers can read."""
         surface, simpler = work.surface, work.simplified
         if any(surface.names or ()):
-            parts = facts(surface, work.materials)
+            parts = facts(surface, work.materials, texts=work.texts)
         elif simpler is None:
             return ()
         else:
             note(log, "no part has a name, so parts are described by number; `tangible parts` shows them for naming")
-            parts = facts(surface, work.materials, simpler, work.names)
+            parts = facts(surface, work.materials, simpler, work.names, work.texts)
         return parts if self.materials else tuple(part._replace(material="") for part in parts)
 
     def _emboss(self, lines: Sequence[str], language: str) -> str:

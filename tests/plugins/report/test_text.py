@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tangible_core import Pipeline, Scene
-from tangible_core.data import Figure, HapticSurface, MaterialMap, PartMap, Work
+from tangible_core.data import Figure, HapticSurface, MaterialMap, PartMap, PictureText, Work
 from tangible_core.errors import BrailleError
 from tangible_core.materials.assignment import library
 from tangible_core.plugins.notes import collected
@@ -61,6 +61,18 @@ def test_text_describes_named_or_simplified_parts(tmp_path: Path):
     texts, notes = write_texts(work(simplified=None), Text(), tmp_path)
     assert items(texts[".txt"]) == [] and "<ul>" not in texts[".html"] and notes == []
     assert "4 matières" in texts[".txt"]
+
+
+@pytest.mark.parametrize(("language", "says"), [("en", "Oslo. About 30 on the scale."), ("de", "Skala etwa 30.")])
+def test_text_says_what_the_bars_of_a_chart_stand_for(tmp_path: Path, language: str, says: str):
+    labels = np.zeros((100, 100), np.int32)
+    labels[50:90, 40:50], labels[30:90, 60:70] = 1, 2
+    surface = HapticSurface.from_heights(1e-3 * labels, 0.08, labels)
+    axis = [PictureText(str(n), (0.1, 0.88 - n / 50, 0.2, 0.92 - n / 50)) for n in (0, 10, 20)]
+    products = {"surface": replace(surface, names=("", "Rome", "Oslo")), "materials": None, "simplified": None}
+    chart = Work("Rain", language, products, np.zeros((100, 100, 3), np.uint8), ("", "Rome", "Oslo"), texts=tuple(axis))
+    texts, _ = write_texts(chart, Text(), tmp_path)
+    assert says in items(texts[".txt"])[0] and "etwa" not in items(texts[".txt"])[2]
 
 
 def test_text_counts_the_people_that_networks_see_in_front(tmp_path: Path):

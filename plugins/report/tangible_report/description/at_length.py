@@ -144,7 +144,8 @@ def _sentences(part: PartFacts, labels: dict[int, str], say: Words, name_as: Cal
     high = say("part size high", height=say.number(1000 * part.height_m)) if part.height_m >= MIN_HIGH_M else ""
     size = say("part size", share=share, percent=_percent(part.share, say), width=width, length=length, high=high)
     place = say(part.place) if part.place != NOWHERE else ""
-    sentences = [end_sentence(f"{place[:1].upper()}{place[1:]}") if place else "", size]
+    value = "" if part.value is None else say("part value", value=say.number(part.value))
+    sentences = [value, end_sentence(f"{place[:1].upper()}{place[1:]}") if place else "", size]
     if part.material:
         sentences.append(say("part feels alone", material=say.material_after_like(part.material, name_as)))
     if neighbours := [labels[neighbour] for neighbour in part.neighbours[:MAX_NEIGHBOURS]]:

@@ -1,12 +1,14 @@
 """A surface in a few sentences, for people who do not see it, and facts about its parts."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int32, Int64
 
-from tangible_core.data import HapticSurface, MaterialMap, PartMap
+from tangible_core.data import HapticSurface, MaterialMap, PartMap, PictureText
+from tangible_core.drawing import bar_values
 from tangible_core.errors import shown, wrong_argument
 from tangible_core.parts.neighbours import neighbours
 from tangible_core.scene import SceneKind
@@ -29,6 +31,7 @@ class PartFacts(NamedTuple):
     height_m: float  # the median height above the base plane
     material: str  # the material's name in the library; empty if none is known
     neighbours: tuple[int, ...]  # the numbers of the parts that it borders on, the longest border first
+    value: float | None = None  # what it stands for on the scale of a chart
 
 
 def facts(
@@ -36,8 +39,11 @@ def facts(
     materials: MaterialMap | None = None,
     parts: PartMap | None = None,
     names: tuple[str, ...] = (),
+    texts: Sequence[PictureText] = (),
 ) -> tuple[PartFacts, ...]:
     """Return facts about the parts of a surface, the highest first; parts, names: in place of the surface's own.
+
+    texts: those of the picture, which say what the bars of a chart stand for.
 
     >>> bar = HapticSurface.from_heights(np.eye(2), 0.08, np.eye(2, dtype=np.int32))
     >>> [(fact.number, fact.height_m, fact.neighbours) for fact in facts(bar)]
@@ -56,6 +62,7 @@ def facts(
     share = np.bincount(dense.ravel()) / dense.size
     down, across = _count_cells(dense, count, 0), _count_cells(dense, count, 1)
     material_of, neighbours_of = _materials(surface, materials, dense, count), _neighbours(dense, count)
+    values = bar_values(whole, texts)
     all_facts = [
         PartFacts(
             number,
@@ -66,6 +73,7 @@ def facts(
             float(height_m[index]),
             material_of[index],
             tuple(numbers[other] for other in neighbours_of[index]),
+            values.get(number),
         )
         for index, number in enumerate(numbers)
     ]

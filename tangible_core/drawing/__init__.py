@@ -2,6 +2,7 @@
 
 from .areas import Areas as Areas
 from .areas import find_areas as find_areas
+from .areas import nearest as nearest
 from .charts import bar_values as bar_values
 from .ink import Ink as Ink
 from .ink import find_ink as find_ink

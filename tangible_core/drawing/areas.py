@@ -95,7 +95,8 @@ def _divide_edges(
 ) -> Int32[np.ndarray, "h w"]:
     """Give each pixel of an edge the area nearby that is nearest in colour, and of a stroke the nearest one."""
     # A thin piece in the colour of an area nearby, such as a corner, is no stroke. `inside` is -1 outside of areas.
-    source, inside_mask = _nearest_place(inside >= 0), inside >= 0
+    inside_mask = inside >= 0
+    source = nearest(inside_mask)[1]
     labels = inside.reshape(-1)[source]
     rows, columns = np.nonzero(~inside_mask)
     own, shades = colours[rows, columns].astype(np.float32), calm.reshape(-1, 3)
@@ -119,16 +120,16 @@ def _divide_edges(
     return _without_specks(labels)
 
 
-def _nearest_place(mask: Bool[np.ndarray, "h w"]) -> Int64[np.ndarray, "h w"]:
-    """Return for each pixel the nearest one of a mask that is not empty, by its place in the flat picture."""
+def nearest(mask: Bool[np.ndarray, "h w"]) -> tuple[Float32[np.ndarray, "h w"], Int64[np.ndarray, "h w"]]:
+    """Return each pixel's distance to the nearest one of a mask, to 2 %, and the place of that in the flat picture."""
     with plain_opencv():
-        _, nearest = cv2.distanceTransformWithLabels(
-            (~mask).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
+        far, label = cv2.distanceTransformWithLabels(
+            (~mask).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
         )
-    nearest = np.asarray(nearest, np.int32)
-    at = np.zeros(int(nearest.max()) + 1, np.int64)
-    at[nearest[mask]] = np.flatnonzero(mask)
-    return at[nearest]
+    labels = np.asarray(label, np.int32)
+    at = np.zeros(int(labels.max()) + 1, np.int64)
+    at[labels[mask]] = np.flatnonzero(mask)
+    return np.asarray(far, np.float32), at[labels]
 
 
 def _without_specks(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
@@ -138,4 +139,4 @@ def _without_specks(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"
 
     pieces = np.asarray(label(labels, background=-1, connectivity=1), np.int64)
     large = (np.bincount(pieces.reshape(-1)) >= MIN_PX)[pieces]
-    return labels if large.all() or not large.any() else labels.reshape(-1)[_nearest_place(large)]
+    return labels if large.all() or not large.any() else labels.reshape(-1)[nearest(large)[1]]

@@ -102,7 +102,7 @@ def _links(pieces: _Pieces) -> list[list[int]]:
     links = list[list[int]]()
     for here in range(len(near)):
         ranked = np.flatnonzero(fits[here])[np.argsort(gap[here][fits[here]], kind="stable")]
-        back = way[here, ranked] @ way[here, ranked[:1]].T <= -np.cos(np.radians(TURN_DEG))
+        back = np.einsum("ik,jk->ij", way[here, ranked], way[here, ranked[:1]]) <= -np.cos(np.radians(TURN_DEG))
         follow = [*ranked[:1], *ranked[back.any(axis=1)][:1]]
         beside = like[here] & (distance[here] < APART * min(distance[here, follow], default=0))
         beside[follow] = False

@@ -10,9 +10,7 @@ from jaxtyping import Bool, Float32
 from ..runtime.opencv import cv2, plain_opencv
 from .dashes import DashedLine, find_dashes
 from .ink import Ink
-
-# The least length of a line, as a share of the longer side; what is shorter is a speck.
-MIN_LONG = 1 / 60
+from .tips import long_pieces
 
 
 class Lines(NamedTuple):
@@ -45,11 +43,7 @@ def find_lines(ink: Ink, letters: Bool[np.ndarray, "r c"]) -> Lines:
     with plain_opencv():
         drawn = (ink.mask & ~letters & ~dashes).astype(np.uint8)
         drawn |= np.asarray(cv2.medianBlur(drawn, 3), np.uint8)  # fills pin holes, which would be loops
-        _, pieces, about, _ = cv2.connectedComponentsWithStats(drawn, connectivity=8)
-        sides = np.asarray(about, np.float64)[:, [cv2.CC_STAT_WIDTH, cv2.CC_STAT_HEIGHT]]
-        long = np.hypot(sides[:, 0], sides[:, 1]) >= MIN_LONG * max(ink.mask.shape)
-        long[0] = False
-        strokes = long[np.asarray(pieces, np.int32)]
+        strokes = long_pieces(drawn > 0)
         inked = strokes | dashes
         inside = np.asarray(cv2.distanceTransform(inked.astype(np.uint8), cv2.DIST_L2, 5), np.float32)
         mask, ways = inked.astype(np.uint8), np.zeros(inked.shape, np.uint8)

@@ -52,10 +52,14 @@ def _strokes(mask: Bool[np.ndarray, "r c"], widest_px: int) -> Bool[np.ndarray, 
     wider = [mask, mask, *(opened((width + 1) / 2) for width in widths)]
     strokes = np.zeros(mask.shape, np.bool_)
     for narrow, wide, width in zip(wider, wider[2:], widths, strict=False):
-        band = (narrow & ~wide).astype(np.uint8)
-        _, pieces, about, _ = cv2.connectedComponentsWithStats(band, connectivity=8)
-        sides = np.asarray(about, np.float64)[:, [cv2.CC_STAT_WIDTH, cv2.CC_STAT_HEIGHT]]
-        long = np.hypot(sides[:, 0], sides[:, 1]) >= max(MIN_LONG * max(mask.shape), LONG * width)
-        long[0] = False
-        strokes |= long[np.asarray(pieces, np.int32)]
+        strokes |= long_pieces(narrow & ~wide, LONG * width)
     return strokes
+
+
+def long_pieces(mask: Bool[np.ndarray, "r c"], least_px: float = 0) -> Bool[np.ndarray, "r c"]:
+    """Return the connected pieces that are as long as a stroke and as this, by the diagonals of their boxes."""
+    _, pieces, about, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
+    sides = np.asarray(about, np.float64)[:, [cv2.CC_STAT_WIDTH, cv2.CC_STAT_HEIGHT]]
+    long = np.hypot(sides[:, 0], sides[:, 1]) >= max(MIN_LONG * max(mask.shape), least_px)
+    long[0] = False
+    return long[np.asarray(pieces, np.int32)]

@@ -1,25 +1,14 @@
-"""Operations on the cells of a label map: the nearest cell of a mask, boxes, discs, filling and voting."""
+"""Operations on the cells of a label map: boxes, discs, filling and voting."""
 
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Bool, Float32, Int32, Int64
+from jaxtyping import Bool, Int32
 
+from tangible_core.drawing import nearest
 from tangible_core.runtime import cv2, plain_opencv
 
 Box = tuple[slice, slice]
-
-
-def nearest(mask: Bool[np.ndarray, "h w"]) -> tuple[Float32[np.ndarray, "h w"], Int64[np.ndarray, "h w"]]:
-    """Return each cell's distance to the nearest cell of a mask, in cells to 2 %, and that cell's flat index."""
-    with plain_opencv():
-        far, label = cv2.distanceTransformWithLabels(
-            (~mask).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
-        )
-    labels = np.asarray(label, np.int32)
-    at = np.zeros(int(labels.max()) + 1, np.int64)
-    at[labels[mask]] = np.flatnonzero(mask)
-    return np.asarray(far, np.float32), at[labels]
 
 
 def boxes(labels: Int32[np.ndarray, "h w"]) -> list[Box | None]:

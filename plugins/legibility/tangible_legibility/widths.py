@@ -5,9 +5,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int, Int32, UInt8
 
+from tangible_core.drawing import nearest
 from tangible_core.runtime import cv2, plain_opencv
-
-from .cells import nearest
 
 ROUND_OFF = 1e-6  # relative
 # Distance, and at least a cell, by which discs reach further, so that stairs of pixels do not count as places.

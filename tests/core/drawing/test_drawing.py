@@ -15,7 +15,7 @@ from tangible_core.parts import find_parts
 
 def written(words: str) -> np.ndarray:
     """Return a sheet with these words."""
-    sheet = Image.new("L", (300, 300), 255)
+    sheet = Image.new("L", (600, 600), 255)
     ImageDraw.Draw(sheet).text((60, 90), words, 20, ImageFont.truetype(findfont("DejaVu Sans"), 26), spacing=2)
     return np.array(sheet)
 

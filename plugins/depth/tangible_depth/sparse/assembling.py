@@ -5,6 +5,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from tangible_core.data import DisparityMap, to_rgb8
+from tangible_core.drawing import nearest
 from tangible_core.runtime import plain_opencv
 
 # Distance of a match from its neighbours' mean, in pixels, above which it is dropped.
@@ -62,10 +63,4 @@ def fill_nearest(values: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w
     unknown = ~np.isfinite(values)
     if not unknown.any():
         return values
-    _, label = cv2.distanceTransformWithLabels(
-        unknown.astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
-    )
-    label = np.asarray(label, np.intp)
-    nearest = np.zeros(int(label.max()) + 1, np.float32)
-    nearest[label[~unknown]] = values[~unknown]
-    return nearest[label]
+    return values.reshape(-1)[nearest(~unknown)[1]]

@@ -1,6 +1,4 @@
 """The verdicts on what is left of a drawing on a medium: its lines, its parts and its texts."""
-# scipy has no types.
-# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

@@ -1,6 +1,4 @@
 """Borders of parts: steps of height that can be felt, materials of neighbours, and what is left on pins."""
-# scipy has no types.
-# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
 from math import log, nan
 from typing import Any, NamedTuple

@@ -1,6 +1,5 @@
 """Depth with the slopes that a network's normals say."""
-# scipy has no types.
-# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportCallIssue=false, reportArgumentType=false
+# pyright: reportCallIssue=false, reportArgumentType=false
 
 import numpy as np
 from jaxtyping import Float32, Float64

@@ -4,7 +4,6 @@ A damaged file can end the process that runs it, so the first run of a file is i
 remembers by its content and the version of the runtime that it ran; all later runs are in this process.
 """
 # OpenCV's `dnn` and onnxruntime have no types, kornia's builders have not all.
-# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
 import hashlib
 import json

@@ -1,6 +1,4 @@
 """Borders between parts as polygons, which share their lines to the bit."""
-# shapely has no types.
-# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
 from typing import Any
 

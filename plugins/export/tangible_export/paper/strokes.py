@@ -1,6 +1,4 @@
 """The lines of a drawing as strokes of one width on a page, dashed and dotted ones as dashes and dots."""
-# shapely has no types.
-# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
 from collections.abc import Sequence
 from typing import Any

@@ -1,5 +1,4 @@
 """Files with several pictures in them: pages, frames of an animation, the two views of a stereo camera."""
-# pyright: reportUnknownMemberType=false
 # (Pillow has no types for what it keeps of several pictures)
 
 import re

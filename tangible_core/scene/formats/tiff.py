@@ -2,7 +2,6 @@
 
 Sources: TIFF 6.0 and its supplements; GDAL's tag 42113, the value for no data, and its masks, which are pages.
 """
-# pyright: reportUnknownMemberType=false
 # (tifffile's pages have tags of any kind)
 
 import logging

@@ -8,6 +8,7 @@ import numpy as np
 from tangible_core import HapticSurface, load_method
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo.ring import shared_folder
+from waiting import until
 
 SOFT_N_PER_M = 2.0
 """Stiffness that `Circling` and `Failing` hold even at a period of a second, so that no late tick scales it down."""
@@ -20,8 +21,7 @@ def proxy(height_m: float = 0.002, **options: float) -> Touch:
 
 def held_force(path: Path) -> float:
     """Return the force that the device holds; NaN if it was never open."""
-    text = path.read_text() if path.exists() else ""
-    return float(text) if text else float("nan")
+    return float(until(path.read_text)) if path.exists() else float("nan")  # it is empty while it is written anew
 
 
 def left_behind() -> set[Path]:

@@ -227,9 +227,9 @@ def test_killed_comparison_continues_where_it_stopped(tangible, tmp_path: Path):
 
 
 def test_peak_memory_counts_from_its_start_and_held_bytes_are_those_of_the_result():
-    np.ones(40_000_000, np.uint8)
+    np.ones(160_000_000, np.uint8)
     peak = start_peak()
-    np.ones(20_000_000, np.uint8)
-    assert peak() == pytest.approx(20_000_000, rel=0.1)
+    np.ones(80_000_000, np.uint8)
+    assert peak() == pytest.approx(80_000_000, rel=0.1)
     assert held_bytes(lambda: np.ones(10_000)) == pytest.approx(80_000, rel=0.01)
     assert held_bytes(lambda: np.ones(10_000).sum()) < 1000

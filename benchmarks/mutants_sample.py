@@ -50,7 +50,7 @@ def sample(root: Path, count: int, seed: int, rooms: Iterable[str] = ()) -> list
 def room_name(file: str) -> str:
     """Return the room of a file: a folder of the core, or a plugin's family.
 
-    >>> room_name("tangible_core/scene/formats/tiff.py"), room_name("plugins/study/tangible_study/extra.py")
+    >>> room_name("tangible_core/scene/formats/tiff.py"), room_name("plugins/study/tangible_study/design.py")
     ('scene', 'study')
     >>> room_name("tangible_core/errors.py")
     'core'

@@ -1,4 +1,4 @@
-"""The optional torch extra: its import, the way to install it, and the device to compute on."""
+"""The optional extras and above all torch: their import, the way to install them, and the device to compute on."""
 
 import sys
 from collections.abc import Generator
@@ -7,7 +7,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Literal
 
-from ..errors import BrokenMethod
+from ..errors import BrokenMethod, TangibleError
 from .threads import limiters, thread_limit
 
 if TYPE_CHECKING:
@@ -18,8 +18,8 @@ TorchDevice = Literal["auto", "cpu", "cuda"]
 _own_threads = 0  # torch's own number of threads, if it was limited when it was imported
 
 
-def need(name: str) -> ModuleType:
-    """Import `torch` or `kornia`, or a module of theirs."""
+def need(name: str, packages: str = "torch kornia", error_type: type[TangibleError] = BrokenMethod) -> ModuleType:
+    """Import a module of an optional extra, of which these are the packages. Raises: an error that says what to do."""
     global _own_threads
     fresh = "torch" not in sys.modules
     try:
@@ -31,7 +31,7 @@ def need(name: str) -> ModuleType:
         return module
     except ImportError as error:
         package = name.partition(".")[0]
-        raise BrokenMethod(f"this method needs {package} ({error}); pip install torch kornia") from error
+        raise error_type(f"this needs {package} ({error}); pip install {packages}") from error
 
 
 @contextmanager

@@ -5,6 +5,7 @@ from contextlib import suppress
 from functools import cached_property
 from typing import final
 
+from ...errors import TangibleError
 from ...plugins.interfaces import Exporter
 from ..config.methods import NamedMethod
 from ..engine.engine import Engine
@@ -34,7 +35,10 @@ class ExportEngines:
         engine = self.engine.with_config(config.with_values(felt_widths_m=(config.size.width_m,)))
         of_parts = [each for each in felt if any("simplified" in engine.all_inputs(need) for need in each.method.needs)]
         widths_m = tuple(sorted({*filter(None, map(self._width_m, of_parts))}))
-        return engine.with_config(config.with_values(felt_widths_m=widths_m)) if widths_m else engine
+        with suppress(TangibleError):  # of too many parts, each file says so, and those without parts are written
+            self.engine.make("parts")
+            return engine.with_config(config.with_values(felt_widths_m=widths_m)) if widths_m else engine
+        return self.engine
 
     def engine_for(self, exporter: NamedMethod[Exporter]) -> Engine:
         """Return the engine for the width at which this exporter writes, and for its slopes."""

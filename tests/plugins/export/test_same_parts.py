@@ -15,6 +15,7 @@ from tangible_export import Glb, Stl, Swell, ThreeMF
 from tangible_export.paper.marks.reading import read as read_marks
 from tangible_report import Text
 from tangible_send.page import Page
+from tangible_texture import Histogram
 
 LABELS = np.zeros((300, 400), np.int32)
 LABELS[60:200, 40:180] = LABELS[120:125, 180:187] = 1  # with a tab, short for a corner of 160 mm, and too long on paper
@@ -76,3 +77,13 @@ def test_words_state_the_size_and_the_heights_of_the_file_beside_them(tmp_path: 
     for swell, width in ((Swell(), "237 mm"), (wrong, "80 mm")):
         words = export(tmp_path / width, [swell, Text()])["Text"]
         assert f"A surface {width} wide" in words.files[0].read_text("utf-8")
+
+
+def test_too_many_parts_are_told_for_the_page_and_refuse_no_other_file(tmp_path: Path):
+    squares = (np.indices((140, 140)).sum(axis=0) % 2 * 200).astype(np.uint8)
+    pipeline = Pipeline(
+        Scene.photo(squares), relief="edges", texture=Histogram(sigma_px=0, smallest_px=1), cached=False
+    )
+    done = {each.name: each for each in pipeline.export(tmp_path, ["swell", "page", "stl"]).exports}
+    assert "19600 parts, and at most 4096" in str(done["swell"].outcome)
+    assert done["page"].files and done["stl"].files

@@ -6,8 +6,10 @@ from typing import Annotated, Any, final
 import numpy as np
 from pydantic import Field
 
+from tangible_core.errors import ConfigError
+from tangible_core.runtime import need
+
 from ..design import Comparison, Stimulus, Trial
-from ..extra import need
 from ..measures.functions import Function
 from ..questions import load_question
 from .listed import odd_one, standard_among_levels
@@ -91,7 +93,7 @@ class _Track:
     @cached_property
     def _quest(self) -> Any:
         function, domain = _function(self._comparison).grid(self._levels, self._lapses)
-        return need("questplus").QuestPlus(
+        return need("questplus", "questplus psignifit", ConfigError).QuestPlus(
             stim_domain={"intensity": self._levels},
             param_domain={**domain, "lapse_rate": list(self._lapses)},
             outcome_domain={"response": [1, 0]},

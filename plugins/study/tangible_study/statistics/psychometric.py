@@ -8,7 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Float64
 
-from ..extra import need
+from tangible_core.errors import ConfigError
+from tangible_core.runtime import need
+
 from .intervals import LEVEL, Estimate
 
 STEP = 0.01  # width of what counts as a step, as a share of the distance of two levels
@@ -121,7 +123,7 @@ def _threshold_interval(curve: Curve, blocks: Blocks, beyond: float = -inf) -> E
 
 
 def _fit(blocks: Blocks, **options: Any) -> Any:
-    psignifit = need("psignifit")
+    psignifit = need("psignifit", "questplus psignifit", ConfigError)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # about adaptive data, for which the range of levels is given
         return psignifit.psignifit(

@@ -67,7 +67,7 @@ class UnknownMethod(TangibleError):
     def __init__(self, kind: str, name: str, known: Iterable[str], meant: str = "") -> None:
         """meant: the name to suggest where none is spelt like this one."""
         names, name = sorted(set(known)), str(name)
-        self.meant = _nearest(name, names) or meant  # the name that is suggested
+        self.meant: str = _nearest(name, names) or meant  # the name that is suggested
         hint = f" (did you mean {quoted(self.meant)}?)" if self.meant else ""
         there = ", ".join(names) or "none"
         super().__init__(self._sentence(kind, quoted(name), hint, there))

@@ -99,11 +99,14 @@ def test_convertible_arguments_are_converted():
             as_state(other)
 
 
-def test_help_lists_options_of_methods_in_their_signature():
+def test_help_of_a_method_lists_its_options_and_its_schema_does_not():
     proxy = load_method("render", "proxy")
     line = "stiffness_n_per_m = 800.0   (N/m, number > 0 or text such as 6 N/m)\n    Stiffness between proxy and hand,"
     assert f"\n\nOptions:\n{line}" in str(proxy.__doc__)
     assert proxy.model_json_schema()["description"].endswith("Eurohaptics 2002.")
+
+
+def test_unknown_option_lists_only_the_names_that_may_be_written():
     assert Pen().draw(1, 2, 3, tall=4) == 10
     for name in ("tal", "self", "at", "points", "more"):
         with pytest.raises(ArgumentError) as raised:
@@ -111,6 +114,8 @@ def test_help_lists_options_of_methods_in_their_signature():
         meant = " (did you mean 'tall'?)" if name == "tal" else ""
         assert str(raised.value) == f"Pen.draw: {name}: unknown option{meant}; known: wide, tall"
 
+
+def test_options_of_a_typed_dict_are_in_the_signature_by_name():
     @named_options
     def draw(text: str, **turn: Unpack[TurnOptions]) -> Mapping[str, object]:
         return turn

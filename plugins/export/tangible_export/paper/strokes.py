@@ -21,14 +21,14 @@ ALONG_MM, LONG_MM = 2.0, 6.0
 
 def strokes_on(picture: np.ndarray, sheet: Sheet, outlines: Any = None) -> tuple[Any, ...]:
     """Return a drawing's strokes and the dots of dotted ones, in millimetres and apart from `outlines`."""
-    found = find_marks(picture).lines
-    rows, columns = found.solid.shape
+    lines_drawn = find_marks(picture).lines
+    rows, columns = lines_drawn.solid.shape
 
     def to_page(at: Float64[np.ndarray, "n 2"], closed: bool) -> Any:
         to_mm = np.divide(sheet.picture_mm, (columns, rows))
         return _smooth((at + 0.5) * to_mm + (sheet.left_mm, sheet.top_mm), closed)
 
-    lines = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(_links(found.solid))))
+    lines = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(_links(lines_drawn.solid))))
     ends = shapely.get_coordinates([(line.boundary) for line in lines])
     places, uses = np.unique(ends, axis=0, return_counts=True)
     free = {tuple(place) for place, count in zip(places.tolist(), uses.tolist(), strict=True) if count == 1}
@@ -40,13 +40,13 @@ def strokes_on(picture: np.ndarray, sheet: Sheet, outlines: Any = None) -> tuple
         if alone or stroke.length >= SPUR_MM or not {tuple(at[0]), tuple(at[-1])} & free:
             strokes.append(stroke)
     outlines = shapely.LineString() if outlines is None else outlines
-    ways = [to_page(line.way, bool(np.allclose(line.way[0], line.way[-1]))) for line in found.dashed]
+    ways = [to_page(line.way, bool(np.allclose(line.way[0], line.way[-1]))) for line in lines_drawn.dashed]
     along = shapely.union_all(ways).buffer(LINE_MM)  # with dashes that touch a line
-    kept = [stroke for stroke in _apart(strokes, outlines) if not stroke.within(along)]
-    strokes = [*shapely.get_parts(shapely.line_merge(shapely.MultiLineString(kept)))]
+    apart = [stroke for stroke in _apart(strokes, outlines) if not stroke.within(along)]
+    strokes = [*shapely.get_parts(shapely.line_merge(shapely.MultiLineString(apart)))]
     # A dashed line keeps clear of those that it meets, so that a finger can follow these.
     solid = shapely.union_all([*strokes, outlines]).buffer(LINE_MM)
-    for line, way in zip(found.dashed, ways, strict=True):
+    for line, way in zip(lines_drawn.dashed, ways, strict=True):
         met = way.intersection(solid).buffer(CLEAR_MM + DOT_MM / 2)
         for piece in _apart([way], outlines):
             rest = shapely.difference(_dashes(piece, sorted(line.dots)), met)
